@@ -1,0 +1,34 @@
+# The same bits everywhere: no fused multiply-add, no fast math, and Eigen's vector paths off, so that g++ and
+# clang++, debug and release, compute one and the same frame. Three-vectors gain nothing from them.
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE Release)
+endif()
+set(CMAKE_CXX_FLAGS_RELEASE "-O2")
+set(CMAKE_CXX_FLAGS_DEBUG "-O0 -g")
+add_compile_options(-ffp-contract=off)
+add_compile_definitions(EIGEN_DONT_VECTORIZE EIGEN_MPL2_ONLY)
+
+find_program(CCACHE ccache)
+if(CCACHE)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE})
+endif()
+
+add_library(tactum_warnings INTERFACE)
+target_compile_options(tactum_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
+  -Wnon-virtual-dtor -Wold-style-cast -Woverloaded-virtual -Wnull-dereference -Wdouble-promotion -Werror)
+
+# Sanitizers: -DTACTUM_SANITIZE=address,undefined or =thread (see CMakePresets.json).
+set(TACTUM_SANITIZE "" CACHE STRING "Comma-separated sanitizers")
+if(TACTUM_SANITIZE)
+  add_compile_options(-fsanitize=${TACTUM_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  add_link_options(-fsanitize=${TACTUM_SANITIZE})
+endif()
+option(TACTUM_COVERAGE "Count executed lines (gcov)" OFF)
+if(TACTUM_COVERAGE)
+  add_compile_options(--coverage)
+  add_link_options(--coverage)
+endif()

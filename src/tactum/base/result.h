@@ -1,0 +1,74 @@
+#pragma once
+/// Errors of set-up work (files, devices, settings): a value or a sentence that says what is wrong.
+/// The haptic frame never uses these; it degrades with flags (haptics/frame_report.h).
+
+#include <cassert>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+
+namespace tactum {
+
+/// What went wrong, told so that the reader can mend it.
+struct Error {
+  std::string what;      ///< one clause: "cannot read the mesh"
+  std::string found;     ///< what was there; may be empty
+  std::string expected;  ///< what should have been there; may be empty
+  std::string where;     ///< file, line and column, field, or device; may be empty
+
+  /// "WHERE: WHAT: found FOUND, expected EXPECTED".
+  std::string message() const {
+    std::string text;
+    if (!where.empty()) text += where + ": ";
+    text += what;
+    if (!found.empty()) text += ": found " + found;
+    if (!expected.empty()) text += (found.empty() ? ": expected " : ", expected ") + expected;
+    return text;
+  }
+};
+
+/// A T or an Error. Ask `if (!result)` before `*result`.
+template <class T>
+class [[nodiscard]] Result {
+ public:
+  Result(T value) : state_(std::move(value)) {}
+  Result(Error error) : state_(std::move(error)) {}
+
+  explicit operator bool() const { return state_.index() == 0; }
+  T& operator*() & { return checked(); }
+  const T& operator*() const& { return const_cast<Result*>(this)->checked(); }
+  T&& operator*() && { return std::move(checked()); }
+  T* operator->() { return &checked(); }
+  const T* operator->() const { return &const_cast<Result*>(this)->checked(); }
+  const Error& error() const {
+    assert(!*this);
+    return std::get<1>(state_);
+  }
+
+ private:
+  T& checked() {
+    assert(*this);
+    return std::get<0>(state_);
+  }
+  std::variant<T, Error> state_;
+};
+
+/// Success or an Error.
+template <>
+class [[nodiscard]] Result<void> {
+ public:
+  Result() = default;
+  Result(Error error) : error_(std::move(error)) {}
+
+  explicit operator bool() const { return !error_.has_value(); }
+  const Error& error() const {
+    assert(error_);
+    return *error_;
+  }
+
+ private:
+  std::optional<Error> error_;
+};
+
+}  // namespace tactum

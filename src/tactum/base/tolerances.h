@@ -1,0 +1,51 @@
+#pragma once
+/// Every epsilon of the library, with its story. Lengths are relative: multiply by the size of the part (the
+/// diagonal of its bounding box), unless the name ends in a unit. No other file may hold a literal epsilon.
+
+namespace tactum::tolerances {
+
+/// Points of one facet lie in its plane to this much of the size. Qhull's own coordinates are good to a few
+/// 1e-16; merging facets that are less planar than this gives wrong distances, leaving planar ones apart does too.
+inline constexpr double kCoplanar = 1e-12;
+
+/// A corner whose two edges are straight to this much (height over the chord, relative to the size) is no corner.
+inline constexpr double kCollinear = 1e-12;
+
+/// A closest-feature answer is certified when the support planes' separation agrees with the distance of its
+/// witness points to this much of the size of the pair. Raise it and wrong features pass; lower it and rounding
+/// of far-away coordinates sends good answers to the fallback.
+inline constexpr double kCertificate = 1e-9;
+
+/// Voronoi planes are crossed only when a point is beyond them by this much of the size, so that a point on
+/// a plane does not walk to and fro.
+inline constexpr double kVoronoiSlack = 1e-13;
+
+/// Below this share of the size a vector between witness points no longer has a direction of its own.
+inline constexpr double kTouching = 1e-12;
+
+/// Two directions are parallel when the sine of their angle is below this: the cross product of unit vectors
+/// keeps about eight digits there.
+inline constexpr double kParallelSine = 1e-8;
+
+/// Vertices nearer than this share of the mesh's size are one vertex. STL stores single precision (6e-8).
+inline constexpr double kWeld = 1e-9;
+
+/// A triangle thinner than this (height over its longest edge) has no usable normal.
+inline constexpr double kDegenerateTriangle = 1e-10;
+
+/// Edges of a mesh count as convex when the far vertex stays below the neighbour's plane by this share of the size.
+inline constexpr double kConvexMesh = 1e-9;
+
+/// Squared angle [rad^2] below which sin(a)/a and its kin are taken from their series: exact to the last bit there.
+inline constexpr double kSmallAngleSquared = 1e-6;
+
+/// Sine of a half angle below which a rotation vector is twice the quaternion's vector part, exact to rounding.
+inline constexpr double kSmallHalfAngleSine = 1e-9;
+
+/// A matrix read from a file is a rotation when every entry of R R^T - I is below this: sixteen decimals.
+inline constexpr double kRotationExact = 1e-9;
+
+/// ... and is made orthonormal, and the reader told, when below this: six decimals, as many programs write.
+inline constexpr double kRotationNear = 1e-4;
+
+}  // namespace tactum::tolerances

@@ -1,0 +1,64 @@
+#pragma once
+/// The contract of a haptic device: what every device, real or simulated, looks like to the loop.
+///
+/// Units are SI. The device frame D is: x toward the operator, y to the operator's right, z up, origin at the
+/// centre of the workspace; a driver converts its own axes. H is the handle. Wrenches act on the hand, at the
+/// handle's origin, with axes of D.
+///
+/// One thread (the loop's) calls read and write after open; nothing else touches the device meanwhile.
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "tactum/base/result.h"
+#include "tactum/math/spatial.h"
+
+namespace tactum {
+
+/// What the device says about the hand at one instant.
+struct DeviceSample {
+  double time_s = 0.0;        ///< when it was measured, on the loop's clock [s]
+  Pose X_DH;                  ///< handle in device frame [m]
+  Twist V_DH;                 ///< of the handle's origin, axes of D [m/s, rad/s]; zero when the device has no estimate
+  bool has_velocity = false;  ///< whether V_DH was measured or estimated by the device
+  std::uint32_t buttons = 0;  ///< bit 0 is the primary button
+  bool valid = false;         ///< false: the read failed, everything else is the last known
+};
+
+/// What a device can do; queried, never guessed from its name.
+struct DeviceInfo {
+  std::string name;                      ///< "simulated premium-1.5-6dof"
+  bool senses_rotation = false;          ///< orientation of the handle is measured
+  bool actuates_force = false;           ///< can push
+  bool actuates_torque = false;          ///< can turn the handle
+  double max_force_N = 0.0;              ///< largest force it may be asked for [N]
+  double max_torque_Nm = 0.0;            ///< largest torque it may be asked for [N m]
+  double max_stiffness_N_per_m = 0.0;    ///< stiffest wall its maker or users hold stable at 1 kHz [N/m]
+  double max_stiffness_Nm_per_rad = 0.0; ///< the same for rotation [N m/rad]
+  double workspace_radius_m = 0.0;       ///< largest sphere about the origin it reaches [m]
+  double rate_Hz = 1000.0;               ///< rate it wants to be served at [Hz]
+};
+
+class Device {
+ public:
+  virtual ~Device() = default;
+  Device() = default;
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+
+  /// Makes the device ready with zero wrench. Slow; may allocate. Errors say what is missing and the cure.
+  virtual Result<void> open() = 0;
+  /// Zero wrench, then releases the device. Safe to call twice.
+  virtual void close() noexcept = 0;
+  virtual const DeviceInfo& info() const noexcept = 0;
+
+  /// The newest sample at `now_s` on the loop's clock; false (and sample.valid = false) when it failed.
+  /// A simulated device moves its world up to `now_s` here. Never waits longer than a device transfer.
+  virtual bool read(double now_s, DeviceSample& sample) noexcept = 0;
+
+  /// Asks for a wrench on the hand until the next write; false when the device did not take it.
+  virtual bool write(const Wrench& F_D) noexcept = 0;
+};
+
+}  // namespace tactum

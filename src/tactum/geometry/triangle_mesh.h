@@ -1,0 +1,46 @@
+#pragma once
+/// An indexed triangle mesh: what files hold and parts are made of.
+
+#include <array>
+#include <vector>
+
+#include "tactum/math/types.h"
+
+namespace tactum {
+
+using Triangle = std::array<int, 3>;  ///< vertex indices, counter-clockwise seen from outside
+
+struct TriangleMesh {
+  std::vector<Vec3> vertices;  ///< [m]
+  std::vector<Triangle> triangles;
+};
+
+/// An axis-aligned box. Empty until it holds a point.
+struct Aabb {
+  Vec3 min = Vec3::Constant(1e300);
+  Vec3 max = Vec3::Constant(-1e300);
+
+  void extend(const Vec3& point) {
+    min = min.cwiseMin(point);
+    max = max.cwiseMax(point);
+  }
+  void extend(const Aabb& box) {
+    min = min.cwiseMin(box.min);
+    max = max.cwiseMax(box.max);
+  }
+  bool empty() const { return min.x() > max.x(); }
+  Vec3 center() const { return 0.5 * (min + max); }
+  Vec3 half() const { return 0.5 * (max - min); }
+  double diagonal() const { return empty() ? 0.0 : (max - min).norm(); }
+  bool overlaps(const Aabb& b) const {
+    return (min.array() <= b.max.array()).all() && (b.min.array() <= max.array()).all();
+  }
+};
+
+inline Aabb bounds(const std::vector<Vec3>& points) {
+  Aabb box;
+  for (const Vec3& point : points) box.extend(point);
+  return box;
+}
+
+}  // namespace tactum

@@ -1,0 +1,27 @@
+#pragma once
+/// Where a frame B is in a frame A. `X_AB * p_B` is the same point told in A; `X_AB * X_BC` is X_AC.
+
+#include "tactum/math/types.h"
+
+namespace tactum {
+
+struct Pose {
+  Mat3 R = Mat3::Identity();  ///< axes of B, as columns, in A [-]
+  Vec3 p = Vec3::Zero();      ///< origin of B in A [m]
+
+  Vec3 operator*(const Vec3& point) const { return R * point + p; }
+  Pose operator*(const Pose& X) const { return {R * X.R, R * X.p + p}; }
+  Pose inverse() const { return {R.transpose(), -(R.transpose() * p)}; }
+
+  bool finite() const { return R.allFinite() && p.allFinite(); }
+};
+
+/// X_AB with the rotation put back on the manifold: products drift by about 1e-16 a factor.
+inline Pose renormalized(const Pose& X) { return {Quat(X.R).normalized().toRotationMatrix(), X.p}; }
+
+/// inverse(a) * b without forming the inverse: X_AB from X_WA and X_WB.
+inline Pose relative_pose(const Pose& X_WA, const Pose& X_WB) {
+  return {X_WA.R.transpose() * X_WB.R, X_WA.R.transpose() * (X_WB.p - X_WA.p)};
+}
+
+}  // namespace tactum

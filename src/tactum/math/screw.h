@@ -1,0 +1,52 @@
+#pragma once
+/// Rotations and rigid motions as exponentials: moving a pose by a twist, and the twist between two poses.
+/// Translation and rotation are kept apart (the origin moves on a line while the body turns about it), which
+/// is what "velocities from the difference of two transforms" means in [Gregory 2000, 6.1].
+
+#include "tactum/base/tolerances.h"
+#include "tactum/math/spatial.h"
+
+namespace tactum {
+
+/// The rotation by |w| radians about w.
+inline Mat3 exp_rotation(const Vec3& w) {
+  const double angle_sq = w.squaredNorm();
+  double s = 0.0;  // sin(a)/a
+  double c = 0.0;  // (1-cos(a))/a^2
+  if (angle_sq < tolerances::kSmallAngleSquared) {
+    s = 1.0 - angle_sq / 6.0 * (1.0 - angle_sq / 20.0);
+    c = 0.5 - angle_sq / 24.0 * (1.0 - angle_sq / 30.0);
+  } else {
+    const double angle = std::sqrt(angle_sq);
+    s = std::sin(angle) / angle;
+    c = (1.0 - std::cos(angle)) / angle_sq;
+  }
+  const Mat3 W = skew(w);
+  return Mat3::Identity() + s * W + c * (W * W);
+}
+
+/// The rotation vector of R, of length in [0, pi].
+inline Vec3 log_rotation(const Mat3& R) {
+  Quat q(R);
+  if (q.w() < 0.0) q.coeffs() = -q.coeffs();
+  const double sine = q.vec().norm();
+  if (sine < tolerances::kSmallHalfAngleSine) return 2.0 * q.vec();
+  return 2.0 * std::atan2(sine, q.w()) / sine * q.vec();
+}
+
+/// `X_WB` after moving with V_WB for `dt` seconds.
+inline Pose advanced(const Pose& X_WB, const Twist& V_WB, double dt) {
+  return {exp_rotation(V_WB.w * dt) * X_WB.R, X_WB.p + V_WB.v * dt};
+}
+
+/// The constant twist that takes X_WB to X_WC in `dt` seconds: advanced(X_WB, result, dt) == X_WC.
+inline Twist twist_between(const Pose& X_WB, const Pose& X_WC, double dt) {
+  return {(X_WC.p - X_WB.p) / dt, log_rotation(X_WC.R * X_WB.R.transpose()) / dt};
+}
+
+/// The pose at `s` in [0, 1] on the way from X_WB (0) to X_WC (1).
+inline Pose interpolated(const Pose& X_WB, const Pose& X_WC, double s) {
+  return advanced(X_WB, twist_between(X_WB, X_WC, 1.0), s);
+}
+
+}  // namespace tactum
