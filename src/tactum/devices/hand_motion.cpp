@@ -59,7 +59,7 @@ ScriptedMotion& ScriptedMotion::hold(double duration_s, std::uint32_t buttons) {
 
 HandState ScriptedMotion::at(double time_s) const noexcept {
   if (segments_.empty()) return {X_end_, {}, 0};
-  if (!(time_s > 0.0)) return {segments_.front().X_start, {}, segments_.front().buttons};
+  if (!(time_s >= 0.0)) return {segments_.front().X_start, {}, segments_.front().buttons};
   if (time_s >= end_s_) return {X_end_, {}, segments_.back().buttons};
   const auto next = std::upper_bound(segments_.begin(), segments_.end(), time_s,
                                      [](double t, const Segment& segment) { return t < segment.start_s; });
