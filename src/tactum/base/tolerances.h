@@ -36,6 +36,24 @@ inline constexpr double kDegenerateTriangle = 1e-10;
 /// Edges of a mesh count as convex when the far vertex stays below the neighbour's plane by this share of the size.
 inline constexpr double kConvexMesh = 1e-9;
 
+/// The contact solver has converged when a sweep changes no normal velocity by more than this share of the
+/// largest one asked for: a force error far below what a hand or a device resolves (1e-3).
+inline constexpr double kContactVelocity = 1e-6;
+
+/// A pair overlaps when its depth exceeds this share of the pieces' size: below it is the certificate's own doubt.
+inline constexpr double kPenetrating = 1e-9;
+
+/// A one-sided surface piece answers only contacts on its outer side; a normal may lean behind the surface by
+/// this sine before it counts as the inner side (contacts at convex edges lie at a right angle to it).
+inline constexpr double kOneSidedSine = 1e-6;
+
+/// Unit normals that differ by less than this are one: a corner's mean normal is then the face's own, to the bit.
+inline constexpr double kSameNormal = 1e-9;
+
+/// The area that a contact point or segment counts for when it shares a facet's stiffness with patches: small
+/// against any patch a hand can feel (a tenth of a millimetre squared is 1e-8), so it counts only where it is alone [m^2].
+inline constexpr double kPointArea_m2 = 1e-14;
+
 /// Squared angle [rad^2] below which sin(a)/a and its kin are taken from their series: exact to the last bit there.
 inline constexpr double kSmallAngleSquared = 1e-6;
 
