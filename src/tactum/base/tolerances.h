@@ -54,6 +54,23 @@ inline constexpr double kSameNormal = 1e-9;
 /// against any patch a hand can feel (a tenth of a millimetre squared is 1e-8), so it counts only where it is alone [m^2].
 inline constexpr double kPointArea_m2 = 1e-14;
 
+/// A corner of a polygon face turns the wrong way only beyond this (cross product over the square of the polygon's
+/// extent): single-precision corners on a straight side turn by 1e-7 either way, and a fan over them is right.
+inline constexpr double kPolygonTurn = 1e-6;
+
+/// Neighbouring triangles of a mesh belong to one flat face when the sine between their normals is below this. CAD
+/// files hold six to seven digits, so the normals of one wall differ by about 1e-6 over its size and more on
+/// slivers; facets of a finely meshed cylinder (a thousand around) differ by 6e-3 and stay apart.
+inline constexpr double kCoplanarMeshSine = 1e-5;
+
+/// ... and when the corners lie in the face's plane to this much of the mesh's size. Without it a slowly turning row
+/// of triangles would pass for flat, one pair at a time.
+inline constexpr double kCoplanarMeshOffset = 1e-6;
+
+/// Box tests grow the boxes by this share of their size, so that rounding of the rotated axes never parts boxes
+/// that touch.
+inline constexpr double kBoxSlack = 1e-14;
+
 /// Squared angle [rad^2] below which sin(a)/a and its kin are taken from their series: exact to the last bit there.
 inline constexpr double kSmallAngleSquared = 1e-6;
 
