@@ -12,14 +12,15 @@ import sys
 from concurrent.futures import ThreadPoolExecutor
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+OWN = ("src/", "app/")
 HEART = ("src/tactum/base/", "src/tactum/devices/", "src/tactum/haptics/")
 
 
 def chosen_sources(database, full):
     """The files of the compilation database that are to be checked, relative to the root."""
     known = {pathlib.Path(entry["file"]).resolve() for entry in database}
-    own = sorted(str(path.relative_to(ROOT)) for path in known if path.is_relative_to(ROOT / "src") or path.is_relative_to(ROOT / "app"))
-    return own if full else [path for path in own if path.startswith(HEART)]
+    own = sorted(path.relative_to(ROOT).as_posix() for path in known if path.is_relative_to(ROOT))
+    return [path for path in own if path.startswith(OWN if full else HEART)]
 
 
 def check(build, path):
