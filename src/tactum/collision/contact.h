@@ -1,0 +1,71 @@
+#pragma once
+/// The one convention of contact, and the numbers that name it. Everything is told in A's frame; A and B are convex
+/// pieces, X_AB is B's pose in A.
+///
+///            A   /                     n (= n_BA_A): unit, from B to A
+///          -----*  p_a                 distance = n . (p_a - p_b), negative when they overlap
+///               ^                      p_a = p_b + n distance
+///               | n
+///          -----*  p_b                 moving A by  +n max(0, -distance)  just separates an overlapping pair
+///            B   \.                    a force  +n f, f >= 0,  acts on A at p_a, its opposite on B at p_b
+///
+/// Swapping A and B keeps the distance, turns the normal around and swaps the points. Tested for every query.
+
+#include <cstdint>
+
+#include "tactum/base/static_vector.h"
+#include "tactum/math/pose.h"
+
+namespace tactum {
+
+enum class FeatureKind : std::uint8_t { kVertex, kEdge, kFace };
+
+/// A vertex, edge or face of a polytope by its index.
+struct Feature {
+  FeatureKind kind = FeatureKind::kVertex;
+  int index = -1;  ///< -1: none yet
+  bool operator==(const Feature&) const = default;
+};
+
+/// The closest features of a pair in the last frame: the coherence the tracker lives on. Value-initialised means none.
+struct PairCache {
+  Feature a, b;
+  Vec3 normal_A = Vec3::Zero();  ///< last normal from B to A, unit, or zero when there was none [-]
+};
+
+/// Why a query stopped.
+enum class Stop : std::uint8_t {
+  kCertified,  ///< the answer's own support planes prove it
+  kFallback,   ///< the walk did not end certified; a slower method answered, and its answer is certified
+  kBounded,    ///< out of steps: the value is usable but not proved
+};
+
+/// Answer of the distance and penetration queries; see the picture above.
+struct PairDistance {
+  double distance = 0.0;       ///< signed [m]
+  Vec3 p_a = Vec3::Zero();     ///< witness point on A, A's frame [m]
+  Vec3 p_b = Vec3::Zero();     ///< witness point on B, A's frame [m]
+  Vec3 normal = Vec3::Zero();  ///< n_BA_A, unit [-]
+  Feature a, b;                ///< the features the witness points lie on
+  Stop stop = Stop::kBounded;
+  int steps = 0;  ///< feature pairs visited
+  bool certified() const { return stop != Stop::kBounded; }
+};
+
+/// One point of a contact patch. The points of a patch stand for an integral over its area: their weights add up to one.
+struct ContactPoint {
+  Vec3 p_a = Vec3::Zero();  ///< on A, A's frame [m]
+  Vec3 p_b = Vec3::Zero();  ///< on B, A's frame [m]
+  double distance = 0.0;    ///< normal . (p_a - p_b) [m]
+  double weight = 0.0;      ///< share of the patch's stiffness [-]
+};
+
+/// Where two convex pieces touch or nearly touch: one normal and up to four points (quadrature of the clipped area).
+struct Manifold {
+  Vec3 normal = Vec3::Zero();  ///< n_BA_A, unit [-]
+  Feature a, b;                ///< features the patch lies on
+  double area = 0.0;           ///< of the clipped polygon, zero for points and segments [m^2]
+  StaticVector<ContactPoint, 4> points;
+};
+
+}  // namespace tactum

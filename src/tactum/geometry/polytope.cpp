@@ -1,0 +1,186 @@
+#include "tactum/geometry/polytope.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <utility>
+
+namespace tactum {
+namespace {
+
+using Index = std::size_t;
+
+/// Normal by Newell's sum, which weighs every corner, and offset by the mean corner.
+void set_plane(Polytope& P, Polytope::Face& face) {
+  Vec3 normal = Vec3::Zero();
+  Vec3 mean = Vec3::Zero();
+  const Vec3 origin = P.vertices[Index(P.face_vertices[Index(face.first)])];
+  for (int i = 0; i < face.count; ++i) {
+    const Vec3 a = P.vertices[Index(P.face_vertices[Index(face.first + i)])] - origin;
+    const Vec3 b = P.vertices[Index(P.face_vertices[Index(face.first + (i + 1) % face.count)])] - origin;
+    normal += a.cross(b);
+    mean += a;
+  }
+  face.normal = normal.normalized();
+  face.offset = face.normal.dot(origin) + face.normal.dot(mean) / face.count;
+}
+
+bool build_edges(Polytope& P, const char** why) {
+  std::map<std::pair<int, int>, int> edge_of;  // (tail, head) -> edge
+  P.face_edges.assign(P.face_vertices.size(), -1);
+  for (Index f = 0; f < P.faces.size(); ++f) {
+    const Polytope::Face& face = P.faces[f];
+    for (int i = 0; i < face.count; ++i) {
+      const int slot = face.first + i;
+      const int a = P.face_vertices[Index(slot)];
+      const int b = P.face_vertices[Index(face.first + (i + 1) % face.count)];
+      const auto twin = edge_of.find({b, a});
+      if (twin != edge_of.end()) {
+        Polytope::Edge& edge = P.edges[Index(twin->second)];
+        if (edge.right >= 0) return *why = "an edge has more than two faces", false;
+        edge.right = static_cast<int>(f);
+        edge.right_slot = slot;
+        P.face_edges[Index(slot)] = twin->second;
+        continue;
+      }
+      Polytope::Edge edge;
+      edge.tail = a;
+      edge.head = b;
+      edge.left = static_cast<int>(f);
+      edge.left_slot = slot;
+      edge.right = -1;
+      const Vec3 along = P.vertices[Index(b)] - P.vertices[Index(a)];
+      edge.length = along.norm();
+      edge.direction = along / edge.length;
+      P.face_edges[Index(slot)] = static_cast<int>(P.edges.size());
+      if (!edge_of.emplace(std::pair{a, b}, static_cast<int>(P.edges.size())).second)
+        return *why = "two faces run along an edge in the same direction", false;
+      P.edges.push_back(edge);
+    }
+  }
+  for (const Polytope::Edge& edge : P.edges)
+    if (edge.right < 0) return *why = "an edge has only one face", false;
+  return true;
+}
+
+void build_vertex_rows(Polytope& P) {
+  P.vertex_first.assign(P.vertices.size() + 1, 0);
+  for (const Polytope::Edge& edge : P.edges) {
+    ++P.vertex_first[Index(edge.tail) + 1];
+    ++P.vertex_first[Index(edge.head) + 1];
+  }
+  for (Index v = 0; v < P.vertices.size(); ++v) P.vertex_first[v + 1] += P.vertex_first[v];
+  P.vertex_edges.resize(P.edges.size() * 2);
+  std::vector<int> next(P.vertex_first.begin(), P.vertex_first.end() - 1);
+  for (Index e = 0; e < P.edges.size(); ++e) {
+    P.vertex_edges[Index(next[Index(P.edges[e].tail)]++)] = static_cast<int>(e);
+    P.vertex_edges[Index(next[Index(P.edges[e].head)]++)] = static_cast<int>(e);
+  }
+}
+
+void build_side_planes(Polytope& P) {
+  P.side_normals.resize(P.face_vertices.size());
+  P.side_offsets.resize(P.face_vertices.size());
+  for (const Polytope::Edge& edge : P.edges) {
+    const Vec3& tail = P.vertices[Index(edge.tail)];
+    const Vec3 left = edge.direction.cross(P.faces[Index(edge.left)].normal).normalized();
+    const Vec3 right = -edge.direction.cross(P.faces[Index(edge.right)].normal).normalized();
+    P.side_normals[Index(edge.left_slot)] = left;
+    P.side_normals[Index(edge.right_slot)] = right;
+    P.side_offsets[Index(edge.left_slot)] = left.dot(tail);
+    P.side_offsets[Index(edge.right_slot)] = right.dot(tail);
+  }
+}
+
+/// The direction through the middle of a table cell; the inverse of cell_of.
+Vec3 cell_direction(int side, int row, int column) {
+  const double u = (2 * column + 1 - Polytope::kTableSide) / static_cast<double>(Polytope::kTableSide);
+  const double v = (2 * row + 1 - Polytope::kTableSide) / static_cast<double>(Polytope::kTableSide);
+  const int axis = side / 2;
+  Vec3 direction;
+  direction[axis] = side % 2 ? -1.0 : 1.0;
+  direction[(axis + 1) % 3] = u;
+  direction[(axis + 2) % 3] = v;
+  return direction;
+}
+
+int cell_of(const Vec3& direction) noexcept {
+  const Vec3 a = direction.cwiseAbs();
+  int axis = a.x() >= a.y() ? 0 : 1;
+  if (a.z() > a[axis]) axis = 2;
+  constexpr int n = Polytope::kTableSide;
+  const double scale = 0.5 * n / a[axis];
+  const int column = std::clamp(static_cast<int>(direction[(axis + 1) % 3] * scale + 0.5 * n), 0, n - 1);
+  const int row = std::clamp(static_cast<int>(direction[(axis + 2) % 3] * scale + 0.5 * n), 0, n - 1);
+  const int side = 2 * axis + (direction[axis] < 0.0 ? 1 : 0);
+  return (side * n + row) * n + column;
+}
+
+void build_direction_table(Polytope& P) {
+  int vertex = 0;  // neighbouring cells have neighbouring vertices: climb on from the last
+  for (int side = 0; side < 6; ++side)
+    for (int row = 0; row < Polytope::kTableSide; ++row)
+      for (int column = 0; column < Polytope::kTableSide; ++column) {
+        vertex = support_vertex(P, cell_direction(side, row, column), vertex);
+        P.direction_table[Index((side * Polytope::kTableSide + row) * Polytope::kTableSide + column)] =
+            static_cast<std::uint16_t>(vertex);
+      }
+}
+
+}  // namespace
+
+int table_vertex(const Polytope& polytope, const Vec3& direction) noexcept {
+  return polytope.direction_table[Index(cell_of(direction))];
+}
+
+int support_vertex(const Polytope& P, const Vec3& direction, int start) noexcept {
+  int best = start;
+  double height = direction.dot(P.vertices[Index(best)]);
+  for (bool climbed = true; climbed;) {
+    climbed = false;
+    for (int e : P.edges_at(best)) {
+      const int neighbour = P.across(e, best);
+      const double h = direction.dot(P.vertices[Index(neighbour)]);
+      if (h > height) {
+        height = h;
+        best = neighbour;
+        climbed = true;
+        break;
+      }
+    }
+  }
+  return best;
+}
+
+bool complete_polytope(Polytope& P, const char** why) {
+  P.edges.clear();
+  for (Polytope::Face& face : P.faces) {
+    if (face.count < 3) return *why = "a face has fewer than three corners", false;
+    set_plane(P, face);
+  }
+  if (!build_edges(P, why)) return false;
+  if (P.vertices.size() + P.faces.size() != P.edges.size() + 2)
+    return *why = "the faces do not close up to a sphere (V - E + F is not 2)", false;
+  build_vertex_rows(P);
+  build_side_planes(P);
+  P.center.setZero();
+  for (const Vec3& vertex : P.vertices) P.center += vertex;
+  P.center /= static_cast<double>(P.vertices.size());
+  P.radius = 0.0;
+  for (const Vec3& vertex : P.vertices) P.radius = std::max(P.radius, (vertex - P.center).norm());
+  P.size = bounds(P.vertices).diagonal();
+  P.flat = P.faces.size() == 2;
+  build_direction_table(P);
+  return true;
+}
+
+double convexity_defect(const Polytope& polytope) noexcept {
+  double defect = 0.0;
+  for (const Polytope::Face& face : polytope.faces)
+    for (const Vec3& vertex : polytope.vertices)
+      defect = std::max(defect, face.normal.dot(vertex) - face.offset);
+  return defect;
+}
+
+}  // namespace tactum
