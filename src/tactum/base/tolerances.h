@@ -53,4 +53,12 @@ inline constexpr double kRotationExact = 1e-9;
 /// ... and is made orthonormal, and the reader told, when below this: six decimals, as many programs write.
 inline constexpr double kRotationNear = 1e-4;
 
+/// The iteration to the nearest rotation stops when no entry changes by more than this. It converges
+/// quadratically, so the next change would be the square of it: below rounding.
+inline constexpr double kRotationConverged = 1e-9;
+
+/// A quaternion read from a file is normalised when its length is this near to one: four decimals, as motion
+/// capture writes, leave 2e-4. Farther off, the columns are not a quaternion.
+inline constexpr double kQuaternionNear = 1e-3;
+
 }  // namespace tactum::tolerances
