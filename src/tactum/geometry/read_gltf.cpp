@@ -13,13 +13,12 @@
 namespace tactum::detail {
 namespace {
 
-/// An importer that knows glTF and nothing else.
+/// An importer that knows glTF 2 and nothing else: no other loader gets to look at the bytes.
 std::unique_ptr<Assimp::Importer> gltf_importer() {
   auto importer = std::make_unique<Assimp::Importer>();
-  Assimp::BaseImporter* wanted = importer->GetImporter("glb");
   for (std::size_t i = importer->GetImporterCount(); i-- > 0;) {
+    if (std::string_view(importer->GetImporterInfo(i)->mName).starts_with("glTF2")) continue;
     Assimp::BaseImporter* loader = importer->GetImporter(i);
-    if (loader == wanted) continue;
     importer->UnregisterLoader(loader);
     delete loader;
   }
