@@ -33,12 +33,16 @@ double GoalRecord::measure(const Goal& goal, const World& world, const WorldStat
   const Index body = Index(goal.body);
   const auto place = [&](const Pose& X_WB) -> Vec3 { return X_WB * goal.p_BQ; };
   switch (goal.kind) {
-    case GoalKind::kTurned: return std::copysign(1.0, goal.amount) * angles_[body];
-    case GoalKind::kTurnedTo: return std::abs(angles_[body] - goal.amount);
+    case GoalKind::kTurned:
+      return std::copysign(1.0, goal.amount) * angles_[body];
+    case GoalKind::kTurnedTo:
+      return std::abs(angles_[body] - goal.amount);
     case GoalKind::kMovedBy:
       return goal.vector_W.dot(place(state.X_WB[body]) - place(world.bodies[body].X_WB));
-    case GoalKind::kMovedTo: return (place(state.X_WB[body]) - goal.vector_W).norm();
-    case GoalKind::kFollowed: return std::abs(angles_[body] + goal.amount * angles_[Index(goal.leader)]);
+    case GoalKind::kMovedTo:
+      return (place(state.X_WB[body]) - goal.vector_W).norm();
+    case GoalKind::kFollowed:
+      return std::abs(angles_[body] + goal.amount * angles_[Index(goal.leader)]);
   }
   return 0.0;
 }
@@ -85,7 +89,8 @@ std::string GoalRecord::describe(const World& world, std::size_t goal) const {
       return fmt::format("{} stopped {:.2f} degrees from {:.2f}, allowed {:.2f}: {}", body, degrees(best),
                          degrees(g.amount), degrees(g.tolerance), verdict);
     case GoalKind::kMovedBy:
-      return fmt::format("{} moved by {:.2f} mm, wanted {:.2f}: {}", body, 1e3 * best, 1e3 * g.amount, verdict);
+      return fmt::format("{} moved by {:.2f} mm, wanted {:.2f}: {}", body, 1e3 * best, 1e3 * g.amount,
+                         verdict);
     case GoalKind::kMovedTo:
       return fmt::format("{} came within {:.2f} mm of its place, wanted {:.2f}: {}", body, 1e3 * best,
                          1e3 * g.tolerance, verdict);

@@ -1,6 +1,6 @@
 #pragma once
-/// What a scene's motion is meant to reach, and whether it did. A GoalRecord watches every frame, because a hinge's
-/// angle is only known modulo a turn from one pose, and because "once was there" outlives the moment.
+/// What a scene's motion is meant to reach, and whether it did. A GoalRecord watches every frame, because a
+/// hinge's angle is only known modulo a turn from one pose, and because "once was there" outlives the moment.
 
 #include <string>
 #include <vector>
@@ -19,12 +19,12 @@ enum class GoalKind {
 
 struct Goal {
   GoalKind kind = GoalKind::kTurned;
-  int body = 0;                   ///< whose it is
-  int leader = 0;                 ///< kFollowed: the driving body
-  Vec3 p_BQ = Vec3::Zero();       ///< kMoved*: the point of the body that is watched [m]
-  Vec3 vector_W = Vec3::Zero();   ///< kMovedBy: unit direction [-]; kMovedTo: the place [m]
-  double amount = 0.0;            ///< [rad], [m] or the ratio [-]
-  double tolerance = 0.0;         ///< [rad] or [m]
+  int body = 0;                  ///< whose it is
+  int leader = 0;                ///< kFollowed: the driving body
+  Vec3 p_BQ = Vec3::Zero();      ///< kMoved*: the point of the body that is watched [m]
+  Vec3 vector_W = Vec3::Zero();  ///< kMovedBy: unit direction [-]; kMovedTo: the place [m]
+  double amount = 0.0;           ///< [rad], [m] or the ratio [-]
+  double tolerance = 0.0;        ///< [rad] or [m]
 };
 
 /// What has happened so far.

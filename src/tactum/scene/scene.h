@@ -1,6 +1,6 @@
 #pragma once
-/// A scene: bodies, which of them the hand holds and how, what the hand does with it, and what counts as done.
-/// Made from a scene file (scene_file.h); constant while frames run.
+/// A scene: bodies, which of them the hand holds and how, what the hand does with it, and what counts as
+/// done. Made from a scene file (scene_file.h); constant while frames run.
 
 #include <memory>
 #include <string>
@@ -18,7 +18,8 @@ struct Scene {
   std::string name;         ///< "gears"
   std::string description;  ///< one line
   World world;
-  std::vector<Vec3> p_BP;  ///< of each body: the origin of its part's own frame P (that of its file); axes of B are P's [m]
+  std::vector<Vec3>
+      p_BP;  ///< of each body: the origin of its part's own frame P (that of its file); axes of B are P's [m]
   FrameSettings settings;  ///< its safety limits are the device's, see `safety`
   SafetySettings safety;   ///< what the scene tightens; the session applies it to the device's limits
   std::string device;      ///< preset of the simulated device the hand motion was made for

@@ -26,7 +26,8 @@ std::string shown(const toml::node& node) {
 
 std::string shown(Range range) {
   if (std::isinf(range.high) && std::isinf(range.low)) return "a finite number";
-  if (std::isinf(range.high)) return fmt::format("{} {}", range.above_low ? "more than" : "at least", range.low);
+  if (std::isinf(range.high))
+    return fmt::format("{} {}", range.above_low ? "more than" : "at least", range.low);
   return fmt::format("{} to {}", range.low, range.high);
 }
 
@@ -104,7 +105,8 @@ void TomlReader::fail(const char* key, std::string what, std::string found, std:
 
 const toml::node* TomlReader::node(const char* key, bool required, const char* expected) const {
   const toml::node* value = table_.get(key);
-  if (!value && required) fail(nullptr, fmt::format("missing key \"{}\" in {}", key, section()), "none", expected);
+  if (!value && required)
+    fail(nullptr, fmt::format("missing key \"{}\" in {}", key, section()), "none", expected);
   return value;
 }
 
@@ -196,7 +198,9 @@ Vec3 TomlReader::unit_vector3(const char* key, std::optional<Vec3> fallback) con
   const Vec3 read = vector3(key, fallback);
   const double length = read.norm();
   if (length > 0.0) return read / length;
-  if (has(key)) fail(key, fmt::format("\"{}\" in {} has no direction", key, section()), "a vector of length 0", "an axis");
+  if (has(key))
+    fail(key, fmt::format("\"{}\" in {} has no direction", key, section()), "a vector of length 0",
+         "an axis");
   return Vec3::UnitZ();
 }
 
@@ -210,8 +214,8 @@ Mat3 TomlReader::rotation() const {
     if (q.empty()) return Mat3::Identity();
     const Quat quat(q[0], q[1], q[2], q[3]);
     if (std::abs(quat.norm() - 1.0) > tolerances::kQuaternionNear) {
-      fail("quat_wxyz", "the quaternion in " + section() + " is no rotation", fmt::format("length {:.6g}", quat.norm()),
-           "length 1");
+      fail("quat_wxyz", "the quaternion in " + section() + " is no rotation",
+           fmt::format("length {:.6g}", quat.norm()), "length 1");
       return Mat3::Identity();
     }
     return quat.normalized().toRotationMatrix();
@@ -244,7 +248,8 @@ std::vector<TomlReader> TomlReader::tables(const char* key, Keys keys) const {
   }
   for (const toml::node& item : *array) {
     if (const auto* inner = item.as_table()) {
-      readers.emplace_back(*inner, file_, fmt::format("{} {}", path_of(key), readers.size() + 1), keys, errors_);
+      readers.emplace_back(*inner, file_, fmt::format("{} {}", path_of(key), readers.size() + 1), keys,
+                           errors_);
     } else {
       errors_.add({fmt::format("wrong value in \"{}\" in {}", key, section()), shown(item), "a table",
                    place(file_, item.source().begin)});

@@ -1,20 +1,23 @@
 #pragma once
-/// Strict reading of TOML tables: every key a table may have is named when it is opened, anything else in it is an
-/// error that names the nearest known key; every value has a type and a range. Errors tell file, line and column.
+/// Strict reading of TOML tables: every key a table may have is named when it is opened, anything else in it
+/// is an error that names the nearest known key; every value has a type and a range. Errors tell file, line
+/// and column.
 ///
 ///   const TomlReader hand = scene.table("hand", {"grip", "tremor", "step"});
 ///   const std::string grip = hand.text("grip", "medium");
-///   if (errors) ...                                                 the first error is kept, later ones are not
+///   if (errors) ...                                                 the first error is kept, later ones are
+///   not
 ///
-/// A reader given a wrong value remembers the first error and goes on with the fallback, so that a section reads as
-/// a list of its keys. For src/tactum/scene/*.cpp only: it shows toml++, which the layer uses privately.
+/// A reader given a wrong value remembers the first error and goes on with the fallback, so that a section
+/// reads as a list of its keys. For src/tactum/scene/*.cpp only: it shows toml++, which the layer uses
+/// privately.
 
+#include <toml++/toml.h>
 #include <initializer_list>
 #include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <toml++/toml.h>
 #include <vector>
 
 #include "tactum/base/result.h"
@@ -45,16 +48,18 @@ class FirstError {
   std::optional<Error> error_;
 };
 
-/// The known word nearest to `word` by Damerau-Levenshtein distance, when near enough to be meant; else empty.
+/// The known word nearest to `word` by Damerau-Levenshtein distance, when near enough to be meant; else
+/// empty.
 std::string nearest_word(std::string_view word, const std::vector<std::string>& known);
 
 class TomlReader {
  public:
   using Keys = std::initializer_list<const char*>;
 
-  /// `path` is the table's dotted name, empty for the whole file; `file` names the source. All references must
-  /// outlive the reader.
-  TomlReader(const toml::table& table, const std::string& file, std::string path, Keys keys, FirstError& errors);
+  /// `path` is the table's dotted name, empty for the whole file; `file` names the source. All references
+  /// must outlive the reader.
+  TomlReader(const toml::table& table, const std::string& file, std::string path, Keys keys,
+             FirstError& errors);
 
   bool has(const char* key) const { return table_.contains(key); }
   /// "[body 2.joint]", or "the scene" for the whole file.
@@ -67,10 +72,12 @@ class TomlReader {
   bool flag(const char* key, bool fallback) const;
   std::string text(const char* key, std::optional<std::string> fallback = {}) const;
   /// A text that must be one of `choices`.
-  std::string choice(const char* key, std::optional<std::string> fallback, const std::vector<std::string>& choices) const;
+  std::string choice(const char* key, std::optional<std::string> fallback,
+                     const std::vector<std::string>& choices) const;
   Vec3 vector3(const char* key, std::optional<Vec3> fallback = {}) const;
   Vec3 unit_vector3(const char* key, std::optional<Vec3> fallback = {}) const;
-  /// From `quat_wxyz` or `rpy_deg` (about fixed x, then y, then z, as in URDF); identity when neither is there.
+  /// From `quat_wxyz` or `rpy_deg` (about fixed x, then y, then z, as in URDF); identity when neither is
+  /// there.
   Mat3 rotation() const;
 
   /// The table under `key` opened with its own keys; an absent one reads as an empty table.
