@@ -49,6 +49,10 @@ inline constexpr double kCoplanarMeshSine = 1e-5;
 /// of triangles would pass for flat, one pair at a time.
 inline constexpr double kCoplanarMeshOffset = 1e-6;
 
+/// Noise of coordinates stored in single precision. It turns the normal of a sliver by noise over height, so slivers
+/// within a flat face are allowed that much more than kCoplanarMeshSine.
+inline constexpr double kStoredNoise = 1.2e-7;
+
 /// Box tests grow the boxes by this share of their size, so that rounding of the rotated axes never parts boxes
 /// that touch.
 inline constexpr double kBoxSlack = 1e-14;
