@@ -2,6 +2,8 @@
 /// Everything about the response that can be set, each with its unit, its default and, where there is one, the
 /// paper's value. Constant while frames run. [Gregory 2000]: "Six Degree-of-Freedom Haptic Display of Polygonal Models".
 
+#include "tactum/haptics/safety.h"
+#include "tactum/haptics/smoothing.h"
 #include "tactum/math/spatial.h"
 
 namespace tactum {
@@ -10,6 +12,7 @@ namespace tactum {
 struct Workspace {
   Pose X_WD;           ///< device frame in the world [m]
   double scale = 1.0;  ///< world metres per device metre; rotation is never scaled [-]
+  int clutch_button = -1;  ///< bit of DeviceSample::buttons that lets the handle slip; -1: none
 };
 
 /// The virtual coupling: the spring and damper between the hand's pose and the held part's proxy.
@@ -39,18 +42,24 @@ struct Shading {
   double crease_rad = 0.6;  ///< facets that meet at less than this are parts of one curved surface [rad]
 };
 
-/// Linear smoothing of the shown wrench, 5.3: F_max, the largest difference between successive updates.
-struct Smoothing {
-  bool on = true;
-  double max_force_step_N = 0.1;     ///< [N]
-  double max_torque_step_Nm = 0.005; ///< [N m]
-};
-
 /// What the frame may spend; part of the recorded input, never a clock reading.
 struct WorkBudget {
   int max_exact_tests = 4096;     ///< exact tests a frame (paper 4.2: the array of fixed length) [-]
   int max_contact_points = 512;   ///< contact points a frame [-]
   int solver_iterations = 60;     ///< sweeps of the contact solver at most [-]
+};
+
+/// All of it.
+struct FrameSettings {
+  double dt_s = 0.001;  ///< time from frame to frame [s]
+  Workspace workspace;
+  Tool tool;
+  Coupling coupling;
+  Penalty penalty;
+  Shading shading;
+  SmoothingSettings smoothing;
+  SafetyLimits safety;
+  WorkBudget budget;
 };
 
 }  // namespace tactum
