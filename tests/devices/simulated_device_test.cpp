@@ -94,11 +94,11 @@ TEST(SimulatedDevice, CoulombFrictionHoldsAndBrakes) {
   model.friction_N = 0.5;
   SimulatedDevice device(model, no_hand(), nullptr);
   ASSERT_TRUE(device.open());
-  const DeviceSample held = run(device, 0, 1000, {{0.499, 0, 0}, {}});
+  const DeviceSample held = run(device, 0, 1000, {{0.499, 0, 0}, {0, 0, 0}});
   EXPECT_EQ(held.X_DH.p, Vec3(Vec3::Zero())) << "a push below the friction moves nothing, not even slowly";
   // Thrown at 0.4 m/s it stops after v^2 m / (2 F) = 16 mm and stays.
   ASSERT_TRUE(device.write({}));
-  device.place({}, {{0, 0.4, 0}, {}});
+  device.place({}, {{0, 0.4, 0}, {0, 0, 0}});
   const DeviceSample stopped = run(device, 1001, 1300, {});
   EXPECT_NEAR(stopped.X_DH.p.y(), 0.016, 1e-8);
   EXPECT_EQ(device.true_twist().v, Vec3(Vec3::Zero()));
@@ -137,7 +137,7 @@ TEST(SimulatedDevice, CommandsActAfterTheDelay) {
     ASSERT_TRUE(device.read(i * 0.001, sample));
     // The write at 0 ms acts from 3 ms on: the handle has moved at 4 ms and not at 3 ms.
     EXPECT_EQ(sample.X_DH.p.x() > 0.0, i > 3) << "at " << i << " ms";
-    ASSERT_TRUE(device.write({{1.0 + i, 0, 0}, {}}));
+    ASSERT_TRUE(device.write({{1.0 + i, 0, 0}, {0, 0, 0}}));
     if (i > 3) {
       EXPECT_EQ(device.motor_wrench().f.x(), 1.0 + (i - 4)) << "at " << i << " ms";
     }
@@ -156,8 +156,8 @@ TEST(SimulatedDevice, SaturatesKeepingTheDirection) {
 TEST(SimulatedDevice, RefusesNonFiniteWrenchesAndGoesLimp) {
   SimulatedDevice device(plain_model(), plain_hand(), nullptr);
   ASSERT_TRUE(device.open());
-  run(device, 0, 5, {{1, 0, 0}, {}});
-  EXPECT_FALSE(device.write({{std::numeric_limits<double>::quiet_NaN(), 0, 0}, {}}));
+  run(device, 0, 5, {{1, 0, 0}, {0, 0, 0}});
+  EXPECT_FALSE(device.write({{std::numeric_limits<double>::quiet_NaN(), 0, 0}, {0, 0, 0}}));
   DeviceSample sample;
   ASSERT_TRUE(device.read(0.006, sample));
   EXPECT_EQ(device.motor_wrench().f, Vec3(Vec3::Zero()));
@@ -179,7 +179,7 @@ TEST(SimulatedDevice, WithoutTorqueMotorsNoTorqueActs) {
 TEST(SimulatedDevice, WatchdogCutsTheWrenchAfterThirtyMilliseconds) {
   SimulatedDevice device(plain_model(), plain_hand(), nullptr);
   ASSERT_TRUE(device.open());
-  run(device, 0, 5, {{1, 0, 0}, {}});
+  run(device, 0, 5, {{1, 0, 0}, {0, 0, 0}});
   DeviceSample sample;
   for (int i = 6; i <= 60; ++i) {
     ASSERT_TRUE(device.read(i * 0.001, sample));
@@ -192,7 +192,7 @@ TEST(SimulatedDevice, WatchdogCutsTheWrenchAfterThirtyMilliseconds) {
     }
   }
   EXPECT_EQ(device.watchdog_trips(), 1);
-  run(device, 61, 62, {{1, 0, 0}, {}});
+  run(device, 61, 62, {{1, 0, 0}, {0, 0, 0}});
   EXPECT_EQ(device.motor_wrench().f.x(), 1.0) << "a new write wakes it";
 }
 
@@ -212,7 +212,7 @@ TEST(SimulatedDevice, APassiveWorldMakesNoEnergy) {
     ASSERT_TRUE(device.open());
     const Vec3 p(random.uniform(-0.1, 0.1), 0.0, 0.05);
     const Vec3 v(0.0, random.uniform(-1.0, 1.0), 0.5);
-    device.place({Mat3::Identity(), p}, {v, {}});
+    device.place({Mat3::Identity(), p}, {v, {0, 0, 0}});
     DeviceSample sample;
     double energy = device.energy_J();
     const double rounding = 1e-12 * energy;

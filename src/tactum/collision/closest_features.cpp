@@ -1,0 +1,159 @@
+#include "tactum/collision/closest_features.h"
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "tactum/collision/minkowski_walk.h"
+#include "tactum/collision/penetration.h"
+#include "tactum/collision/voronoi_march.h"
+
+namespace tactum {
+namespace {
+
+using Kind = FeatureKind;
+
+/// Distance and normal as the features give them, and what the support planes say about it.
+struct Judged {
+  PairDistance answer;
+  double doubt = 0.0;          ///< distance minus the support planes' gap [m]
+  int support_a = 0, support_b = 0;
+};
+
+/// The common perpendicular of two edges, from B to A. Their cones give the sign when the points coincide.
+Vec3 edges_normal(const PairView& pair, const March& march, const Vec3& d, double gap) noexcept {
+  const Polytope::Edge& ea = pair.A.edges[march.a.index];
+  const Polytope::Edge& eb = pair.B.edges[march.b.index];
+  const Vec3 c = ea.direction.cross(pair.X_AB.R * eb.direction);
+  const double sine = c.norm();
+  if (sine * pair.size <= gap) return d / gap;  // the difference has more digits than the cross product
+  if (sine < tolerances::kParallelSine) return Vec3::Zero();
+  double side = c.dot(d);
+  if (gap < tolerances::kTouching * pair.size) {
+    const Vec3 out_a = pair.A.side_normals[ea.left_slot] + pair.A.side_normals[ea.right_slot];
+    const Vec3 out_b = pair.B.side_normals[eb.left_slot] + pair.B.side_normals[eb.right_slot];
+    side = c.dot(pair.X_AB.R * out_b - out_a);
+  }
+  return side < 0.0 ? Vec3(-c / sine) : Vec3(c / sine);
+}
+
+/// The normal of the closest features; zero when only the penetration walk can tell it.
+Vec3 features_normal(const PairView& pair, const March& march) noexcept {
+  if (march.a.kind == Kind::kFace) return -pair.A.faces[march.a.index].normal;
+  if (march.b.kind == Kind::kFace) return pair.X_AB.R * pair.B.faces[march.b.index].normal;
+  const Vec3 d = march.p_a - march.p_b;
+  const double gap = d.norm();
+  if (march.a.kind == Kind::kEdge && march.b.kind == Kind::kEdge) return edges_normal(pair, march, d, gap);
+  return gap > tolerances::kTouching * pair.size ? Vec3(d / gap) : Vec3::Zero();
+}
+
+Judged judge(const PairView& pair, const March& march, const Vec3& normal) noexcept {
+  Judged judged;
+  PairDistance& x = judged.answer;
+  x.normal = normal;
+  x.p_a = march.p_a;
+  x.p_b = march.p_b;
+  x.a = march.a;
+  x.b = march.b;
+  x.distance = normal.dot(march.p_a - march.p_b);
+  judged.support_a = vertex_of(pair.A, march.a);
+  judged.support_b = vertex_of(pair.B, march.b);
+  judged.doubt = std::numeric_limits<double>::infinity();
+  if (normal.isZero()) return judged;
+  const double gap = pair.separation(normal, judged.support_a, judged.support_b);
+  // The points' whole distance counts, not only its part along the normal.
+  judged.doubt = std::max((march.p_a - march.p_b).norm(), x.distance) - gap;
+  return judged;
+}
+
+/// The nearest normal inside the normal cones of both features, by projecting on their half-spaces in turn. Heals a
+/// normal that is off by rounding over a very small gap.
+Vec3 inside_cones(const PairView& pair, const Feature& fa, const Feature& fb, Vec3 n) noexcept {
+  const auto project = [](const Polytope& P, const Feature& f, Vec3& outward) {
+    if (f.kind == Kind::kVertex) {
+      for (int e : P.edges_at(f.index)) {
+        const Vec3& u = P.edges[e].direction;
+        const double up = u.dot(outward);
+        if ((P.edges[e].tail == f.index) == (up > 0.0)) outward -= u * up;
+      }
+    } else if (f.kind == Kind::kEdge) {
+      const Polytope::Edge& edge = P.edges[f.index];
+      outward -= edge.direction * edge.direction.dot(outward);
+      for (int slot : {edge.left_slot, edge.right_slot})
+        if (const double in = P.side_normals[slot].dot(outward); in < 0.0) outward -= P.side_normals[slot] * in;
+    }
+  };
+  for (int round = 0; round < 16; ++round) {
+    Vec3 outward = -n;
+    project(pair.A, fa, outward);
+    Vec3 outward_B = pair.X_BA.R * -outward;
+    project(pair.B, fb, outward_B);
+    n = (pair.X_AB.R * outward_B).normalized();
+  }
+  return n;
+}
+
+struct Seed {
+  Feature a, b;
+};
+
+Seed seed_from_table(const PairView& pair) noexcept {
+  Vec3 toward_b = pair.X_AB * pair.B.center - pair.A.center;
+  if (toward_b.isZero()) toward_b = Vec3::UnitX();
+  return {{Kind::kVertex, table_vertex(pair.A, toward_b)},
+          {Kind::kVertex, table_vertex(pair.B, -(pair.X_BA.R * toward_b))}};
+}
+
+/// The pieces overlap, or touch so closely that only the features' planes tell the normal.
+PairDistance by_penetration(const PairView& pair, PairCache& cache, int steps) noexcept {
+  PairDistance deep = penetration_depth(pair.A, pair.B, pair.X_AB, cache);
+  deep.steps += steps;
+  return deep;
+}
+
+}  // namespace
+
+PairDistance closest_features(const Polytope& A, const Polytope& B, const Pose& X_AB, PairCache& cache) noexcept {
+  const PairView pair(A, B, X_AB);
+  const double tolerance = tolerances::kCertificate * pair.size;
+  Seed seed{cache.a, cache.b};
+  if (!valid_feature(A, seed.a) || !valid_feature(B, seed.b)) seed = seed_from_table(pair);
+
+  Judged best;
+  best.doubt = std::numeric_limits<double>::infinity();
+  int steps = 0;
+  double slack = tolerances::kVoronoiSlack * pair.scale;
+  for (int attempt = 0; attempt < 4; ++attempt, slack *= 32.0) {
+    const March march = voronoi_march(pair, seed.a, seed.b, slack);
+    steps += march.steps;
+    if (march.end == MarchEnd::kOverlap) return by_penetration(pair, cache, steps);
+    Judged judged = judge(pair, march, features_normal(pair, march));
+    if (judged.doubt > tolerance && std::isfinite(judged.doubt))
+      if (Judged healed = judge(pair, march, inside_cones(pair, march.a, march.b, judged.answer.normal));
+          healed.doubt < judged.doubt)
+        judged = healed;
+    if (judged.doubt <= tolerance) {
+      judged.answer.stop = attempt == 0 && march.end == MarchEnd::kClosest ? Stop::kCertified : Stop::kFallback;
+      judged.answer.steps = steps;
+      cache = {judged.answer.a, judged.answer.b, judged.answer.normal};
+      return judged.answer;
+    }
+    if (judged.doubt < best.doubt || attempt == 0) best = judged;
+    seed = {{Kind::kVertex, judged.support_a}, {Kind::kVertex, judged.support_b}};
+  }
+
+  // Points of both that coincide prove that the distance is not above zero; the planes of the penetration walk then
+  // tell how far below it is.
+  const double gap = (best.answer.p_a - best.answer.p_b).norm();
+  PairDistance touching = by_penetration(pair, cache, steps);
+  if (touching.certified() && gap <= tolerance && touching.distance <= gap + tolerance) {
+    touching.stop = Stop::kFallback;
+    return touching;
+  }
+  best.answer.steps = steps;
+  best.answer.stop = Stop::kBounded;
+  cache = {best.answer.a, best.answer.b, best.answer.normal};
+  return best.answer;
+}
+
+}  // namespace tactum

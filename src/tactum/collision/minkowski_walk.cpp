@@ -1,0 +1,290 @@
+#include "tactum/collision/minkowski_walk.h"
+
+#include <cmath>
+#include <limits>
+
+namespace tactum {
+namespace {
+
+using Kind = FeatureKind;
+
+/// The arc of an edge of P in the Gauss maps' overlay: P's outward direction turns from `m0` with tangent `t0`
+/// toward the normal of `end`, while `vertex` of the other piece Q stays its support.
+struct Arc {
+  int edge = -1;   // of P
+  int end = -1;    // face of P
+  int vertex = -1; // of Q
+  Vec3 m0 = Vec3::Zero();
+  Vec3 t0 = Vec3::Zero();
+};
+
+/// What the arc meets first.
+struct ArcEnd {
+  int edge = -1;           // of Q; -1: the end face
+  Vec3 m = Vec3::Zero();   // P's outward direction there, when it is an edge
+};
+
+/// Angles along the arc are compared by their cotangents: larger is earlier. A flat piece's arcs are half circles.
+double cotangent(double cosine, double sine) noexcept {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  if (sine > 0.0) return cosine / sine;
+  return cosine > 0.0 ? kInfinity : -kInfinity;
+}
+
+ArcEnd follow_arc(const Polytope& P, const Polytope& Q, const Mat3& R_QP, const Arc& arc, int excluded) noexcept {
+  const Vec3& m1 = P.faces[arc.end].normal;
+  double first = cotangent(arc.m0.dot(m1), arc.t0.dot(m1));
+  const Vec3 o0 = -(R_QP * arc.m0);  // Q's outward direction
+  const Vec3 o_t = -(R_QP * arc.t0);
+  ArcEnd meets;
+  for (int e : Q.edges_at(arc.vertex)) {
+    if (e == excluded) continue;
+    const Polytope::Edge& edge = Q.edges[e];
+    const double sign = edge.tail == arc.vertex ? 1.0 : -1.0;
+    const double below = std::max(0.0, -sign * edge.direction.dot(o0));  // how much lower the far end is, per metre
+    const double rising = sign * edge.direction.dot(o_t);
+    if (rising <= tolerances::kVoronoiSlack && below <= tolerances::kVoronoiSlack) continue;  // rolls on the edge
+    const double at = cotangent(rising, below);
+    if (at <= first) continue;
+    first = at;
+    meets.edge = e;
+    meets.m = (rising * arc.m0 + below * arc.t0).normalized();
+  }
+  return meets;
+}
+
+/// Outward direction of N on two crossing arcs, by the edges; `near` decides the sign, and stands in for the cross
+/// product where the edges are so nearly parallel that it has no digits.
+Vec3 crossing_normal(const Vec3& u_a, const Vec3& u_b, const Vec3& near) noexcept {
+  const Vec3 c = u_a.cross(u_b);
+  const double sine = c.norm();
+  if (sine < tolerances::kParallelSine) return near;
+  return c.dot(near) < 0.0 ? Vec3(-c / sine) : Vec3(c / sine);
+}
+
+MinkowskiFacet edge_facet(const PairView& pair, int edge_a, int edge_b, const Vec3& near) noexcept {
+  const Polytope::Edge& ea = pair.A.edges[edge_a];
+  const Polytope::Edge& eb = pair.B.edges[edge_b];
+  MinkowskiFacet facet;
+  facet.a = {Kind::kEdge, edge_a};
+  facet.b = {Kind::kEdge, edge_b};
+  facet.n = crossing_normal(ea.direction, pair.X_AB.R * eb.direction, near);
+  facet.height = facet.n.dot(pair.vertex_b(eb.tail) - pair.vertex_a(ea.tail));
+  return facet;
+}
+
+/// The facet of N behind a followed arc of A's edge (vertex of B fixed), or of B's edge (vertex of A fixed).
+MinkowskiFacet facet_behind_a(const PairView& pair, const Arc& arc, int excluded) noexcept {
+  const ArcEnd end = follow_arc(pair.A, pair.B, pair.X_BA.R, arc, excluded);
+  if (end.edge < 0) return facet_of_face(pair, true, arc.end, arc.vertex);
+  return edge_facet(pair, arc.edge, end.edge, -end.m);
+}
+
+MinkowskiFacet facet_behind_b(const PairView& pair, const Arc& arc, int excluded) noexcept {
+  const ArcEnd end = follow_arc(pair.B, pair.A, pair.X_AB.R, arc, excluded);
+  if (end.edge < 0) return facet_of_face(pair, false, arc.end, arc.vertex);
+  return edge_facet(pair, end.edge, arc.edge, pair.X_AB.R * end.m);
+}
+
+/// A border of a facet that the target point lies beyond, and by how much.
+struct Crossing {
+  double outside = 0.0;
+  int slot = -1;       // face facets: the side plane
+  bool on_a = true;    // edge facets: which edge's parameter is out
+  bool at_tail = true; //
+};
+
+Crossing worst_side(const Polytope& P, int face_index, const Vec3& point) noexcept {
+  const Polytope::Face& face = P.faces[face_index];
+  Crossing worst;
+  for (int slot = face.first; slot < face.first + face.count; ++slot) {
+    const double out = P.side_normals[slot].dot(point) - P.side_offsets[slot];
+    if (out > worst.outside) {
+      worst.outside = out;
+      worst.slot = slot;
+    }
+  }
+  return worst;
+}
+
+void consider(Crossing& worst, double outside, bool on_a, bool at_tail) noexcept {
+  if (outside > worst.outside) worst = {outside, 0, on_a, at_tail};
+}
+
+/// Puts the witness points (p_b - p_a = target) on the features and tells the border they are beyond.
+Crossing place(const PairView& pair, const MinkowskiFacet& facet, const Vec3& target, MinkowskiWalk& walk) noexcept {
+  if (facet.a.kind == Kind::kFace) {
+    walk.p_b = pair.vertex_b(facet.b.index);
+    walk.p_a = walk.p_b - target;
+    return worst_side(pair.A, facet.a.index, walk.p_a);
+  }
+  if (facet.b.kind == Kind::kFace) {
+    walk.p_a = pair.vertex_a(facet.a.index);
+    walk.p_b = walk.p_a + target;
+    return worst_side(pair.B, facet.b.index, pair.X_BA * walk.p_b);
+  }
+  const Polytope::Edge& ea = pair.A.edges[facet.a.index];
+  const Polytope::Edge& eb = pair.B.edges[facet.b.index];
+  const Vec3& a0 = pair.vertex_a(ea.tail);
+  const Vec3 b0 = pair.vertex_b(eb.tail);
+  const Vec3 u_b = pair.X_AB.R * eb.direction;
+  double s = 0.0;
+  double t = 0.0;
+  if (!nearest_on_lines(a0, ea.direction, b0 - target, u_b, s, t)) {
+    s = std::clamp(ea.direction.dot(b0 - target - a0), 0.0, ea.length);
+    t = u_b.dot(a0 + ea.direction * s - b0 + target);
+  }
+  walk.p_a = a0 + ea.direction * s;
+  walk.p_b = b0 + u_b * t;
+  Crossing worst;
+  consider(worst, -s, true, true);
+  consider(worst, s - ea.length, true, false);
+  consider(worst, -t, false, true);
+  consider(worst, t - eb.length, false, false);
+  return worst;
+}
+
+int other_face(const Polytope::Edge& edge, int face) noexcept { return edge.left == face ? edge.right : edge.left; }
+
+/// The face at `edge` toward which the outward direction turns with tangent `t`.
+int face_ahead(const Polytope& P, const Polytope::Edge& edge, const Vec3& m, const Vec3& t) noexcept {
+  // Each end of the arc is at an angle from m within the half circle; the one ahead has the larger sine.
+  const double left = t.dot(P.faces[edge.left].normal);
+  const double right = t.dot(P.faces[edge.right].normal);
+  if (left != right) return left > right ? edge.left : edge.right;
+  return m.dot(P.faces[edge.left].normal) > m.dot(P.faces[edge.right].normal) ? edge.right : edge.left;
+}
+
+MinkowskiFacet across_face_border(const PairView& pair, const MinkowskiFacet& facet, int slot) noexcept {
+  const bool on_a = facet.a.kind == Kind::kFace;
+  const Polytope& P = on_a ? pair.A : pair.B;
+  const int face = on_a ? facet.a.index : facet.b.index;
+  Arc arc;
+  arc.edge = P.face_edges[slot];
+  arc.end = other_face(P.edges[arc.edge], face);
+  arc.vertex = on_a ? facet.b.index : facet.a.index;
+  arc.m0 = P.faces[face].normal;
+  arc.t0 = P.side_normals[slot];
+  return on_a ? facet_behind_a(pair, arc, -1) : facet_behind_b(pair, arc, -1);
+}
+
+/// Beyond an end of one edge, that end is the vertex and the *other* edge's arc is followed, in the direction in
+/// which the end becomes the support.
+MinkowskiFacet across_edge_border(const PairView& pair, const MinkowskiFacet& facet, const Crossing& crossing) noexcept {
+  const Polytope& P = crossing.on_a ? pair.B : pair.A;  // whose arc is followed
+  const Polytope& Q = crossing.on_a ? pair.A : pair.B;
+  const int followed = crossing.on_a ? facet.b.index : facet.a.index;
+  const int ended = crossing.on_a ? facet.a.index : facet.b.index;
+  const Polytope::Edge& edge = P.edges[followed];
+  const Polytope::Edge& other = Q.edges[ended];
+  Arc arc;
+  arc.edge = followed;
+  arc.vertex = crossing.at_tail ? other.tail : other.head;
+  arc.m0 = crossing.on_a ? Vec3(pair.X_BA.R * facet.n) : Vec3(-facet.n);
+  arc.t0 = edge.direction.cross(arc.m0);
+  // Q's outward direction turns by -t0; the end must rise over the other end.
+  const Vec3 u_P = (crossing.on_a ? pair.X_BA.R : pair.X_AB.R) * other.direction;
+  const double toward_head = -arc.t0.dot(u_P);
+  if ((toward_head > 0.0) == crossing.at_tail) arc.t0 = -arc.t0;
+  arc.end = face_ahead(P, edge, arc.m0, arc.t0);
+  return crossing.on_a ? facet_behind_b(pair, arc, ended) : facet_behind_a(pair, arc, ended);
+}
+
+/// `ray` is null for the foot. The measure that must not grow is the height, or the length along the ray.
+MinkowskiWalk walk(const PairView& pair, const MinkowskiFacet& start, const Vec3* ray) noexcept {
+  const double slack = tolerances::kVoronoiSlack * pair.scale;
+  const auto length_to = [&](const MinkowskiFacet& f) { return ray ? f.height / f.n.dot(*ray) : f.height; };
+  MinkowskiWalk best;
+  best.facet = start;
+  best.outside = std::numeric_limits<double>::infinity();
+  MinkowskiFacet facet = start;
+  double length = length_to(facet);
+  const int bound = 32 + static_cast<int>(pair.A.edges.size() + pair.B.edges.size()) / 2;
+  for (int step = 1; step <= bound; ++step) {
+    MinkowskiWalk here;
+    here.facet = facet;
+    const Crossing crossing = place(pair, facet, (ray ? *ray : facet.n) * length, here);
+    here.outside = crossing.outside;
+    const double best_length = length_to(best.facet);
+    if (length < best_length - slack || (length < best_length + slack && here.outside < best.outside)) best = here;
+    best.steps = step;
+    if (crossing.outside <= slack) break;
+    const bool edges = facet.a.kind == Kind::kEdge && facet.b.kind == Kind::kEdge;
+    facet = edges ? across_edge_border(pair, facet, crossing) : across_face_border(pair, facet, crossing.slot);
+    if (ray && facet.n.dot(*ray) <= 0.0) break;
+    const double next = length_to(facet);
+    if (next > length + slack) break;  // rounding: there is no nearer plane to go to
+    length = next;
+  }
+  return best;
+}
+
+}  // namespace
+
+MinkowskiFacet facet_of_face(const PairView& pair, bool on_a, int face, int vertex) noexcept {
+  MinkowskiFacet facet;
+  if (on_a) {
+    const Polytope::Face& f = pair.A.faces[face];
+    vertex = support_vertex(pair.B, -(pair.X_BA.R * f.normal), vertex);
+    facet.a = {Kind::kFace, face};
+    facet.b = {Kind::kVertex, vertex};
+    facet.n = -f.normal;
+    facet.height = f.offset - f.normal.dot(pair.vertex_b(vertex));
+  } else {
+    const Polytope::Face& f = pair.B.faces[face];
+    facet.n = pair.X_AB.R * f.normal;
+    vertex = support_vertex(pair.A, -facet.n, vertex);
+    facet.a = {Kind::kVertex, vertex};
+    facet.b = {Kind::kFace, face};
+    facet.height = f.offset - f.normal.dot(pair.X_BA * pair.vertex_a(vertex));
+  }
+  return facet;
+}
+
+std::optional<MinkowskiFacet> facet_of_edges(const PairView& pair, int edge_a, int edge_b) noexcept {
+  const Polytope::Edge& ea = pair.A.edges[edge_a];
+  const Polytope::Edge& eb = pair.B.edges[edge_b];
+  const Vec3 c = ea.direction.cross(pair.X_AB.R * eb.direction);
+  const double a_left = pair.A.side_normals[ea.left_slot].dot(c);
+  const double a_right = pair.A.side_normals[ea.right_slot].dot(c);
+  if (a_left * a_right < 0.0) return std::nullopt;
+  const Vec3 c_B = pair.X_BA.R * c;
+  const double b_left = pair.B.side_normals[eb.left_slot].dot(c_B);
+  const double b_right = pair.B.side_normals[eb.right_slot].dot(c_B);
+  // The normal cone of an edge is outside both its side planes; A's and B's outward directions are opposite.
+  if (b_left * b_right < 0.0 || (a_left + a_right) * (b_left + b_right) >= 0.0) return std::nullopt;
+  if (c.squaredNorm() < tolerances::kParallelSine * tolerances::kParallelSine) return std::nullopt;
+  return edge_facet(pair, edge_a, edge_b, (b_left + b_right > 0.0 ? c : Vec3(-c)).normalized());
+}
+
+MinkowskiFacet facet_near(const PairView& pair, const Vec3& n) noexcept {
+  const Vec3 n_B = pair.X_BA.R * n;
+  const int a = support_vertex(pair.A, -n);
+  const int b = support_vertex(pair.B, n_B);
+  const auto aligned_face = [](const Polytope& P, int vertex, const Vec3& d) {
+    int best = -1;
+    double most = -std::numeric_limits<double>::infinity();
+    for (int e : P.edges_at(vertex))
+      for (int f : {P.edges[e].left, P.edges[e].right})
+        if (const double cosine = P.faces[f].normal.dot(d); cosine > most) {
+          most = cosine;
+          best = f;
+        }
+    return best;
+  };
+  const int face_a = aligned_face(pair.A, a, -n);
+  const int face_b = aligned_face(pair.B, b, n_B);
+  const double along_a = -pair.A.faces[face_a].normal.dot(n);
+  const double along_b = pair.B.faces[face_b].normal.dot(n_B);
+  return along_a >= along_b ? facet_of_face(pair, true, face_a, b) : facet_of_face(pair, false, face_b, a);
+}
+
+MinkowskiWalk walk_to_foot(const PairView& pair, const MinkowskiFacet& start) noexcept {
+  return walk(pair, start, nullptr);
+}
+
+MinkowskiWalk walk_along_ray(const PairView& pair, const MinkowskiFacet& start, const Vec3& direction) noexcept {
+  return walk(pair, start, &direction);
+}
+
+}  // namespace tactum

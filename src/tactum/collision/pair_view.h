@@ -1,0 +1,74 @@
+#pragma once
+/// Two convex pieces and where they are, as every query of this folder looks at them: B's pose in A, its inverse, and
+/// the lengths that tolerances are measured by. Lives for one query.
+///
+///   separation(n) = min_A n.a - max_B n.b     the gap between the two support planes across n (unit, from B to A):
+///                                             a rigorous lower bound on the signed distance, whatever n is.
+
+#include <algorithm>
+
+#include "tactum/base/tolerances.h"
+#include "tactum/collision/contact.h"
+#include "tactum/geometry/polytope.h"
+
+namespace tactum {
+
+struct PairView {
+  const Polytope& A;
+  const Polytope& B;
+  const Pose& X_AB;
+  Pose X_BA;
+  double size;   ///< of the larger piece: what certificates are relative to [m]
+  double scale;  ///< size of the numbers that are added up: what rounding is relative to [m]
+
+  PairView(const Polytope& a, const Polytope& b, const Pose& x) noexcept
+      : A(a),
+        B(b),
+        X_AB(x),
+        X_BA(x.inverse()),
+        size(std::max(a.size, b.size)),
+        scale(size + x.p.lpNorm<1>() + a.center.lpNorm<1>() + b.center.lpNorm<1>()) {}
+
+  const Vec3& vertex_a(int v) const noexcept { return A.vertices[v]; }
+  /// Vertex of B, in A.
+  Vec3 vertex_b(int v) const noexcept { return X_AB * B.vertices[v]; }
+
+  /// The gap across `n`; `a` and `b` are vertices to climb from and come back as the supports.
+  double separation(const Vec3& n, int& a, int& b) const noexcept {
+    a = support_vertex(A, -n, a);
+    b = support_vertex(B, X_BA.R * n, b);
+    return n.dot(vertex_a(a) - vertex_b(b));
+  }
+};
+
+/// Some vertex of a feature.
+inline int vertex_of(const Polytope& P, const Feature& f) noexcept {
+  switch (f.kind) {
+    case FeatureKind::kVertex: return f.index;
+    case FeatureKind::kEdge: return P.edges[f.index].tail;
+    case FeatureKind::kFace: return P.face_vertices[P.faces[f.index].first];
+  }
+  return 0;
+}
+
+/// Does the feature exist on `P`? A cache may come from another pair of pieces.
+inline bool valid_feature(const Polytope& P, const Feature& f) noexcept {
+  const std::size_t count = f.kind == FeatureKind::kVertex ? P.vertices.size()
+                            : f.kind == FeatureKind::kEdge ? P.edges.size()
+                                                           : P.faces.size();
+  return f.index >= 0 && static_cast<std::size_t>(f.index) < count;
+}
+
+/// Where two lines come nearest: p0 + s u and q0 + t w, u and w unit. Solved by cross products, whose error grows with
+/// 1/sine where that of the normal equations grows with its square. False when they are parallel.
+inline bool nearest_on_lines(const Vec3& p0, const Vec3& u, const Vec3& q0, const Vec3& w, double& s, double& t) noexcept {
+  const Vec3 c = u.cross(w);
+  const double sine_sq = c.squaredNorm();
+  if (sine_sq < tolerances::kParallelSine * tolerances::kParallelSine) return false;
+  const Vec3 r = q0 - p0;
+  s = r.cross(w).dot(c) / sine_sq;
+  t = r.cross(u).dot(c) / sine_sq;
+  return true;
+}
+
+}  // namespace tactum

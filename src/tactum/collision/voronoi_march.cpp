@@ -1,0 +1,332 @@
+#include "tactum/collision/voronoi_march.h"
+
+#include <cmath>
+#include <limits>
+
+namespace tactum {
+namespace {
+
+/// One step as seen from the piece P that owns the feature of lower dimension; Q is the other.
+struct Sides {
+  const Polytope& P;
+  const Polytope& Q;
+  const Pose& X_PQ;
+  const Pose& X_QP;
+  double slack;
+};
+
+enum class Step : std::uint8_t { kClosest, kMoved, kOverlap };
+
+/// Closest points so far, in P's frame.
+struct Points {
+  Vec3 p, q;
+};
+
+/// The edge at `v` that goes most along `d`, by more than `least`; -1 when none does.
+int edge_along(const Polytope& P, int v, const Vec3& d, double least) noexcept {
+  int best = -1;
+  for (int e : P.edges_at(v)) {
+    const Polytope::Edge& edge = P.edges[e];
+    const double along = edge.direction.dot(d);
+    const double away = edge.tail == v ? along : -along;
+    if (away > least) {
+      least = away;
+      best = e;
+    }
+  }
+  return best;
+}
+
+Step vertex_vertex(const Sides& S, Feature& fp, Feature& fq, Points& x) noexcept {
+  const Vec3& p = S.P.vertices[fp.index];
+  const Vec3& q_Q = S.Q.vertices[fq.index];
+  x = {p, S.X_PQ * q_Q};
+  if (const int e = edge_along(S.P, fp.index, x.q - p, S.slack); e >= 0) {
+    fp = {FeatureKind::kEdge, e};
+    return Step::kMoved;
+  }
+  if (const int e = edge_along(S.Q, fq.index, S.X_QP * p - q_Q, S.slack); e >= 0) {
+    fq = {FeatureKind::kEdge, e};
+    return Step::kMoved;
+  }
+  return Step::kClosest;
+}
+
+Step vertex_edge(const Sides& S, Feature& fp, Feature& fq, Points& x) noexcept {
+  const Vec3& p = S.P.vertices[fp.index];
+  const Polytope::Edge& edge = S.Q.edges[fq.index];
+  const Vec3& tail = S.Q.vertices[edge.tail];
+  const Vec3 p_Q = S.X_QP * p;
+  const double along = edge.direction.dot(p_Q - tail);
+  x = {p, S.X_PQ * Vec3(tail + edge.direction * std::clamp(along, 0.0, edge.length))};
+  if (along < -S.slack || along > edge.length + S.slack) {
+    fq = {FeatureKind::kVertex, along < 0.0 ? edge.tail : edge.head};
+    return Step::kMoved;
+  }
+  const double left = S.Q.side_normals[edge.left_slot].dot(p_Q) - S.Q.side_offsets[edge.left_slot];
+  const double right = S.Q.side_normals[edge.right_slot].dot(p_Q) - S.Q.side_offsets[edge.right_slot];
+  if (std::min(left, right) < -S.slack) {
+    fq = {FeatureKind::kFace, left < right ? edge.left : edge.right};
+    return Step::kMoved;
+  }
+  if (const int e = edge_along(S.P, fp.index, x.q - p, S.slack); e >= 0) {
+    fp = {FeatureKind::kEdge, e};
+    return Step::kMoved;
+  }
+  return Step::kClosest;
+}
+
+/// The slot of the side plane that `p` is farthest outside of, beyond `slack`; -1 inside the face's column.
+int slot_outside(const Polytope& Q, const Polytope::Face& face, const Vec3& p, double slack) noexcept {
+  int best = -1;
+  for (int slot = face.first; slot < face.first + face.count; ++slot) {
+    const double out = Q.side_normals[slot].dot(p) - Q.side_offsets[slot];
+    if (out > slack) {
+      slack = out;
+      best = slot;
+    }
+  }
+  return best;
+}
+
+/// The face `p` is highest above.
+int highest_face(const Polytope& Q, const Vec3& p, double& height) noexcept {
+  int best = 0;
+  height = -std::numeric_limits<double>::infinity();
+  for (std::size_t f = 0; f < Q.faces.size(); ++f) {
+    const double h = Q.faces[f].normal.dot(p) - Q.faces[f].offset;
+    if (h > height) {
+      height = h;
+      best = static_cast<int>(f);
+    }
+  }
+  return best;
+}
+
+Step vertex_face(const Sides& S, Feature& fp, Feature& fq, Points& x) noexcept {
+  const Vec3& p = S.P.vertices[fp.index];
+  const Polytope::Face& face = S.Q.faces[fq.index];
+  const Vec3 p_Q = S.X_QP * p;
+  const double height = face.normal.dot(p_Q) - face.offset;
+  const Vec3 n_P = S.X_PQ.R * face.normal;
+  x = {p, p - n_P * height};
+  if (const int slot = slot_outside(S.Q, face, p_Q, S.slack); slot >= 0) {
+    fq = {FeatureKind::kEdge, S.Q.face_edges[slot]};
+    return Step::kMoved;
+  }
+  if (height < -S.slack) {  // behind the face: inside the piece, or in front of another face
+    double most = 0.0;
+    const int highest = highest_face(S.Q, p_Q, most);
+    if (highest == fq.index || most < -S.slack) {
+      x.q = p;
+      return Step::kOverlap;
+    }
+    fq.index = highest;
+    return Step::kMoved;
+  }
+  if (const int e = edge_along(S.P, fp.index, -n_P, tolerances::kVoronoiSlack); e >= 0) {
+    fp = {FeatureKind::kEdge, e};
+    return Step::kMoved;
+  }
+  return Step::kClosest;
+}
+
+struct SegmentPair {
+  double s = 0.0, t = 0.0;  // lengths along the two
+};
+
+/// Closest points of two segments p0 + s u, s in [0, lp], and q0 + t w, t in [0, lq].
+SegmentPair nearest_on_segments(const Vec3& p0, const Vec3& u, double lp, const Vec3& q0, const Vec3& w,
+                                double lq) noexcept {
+  SegmentPair x;
+  if (!nearest_on_lines(p0, u, q0, w, x.s, x.t)) {  // parallel: the middle of what they share
+    const double a = u.dot(q0 - p0);
+    const double b = u.dot(q0 + w * lq - p0);
+    x.s = 0.5 * (std::clamp(std::min(a, b), 0.0, lp) + std::clamp(std::max(a, b), 0.0, lp));
+    x.t = std::clamp(w.dot(p0 + u * x.s - q0), 0.0, lq);
+    return x;
+  }
+  if (x.s < 0.0 || x.s > lp) {
+    x.s = std::clamp(x.s, 0.0, lp);
+    x.t = w.dot(p0 + u * x.s - q0);
+  }
+  if (x.t < 0.0 || x.t > lq) {
+    x.t = std::clamp(x.t, 0.0, lq);
+    x.s = std::clamp(u.dot(q0 + w * x.t - p0), 0.0, lp);
+  }
+  return x;
+}
+
+/// A segment's end as its vertex, when the closest point is there.
+bool at_end(const Polytope::Edge& edge, double s, Feature& f) noexcept {
+  if (s > 0.0 && s < edge.length) return false;
+  f = {FeatureKind::kVertex, s > 0.0 ? edge.head : edge.tail};
+  return true;
+}
+
+/// The face at `edge` in whose column the direction `d` from the edge leads; -1 when in neither.
+int face_toward(const Polytope& P, const Polytope::Edge& edge, const Vec3& d, double slack) noexcept {
+  const double left = P.side_normals[edge.left_slot].dot(d);
+  const double right = P.side_normals[edge.right_slot].dot(d);
+  if (std::min(left, right) >= -slack) return -1;
+  return left < right ? edge.left : edge.right;
+}
+
+Step edge_edge(const Sides& S, Feature& fp, Feature& fq, Points& x) noexcept {
+  const Polytope::Edge& e = S.P.edges[fp.index];
+  const Polytope::Edge& g = S.Q.edges[fq.index];
+  const Vec3& p0 = S.P.vertices[e.tail];
+  const Vec3 q0 = S.X_PQ * S.Q.vertices[g.tail];
+  const Vec3 w = S.X_PQ.R * g.direction;
+  const SegmentPair at = nearest_on_segments(p0, e.direction, e.length, q0, w, g.length);
+  x = {p0 + e.direction * at.s, q0 + w * at.t};
+  const bool p_end = at_end(e, at.s, fp);
+  const bool q_end = at_end(g, at.t, fq);
+  if (p_end || q_end) return Step::kMoved;
+  const Vec3 d = x.q - x.p;
+  if (const int f = face_toward(S.P, e, d, S.slack); f >= 0) {
+    fp = {FeatureKind::kFace, f};
+    return Step::kMoved;
+  }
+  if (const int f = face_toward(S.Q, g, -(S.X_QP.R * d), S.slack); f >= 0) {
+    fq = {FeatureKind::kFace, f};
+    return Step::kMoved;
+  }
+  return Step::kClosest;
+}
+
+/// The edge of a face nearest to a segment that lies wholly outside the face's column.
+int nearest_edge(const Polytope& Q, const Polytope::Face& face, const Vec3& p0, const Vec3& u, double length) noexcept {
+  int best = -1;
+  double least = std::numeric_limits<double>::infinity();
+  for (int slot = face.first; slot < face.first + face.count; ++slot) {
+    const Polytope::Edge& g = Q.edges[Q.face_edges[slot]];
+    const Vec3& q0 = Q.vertices[g.tail];
+    const SegmentPair at = nearest_on_segments(p0, u, length, q0, g.direction, g.length);
+    const double gap = (p0 + u * at.s - q0 - g.direction * at.t).squaredNorm();
+    if (gap < least) {
+      least = gap;
+      best = Q.face_edges[slot];
+    }
+  }
+  return best;
+}
+
+/// The part of an edge inside a face's column, and the slots of the planes that cut it (-1: its own end).
+struct Clip {
+  double low = 0.0, high = 0.0;
+  int low_slot = -1, high_slot = -1;
+  bool empty = false;
+};
+
+Clip clip_to_column(const Polytope& Q, const Polytope::Face& face, const Vec3& p0, const Vec3& u, double length,
+                    double slack) noexcept {
+  Clip clip;
+  clip.high = length;
+  for (int slot = face.first; slot < face.first + face.count; ++slot) {
+    const double along = Q.side_normals[slot].dot(u);
+    const double room = Q.side_offsets[slot] - Q.side_normals[slot].dot(p0);
+    if (std::abs(along) < tolerances::kVoronoiSlack) {
+      clip.empty |= room < -slack;
+    } else if (along > 0.0 && room < clip.high * along) {
+      clip.high = room / along;
+      clip.high_slot = slot;
+    } else if (along < 0.0 && room < clip.low * along) {
+      clip.low = room / along;
+      clip.low_slot = slot;
+    }
+  }
+  clip.empty |= clip.low > clip.high;
+  return clip;
+}
+
+/// P has the edge, Q the face. Never the end of the walk: the nearer end of the clipped edge is a vertex or on an edge.
+Step edge_face(const Sides& S, Feature& fp, Feature& fq, Points& x) noexcept {
+  const Polytope::Edge& e = S.P.edges[fp.index];
+  const Polytope::Face& face = S.Q.faces[fq.index];
+  const Vec3 p0 = S.X_QP * S.P.vertices[e.tail];
+  const Vec3 u = S.X_QP.R * e.direction;
+  const Clip clip = clip_to_column(S.Q, face, p0, u, e.length, S.slack);
+  if (clip.empty) {
+    fq = {FeatureKind::kEdge, nearest_edge(S.Q, face, p0, u, e.length)};
+    return Step::kMoved;
+  }
+  const double low = face.normal.dot(p0 + u * clip.low) - face.offset;
+  const double high = face.normal.dot(p0 + u * clip.high) - face.offset;
+  if (std::min(low, high) < -S.slack && std::max(low, high) > S.slack) {
+    const double at = clip.low + (clip.high - clip.low) * low / (low - high);
+    x.p = S.P.vertices[e.tail] + e.direction * at;
+    x.q = x.p;
+    return Step::kOverlap;
+  }
+  const bool take_low = std::abs(low) <= std::abs(high);
+  const int slot = take_low ? clip.low_slot : clip.high_slot;
+  if (slot >= 0) {
+    fq = {FeatureKind::kEdge, S.Q.face_edges[slot]};
+  } else {
+    fp = {FeatureKind::kVertex, take_low ? e.tail : e.head};
+  }
+  return Step::kMoved;
+}
+
+/// Edge-face tells no closest points: it is passed through.
+bool tells_points(const Feature& a, const Feature& b) noexcept {
+  return a.kind != FeatureKind::kFace ? a.kind == FeatureKind::kVertex || b.kind != FeatureKind::kFace
+                                      : b.kind == FeatureKind::kVertex;
+}
+
+/// Dispatch on the kinds, P owning the lower one.
+Step step(const Sides& S, Feature& fp, Feature& fq, Points& x) noexcept {
+  if (fp.kind == FeatureKind::kVertex) {
+    if (fq.kind == FeatureKind::kVertex) return vertex_vertex(S, fp, fq, x);
+    return fq.kind == FeatureKind::kEdge ? vertex_edge(S, fp, fq, x) : vertex_face(S, fp, fq, x);
+  }
+  return fq.kind == FeatureKind::kEdge ? edge_edge(S, fp, fq, x) : edge_face(S, fp, fq, x);
+}
+
+}  // namespace
+
+March voronoi_march(const PairView& pair, Feature a, Feature b, double slack) noexcept {
+  const Sides forward{pair.A, pair.B, pair.X_AB, pair.X_BA, slack};
+  const Sides backward{pair.B, pair.A, pair.X_BA, pair.X_AB, slack};
+  if (a.kind == FeatureKind::kFace && b.kind == FeatureKind::kFace) b = {FeatureKind::kVertex, vertex_of(pair.B, b)};
+
+  March best;
+  double least = std::numeric_limits<double>::infinity();
+  Feature mark_a, mark_b;  // a state to be met again if the walk goes in circles [Brent 1980]
+  int next_mark = 8;
+  const int bound = 64 + static_cast<int>(pair.A.edges.size() + pair.B.edges.size()) / 4;
+  int steps = 0;
+  while (steps < bound) {
+    const Feature was_a = a;
+    const Feature was_b = b;
+    const bool swapped = a.kind > b.kind;
+    Points x{Vec3::Zero(), Vec3::Zero()};
+    const Step outcome = swapped ? step(backward, b, a, x) : step(forward, a, b, x);
+    ++steps;
+    if (tells_points(was_a, was_b) || outcome == Step::kOverlap) {
+      const double gap = (x.p - x.q).squaredNorm();
+      if (gap < least || outcome != Step::kMoved) {
+        least = gap;
+        best = {was_a, was_b, swapped ? pair.X_AB * x.q : x.p, swapped ? pair.X_AB * x.p : x.q, MarchEnd::kBounded, 0};
+      }
+    }
+    if (outcome != Step::kMoved) {
+      best.end = outcome == Step::kClosest ? MarchEnd::kClosest : MarchEnd::kOverlap;
+      break;
+    }
+    if (a == mark_a && b == mark_b) {
+      best.end = MarchEnd::kCircle;
+      break;
+    }
+    if (steps == next_mark) {
+      mark_a = a;
+      mark_b = b;
+      next_mark *= 2;
+    }
+  }
+  best.steps = steps;
+  return best;
+}
+
+}  // namespace tactum
