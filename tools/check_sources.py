@@ -6,7 +6,7 @@
   (inertia_kg_m2 = 2e-5) or in a tag behind it (///< [N s/m]). A quantity that can have neither is written in thousandths
   (0.023e-3), a conversion as a division (nanoseconds / 1e9): none of them can be mistaken for a tolerance.
 - haptics/frame.cpp is read from top to bottom: at most 80 lines.
-- Nothing is left for later, and no file knows the folders of the machine it was written on.
+- Nothing is left for later, no merge is left unfinished, and no file knows the folders of the machine it was written on.
 """
 import pathlib
 import re
@@ -23,6 +23,7 @@ UNIT = r"(?:kg|N|Nm|Ns|Nms|m|m2|m3|s|rad|J|W|Hz)(?:_(?:per_)?(?:kg|N|Nm|m|m2|m3|
 NAMED_QUANTITY = re.compile(rf"_{UNIT}\s*(?:=|\{{)\s*-?$")
 TAGGED_QUANTITY = re.compile(r"//.*\[(?:kg|N|m|s|rad|J|W|Hz)\b[^\]\n]*\]")
 FOR_LATER = re.compile(r"\b(?:TODO|FIXME|XXX|HACK)\b")
+UNFINISHED_MERGE = re.compile(r"^(?:<{7}|>{7}) \S+", re.MULTILINE)
 MACHINE_PATH = re.compile(r"(?<![\w.~*-])/(?:home|root|work|Users|tmp)/\w")
 
 
@@ -56,6 +57,8 @@ def faults(root):
             text = path.read_text()
             for line, word in places(FOR_LATER, text):
                 yield f"{name}:{line}: {word} leaves something for later"
+            for line, word in places(UNFINISHED_MERGE, text):
+                yield f"{name}:{line}: {word} was left by a merge"
             for line, word in places(MACHINE_PATH, text):
                 yield f"{name}:{line}: {word}... is a path of one machine"
             if name.startswith("src/") and path.suffix in (".h", ".cpp") and name != "src/tactum/base/tolerances.h":

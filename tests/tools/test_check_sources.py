@@ -43,6 +43,9 @@ class Sources(TreeTest):
     def test_things_left_for_later_are_caught(self):
         self.assert_one_fault(self.code("a\n// TODO mend\n"), "x.h:2", "TODO")
 
+    def test_unfinished_merges_are_caught(self):
+        self.assert_one_fault(self.code("a\n" + "<" * 7 + " HEAD\nb\n", "tests/CMakeLists.txt"), "CMakeLists.txt:2")
+
     def test_paths_of_one_machine_are_caught(self):
         self.assert_one_fault(self.code("see /home/ada/tactum\n", "docs/page.md"), "page.md:1")
         self.assertEqual(self.code("see https://example.org/home/ada\n", "docs/page.md"), [])
