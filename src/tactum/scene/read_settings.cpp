@@ -1,9 +1,16 @@
 #include <fmt/format.h>
 
+#include <cmath>
+#include <limits>
+
 #include "tactum/scene/scene_sections.h"
 
 namespace tactum {
 namespace {
+
+// From 10 kHz to 100 Hz.
+constexpr double kShortestStep_s = 0.0001;
+constexpr double kLongestStep_s = 0.01;
 
 void read_coupling(const TomlReader& root, Coupling& coupling) {
   const TomlReader table = root.table(
@@ -104,7 +111,7 @@ void read_tool(const TomlReader& root, Scene& scene) {
   Workspace& workspace = scene.settings.workspace;
   const TomlReader space =
       root.table("workspace", {"scale", "pos_m", "quat_wxyz", "rpy_deg", "clutch_button"});
-  workspace.scale = space.number("scale", 1.0, {1e-3, 1e3});
+  workspace.scale = space.number("scale", 1.0, {0.001, 1000.0});
   workspace.clutch_button = space.integer("clutch_button", -1, -1, 31);
   workspace.X_WD.R = space.rotation();
 
@@ -131,7 +138,7 @@ void read_tool(const TomlReader& root, Scene& scene) {
 }  // namespace
 
 void read_settings(const TomlReader& root, Scene& scene) {
-  scene.settings.dt_s = root.number("dt_s", 0.001, {1e-4, 1e-2});
+  scene.settings.dt_s = root.number("dt_s", 0.001, {kShortestStep_s, kLongestStep_s});
   read_coupling(root, scene.settings.coupling);
   read_penalty(root, scene.settings.penalty);
   read_feel(root, scene.settings.shading, scene.settings.smoothing);

@@ -2,7 +2,6 @@
 #include <fmt/ranges.h>
 
 #include <filesystem>
-#include <functional>
 
 #include "tactum/geometry/mesh_import.h"
 #include "tactum/geometry/primitives.h"
