@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "tactum/base/tolerances.h"
 #include "tactum/geometry/mesh_edges.h"
@@ -20,13 +19,11 @@ int count_duplicates(const TriangleMesh& mesh) {
   return static_cast<int>(sorted.end() - std::unique(sorted.begin(), sorted.end()));
 }
 
-/// Edge counts and components; returns the number of edges.
+/// Edge counts; returns the number of edges.
 int count_edges(const WeldedMesh& welded, const std::vector<HalfEdge>& sides, MeshReport& report) {
-  DisjointSets sets(static_cast<int>(welded.mesh.triangles.size()));
   int edges = 0;
   for_each_edge(sides, [&](const HalfEdge* first, const HalfEdge* last) {
     ++edges;
-    for (const HalfEdge* side = first + 1; side != last; ++side) sets.join(first->triangle, side->triangle);
     if (last - first == 1) {
       if (report.boundary_edges++ == 0) report.first_boundary = welded.source[first->triangle];
     } else if (last - first > 2) {
@@ -35,10 +32,24 @@ int count_edges(const WeldedMesh& welded, const std::vector<HalfEdge>& sides, Me
       ++report.misoriented_edges;
     }
   });
-  std::set<int> roots;
-  for (int i = 0; i < static_cast<int>(welded.mesh.triangles.size()); ++i) roots.insert(sets.find(i));
-  report.components = static_cast<int>(roots.size());
   return edges;
+}
+
+/// Vertices that triangles use, and the sets they fall into.
+void count_vertices(const TriangleMesh& mesh, MeshReport& report) {
+  DisjointSets sets(static_cast<int>(mesh.vertices.size()));
+  std::vector<bool> used(mesh.vertices.size(), false);
+  for (const Triangle& t : mesh.triangles) {
+    for (int corner : t) {
+      used[corner] = true;
+      sets.join(t[0], corner);
+    }
+  }
+  for (int i = 0; i < static_cast<int>(mesh.vertices.size()); ++i) {
+    if (!used[i]) continue;
+    ++report.vertices;
+    report.components += sets.find(i) == i ? 1 : 0;
+  }
 }
 
 /// Whether, at every edge, the far corner of each triangle lies below the plane of the other.
@@ -73,11 +84,10 @@ void measure(const TriangleMesh& mesh, MeshReport& report) {
 
 }  // namespace
 
-MeshReport report_mesh(const TriangleMesh& mesh) {
+MeshReport report_mesh(const TriangleMesh& mesh, double tolerance) {
   MeshReport report;
-  const WeldedMesh welded = weld(mesh);
+  const WeldedMesh welded = weld(mesh, {.tolerance = tolerance});
   report.triangles = static_cast<int>(mesh.triangles.size());
-  report.vertices = static_cast<int>(welded.mesh.vertices.size());
   report.index_degenerate = welded.report.index_degenerate;
   report.duplicate_triangles = count_duplicates(welded.mesh);
   for (std::size_t i = 0; i < welded.mesh.triangles.size(); ++i) {
@@ -87,12 +97,8 @@ MeshReport report_mesh(const TriangleMesh& mesh) {
   }
   const std::vector<HalfEdge> sides = sorted_half_edges(welded.mesh);
   const int edges = count_edges(welded, sides, report);
-  std::vector<bool> used(welded.mesh.vertices.size(), false);
-  for (const Triangle& t : welded.mesh.triangles) {
-    for (int corner : t) used[corner] = true;
-  }
-  report.euler = static_cast<int>(std::count(used.begin(), used.end(), true)) - edges +
-                 static_cast<int>(welded.mesh.triangles.size());
+  count_vertices(welded.mesh, report);
+  report.euler = report.vertices - edges + static_cast<int>(welded.mesh.triangles.size());
   report.closed = !welded.mesh.triangles.empty() && report.boundary_edges == 0 && report.manifold();
   report.oriented = report.misoriented_edges == 0;
   measure(welded.mesh, report);

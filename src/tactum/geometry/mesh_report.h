@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "tactum/base/tolerances.h"
 #include "tactum/geometry/triangle_mesh.h"
 
 namespace tactum {
@@ -18,10 +19,10 @@ struct UnitGuess {
 };
 
 struct MeshReport {
-  int vertices = 0;             ///< after welding
+  int vertices = 0;             ///< after welding, of triangles
   int triangles = 0;            ///< as given
   int duplicate_triangles = 0;  ///< same three corners as an earlier one
-  int components = 0;           ///< sets of triangles joined along edges
+  int components = 0;           ///< sets of triangles joined by vertices
   int boundary_edges = 0;       ///< edges with one triangle
   int non_manifold_edges = 0;   ///< edges with more than two
   int misoriented_edges = 0;    ///< edges that both triangles run the same way
@@ -42,7 +43,9 @@ struct MeshReport {
   bool manifold() const { return non_manifold_edges == 0; }
 };
 
-MeshReport report_mesh(const TriangleMesh& mesh);
+/// Vertices within `tolerance` (share of the diagonal) count as one; 0 joins only equal coordinates, as
+/// strict programs do.
+MeshReport report_mesh(const TriangleMesh& mesh, double tolerance = tolerances::kWeld);
 
 /// The unit of a mesh whose bounding box is in the units of its file.
 UnitGuess guess_unit(const Aabb& box);
