@@ -35,6 +35,7 @@ class DistanceQuery {
 
   /// Depth first, of two children the nearer one first.
   void descend() noexcept {
+    // Filled as far as it is used: NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init)
     std::array<Pair, 2 * Bvh::kMaxDepth + 2> stack;
     std::size_t size = 0;
     stack[size++] = {0, 0, 0.0};

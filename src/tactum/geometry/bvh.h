@@ -105,6 +105,7 @@ bool for_each_pair_within(const Bvh& bvh_a, const Bvh& bvh_b, const Pose& X_AB, 
   struct Pair {
     std::int32_t a, b;
   };
+  // Filled as far as it is used: NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init)
   std::array<Pair, 2 * Bvh::kMaxDepth + 2>
       stack;  // each step takes one pair and puts two, one level further down
   std::size_t size = 0;
