@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 """Small rules of the sources:  tools/check_sources.py [ROOT]
 
-- Epsilons live in base/tolerances.h, each with its story. Anywhere else in src/ a number below 1e-4 written with an
-  exponent (1e-6) or with zeros (0.00001) is a fault. A physical quantity that small is written in thousandths of its
-  unit (0.023e-3 metres), a conversion as a division (nanoseconds / 1e9): neither can be mistaken for a tolerance.
+- Epsilons live in base/tolerances.h, each with its story. Anywhere else in src/ a number written with an exponent of -4
+  or less (1e-6), or with as many zeros (0.00001), is a fault, unless it has a unit: in the name it is given to
+  (inertia_kg_m2 = 2e-5) or in a tag behind it (///< [N s/m]). A quantity that can have neither is written in thousandths
+  (0.023e-3), a conversion as a division (nanoseconds / 1e9): none of them can be mistaken for a tolerance.
 - haptics/frame.cpp is read from top to bottom: at most 80 lines.
-- Nothing is left for later, and no file knows the folders of the machine it was written on.
+- Nothing is left for later, no merge is left unfinished, and no file knows the folders of the machine it was written on.
 """
 import pathlib
 import re
@@ -18,7 +19,11 @@ SUFFIXES = (".h", ".cpp", ".md", ".toml", ".cmake", ".txt", ".bib", "")
 
 COMMENT_OR_STRING = re.compile(r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"', re.DOTALL)
 EPSILON = re.compile(r"(?<![\w.])(?:\d[\d']*\.?\d*|\.\d+)[eE]-0*(?:[4-9]|[1-9]\d+)\b|(?<![\w.])0?\.0000\d*(?![\w.])")
+UNIT = r"(?:kg|N|Nm|Ns|Nms|m|m2|m3|s|rad|J|W|Hz)(?:_(?:per_)?(?:kg|N|Nm|m|m2|m3|s|s2|rad|rad2))*"
+NAMED_QUANTITY = re.compile(rf"_{UNIT}\s*(?:=|\{{)\s*-?$")
+TAGGED_QUANTITY = re.compile(r"//.*\[(?:kg|N|m|s|rad|J|W|Hz)\b[^\]\n]*\]")
 FOR_LATER = re.compile(r"\b(?:TODO|FIXME|XXX|HACK)\b")
+UNFINISHED_MERGE = re.compile(r"^(?:<{7}|>{7}) \S+", re.MULTILINE)
 MACHINE_PATH = re.compile(r"(?<![\w.~*-])/(?:home|root|work|Users|tmp)/\w")
 
 
@@ -30,12 +35,16 @@ def places(pattern, text):
 
 def code_only(text):
     """C++ with comments and strings blanked, lines kept."""
-    return COMMENT_OR_STRING.sub(lambda found: "\n" * found.group(0).count("\n"), text)
+    return COMMENT_OR_STRING.sub(lambda found: " " + "\n" * found.group(0).count("\n"), text)
 
 
 def epsilon_faults(text, name):
-    for line, literal in places(EPSILON, code_only(text)):
-        yield f"{name}:{line}: {literal} looks like an epsilon; those live in base/tolerances.h (quantities: 0.01e-3)"
+    lines = text.splitlines()
+    for number, line in enumerate(code_only(text).splitlines()):
+        for match in EPSILON.finditer(line):
+            if not NAMED_QUANTITY.search(line[: match.start()]) and not TAGGED_QUANTITY.search(lines[number]):
+                place = f"{name}:{number + 1}"
+                yield f"{place}: {match.group(0)} looks like an epsilon; those live in base/tolerances.h (a quantity has a unit)"
 
 
 def faults(root):
@@ -48,6 +57,8 @@ def faults(root):
             text = path.read_text()
             for line, word in places(FOR_LATER, text):
                 yield f"{name}:{line}: {word} leaves something for later"
+            for line, word in places(UNFINISHED_MERGE, text):
+                yield f"{name}:{line}: {word} was left by a merge"
             for line, word in places(MACHINE_PATH, text):
                 yield f"{name}:{line}: {word}... is a path of one machine"
             if name.startswith("src/") and path.suffix in (".h", ".cpp") and name != "src/tactum/base/tolerances.h":

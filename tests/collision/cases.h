@@ -82,7 +82,7 @@ enum class Making { kRandom, kFaceToFace, kEdgeToEdge, kVertexOverEdge, kVertexO
 
 /// A rotation that takes unit `from` to unit `to`, then turned about `to` by `angle`.
 inline Mat3 turning(const Vec3& from, const Vec3& to, double angle) {
-  return exp_rotation(to * angle) * Quat::FromTwoVectors(from, to).toRotationMatrix();
+  return exp_rotation(to * angle) * Quat::FromTwoVectors(from, to).normalized().toRotationMatrix();
 }
 
 /// A gap from the whole range that matters, relative to the size: 0, +-1e-14 ... +-1.

@@ -84,7 +84,7 @@ TEST(Safety, LimitsMagnitudesKeepingTheDirection) {
   EXPECT_EQ(stage.report.flags, kForceLimited | kTorqueLimited);
 }
 
-TEST(Safety, SlewLimitTakesFiveFramesForAFullReversalHalf) {
+TEST(Safety, SlewLimitSpreadsAFullStepOverFiveFrames) {
   Stage stage;
   stage.start({});
   int frames = 0;

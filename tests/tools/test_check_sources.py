@@ -16,6 +16,13 @@ class Sources(TreeTest):
         for literal in ("1e-3", "0.023e-3", "1e9", "1e300", "0.001", "0.0005", "0x1p-53", "100.0000"):
             self.assertEqual(self.code(f"double a = {literal};\n"), [])
 
+    def test_quantities_with_a_unit_pass(self):
+        for code in ("m.inertia_kg_m2 = 2.0e-5;", "m.damping_Nms_per_rad = 1e-4;", "double step = 1e-4;  ///< aimed at [s]",
+                     "constexpr double kSubstep_s{1e-4};", "double d = 1e-4;  // [N m s/rad]"):
+            self.assertEqual(self.code(code + "\n"), [])
+        for code in ("if (a_m < 1e-6) {}", "double eps = 1e-9;  ///< relative [-]", "double e = 1e-9;  // a[i]s"):
+            self.assertEqual(len(self.code(code + "\n")), 1, code)
+
     def test_comments_and_strings_pass(self):
         self.assertEqual(self.code('// 1e-6\n/* 1e-7\n1e-8 */ const char* s = "1e-9 \\" 1e-9";\n'), [])
 
@@ -35,6 +42,9 @@ class Sources(TreeTest):
 
     def test_things_left_for_later_are_caught(self):
         self.assert_one_fault(self.code("a\n// TODO mend\n"), "x.h:2", "TODO")
+
+    def test_unfinished_merges_are_caught(self):
+        self.assert_one_fault(self.code("a\n" + "<" * 7 + " HEAD\nb\n", "tests/CMakeLists.txt"), "CMakeLists.txt:2")
 
     def test_paths_of_one_machine_are_caught(self):
         self.assert_one_fault(self.code("see /home/ada/tactum\n", "docs/page.md"), "page.md:1")

@@ -19,8 +19,9 @@ inline constexpr double kCollinear = 1e-12;
 inline constexpr double kCertificate = 1e-9;
 
 /// Voronoi planes are crossed only when a point is beyond them by this much of the size, so that a point on
-/// a plane does not walk to and fro.
-inline constexpr double kVoronoiSlack = 1e-13;
+/// a plane does not walk to and fro. A few roundings: at 1e-13 the walk stopped short beside gaps of 1e-8, where
+/// a point 1e-13 off its region means a normal 1e-5 off.
+inline constexpr double kVoronoiSlack = 1e-15;
 
 /// Below this share of the size a vector between witness points no longer has a direction of its own.
 inline constexpr double kTouching = 1e-12;
@@ -28,6 +29,10 @@ inline constexpr double kTouching = 1e-12;
 /// Two directions are parallel when the sine of their angle is below this: the cross product of unit vectors
 /// keeps about eight digits there.
 inline constexpr double kParallelSine = 1e-8;
+
+/// Arcs of two edges on the Gauss map are one arc when their planes differ by less than this angle: what is left of
+/// a crossing is then smaller than the certificate can see.
+inline constexpr double kSameArc = 1e-12;
 
 /// Vertices nearer than this share of the mesh's size are one vertex. STL stores single precision (6e-8).
 inline constexpr double kWeld = 1e-9;

@@ -1,10 +1,9 @@
 #include "tactum/collision/closest_features.h"
 
-#include <array>
 #include <cmath>
 #include <limits>
 
-#include "tactum/collision/minkowski_walk.h"
+#include "tactum/collision/every_feature.h"
 #include "tactum/collision/penetration.h"
 #include "tactum/collision/voronoi_march.h"
 
@@ -104,56 +103,100 @@ Seed seed_from_table(const PairView& pair) noexcept {
           {Kind::kVertex, table_vertex(pair.B, -(pair.X_BA.R * toward_b))}};
 }
 
-/// The pieces overlap, or touch so closely that only the features' planes tell the normal.
-PairDistance by_penetration(const PairView& pair, PairCache& cache, int steps) noexcept {
-  PairDistance deep = penetration_depth(pair.A, pair.B, pair.X_AB, cache);
-  deep.steps += steps;
-  return deep;
-}
+/// The query while it climbs down its ladder.
+class Query {
+ public:
+  Query(const PairView& pair, PairCache& cache) noexcept : pair_(pair), cache_(cache) {
+    best_.doubt = std::numeric_limits<double>::infinity();
+  }
+
+  PairDistance run() noexcept {
+    if (walked()) return result_;
+    if (touching()) return result_;
+    if (pair_.A.edges.size() * pair_.B.edges.size() <= kSmallEdgePairs) {
+      if (certified(closest_of_every_feature(pair_), Stop::kFallback)) return result_;
+      if (touching()) return result_;
+    }
+    return done(best_.answer, Stop::kBounded);
+  }
+
+ private:
+  /// The walk, and again from the supports with wider slack. True when certified or overlapping.
+  bool walked() noexcept {
+    Seed seed{cache_.a, cache_.b};
+    if (!valid_feature(pair_.A, seed.a) || !valid_feature(pair_.B, seed.b)) seed = seed_from_table(pair_);
+    double slack = tolerances::kVoronoiSlack * pair_.scale;
+    for (int attempt = 0; attempt < kAttempts; ++attempt, slack *= kWiderSlack) {
+      const March march = voronoi_march(pair_, seed.a, seed.b, slack);
+      steps_ += march.steps;
+      if (march.end == MarchEnd::kOverlap) {
+        result_ = penetration_depth(pair_.A, pair_.B, pair_.X_AB, cache_);
+        result_.steps += steps_;
+        return true;
+      }
+      const bool straight = attempt == 0 && march.end == MarchEnd::kClosest;
+      if (certified(march, straight ? Stop::kCertified : Stop::kFallback)) return true;
+      seed = {{Kind::kVertex, last_.support_a}, {Kind::kVertex, last_.support_b}};
+    }
+    return false;
+  }
+
+  /// Judges the points of a march, with the features' normal or that normal healed.
+  bool certified(const March& march, Stop stop) noexcept {
+    last_ = judge(pair_, march, features_normal(pair_, march));
+    if (last_.doubt > tolerance() && std::isfinite(last_.doubt)) {
+      const Judged healed = judge(pair_, march, inside_cones(pair_, march.a, march.b, last_.answer.normal));
+      if (healed.doubt < last_.doubt) last_ = healed;
+    }
+    const double gap = (march.p_a - march.p_b).norm();
+    if (gap < least_gap_) {
+      least_gap_ = gap;
+      best_ = last_;
+    }
+    if (last_.doubt > tolerance()) return false;
+    done(last_.answer, stop);
+    return true;
+  }
+
+  /// Points of both that coincide prove that the distance is not above zero; the planes of the penetration walk then
+  /// tell how far below it is.
+  bool touching() noexcept {
+    if (least_gap_ > tolerance()) return false;
+    PairCache cache = cache_;
+    const PairDistance planes = penetration_depth(pair_.A, pair_.B, pair_.X_AB, cache);
+    steps_ += planes.steps;
+    if (!planes.certified() || planes.distance > least_gap_ + tolerance()) return false;
+    done(planes, Stop::kFallback);
+    return true;
+  }
+
+  const PairDistance& done(const PairDistance& answer, Stop stop) noexcept {
+    result_ = answer;
+    result_.stop = stop;
+    result_.steps = steps_;
+    cache_ = {result_.a, result_.b, result_.normal};
+    return result_;
+  }
+
+  double tolerance() const noexcept { return tolerances::kCertificate * pair_.size; }
+
+  static constexpr int kAttempts = 4;
+  static constexpr double kWiderSlack = 32.0;
+  static constexpr std::size_t kSmallEdgePairs = 4096;  ///< every feature is tried up to here: 40 us
+
+  const PairView& pair_;
+  PairCache& cache_;
+  Judged last_, best_;
+  double least_gap_ = std::numeric_limits<double>::infinity();
+  PairDistance result_;
+  int steps_ = 0;
+};
 
 }  // namespace
 
 PairDistance closest_features(const Polytope& A, const Polytope& B, const Pose& X_AB, PairCache& cache) noexcept {
   const PairView pair(A, B, X_AB);
-  const double tolerance = tolerances::kCertificate * pair.size;
-  Seed seed{cache.a, cache.b};
-  if (!valid_feature(A, seed.a) || !valid_feature(B, seed.b)) seed = seed_from_table(pair);
-
-  Judged best;
-  best.doubt = std::numeric_limits<double>::infinity();
-  int steps = 0;
-  double slack = tolerances::kVoronoiSlack * pair.scale;
-  for (int attempt = 0; attempt < 4; ++attempt, slack *= 32.0) {
-    const March march = voronoi_march(pair, seed.a, seed.b, slack);
-    steps += march.steps;
-    if (march.end == MarchEnd::kOverlap) return by_penetration(pair, cache, steps);
-    Judged judged = judge(pair, march, features_normal(pair, march));
-    if (judged.doubt > tolerance && std::isfinite(judged.doubt))
-      if (Judged healed = judge(pair, march, inside_cones(pair, march.a, march.b, judged.answer.normal));
-          healed.doubt < judged.doubt)
-        judged = healed;
-    if (judged.doubt <= tolerance) {
-      judged.answer.stop = attempt == 0 && march.end == MarchEnd::kClosest ? Stop::kCertified : Stop::kFallback;
-      judged.answer.steps = steps;
-      cache = {judged.answer.a, judged.answer.b, judged.answer.normal};
-      return judged.answer;
-    }
-    if (judged.doubt < best.doubt || attempt == 0) best = judged;
-    seed = {{Kind::kVertex, judged.support_a}, {Kind::kVertex, judged.support_b}};
-  }
-
-  // Points of both that coincide prove that the distance is not above zero; the planes of the penetration walk then
-  // tell how far below it is.
-  const double gap = (best.answer.p_a - best.answer.p_b).norm();
-  PairDistance touching = by_penetration(pair, cache, steps);
-  if (touching.certified() && gap <= tolerance && touching.distance <= gap + tolerance) {
-    touching.stop = Stop::kFallback;
-    return touching;
-  }
-  best.answer.steps = steps;
-  best.answer.stop = Stop::kBounded;
-  cache = {best.answer.a, best.answer.b, best.answer.normal};
-  return best.answer;
+  return Query(pair, cache).run();
 }
 
 }  // namespace tactum

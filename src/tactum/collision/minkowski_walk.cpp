@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "tactum/collision/segments.h"
+
 namespace tactum {
 namespace {
 
@@ -43,7 +45,7 @@ ArcEnd follow_arc(const Polytope& P, const Polytope& Q, const Mat3& R_QP, const 
     const double sign = edge.tail == arc.vertex ? 1.0 : -1.0;
     const double below = std::max(0.0, -sign * edge.direction.dot(o0));  // how much lower the far end is, per metre
     const double rising = sign * edge.direction.dot(o_t);
-    if (rising <= tolerances::kVoronoiSlack && below <= tolerances::kVoronoiSlack) continue;  // rolls on the edge
+    if (rising <= tolerances::kSameArc && below <= tolerances::kSameArc) continue;  // rolls on the edge
     const double at = cotangent(rising, below);
     if (at <= first) continue;
     first = at;
@@ -130,9 +132,10 @@ Crossing place(const PairView& pair, const MinkowskiFacet& facet, const Vec3& ta
   const Vec3 u_b = pair.X_AB.R * eb.direction;
   double s = 0.0;
   double t = 0.0;
-  if (!nearest_on_lines(a0, ea.direction, b0 - target, u_b, s, t)) {
+  if (!nearest_on_lines(a0, ea.direction, b0 - target, u_b, tolerances::kSameArc, s, t)) {
     s = std::clamp(ea.direction.dot(b0 - target - a0), 0.0, ea.length);
     t = u_b.dot(a0 + ea.direction * s - b0 + target);
+    walk.outside = (b0 + u_b * t - a0 - ea.direction * s - target).norm();  // no facet: the lines run side by side
   }
   walk.p_a = a0 + ea.direction * s;
   walk.p_b = b0 + u_b * t;
@@ -145,15 +148,6 @@ Crossing place(const PairView& pair, const MinkowskiFacet& facet, const Vec3& ta
 }
 
 int other_face(const Polytope::Edge& edge, int face) noexcept { return edge.left == face ? edge.right : edge.left; }
-
-/// The face at `edge` toward which the outward direction turns with tangent `t`.
-int face_ahead(const Polytope& P, const Polytope::Edge& edge, const Vec3& m, const Vec3& t) noexcept {
-  // Each end of the arc is at an angle from m within the half circle; the one ahead has the larger sine.
-  const double left = t.dot(P.faces[edge.left].normal);
-  const double right = t.dot(P.faces[edge.right].normal);
-  if (left != right) return left > right ? edge.left : edge.right;
-  return m.dot(P.faces[edge.left].normal) > m.dot(P.faces[edge.right].normal) ? edge.right : edge.left;
-}
 
 MinkowskiFacet across_face_border(const PairView& pair, const MinkowskiFacet& facet, int slot) noexcept {
   const bool on_a = facet.a.kind == Kind::kFace;
@@ -185,14 +179,16 @@ MinkowskiFacet across_edge_border(const PairView& pair, const MinkowskiFacet& fa
   // Q's outward direction turns by -t0; the end must rise over the other end.
   const Vec3 u_P = (crossing.on_a ? pair.X_BA.R : pair.X_AB.R) * other.direction;
   const double toward_head = -arc.t0.dot(u_P);
-  if ((toward_head > 0.0) == crossing.at_tail) arc.t0 = -arc.t0;
-  arc.end = face_ahead(P, edge, arc.m0, arc.t0);
+  const bool backward = (toward_head > 0.0) == crossing.at_tail;
+  if (backward) arc.t0 = -arc.t0;
+  arc.end = backward ? edge.left : edge.right;  // about +direction an arc turns from the left face to the right
   return crossing.on_a ? facet_behind_b(pair, arc, ended) : facet_behind_a(pair, arc, ended);
 }
 
 /// `ray` is null for the foot. The measure that must not grow is the height, or the length along the ray.
 MinkowskiWalk walk(const PairView& pair, const MinkowskiFacet& start, const Vec3* ray) noexcept {
   const double slack = tolerances::kVoronoiSlack * pair.scale;
+  const double level = tolerances::kCoplanar * pair.scale;  // facets of one plane, by rounding this far apart
   const auto length_to = [&](const MinkowskiFacet& f) { return ray ? f.height / f.n.dot(*ray) : f.height; };
   MinkowskiWalk best;
   best.facet = start;
@@ -204,16 +200,16 @@ MinkowskiWalk walk(const PairView& pair, const MinkowskiFacet& start, const Vec3
     MinkowskiWalk here;
     here.facet = facet;
     const Crossing crossing = place(pair, facet, (ray ? *ray : facet.n) * length, here);
-    here.outside = crossing.outside;
+    here.outside = std::max(here.outside, crossing.outside);
     const double best_length = length_to(best.facet);
-    if (length < best_length - slack || (length < best_length + slack && here.outside < best.outside)) best = here;
+    if (length < best_length - level || (length < best_length + level && here.outside < best.outside)) best = here;
     best.steps = step;
     if (crossing.outside <= slack) break;
     const bool edges = facet.a.kind == Kind::kEdge && facet.b.kind == Kind::kEdge;
     facet = edges ? across_edge_border(pair, facet, crossing) : across_face_border(pair, facet, crossing.slot);
     if (ray && facet.n.dot(*ray) <= 0.0) break;
     const double next = length_to(facet);
-    if (next > length + slack) break;  // rounding: there is no nearer plane to go to
+    if (next > best_length + level) break;  // rounding: there is no nearer plane to go to
     length = next;
   }
   return best;

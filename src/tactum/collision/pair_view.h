@@ -59,16 +59,4 @@ inline bool valid_feature(const Polytope& P, const Feature& f) noexcept {
   return f.index >= 0 && static_cast<std::size_t>(f.index) < count;
 }
 
-/// Where two lines come nearest: p0 + s u and q0 + t w, u and w unit. Solved by cross products, whose error grows with
-/// 1/sine where that of the normal equations grows with its square. False when they are parallel.
-inline bool nearest_on_lines(const Vec3& p0, const Vec3& u, const Vec3& q0, const Vec3& w, double& s, double& t) noexcept {
-  const Vec3 c = u.cross(w);
-  const double sine_sq = c.squaredNorm();
-  if (sine_sq < tolerances::kParallelSine * tolerances::kParallelSine) return false;
-  const Vec3 r = q0 - p0;
-  s = r.cross(w).dot(c) / sine_sq;
-  t = r.cross(u).dot(c) / sine_sq;
-  return true;
-}
-
 }  // namespace tactum

@@ -108,7 +108,8 @@ class DistanceQuery {
       const TrianglePoints& a = a_.triangle(triangle_a);
       const TrianglePoints b = moved(triangle_b);
       if (plane_parts(a, b, touching_) || plane_parts(b, a, touching_)) return true;
-      const bool touches = triangles_cross(a, b) || triangle_distance(a, b).distance_sq <= touching_ * touching_;
+      const bool touches =
+          triangles_cross(a, b) || triangle_distance(a, b).distance_sq <= touching_ * touching_;
       best_.touching_pairs += touches ? 1 : 0;
       return true;
     });

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "tactum/collision/segments.h"
+
 namespace tactum {
 namespace {
 
@@ -17,9 +19,11 @@ struct Sides {
 
 enum class Step : std::uint8_t { kClosest, kMoved, kOverlap };
 
-/// Closest points so far, in P's frame.
+/// Closest points of the two features, in P's frame, when the step knows them.
 struct Points {
-  Vec3 p, q;
+  Vec3 p = Vec3::Zero();
+  Vec3 q = Vec3::Zero();
+  bool known = false;
 };
 
 /// The edge at `v` that goes most along `d`, by more than `least`; -1 when none does.
@@ -40,7 +44,7 @@ int edge_along(const Polytope& P, int v, const Vec3& d, double least) noexcept {
 Step vertex_vertex(const Sides& S, Feature& fp, Feature& fq, Points& x) noexcept {
   const Vec3& p = S.P.vertices[fp.index];
   const Vec3& q_Q = S.Q.vertices[fq.index];
-  x = {p, S.X_PQ * q_Q};
+  x = {p, S.X_PQ * q_Q, true};
   if (const int e = edge_along(S.P, fp.index, x.q - p, S.slack); e >= 0) {
     fp = {FeatureKind::kEdge, e};
     return Step::kMoved;
@@ -58,7 +62,7 @@ Step vertex_edge(const Sides& S, Feature& fp, Feature& fq, Points& x) noexcept {
   const Vec3& tail = S.Q.vertices[edge.tail];
   const Vec3 p_Q = S.X_QP * p;
   const double along = edge.direction.dot(p_Q - tail);
-  x = {p, S.X_PQ * Vec3(tail + edge.direction * std::clamp(along, 0.0, edge.length))};
+  x = {p, S.X_PQ * Vec3(tail + edge.direction * std::clamp(along, 0.0, edge.length)), true};
   if (along < -S.slack || along > edge.length + S.slack) {
     fq = {FeatureKind::kVertex, along < 0.0 ? edge.tail : edge.head};
     return Step::kMoved;
@@ -109,16 +113,16 @@ Step vertex_face(const Sides& S, Feature& fp, Feature& fq, Points& x) noexcept {
   const Vec3 p_Q = S.X_QP * p;
   const double height = face.normal.dot(p_Q) - face.offset;
   const Vec3 n_P = S.X_PQ.R * face.normal;
-  x = {p, p - n_P * height};
   if (const int slot = slot_outside(S.Q, face, p_Q, S.slack); slot >= 0) {
     fq = {FeatureKind::kEdge, S.Q.face_edges[slot]};
     return Step::kMoved;
   }
+  x = {p, p - n_P * height, true};
   if (height < -S.slack) {  // behind the face: inside the piece, or in front of another face
     double most = 0.0;
     const int highest = highest_face(S.Q, p_Q, most);
     if (highest == fq.index || most < -S.slack) {
-      x.q = p;
+      x = {p, p, true};
       return Step::kOverlap;
     }
     fq.index = highest;
@@ -131,32 +135,6 @@ Step vertex_face(const Sides& S, Feature& fp, Feature& fq, Points& x) noexcept {
   return Step::kClosest;
 }
 
-struct SegmentPair {
-  double s = 0.0, t = 0.0;  // lengths along the two
-};
-
-/// Closest points of two segments p0 + s u, s in [0, lp], and q0 + t w, t in [0, lq].
-SegmentPair nearest_on_segments(const Vec3& p0, const Vec3& u, double lp, const Vec3& q0, const Vec3& w,
-                                double lq) noexcept {
-  SegmentPair x;
-  if (!nearest_on_lines(p0, u, q0, w, x.s, x.t)) {  // parallel: the middle of what they share
-    const double a = u.dot(q0 - p0);
-    const double b = u.dot(q0 + w * lq - p0);
-    x.s = 0.5 * (std::clamp(std::min(a, b), 0.0, lp) + std::clamp(std::max(a, b), 0.0, lp));
-    x.t = std::clamp(w.dot(p0 + u * x.s - q0), 0.0, lq);
-    return x;
-  }
-  if (x.s < 0.0 || x.s > lp) {
-    x.s = std::clamp(x.s, 0.0, lp);
-    x.t = w.dot(p0 + u * x.s - q0);
-  }
-  if (x.t < 0.0 || x.t > lq) {
-    x.t = std::clamp(x.t, 0.0, lq);
-    x.s = std::clamp(u.dot(q0 + w * x.t - p0), 0.0, lp);
-  }
-  return x;
-}
-
 /// A segment's end as its vertex, when the closest point is there.
 bool at_end(const Polytope::Edge& edge, double s, Feature& f) noexcept {
   if (s > 0.0 && s < edge.length) return false;
@@ -164,12 +142,26 @@ bool at_end(const Polytope::Edge& edge, double s, Feature& f) noexcept {
   return true;
 }
 
-/// The face at `edge` in whose column the direction `d` from the edge leads; -1 when in neither.
+/// The face at `edge` in whose column the unit direction `d` from the edge leads; -1 when in neither.
 int face_toward(const Polytope& P, const Polytope::Edge& edge, const Vec3& d, double slack) noexcept {
   const double left = P.side_normals[edge.left_slot].dot(d);
   const double right = P.side_normals[edge.right_slot].dot(d);
   if (std::min(left, right) >= -slack) return -1;
   return left < right ? edge.left : edge.right;
+}
+
+/// From edge to edge: the points' difference, or the cross product where it has more digits; and its angular error.
+struct Across {
+  Vec3 direction;
+  double slack;
+};
+
+Across across_edges(const Sides& S, const Vec3& u, const Vec3& w, const Vec3& d) noexcept {
+  const double gap = d.norm();
+  const Vec3 c = u.cross(w);
+  const double sine = c.norm();
+  if (gap >= sine * S.P.size) return {gap > 0.0 ? Vec3(d / gap) : d, gap > 0.0 ? S.slack / gap : 0.0};
+  return {c.dot(d) < 0.0 ? Vec3(-c / sine) : Vec3(c / sine), std::max(S.slack / S.P.size, tolerances::kVoronoiSlack) / sine};
 }
 
 Step edge_edge(const Sides& S, Feature& fp, Feature& fq, Points& x) noexcept {
@@ -179,16 +171,16 @@ Step edge_edge(const Sides& S, Feature& fp, Feature& fq, Points& x) noexcept {
   const Vec3 q0 = S.X_PQ * S.Q.vertices[g.tail];
   const Vec3 w = S.X_PQ.R * g.direction;
   const SegmentPair at = nearest_on_segments(p0, e.direction, e.length, q0, w, g.length);
-  x = {p0 + e.direction * at.s, q0 + w * at.t};
+  x = {p0 + e.direction * at.s, q0 + w * at.t, true};
   const bool p_end = at_end(e, at.s, fp);
   const bool q_end = at_end(g, at.t, fq);
   if (p_end || q_end) return Step::kMoved;
-  const Vec3 d = x.q - x.p;
-  if (const int f = face_toward(S.P, e, d, S.slack); f >= 0) {
+  const Across across = across_edges(S, e.direction, w, x.q - x.p);
+  if (const int f = face_toward(S.P, e, across.direction, across.slack); f >= 0) {
     fp = {FeatureKind::kFace, f};
     return Step::kMoved;
   }
-  if (const int f = face_toward(S.Q, g, -(S.X_QP.R * d), S.slack); f >= 0) {
+  if (const int f = face_toward(S.Q, g, -(S.X_QP.R * across.direction), across.slack); f >= 0) {
     fq = {FeatureKind::kFace, f};
     return Step::kMoved;
   }
@@ -255,8 +247,8 @@ Step edge_face(const Sides& S, Feature& fp, Feature& fq, Points& x) noexcept {
   const double high = face.normal.dot(p0 + u * clip.high) - face.offset;
   if (std::min(low, high) < -S.slack && std::max(low, high) > S.slack) {
     const double at = clip.low + (clip.high - clip.low) * low / (low - high);
-    x.p = S.P.vertices[e.tail] + e.direction * at;
-    x.q = x.p;
+    const Vec3 common = S.P.vertices[e.tail] + e.direction * at;
+    x = {common, common, true};
     return Step::kOverlap;
   }
   const bool take_low = std::abs(low) <= std::abs(high);
@@ -267,12 +259,6 @@ Step edge_face(const Sides& S, Feature& fp, Feature& fq, Points& x) noexcept {
     fp = {FeatureKind::kVertex, take_low ? e.tail : e.head};
   }
   return Step::kMoved;
-}
-
-/// Edge-face tells no closest points: it is passed through.
-bool tells_points(const Feature& a, const Feature& b) noexcept {
-  return a.kind != FeatureKind::kFace ? a.kind == FeatureKind::kVertex || b.kind != FeatureKind::kFace
-                                      : b.kind == FeatureKind::kVertex;
 }
 
 /// Dispatch on the kinds, P owning the lower one.
@@ -301,10 +287,10 @@ March voronoi_march(const PairView& pair, Feature a, Feature b, double slack) no
     const Feature was_a = a;
     const Feature was_b = b;
     const bool swapped = a.kind > b.kind;
-    Points x{Vec3::Zero(), Vec3::Zero()};
+    Points x;
     const Step outcome = swapped ? step(backward, b, a, x) : step(forward, a, b, x);
     ++steps;
-    if (tells_points(was_a, was_b) || outcome == Step::kOverlap) {
+    if (x.known) {
       const double gap = (x.p - x.q).squaredNorm();
       if (gap < least || outcome != Step::kMoved) {
         least = gap;

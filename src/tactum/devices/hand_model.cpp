@@ -14,9 +14,9 @@ namespace {
 const std::array<HandModel, 3>& grips() {
   static const std::array<HandModel, 3> table = {{
       //  grip     kg    kg m^2   N/m   N s/m  N m/rad  N m s/rad
-      {"loose", 0.05, 8.0e-5, 100.0, 3.0, 0.36, 0.0108},
-      {"medium", 0.10, 1.6e-4, 300.0, 6.0, 1.08, 0.0216},
-      {"firm", 0.15, 2.4e-4, 800.0, 15.0, 2.88, 0.0540},
+      {"loose", 0.05, 0.08e-3, 100.0, 3.0, 0.36, 0.0108},
+      {"medium", 0.10, 0.16e-3, 300.0, 6.0, 1.08, 0.0216},
+      {"firm", 0.15, 0.24e-3, 800.0, 15.0, 2.88, 0.0540},
   }};
   return table;
 }

@@ -13,10 +13,11 @@
 ///   u = prox( 2 m v / h + F + k (x_hand - x) + b v_hand ) / (2 m / h + h k / 2 + b + b_device)
 ///   x += h u,  v = 2 u - v            prox shortens a vector by the friction force, to zero if shorter
 ///
-/// It is stable for any stiffness, makes no energy (the work of every element is its force times u) and is of
-/// second order, so that what a wall test measures is the held wrench and not the integrator: a first-order
-/// rule was found to shift the apparent delay of the held wrench by half a substep, a tenth of the effect
-/// under test. Rotation does the same with a rotation vector and an isotropic inertia.
+/// It is stable for any stiffness and makes no energy: the work of every element is its force times u. It is
+/// of second order because a first-order rule would carry the handle half a substep ahead under a held force
+/// and so hide a tenth of the half period of delay by which a held wrench makes a stiff wall unstable.
+/// Rotation does the same with a rotation vector and an isotropic inertia; there the energy balance holds to
+/// second order of the substep.
 ///
 /// A jump of `now` by more than kMaxStepsPerRead substeps is not caught up: the world, hand included, sleeps
 /// through the rest, so that a debugger's pause does not end in a leap. Deterministic: the state depends only

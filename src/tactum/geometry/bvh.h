@@ -57,8 +57,8 @@ struct BoxPairFrame {
   }
 };
 
-/// A lower bound of the distance of two boxes [m]: each box's distance from the other's bounding box in its own axes,
-/// the larger of the two; zero when neither parts them.
+/// A lower bound of the distance of two boxes [m]: each box's distance from the other's bounding box in its
+/// own axes, the larger of the two; zero when neither parts them.
 inline double box_gap(const BoxPairFrame& frame, const Bvh::Node& a, const Bvh::Node& b) noexcept {
   const Vec3 t = frame.X_AB * b.center - a.center;
   const Vec3 gap_a = (t.cwiseAbs() - a.half - frame.abs_R * b.half).cwiseMax(0.0);

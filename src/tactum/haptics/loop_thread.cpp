@@ -27,7 +27,7 @@ void sleep_until(std::int64_t deadline_ns) noexcept {
   }
 }
 
-double seconds(std::int64_t ns) noexcept { return 1e-9 * static_cast<double>(ns); }
+double seconds(std::int64_t ns) noexcept { return static_cast<double>(ns) / 1e9; }
 
 /// Counters have one writer, the loop's thread, so no read-modify-write is needed.
 void add(std::atomic<std::uint64_t>& counter, std::uint64_t n) noexcept {

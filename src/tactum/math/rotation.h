@@ -2,7 +2,7 @@
 /// The rotation nearest to a matrix that should be one: matrices from files are rounded, and rounding is not
 /// orthonormal. Polar decomposition by Newton's iteration, M <- (M + M^-T) / 2 [Higham 1986]: it converges
 /// quadratically to the orthogonal factor, which is the nearest orthogonal matrix in the Frobenius norm.
-/// Cost: 2 iterations for six-decimal input, about 100 ns.
+/// Cost: two inversions of a 3 x 3 matrix for six-decimal input.
 
 #include <Eigen/LU>
 

@@ -1,0 +1,32 @@
+#include "tactum/collision/piece_distance.h"
+
+#include "tactum/base/tolerances.h"
+#include "tactum/collision/closest_features.h"
+#include "tactum/collision/penetration.h"
+
+namespace tactum {
+
+PairDistance piece_distance(const Part& part_a, int piece_a, const Part& part_b, int piece_b, const Pose& X_AB,
+                            PairCache& cache) noexcept {
+  const Polytope& A = part_a.pieces[static_cast<std::size_t>(piece_a)];
+  const Polytope& B = part_b.pieces[static_cast<std::size_t>(piece_b)];
+  const PairDistance apart = closest_features(A, B, X_AB, cache);
+  const bool overlap = apart.distance < -tolerances::kPenetrating * (A.size + B.size);
+  if (!overlap || (!part_a.one_sided && !part_b.one_sided)) return apart;
+  OneSided sides;
+  if (part_a.one_sided) sides.outward_a = part_a.piece_normal[static_cast<std::size_t>(piece_a)];
+  if (part_b.one_sided) sides.outward_b = part_b.piece_normal[static_cast<std::size_t>(piece_b)];
+  return penetration_one_sided(A, B, X_AB, sides, cache);
+}
+
+bool faces_outward(const Part& part_a, int piece_a, const Part& part_b, int piece_b, const Pose& X_AB,
+                   const PairDistance& found) noexcept {
+  if (part_a.one_sided &&
+      found.normal.dot(part_a.piece_normal[static_cast<std::size_t>(piece_a)]) > tolerances::kOneSidedSine)
+    return false;
+  return !part_b.one_sided ||
+         found.normal.dot(X_AB.R * part_b.piece_normal[static_cast<std::size_t>(piece_b)]) >=
+             -tolerances::kOneSidedSine;
+}
+
+}  // namespace tactum
