@@ -7,7 +7,7 @@
 namespace tactum {
 namespace {
 
-using testing::Run;
+using testing::ProgramRun;
 using testing::run_tactum;
 using testing::ScratchFolder;
 
@@ -33,7 +33,7 @@ TEST(ClearanceCommand, PrintsTheTable) {
   testing::write(folder / "motion.csv", motion());
   const std::string files =
       (folder / "cube.obj") + " " + (folder / "cube.obj") + " " + (folder / "motion.csv");
-  const Run run = run_tactum("clearance " + files);
+  const ProgramRun run = run_tactum("clearance " + files);
   ASSERT_EQ(run.exit_code, 0) << run.err;
   std::istringstream lines(run.out);
   std::string header, first, second, third;
@@ -53,9 +53,9 @@ TEST(ClearanceCommand, WritesFilesAndScales) {
   const ScratchFolder folder;
   testing::write(folder / "cube.obj", kCube);
   testing::write(folder / "motion.csv", motion());
-  const Run run = run_tactum("clearance " + (folder / "cube.obj") + " " + (folder / "cube.obj") + " " +
-                             (folder / "motion.csv") + " --scale 0.001 --json " + (folder / "out.json") +
-                             " --csv " + (folder / "out.csv"));
+  const ProgramRun run = run_tactum("clearance " + (folder / "cube.obj") + " " + (folder / "cube.obj") + " " +
+                                    (folder / "motion.csv") + " --scale 0.001 --json " +
+                                    (folder / "out.json") + " --csv " + (folder / "out.csv"));
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_TRUE(run.out.empty());
   const nlohmann::json json = nlohmann::json::parse(testing::content(folder / "out.json"));
@@ -73,11 +73,11 @@ TEST(ClearanceCommand, RefusesStretchedMatricesAndTellsMendedOnes) {
   const std::string meshes = "clearance " + (folder / "cube.obj") + " " + (folder / "cube.obj") + " ";
   testing::write(folder / "near.csv", std::string(kHeader) + "0,0," + kStill +
                                           ",3,0,0,0.999999,0.001,0,-0.001,0.999999,0,0,0,1\n");
-  const Run near = run_tactum(meshes + (folder / "near.csv"));
+  const ProgramRun near = run_tactum(meshes + (folder / "near.csv"));
   EXPECT_EQ(near.exit_code, 0);
   EXPECT_NE(near.err.find("orthonormal"), std::string::npos) << near.err;
   testing::write(folder / "far.csv", std::string(kHeader) + "0,0," + kStill + ",3,0,0,1.2,0,0,0,1,0,0,0,1\n");
-  const Run far = run_tactum(meshes + (folder / "far.csv"));
+  const ProgramRun far = run_tactum(meshes + (folder / "far.csv"));
   EXPECT_EQ(far.exit_code, 1);
   EXPECT_FALSE(far.err.empty());
 }
@@ -88,7 +88,7 @@ TEST(Program, ExitCodesTellWhoIsAtFault) {
   EXPECT_EQ(run_tactum("").exit_code, 2);
   EXPECT_EQ(run_tactum("clearance only_one.obj").exit_code, 2);
   EXPECT_EQ(run_tactum("no-such-command").exit_code, 2);
-  const Run missing = run_tactum("inspect " + (folder / "missing.obj"));
+  const ProgramRun missing = run_tactum("inspect " + (folder / "missing.obj"));
   EXPECT_EQ(missing.exit_code, 1);
   EXPECT_NE(missing.err.find("missing.obj"), std::string::npos);
 }
@@ -97,14 +97,14 @@ TEST(InspectCommand, ReportsTheCube) {
   const ScratchFolder folder;
   testing::write(folder / "cube.obj", kCube);
   testing::write(folder / "bad.obj", "f 1 2 3\n");
-  const Run good = run_tactum("inspect --json - " + (folder / "cube.obj"));
+  const ProgramRun good = run_tactum("inspect --json - " + (folder / "cube.obj"));
   ASSERT_EQ(good.exit_code, 0) << good.err;
   const nlohmann::json json = nlohmann::json::parse(good.out);
   ASSERT_EQ(json.size(), 1u);
   EXPECT_EQ(json[0]["triangles"], 12);
   EXPECT_EQ(json[0]["convex"], true);
   EXPECT_NEAR(json[0]["volume_m3"].get<double>(), 1.0, 1e-12);
-  const Run text = run_tactum("inspect " + (folder / "cube.obj") + " " + (folder / "bad.obj"));
+  const ProgramRun text = run_tactum("inspect " + (folder / "cube.obj") + " " + (folder / "bad.obj"));
   EXPECT_EQ(text.exit_code, 1);  // one of two is bad, the other is still shown
   EXPECT_NE(text.out.find("closed yes"), std::string::npos);
   EXPECT_NE(text.err.find("bad.obj, line 1"), std::string::npos);

@@ -13,7 +13,7 @@
 
 namespace tactum::testing {
 
-struct Run {
+struct ProgramRun {
   int exit_code = -1;
   std::string out;
   std::string err;
@@ -50,7 +50,7 @@ inline void write(const std::string& path, const std::string& text) {
 }
 
 /// `tactum ARGUMENTS` through the shell.
-inline Run run_tactum(const std::string& arguments) {
+inline ProgramRun run_tactum(const std::string& arguments) {
   const std::filesystem::path program =
       std::filesystem::read_symlink("/proc/self/exe").parent_path().parent_path() / "tactum";
   const ScratchFolder folder;
