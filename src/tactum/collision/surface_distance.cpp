@@ -77,12 +77,25 @@ class DistanceQuery {
     return {frame_.X_AB * t[0], frame_.X_AB * t[1], frame_.X_AB * t[2]};
   }
 
+  /// Whether the plane of `t` keeps `other` farther away than `distance`.
+  static bool plane_parts(const TrianglePoints& t, const TrianglePoints& other, double distance) noexcept {
+    const Vec3 normal = (t[1] - t[0]).cross(t[2] - t[0]);
+    const double h0 = normal.dot(other[0] - t[0]);
+    const double h1 = normal.dot(other[1] - t[0]);
+    const double h2 = normal.dot(other[2] - t[0]);
+    const double least = std::max(std::min({h0, h1, h2}), -std::max({h0, h1, h2}));
+    return least > 0.0 && least * least > distance * distance * normal.squaredNorm();
+  }
+
   void test(int triangle_a, int triangle_b) noexcept {
     ++best_.triangles_tested;
+    const TrianglePoints& a = a_.triangle(triangle_a);
     const TrianglePoints b = moved(triangle_b);
-    const PointPair nearest = triangle_distance(a_.triangle(triangle_a), b);
+    const double beyond = best_.distance + touching_;
+    if (plane_parts(a, b, beyond) || plane_parts(b, a, beyond)) return;
+    const PointPair nearest = triangle_distance(a, b);
     const double distance = std::sqrt(nearest.distance_sq);
-    const bool touches = distance <= touching_ || triangles_cross(a_.triangle(triangle_a), b);
+    const bool touches = distance <= touching_ || triangles_cross(a, b);
     if (!touches && distance >= best_.distance) return;
     best_.distance = touches ? 0.0 : distance;
     best_.p_a = nearest.p_a;
@@ -95,6 +108,7 @@ class DistanceQuery {
     for_each_pair_within(a_.bvh(), b_.bvh(), frame_.X_AB, touching_, [this](int triangle_a, int triangle_b) {
       const TrianglePoints& a = a_.triangle(triangle_a);
       const TrianglePoints b = moved(triangle_b);
+      if (plane_parts(a, b, touching_) || plane_parts(b, a, touching_)) return true;
       const bool touches =
           triangles_cross(a, b) || triangle_distance(a, b).distance_sq <= touching_ * touching_;
       best_.touching_pairs += touches ? 1 : 0;

@@ -57,14 +57,14 @@ struct BoxPairFrame {
   }
 };
 
-/// A lower bound of the distance of two boxes [m]: the widest gap along the six face normals, negative when
-/// they overlap on all of them.
+/// A lower bound of the distance of two boxes [m]: each box's distance from the other's bounding box in its
+/// own axes, the larger of the two; zero when neither parts them.
 inline double box_gap(const BoxPairFrame& frame, const Bvh::Node& a, const Bvh::Node& b) noexcept {
   const Vec3 t = frame.X_AB * b.center - a.center;
-  const Vec3 gap_a = t.cwiseAbs() - a.half - frame.abs_R * b.half;
+  const Vec3 gap_a = (t.cwiseAbs() - a.half - frame.abs_R * b.half).cwiseMax(0.0);
   const Vec3 t_B = frame.X_AB.R.transpose() * t;
-  const Vec3 gap_b = t_B.cwiseAbs() - b.half - frame.abs_R.transpose() * a.half;
-  return std::max(gap_a.maxCoeff(), gap_b.maxCoeff());
+  const Vec3 gap_b = (t_B.cwiseAbs() - b.half - frame.abs_R.transpose() * a.half).cwiseMax(0.0);
+  return std::sqrt(std::max(gap_a.squaredNorm(), gap_b.squaredNorm()));
 }
 
 /// Whether some cross product of edges parts the boxes by more than `tolerance`. Asked after box_gap.

@@ -25,19 +25,23 @@ std::unique_ptr<Assimp::Importer> gltf_importer() {
   return importer;
 }
 
+Vec3 wide(const aiVector3D& v) { return Eigen::Vector3f(v.x, v.y, v.z).cast<double>(); }
+
+Mat3 linear_part(const aiMatrix4x4& X) {
+  Eigen::Matrix3f R;
+  R << X.a1, X.a2, X.a3, X.b1, X.b2, X.b3, X.c1, X.c2, X.c3;
+  return R.cast<double>();
+}
+
 Result<void> add_mesh(const aiMesh& mesh, const aiMatrix4x4& X, MeshBuilder& builder) {
-  Mat3 R;
-  R << double{X.a1}, double{X.a2}, double{X.a3}, double{X.b1}, double{X.b2}, double{X.b3}, double{X.c1},
-      double{X.c2}, double{X.c3};
-  const Vec3 p(double{X.a4}, double{X.b4}, double{X.c4});
+  const Mat3 R = linear_part(X);
+  const Vec3 p = wide({X.a4, X.b4, X.c4});
   const bool mirrored = R.determinant() < 0.0;
   const std::string place = "mesh " + in_quotes(mesh.mName.C_Str());
   builder.begin_group(mesh.mName.C_Str());
   const int first = builder.vertex_count();
   for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
-    const aiVector3D& v = mesh.mVertices[i];
-    const Vec3 point(double{v.x}, double{v.y}, double{v.z});
-    if (Result<void> done = builder.add_vertex(R * point + p, place); !done) return done;
+    if (Result<void> done = builder.add_vertex(R * wide(mesh.mVertices[i]) + p, place); !done) return done;
   }
   std::vector<int> corners;
   for (unsigned i = 0; i < mesh.mNumFaces; ++i) {

@@ -44,7 +44,7 @@ Result<void> read_binary(std::string_view bytes, MeshBuilder& builder) {
     std::memcpy(numbers, bytes.data() + start, sizeof numbers);
     std::vector<int> corners(3);
     for (int k = 0; k < 3; ++k) {
-      const Vec3 point(double{numbers[3 + 3 * k]}, double{numbers[4 + 3 * k]}, double{numbers[5 + 3 * k]});
+      const Vec3 point = Eigen::Map<const Eigen::Vector3f>(numbers + 3 + 3 * k).cast<double>();
       corners[k] = builder.vertex_count();
       if (Result<void> done = builder.add_vertex(point, at_byte(start)); !done) return done;
     }
