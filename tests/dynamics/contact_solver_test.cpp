@@ -52,7 +52,7 @@ TEST(ContactSolver, SolvesTheComplementarityProblem) {
     Problem p(seed, 1 + static_cast<int>(seed % 9));
     const std::vector<Twist> before = p.V;
     const SolverResult result = solve_contacts(p.rows, p.X, p.W, p.h, 20000, p.V);
-    ASSERT_LT(result.sweeps, 20000) << "seed " << seed;
+    ASSERT_TRUE(result.converged) << "seed " << seed;
     Vec6 impulse = Vec6::Zero();
     for (const ContactRow& row : p.rows) {
       const Vec3 r = row.p_W - p.X[1].p;

@@ -33,7 +33,7 @@ void add_to(Hash& hash, const FrameReport& report) noexcept {
   hash.add(report.min_distance_m);
   hash.add(report.time_of_impact_s);
   hash.add(report.contact_points);
-  hash.add(report.solver_sweeps);
+  hash.add(report.solver_iterations);
   hash.add(report.work.near_pairs);
   hash.add(report.work.exact_tests);
   hash.add(report.work.feature_steps);

@@ -35,7 +35,7 @@ struct FrameReport {
   double time_of_impact_s = 0.0; ///< smallest, from the start of the frame; the whole step without impact [s]
   int contact_points = 0;       ///< rows of the contact problem
   int held_contact_points = 0;  ///< ... that push the held part
-  int solver_sweeps = 0;
+  int solver_iterations = 0;
   ContactWork work;
 
   bool in_contact() const { return work.patches > 0; }

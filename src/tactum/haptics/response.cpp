@@ -113,8 +113,8 @@ void respond(const World& world, const FrameSettings& settings, double dt_s, Fra
   if (rest > 0.0) {
     pull_held(world, settings, rest, state);
     const SolverResult solved = solve_contacts(rows, X_WB, state.mobility, rest, settings.budget.solver_iterations, V_WB);
-    report.solver_sweeps = solved.sweeps;
-    if (!rows.empty() && solved.sweeps == settings.budget.solver_iterations) report.flags |= frame_flag::kSolverBounded;
+    report.solver_iterations = solved.iterations;
+    if (!solved.converged) report.flags |= frame_flag::kSolverBounded;
     report_contacts(state, rest, report);
     limit_held(settings, dt_s, state);
     advance_bodies(world, V_WB, rest, X_WB);

@@ -46,7 +46,7 @@ struct Shading {
 struct WorkBudget {
   int max_exact_tests = 4096;     ///< exact tests a frame (paper 4.2: the array of fixed length) [-]
   int max_contact_points = 512;   ///< contact points a frame [-]
-  int solver_iterations = 60;     ///< sweeps of the contact solver at most [-]
+  int solver_iterations = 60;     ///< sweeps of the contact solver over many rows, at most [-]
 };
 
 /// All of it.
