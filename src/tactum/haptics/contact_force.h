@@ -2,9 +2,9 @@
 /// From contact patches to the rows of the contact problem: which points push, in which direction, how stiffly.
 ///
 /// A patch pushes with the paper's k_s as a whole; its points share it by their weights (quadrature of the area, see
-/// collision/manifold.h). The pieces of a one-sided surface are arbitrary triangles of larger facets: patches on
-/// the same facet count as one and share one k_s by area, so that a wall feels the same however finely it
-/// was meshed.
+/// collision/manifold.h). The pieces of a one-sided surface are arbitrary triangles of larger facets, so patches on the
+/// same facet are one patch: their points are weighed by area and reduced to four that carry the same area integrals
+/// (mean, second moments, and the gap as a linear function). A wall feels the same however finely it was meshed.
 
 #include <vector>
 
@@ -14,17 +14,27 @@
 
 namespace tactum {
 
+/// One point of a facet: a row in the making.
+struct FacetPoint {
+  Vec3 p_W = Vec3::Zero();     ///< [m]
+  Vec3 n_BA_W = Vec3::Zero();  ///< unit [-]
+  double distance = 0.0;       ///< [m]
+  double weight = 0.0;         ///< share of the facet's stiffness; they add up to one [-]
+};
+
 /// Rows and scratch, allocated at load time.
 struct ContactRows {
-  ContactRows(std::size_t patches, std::size_t points) {
+  ContactRows(std::size_t patches, std::size_t most_rows) {
     facets.reserve(patches);
-    rows.reserve(points);
+    points.reserve(patches * 4);
+    rows.reserve(most_rows);
   }
   /// The facet a patch lies on, as a sort key, and the patch.
   struct Facet {
     int body_a, body_b, group_a, group_b, patch;
   };
   std::vector<Facet> facets;
+  std::vector<FacetPoint> points;  // of one facet
   std::vector<ContactRow> rows;
   bool full = false;  ///< points were dropped
 };
