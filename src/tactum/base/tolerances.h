@@ -26,10 +26,6 @@ inline constexpr double kVoronoiSlack = 1e-15;
 /// Below this share of the size a vector between witness points no longer has a direction of its own.
 inline constexpr double kTouching = 1e-12;
 
-/// Gaps below this share of the size may be answered by a plane of the Minkowski difference: there the points'
-/// difference has fewer than ten digits.
-inline constexpr double kNearlyTouching = 1e-6;
-
 /// Two directions are parallel when the sine of their angle is below this: the cross product of unit vectors
 /// keeps about eight digits there.
 inline constexpr double kParallelSine = 1e-8;
@@ -48,6 +44,10 @@ inline constexpr double kSamePlane = 1e-8;
 
 /// A patch with less area than this share of the squared size is a line.
 inline constexpr double kPatchArea = 1e-14;
+
+/// A time of impact is found when the distance is above its target by less than this share of the size. Lower costs
+/// steps: each halves what is left, at worst.
+inline constexpr double kImpactGap = 1e-7;
 
 /// Vertices nearer than this share of the mesh's size are one vertex. STL stores single precision (6e-8).
 inline constexpr double kWeld = 1e-9;

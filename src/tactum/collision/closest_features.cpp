@@ -168,10 +168,10 @@ class Query {
     return certified(march, Stop::kFallback) || on_planes();
   }
 
-  /// Nearly touching: a facet of the Minkowski difference tells the normal. Its witness points lie on the pieces, so a
-  /// certified answer that is not below zero proves itself; below zero it takes points of both that coincide.
+  /// A facet of the Minkowski difference tells the normal where the points' difference cannot. Its witness points lie on
+  /// the pieces, so a certified answer that is not below zero proves itself; below zero it takes points of both that
+  /// coincide.
   bool on_planes() noexcept {
-    if (least_gap_ > tolerances::kNearlyTouching * pair_.size) return false;
     PairCache cache = cache_;
     const PairDistance planes = penetration_depth(pair_.A, pair_.B, pair_.X_AB, cache);
     steps_ += planes.steps;

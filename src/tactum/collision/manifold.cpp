@@ -72,7 +72,6 @@ struct Tangent {
   Vec3 origin, e1, e2, n;
 
   Vec2 flat(const Vec3& p) const noexcept { return {e1.dot(p - origin), e2.dot(p - origin)}; }
-  double height(const Vec3& p) const noexcept { return n.dot(p - origin); }
   Vec3 point(const Vec2& x, double z) const noexcept { return origin + e1 * x.x() + e2 * x.y() + n * z; }
 };
 
@@ -87,12 +86,6 @@ Height height_of_plane(const Tangent& tangent, const Vec3& normal, const Vec3& o
   const double up = normal.dot(tangent.n);
   return {normal.dot(on_plane - tangent.origin) / up, {-normal.dot(tangent.e1) / up, -normal.dot(tangent.e2) / up}};
 }
-
-/// A segment seen from above: its ends and their heights.
-struct Segment {
-  Vec2 x0, x1;
-  double z0 = 0.0, z1 = 0.0;
-};
 
 struct Work {
   const PairView& pair;
@@ -118,12 +111,6 @@ Height face_height(const Tangent& tangent, const Polytope& P, int face_index, co
   return height_of_plane(tangent, X.R * face.normal, X * P.vertices[P.face_vertices[face.first]]);
 }
 
-Segment edge_segment(const Tangent& tangent, const Polytope& P, int edge_index, const Pose& X) noexcept {
-  const Vec3 tail = X * P.vertices[P.edges[edge_index].tail];
-  const Vec3 head = X * P.vertices[P.edges[edge_index].head];
-  return {tangent.flat(tail), tangent.flat(head), tangent.height(tail), tangent.height(head)};
-}
-
 /// The gap above which the patch ends: the tolerance, or nearer the least gap when the features lean.
 double cut_level(const Work& w, double least_gap) noexcept {
   const double share = w.a.share * w.b.share;
@@ -140,11 +127,15 @@ void point_contact(const Work& w) noexcept {
   w.out.points.push_back({w.closest.p_a, w.closest.p_b, w.closest.distance, 1.0});
 }
 
-/// Two Gauss points on the kept part of a segment, where A has heights a0..a1 and B has b0..b1 along it.
-void interval_contact(const Work& w, const Vec2& x0, const Vec2& x1, PatchInterval kept, double a0, double a1, double b0,
-                      double b1) noexcept {
-  const double gap0 = a0 - b0;
-  const double gap1 = a1 - b1;
+/// Points of A and of B over each other at both ends of a segment; linear between.
+struct Strip {
+  Vec3 a0, a1, b0, b1;
+};
+
+/// Two Gauss points on the kept part of a strip.
+void interval_contact(const Work& w, const Strip& strip, PatchInterval kept) noexcept {
+  const double gap0 = w.tangent.n.dot(strip.a0 - strip.b0);
+  const double gap1 = w.tangent.n.dot(strip.a1 - strip.b1);
   const auto gap = [&](double s) { return gap0 + (gap1 - gap0) * s; };
   if (kept.empty()) return point_contact(w);
   const double least = std::min(gap(kept.low), gap(kept.high));
@@ -154,7 +145,8 @@ void interval_contact(const Work& w, const Vec2& x0, const Vec2& x1, PatchInterv
   const double middle = 0.5 * (kept.low + kept.high);
   const double reach = 0.5 * (kept.high - kept.low) / std::sqrt(3.0);
   for (double s : {middle - reach, middle + reach})
-    add_point(w, x0 + (x1 - x0) * s, a0 + (a1 - a0) * s, b0 + (b1 - b0) * s, 0.5);
+    w.out.points.push_back(
+        {strip.a0 + (strip.a1 - strip.a0) * s, strip.b0 + (strip.b1 - strip.b0) * s, gap(s), 0.5});
 }
 
 /// Keeps the part of x0..x1 inside a convex, counter-clockwise window.
@@ -170,57 +162,68 @@ PatchInterval clip_segment(const Vec2& x0, const Vec2& x1, const PatchPolygon& w
   return kept;
 }
 
-void edge_face_contact(const Work& w, const Segment& edge, const PatchPolygon& window, const Height& face, bool edge_of_a) noexcept {
-  const PatchInterval kept = clip_segment(edge.x0, edge.x1, window);
-  const double f0 = face(edge.x0);
-  const double f1 = face(edge.x1);
-  if (edge_of_a) {
-    interval_contact(w, edge.x0, edge.x1, kept, edge.z0, edge.z1, f0, f1);
-  } else {
-    interval_contact(w, edge.x0, edge.x1, kept, f0, f1, edge.z0, edge.z1);
-  }
+/// The strip of an edge and the face over or under it, clipped by the face; as (edge, face).
+struct EdgeOverFace {
+  Vec3 edge0, edge1, face0, face1;
+  PatchInterval kept;
+};
+
+EdgeOverFace edge_over_face(const Work& w, const Polytope& E, int edge, const Pose& X_E, const Polytope& F, int face,
+                            const Pose& X_F) noexcept {
+  EdgeOverFace strip;
+  strip.edge0 = X_E * E.vertices[E.edges[edge].tail];
+  strip.edge1 = X_E * E.vertices[E.edges[edge].head];
+  const Vec2 x0 = w.tangent.flat(strip.edge0);
+  const Vec2 x1 = w.tangent.flat(strip.edge1);
+  const Height height = face_height(w.tangent, F, face, X_F);
+  strip.face0 = w.tangent.point(x0, height(x0));
+  strip.face1 = w.tangent.point(x1, height(x1));
+  PatchPolygon window;
+  face_outline(w.tangent, F, face, X_F, window);
+  strip.kept = clip_segment(x0, x1, window);
+  return strip;
 }
 
 void edge_a_face_b(const Work& w) noexcept {
-  PatchPolygon window;
-  face_outline(w.tangent, w.pair.B, w.b.feature.index, w.pair.X_AB, window);
-  edge_face_contact(w, edge_segment(w.tangent, w.pair.A, w.a.feature.index, {}), window,
-                    face_height(w.tangent, w.pair.B, w.b.feature.index, w.pair.X_AB), true);
+  const EdgeOverFace x = edge_over_face(w, w.pair.A, w.a.feature.index, {}, w.pair.B, w.b.feature.index, w.pair.X_AB);
+  interval_contact(w, {x.edge0, x.edge1, x.face0, x.face1}, x.kept);
 }
 
 void face_a_edge_b(const Work& w) noexcept {
-  PatchPolygon window;
-  face_outline(w.tangent, w.pair.A, w.a.feature.index, {}, window);
-  edge_face_contact(w, edge_segment(w.tangent, w.pair.B, w.b.feature.index, w.pair.X_AB), window,
-                    face_height(w.tangent, w.pair.A, w.a.feature.index, {}), false);
+  const EdgeOverFace x = edge_over_face(w, w.pair.B, w.b.feature.index, w.pair.X_AB, w.pair.A, w.a.feature.index, {});
+  interval_contact(w, {x.face0, x.face1, x.edge0, x.edge1}, x.kept);
 }
 
 /// Parallel edges share an interval. Edges that cross at a small angle share the part about the crossing where they are
 /// no farther apart sideways than the tolerance; the larger the angle, the less, down to the crossing.
 void edge_edge_contact(const Work& w) noexcept {
-  const Segment a = edge_segment(w.tangent, w.pair.A, w.a.feature.index, {});
-  const Segment b = edge_segment(w.tangent, w.pair.B, w.b.feature.index, w.pair.X_AB);
-  const Vec2 along = a.x1 - a.x0;
+  const Polytope::Edge& ea = w.pair.A.edges[w.a.feature.index];
+  const Polytope::Edge& eb = w.pair.B.edges[w.b.feature.index];
+  const Vec3& a0 = w.pair.vertex_a(ea.tail);
+  const Vec3& a1 = w.pair.vertex_a(ea.head);
+  const Vec3 b_tail = w.pair.vertex_b(eb.tail);
+  const Vec3 b_head = w.pair.vertex_b(eb.head);
+  const Vec2 along = w.tangent.flat(a1) - w.tangent.flat(a0);
   const double length_sq = along.squaredNorm();
-  const double s0 = along.dot(b.x0 - a.x0) / length_sq;  // B's ends along A, in parts of A
-  const double s1 = along.dot(b.x1 - a.x0) / length_sq;
-  const auto sideways = [&](const Vec2& x) { return (along.x() * (x - a.x0).y() - along.y() * (x - a.x0).x()) / length_sq; };
-  const double side0 = sideways(b.x0);
-  const double side1 = sideways(b.x1);
-  const double tangent_of_angle = std::abs(side1 - side0) / std::abs(s1 - s0);
-  if (!(tangent_of_angle < w.angle)) return point_contact(w);
+  // B's ends, in parts of A's length along A and across it.
+  const Vec2 tail = w.tangent.flat(b_tail) - w.tangent.flat(a0);
+  const Vec2 head = w.tangent.flat(b_head) - w.tangent.flat(a0);
+  const double s0 = along.dot(tail) / length_sq;
+  const double s1 = along.dot(head) / length_sq;
+  const double side0 = (along.x() * tail.y() - along.y() * tail.x()) / length_sq;
+  const double side1 = (along.x() * head.y() - along.y() * head.x()) / length_sq;
+  const double rate = (side1 - side0) / (s1 - s0);  // tangent of the angle between them
+  if (!(std::abs(rate) < w.angle)) return point_contact(w);
   PatchInterval kept{std::max(0.0, std::min(s0, s1)), std::min(1.0, std::max(s0, s1))};
-  const double rate = (side1 - side0) / (s1 - s0);  // sideways per part of A
   if (std::abs(rate) > tolerances::kSamePlane) {
     const double crossing = s0 - side0 / rate;
-    const double reach =
-        std::max(w.tolerance, 0.0) / std::sqrt(length_sq) * share_kept(tangent_of_angle, w.angle) / std::abs(rate);
-    kept.low = std::max(kept.low, crossing - reach);
-    kept.high = std::min(kept.high, crossing + reach);
+    const double apart = std::max(w.tolerance, 0.0) / std::sqrt(length_sq) * share_kept(std::abs(rate), w.angle);
+    kept.low = std::max(kept.low, crossing - apart / std::abs(rate));
+    kept.high = std::min(kept.high, crossing + apart / std::abs(rate));
   }
-  const double slope_b = (b.z1 - b.z0) / (s1 - s0);
-  const double b_at_0 = b.z0 - slope_b * s0;
-  interval_contact(w, a.x0, a.x1, kept, a.z0, a.z1, b_at_0, b_at_0 + slope_b);
+  const Vec3 b_per_part = (b_head - b_tail) / (s1 - s0);
+  const Vec3 b0 = b_tail - b_per_part * s0;
+  interval_contact(w, {a0, a1, b0, b0 + b_per_part}, kept);
 }
 
 /// A polygon without area: the interval between its farthest corners.
@@ -231,7 +234,10 @@ void sliver_contact(const Work& w, const PatchPolygon& polygon, const Height& za
     if ((x - x0).squaredNorm() > (x1 - x0).squaredNorm()) x1 = x;
   for (const Vec2& x : polygon)
     if ((x - x1).squaredNorm() > (x0 - x1).squaredNorm()) x0 = x;
-  interval_contact(w, x0, x1, {}, za(x0), za(x1), zb(x0), zb(x1));
+  interval_contact(w,
+                   {w.tangent.point(x0, za(x0)), w.tangent.point(x1, za(x1)), w.tangent.point(x0, zb(x0)),
+                    w.tangent.point(x1, zb(x1))},
+                   {});
 }
 
 void face_face_contact(const Work& w) noexcept {

@@ -91,39 +91,42 @@ MinkowskiFacet facet_behind_b(const PairView& pair, const Arc& arc, int excluded
 /// A border of a facet that the target point lies beyond, and by how much.
 struct Crossing {
   double outside = 0.0;
-  int slot = -1;       // face facets: the side plane
-  bool on_a = true;    // edge facets: which edge's parameter is out
-  bool at_tail = true; //
+  int slot = -1;        // face facets: the side plane
+  bool on_a = true;     // edge facets: whose edge ends there
+  bool at_tail = true;  // ... and at which end
 };
 
-Crossing worst_side(const Polytope& P, int face_index, const Vec3& point) noexcept {
-  const Polytope::Face& face = P.faces[face_index];
-  Crossing worst;
-  for (int slot = face.first; slot < face.first + face.count; ++slot) {
-    const double out = P.side_normals[slot].dot(point) - P.side_offsets[slot];
-    if (out > worst.outside) {
-      worst.outside = out;
-      worst.slot = slot;
-    }
+/// The worst border among those with less than `cap` outside.
+struct Worst {
+  double cap;
+  Crossing crossing;
+
+  void consider(const Crossing& next) noexcept {
+    if (next.outside > crossing.outside && next.outside < cap) crossing = next;
   }
-  return worst;
+};
+
+Crossing worst_side(const Polytope& P, int face_index, const Vec3& point, double cap) noexcept {
+  const Polytope::Face& face = P.faces[face_index];
+  Worst worst{cap, {}};
+  for (int slot = face.first; slot < face.first + face.count; ++slot)
+    worst.consider({P.side_normals[slot].dot(point) - P.side_offsets[slot], slot});
+  return worst.crossing;
 }
 
-void consider(Crossing& worst, double outside, bool on_a, bool at_tail) noexcept {
-  if (outside > worst.outside) worst = {outside, 0, on_a, at_tail};
-}
-
-/// Puts the witness points (p_b - p_a = target) on the features and tells the border they are beyond.
-Crossing place(const PairView& pair, const MinkowskiFacet& facet, const Vec3& target, MinkowskiWalk& walk) noexcept {
+/// Puts the witness points (p_b - p_a = target) on the features and tells the worst border they are beyond, of those
+/// with less than `cap` outside.
+Crossing place(const PairView& pair, const MinkowskiFacet& facet, const Vec3& target, double cap,
+               MinkowskiWalk& walk) noexcept {
   if (facet.a.kind == Kind::kFace) {
     walk.p_b = pair.vertex_b(facet.b.index);
     walk.p_a = walk.p_b - target;
-    return worst_side(pair.A, facet.a.index, walk.p_a);
+    return worst_side(pair.A, facet.a.index, walk.p_a, cap);
   }
   if (facet.b.kind == Kind::kFace) {
     walk.p_a = pair.vertex_a(facet.a.index);
     walk.p_b = walk.p_a + target;
-    return worst_side(pair.B, facet.b.index, pair.X_BA * walk.p_b);
+    return worst_side(pair.B, facet.b.index, pair.X_BA * walk.p_b, cap);
   }
   const Polytope::Edge& ea = pair.A.edges[facet.a.index];
   const Polytope::Edge& eb = pair.B.edges[facet.b.index];
@@ -139,12 +142,12 @@ Crossing place(const PairView& pair, const MinkowskiFacet& facet, const Vec3& ta
   }
   walk.p_a = a0 + ea.direction * s;
   walk.p_b = b0 + u_b * t;
-  Crossing worst;
-  consider(worst, -s, true, true);
-  consider(worst, s - ea.length, true, false);
-  consider(worst, -t, false, true);
-  consider(worst, t - eb.length, false, false);
-  return worst;
+  Worst worst{cap, {}};
+  worst.consider({-s, -1, true, true});
+  worst.consider({s - ea.length, -1, true, false});
+  worst.consider({-t, -1, false, true});
+  worst.consider({t - eb.length, -1, false, false});
+  return worst.crossing;
 }
 
 int other_face(const Polytope::Edge& edge, int face) noexcept { return edge.left == face ? edge.right : edge.left; }
@@ -185,32 +188,59 @@ MinkowskiFacet across_edge_border(const PairView& pair, const MinkowskiFacet& fa
   return crossing.on_a ? facet_behind_b(pair, arc, ended) : facet_behind_a(pair, arc, ended);
 }
 
-/// `ray` is null for the foot. The measure that must not grow is the height, or the length along the ray.
+MinkowskiFacet across(const PairView& pair, const MinkowskiFacet& facet, const Crossing& crossing) noexcept {
+  const bool edges = facet.a.kind == Kind::kEdge && facet.b.kind == Kind::kEdge;
+  return edges ? across_edge_border(pair, facet, crossing) : across_face_border(pair, facet, crossing.slot);
+}
+
+/// What the walk goes down on: the height of a facet's plane, or the length of the ray to it.
+struct Measure {
+  const Vec3* ray;  // null: the foot
+
+  double operator()(const MinkowskiFacet& f) const noexcept {
+    if (!ray) return f.height;
+    const double across = f.n.dot(*ray);
+    return across > 0.0 ? f.height / across : std::numeric_limits<double>::infinity();
+  }
+  Vec3 target(const MinkowskiFacet& f) const noexcept { return (ray ? *ray : f.n) * (*this)(f); }
+};
+
 MinkowskiWalk walk(const PairView& pair, const MinkowskiFacet& start, const Vec3* ray) noexcept {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  constexpr int kLevelSteps = 16;  // between facets of one plane, while nothing gets better
+  const Measure measure{ray};
   const double slack = tolerances::kVoronoiSlack * pair.scale;
   const double level = tolerances::kCoplanar * pair.scale;  // facets of one plane, by rounding this far apart
-  const auto length_to = [&](const MinkowskiFacet& f) { return ray ? f.height / f.n.dot(*ray) : f.height; };
+  const int bound = 32 + static_cast<int>(pair.A.edges.size() + pair.B.edges.size()) / 2;
   MinkowskiWalk best;
   best.facet = start;
-  best.outside = std::numeric_limits<double>::infinity();
-  MinkowskiFacet facet = start;
-  double length = length_to(facet);
-  const int bound = 32 + static_cast<int>(pair.A.edges.size() + pair.B.edges.size()) / 2;
-  for (int step = 1; step <= bound; ++step) {
-    MinkowskiWalk here;
-    here.facet = facet;
-    const Crossing crossing = place(pair, facet, (ray ? *ray : facet.n) * length, here);
+  best.outside = kInfinity;
+  MinkowskiWalk here = best;
+  int improved = 0;
+  for (int step = 1; step <= bound && step - improved <= kLevelSteps; ++step) {
+    here.outside = 0.0;
+    const Vec3 target = measure.target(here.facet);
+    Crossing crossing = place(pair, here.facet, target, kInfinity, here);
     here.outside = std::max(here.outside, crossing.outside);
-    const double best_length = length_to(best.facet);
-    if (length < best_length - level || (length < best_length + level && here.outside < best.outside)) best = here;
+    const double length = measure(here.facet);
+    const double best_length = measure(best.facet);
+    if (length < best_length - level || (length < best_length + level && here.outside < best.outside)) {
+      best = here;
+      improved = step;
+    }
     best.steps = step;
-    if (crossing.outside <= slack) break;
-    const bool edges = facet.a.kind == Kind::kEdge && facet.b.kind == Kind::kEdge;
-    facet = edges ? across_edge_border(pair, facet, crossing) : across_face_border(pair, facet, crossing.slot);
-    if (ray && facet.n.dot(*ray) <= 0.0) break;
-    const double next = length_to(facet);
-    if (next > best_length + level) break;  // rounding: there is no nearer plane to go to
-    length = next;
+    // Across the worst border, or where rounding has bent the facets the next worst, whose plane is not farther.
+    bool moved = false;
+    while (!moved && crossing.outside > slack) {
+      const MinkowskiFacet next = across(pair, here.facet, crossing);
+      moved = measure(next) <= measure(best.facet) + level;
+      if (moved) {
+        here.facet = next;
+      } else {
+        crossing = place(pair, here.facet, target, crossing.outside, here);
+      }
+    }
+    if (!moved) break;
   }
   return best;
 }
@@ -273,6 +303,16 @@ MinkowskiFacet facet_near(const PairView& pair, const Vec3& n) noexcept {
   const double along_a = -pair.A.faces[face_a].normal.dot(n);
   const double along_b = pair.B.faces[face_b].normal.dot(n_B);
   return along_a >= along_b ? facet_of_face(pair, true, face_a, b) : facet_of_face(pair, false, face_b, a);
+}
+
+MinkowskiWalk stand_on(const PairView& pair, const MinkowskiFacet& facet) noexcept {
+  MinkowskiWalk here;
+  here.facet = facet;
+  const Crossing crossing =
+      place(pair, facet, facet.n * facet.height, std::numeric_limits<double>::infinity(), here);
+  here.outside = std::max(here.outside, crossing.outside);
+  here.steps = 1;
+  return here;
 }
 
 MinkowskiWalk walk_to_foot(const PairView& pair, const MinkowskiFacet& start) noexcept {

@@ -46,6 +46,9 @@ std::optional<MinkowskiFacet> facet_of_edges(const PairView& pair, int edge_a, i
 /// A facet near the outward direction `n` (any length): the best aligned face at either support vertex.
 MinkowskiFacet facet_near(const PairView& pair, const Vec3& n) noexcept;
 
+/// The witness points on a facet itself, without walking.
+MinkowskiWalk stand_on(const PairView& pair, const MinkowskiFacet& facet) noexcept;
+
 /// Walks from `start` to the facet that holds its own foot: a local minimum of the depth.
 MinkowskiWalk walk_to_foot(const PairView& pair, const MinkowskiFacet& start) noexcept;
 

@@ -93,11 +93,10 @@ class Shallowest {
 
   void from(const MinkowskiFacet& seed) noexcept { take(walk_to_foot(pair_, seed)); }
 
-  /// The facet itself, without walking on.
   void take(const MinkowskiWalk& walk) noexcept {
     steps_ += walk.steps;
     const PairDistance next = answer(pair_, walk, 0);
-    const double slack = tolerances::kVoronoiSlack * pair_.scale;
+    const double slack = tolerances::kCertificate * pair_.size;
     const bool better = next.certified() == best_.certified() ? next.distance > best_.distance
                         : next.certified()                    ? next.distance > best_.distance - slack
                                                               : next.distance > best_.distance + slack;
@@ -133,8 +132,10 @@ Vec3 line_of_centers(const PairView& pair) noexcept {
   return n.isZero() ? Vec3::UnitX() : n;
 }
 
-/// Walks from the line of centres and from the shallowest facets near 26 directions all around.
+/// Walks from the line of centres and from the shallowest facets near 26 directions all around: three of them, and
+/// more until one ends certified.
 void from_many_directions(const PairView& pair, Shallowest& shallowest) noexcept {
+  constexpr int kWalked = 3;
   shallowest.from(facet_near(pair, line_of_centers(pair)));
   std::array<MinkowskiFacet, 26> seeds;
   std::size_t count = 0;
@@ -142,13 +143,14 @@ void from_many_directions(const PairView& pair, Shallowest& shallowest) noexcept
     const Vec3 n(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
     if (!n.isZero()) seeds[count++] = facet_near(pair, n);
   }
-  constexpr std::ptrdiff_t kWalked = 3;
-  std::partial_sort(seeds.begin(), seeds.begin() + kWalked, seeds.end(),
-                    [](const MinkowskiFacet& a, const MinkowskiFacet& b) { return a.height < b.height; });
-  for (std::ptrdiff_t i = 0; i < kWalked; ++i) shallowest.from(seeds[static_cast<std::size_t>(i)]);
+  std::sort(seeds.begin(), seeds.end(), [](const auto& a, const auto& b) { return a.height < b.height; });
+  int walked = 0;
+  for (const MinkowskiFacet& seed : seeds)
+    if (walked++ < kWalked || !shallowest.best().certified()) shallowest.from(seed);
 }
 
-/// Every facet that `allowed(n)` lets pass; the walk from the best one finds witness points inside its features.
+/// Every facet that `allowed(n)` lets pass: the walk from the shallowest finds witness points inside its features, or
+/// they are inside those of another facet as shallow.
 template <class Allowed>
 void from_every_facet(const PairView& pair, Shallowest& shallowest, const Allowed& allowed) noexcept {
   MinkowskiFacet best;
@@ -156,7 +158,14 @@ void from_every_facet(const PairView& pair, Shallowest& shallowest, const Allowe
   for_every_facet(pair, [&](const MinkowskiFacet& facet) {
     if (facet.height < best.height && allowed(facet.n)) best = facet;
   });
-  if (best.a.index >= 0) shallowest.from(best);
+  if (best.a.index < 0) return;
+  const MinkowskiWalk walk = walk_to_foot(pair, best);
+  if (allowed(walk.facet.n)) shallowest.take(walk);
+  if (shallowest.any() && shallowest.best().certified()) return;
+  const double level = best.height + tolerances::kCertificate * pair.size;
+  for_every_facet(pair, [&](const MinkowskiFacet& facet) {
+    if (facet.height <= level && allowed(facet.n)) shallowest.take(stand_on(pair, facet));
+  });
 }
 
 void remember(const PairDistance& result, PairCache& cache) noexcept {

@@ -29,7 +29,7 @@ struct SegmentPair {
 inline SegmentPair nearest_on_segments(const Vec3& p0, const Vec3& u, double lp, const Vec3& q0, const Vec3& w,
                                 double lq) noexcept {
   SegmentPair x;
-  if (!nearest_on_lines(p0, u, q0, w, tolerances::kParallelSine, x.s, x.t)) {  // parallel: the middle of what they share
+  if (!nearest_on_lines(p0, u, q0, w, tolerances::kSameArc, x.s, x.t)) {  // parallel: the middle of what they share
     const double a = u.dot(q0 - p0);
     const double b = u.dot(q0 + w * lq - p0);
     x.s = 0.5 * (std::clamp(std::min(a, b), 0.0, lp) + std::clamp(std::max(a, b), 0.0, lp));
