@@ -9,8 +9,12 @@
 
 namespace tactum {
 
+void add_bench(CLI::App& app);
 void add_clearance(CLI::App& app);
+void add_devices(CLI::App& app);
+void add_feel(CLI::App& app);
 void add_inspect(CLI::App& app);
+void add_scenes(CLI::App& app);
 
 /// Tells the error and ends the command with exit code 1.
 [[noreturn]] inline void fail(const Error& error) {

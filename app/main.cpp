@@ -1,12 +1,14 @@
+/// The `tactum` command: one file per subcommand, listed in commands.h.
+
 #include <CLI/CLI.hpp>
 
 #include "commands.h"
 
 int main(int argc, char** argv) {
+  using namespace tactum;
   CLI::App app("Feel polygonal models: six degree-of-freedom haptic rendering.", "tactum");
   app.require_subcommand(1);
-  using Add = void (*)(CLI::App&);
-  for (Add add : std::initializer_list<Add>{tactum::add_inspect, tactum::add_clearance}) add(app);
+  for (auto* add : {add_feel, add_scenes, add_devices, add_inspect, add_clearance, add_bench}) add(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::RuntimeError& error) {

@@ -26,6 +26,10 @@ inline constexpr double kVoronoiSlack = 1e-15;
 /// Below this share of the size a vector between witness points no longer has a direction of its own.
 inline constexpr double kTouching = 1e-12;
 
+/// Gaps below this share of the size may be answered by a plane of the Minkowski difference: there the points'
+/// difference has fewer than ten digits.
+inline constexpr double kNearlyTouching = 1e-6;
+
 /// Two directions are parallel when the sine of their angle is below this: the cross product of unit vectors
 /// keeps about eight digits there.
 inline constexpr double kParallelSine = 1e-8;
@@ -33,6 +37,17 @@ inline constexpr double kParallelSine = 1e-8;
 /// Arcs of two edges on the Gauss map are one arc when their planes differ by less than this angle: what is left of
 /// a crossing is then smaller than the certificate can see.
 inline constexpr double kSameArc = 1e-12;
+
+/// A face (edge) takes part in a contact patch when its plane (line) is within this angle [rad] of square to the normal:
+/// 2 degrees. Below half of it the patch is whole, above it is none, between it shrinks to the nearest point, so that
+/// the hand feels no step. Smaller, and a nearly flat contact jumps; larger, and a sharp edge feels blunt.
+inline constexpr double kPatchAngle = 0.035;
+
+/// Planes of one supporting plane of a Minkowski facet, by rounding this angle [rad] apart.
+inline constexpr double kSamePlane = 1e-8;
+
+/// A patch with less area than this share of the squared size is a line.
+inline constexpr double kPatchArea = 1e-14;
 
 /// Vertices nearer than this share of the mesh's size are one vertex. STL stores single precision (6e-8).
 inline constexpr double kWeld = 1e-9;

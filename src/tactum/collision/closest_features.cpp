@@ -5,6 +5,7 @@
 
 #include "tactum/collision/every_feature.h"
 #include "tactum/collision/penetration.h"
+#include "tactum/collision/support_distance.h"
 #include "tactum/collision/voronoi_march.h"
 
 namespace tactum {
@@ -60,8 +61,9 @@ Judged judge(const PairView& pair, const March& march, const Vec3& normal) noexc
   judged.doubt = std::numeric_limits<double>::infinity();
   if (normal.isZero()) return judged;
   const double gap = pair.separation(normal, judged.support_a, judged.support_b);
-  // The points' whole distance counts, not only its part along the normal.
-  judged.doubt = std::max((march.p_a - march.p_b).norm(), x.distance) - gap;
+  // The points' whole distance counts, and that they lie on one normal.
+  const Vec3 d = march.p_a - march.p_b;
+  judged.doubt = std::max(d.norm() - gap, (d - normal * x.distance).norm());
   return judged;
 }
 
@@ -111,12 +113,10 @@ class Query {
   }
 
   PairDistance run() noexcept {
-    if (walked()) return result_;
-    if (touching()) return result_;
-    if (pair_.A.edges.size() * pair_.B.edges.size() <= kSmallEdgePairs) {
-      if (certified(closest_of_every_feature(pair_), Stop::kFallback)) return result_;
-      if (touching()) return result_;
-    }
+    if (walked() || on_planes() || by_supports()) return result_;
+    if (pair_.A.edges.size() * pair_.B.edges.size() <= kSmallEdgePairs &&
+        (certified(closest_of_every_feature(pair_), Stop::kFallback) || on_planes()))
+      return result_;
     return done(best_.answer, Stop::kBounded);
   }
 
@@ -129,11 +129,7 @@ class Query {
     for (int attempt = 0; attempt < kAttempts; ++attempt, slack *= kWiderSlack) {
       const March march = voronoi_march(pair_, seed.a, seed.b, slack);
       steps_ += march.steps;
-      if (march.end == MarchEnd::kOverlap) {
-        result_ = penetration_depth(pair_.A, pair_.B, pair_.X_AB, cache_);
-        result_.steps += steps_;
-        return true;
-      }
+      if (march.end == MarchEnd::kOverlap) return overlapping();
       const bool straight = attempt == 0 && march.end == MarchEnd::kClosest;
       if (certified(march, straight ? Stop::kCertified : Stop::kFallback)) return true;
       seed = {{Kind::kVertex, last_.support_a}, {Kind::kVertex, last_.support_b}};
@@ -158,14 +154,28 @@ class Query {
     return true;
   }
 
-  /// Points of both that coincide prove that the distance is not above zero; the planes of the penetration walk then
-  /// tell how far below it is.
-  bool touching() noexcept {
-    if (least_gap_ > tolerance()) return false;
+  /// A point of both was found.
+  bool overlapping() noexcept {
+    result_ = penetration_depth(pair_.A, pair_.B, pair_.X_AB, cache_);
+    result_.steps += steps_;
+    return true;
+  }
+
+  bool by_supports() noexcept {
+    const March march = closest_by_supports(pair_);
+    steps_ += march.steps;
+    if (march.end == MarchEnd::kOverlap) return overlapping();
+    return certified(march, Stop::kFallback) || on_planes();
+  }
+
+  /// Nearly touching: a facet of the Minkowski difference tells the normal. Its witness points lie on the pieces, so a
+  /// certified answer that is not below zero proves itself; below zero it takes points of both that coincide.
+  bool on_planes() noexcept {
+    if (least_gap_ > tolerances::kNearlyTouching * pair_.size) return false;
     PairCache cache = cache_;
     const PairDistance planes = penetration_depth(pair_.A, pair_.B, pair_.X_AB, cache);
     steps_ += planes.steps;
-    if (!planes.certified() || planes.distance > least_gap_ + tolerance()) return false;
+    if (!planes.certified() || (planes.distance < -tolerance() && least_gap_ > tolerance())) return false;
     done(planes, Stop::kFallback);
     return true;
   }

@@ -1,9 +1,11 @@
 #include "tactum/collision/penetration.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
+#include "tactum/collision/manifold.h"
 #include "tactum/collision/minkowski_walk.h"
 
 namespace tactum {
@@ -38,6 +40,32 @@ void for_every_facet(const PairView& pair, const Visit& visit) noexcept {
       if (const auto facet = facet_of_edges(pair, static_cast<int>(i), static_cast<int>(j))) visit(*facet);
 }
 
+/// Where faces or edges of both pieces lie in the support planes, several facets of the difference make one, and the
+/// walk may end beside the foot. Then the features of the support vertices `a`, `b` are clipped against each other. False
+/// when they do not meet.
+bool witness_on_plane(const PairView& pair, int a, int b, PairDistance& result) noexcept {
+  PairDistance supports = result;
+  supports.a = {Kind::kVertex, a};
+  supports.b = {Kind::kVertex, b};
+  supports.p_a = pair.vertex_a(a);
+  supports.p_b = pair.vertex_b(b);
+  Manifold patch;
+  contact_manifold_within(pair.A, pair.B, pair.X_AB, supports, result.distance + pair.size, tolerances::kSamePlane,
+                          patch);
+  Vec3 p_a = Vec3::Zero();
+  Vec3 p_b = Vec3::Zero();
+  for (const ContactPoint& point : patch.points) {
+    p_a += point.p_a * point.weight;
+    p_b += point.p_b * point.weight;
+  }
+  if ((p_a - p_b - result.normal * result.distance).norm() > tolerances::kCertificate * pair.size) return false;
+  result.p_b = p_b;
+  result.p_a = p_b + result.normal * result.distance;
+  result.a = patch.a;
+  result.b = patch.b;
+  return true;
+}
+
 /// The answer a walk stands for, its depth by true supports.
 PairDistance answer(const PairView& pair, const MinkowskiWalk& walk, int steps) noexcept {
   PairDistance result;
@@ -51,8 +79,10 @@ PairDistance answer(const PairView& pair, const MinkowskiWalk& walk, int steps) 
   result.p_a = walk.p_b + walk.facet.n * result.distance;
   result.steps = steps;
   const double tolerance = tolerances::kCertificate * pair.size;
-  const bool real = std::abs(result.distance + walk.facet.height) <= tolerance && walk.outside <= tolerance;
-  result.stop = real ? Stop::kCertified : Stop::kBounded;
+  const bool real = std::abs(result.distance + walk.facet.height) <= tolerance;
+  result.stop = Stop::kBounded;
+  if (real && walk.outside <= tolerance) result.stop = Stop::kCertified;
+  if (real && walk.outside > tolerance && witness_on_plane(pair, a, b, result)) result.stop = Stop::kFallback;
   return result;
 }
 
@@ -103,12 +133,19 @@ Vec3 line_of_centers(const PairView& pair) noexcept {
   return n.isZero() ? Vec3::UnitX() : n;
 }
 
+/// Walks from the line of centres and from the shallowest facets near 26 directions all around.
 void from_many_directions(const PairView& pair, Shallowest& shallowest) noexcept {
   shallowest.from(facet_near(pair, line_of_centers(pair)));
+  std::array<MinkowskiFacet, 26> seeds;
+  std::size_t count = 0;
   for (int i = 0; i < 27; ++i) {
     const Vec3 n(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
-    if (!n.isZero()) shallowest.from(facet_near(pair, n));
+    if (!n.isZero()) seeds[count++] = facet_near(pair, n);
   }
+  constexpr std::ptrdiff_t kWalked = 3;
+  std::partial_sort(seeds.begin(), seeds.begin() + kWalked, seeds.end(),
+                    [](const MinkowskiFacet& a, const MinkowskiFacet& b) { return a.height < b.height; });
+  for (std::ptrdiff_t i = 0; i < kWalked; ++i) shallowest.from(seeds[static_cast<std::size_t>(i)]);
 }
 
 /// Every facet that `allowed(n)` lets pass; the walk from the best one finds witness points inside its features.

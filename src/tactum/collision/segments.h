@@ -17,7 +17,7 @@ inline bool nearest_on_lines(const Vec3& p0, const Vec3& u, const Vec3& q0, cons
   if (sine_sq < least_sine * least_sine) return false;
   const Vec3 r = q0 - p0;
   s = r.cross(w).dot(c) / sine_sq;
-  t = r.cross(u).dot(c) / sine_sq;
+  t = w.dot(u * s - r);  // square to w, even where s has lost digits
   return true;
 }
 

@@ -35,7 +35,8 @@ class DistanceQuery {
 
   /// Depth first, of two children the nearer one first.
   void descend() noexcept {
-    std::array<Pair, 2 * Bvh::kMaxDepth + 2> stack{};
+    // Filled as far as it is used: NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init)
+    std::array<Pair, 2 * Bvh::kMaxDepth + 2> stack;
     std::size_t size = 0;
     stack[size++] = {0, 0, 0.0};
     while (size > 0 && best_.distance > 0.0) {

@@ -89,11 +89,11 @@ class SimulatedDevice final : public Device {
 
  private:
   struct Command {
-    double due_s;  // world time from which it acts
+    double due_s = 0.0;  // world time from which it acts
     Wrench F;
   };
   struct Reading {
-    double time_s;
+    double time_s = 0.0;
     Pose X;
   };
   static constexpr int kCommandRoom = 512;  // 50 ms of delay at 10 kHz

@@ -1,0 +1,42 @@
+#pragma once
+/// Flat figures in the contact plane: convex polygons of bounded size, clipping, and their moments.
+
+#include "tactum/base/static_vector.h"
+#include "tactum/math/types.h"
+
+namespace tactum {
+
+/// Corners taken of one face; of a face with more, every k-th: an inner polygon, so that no contact is invented.
+inline constexpr int kPatchCorners = 64;
+
+/// Counter-clockwise. Room for one face clipped by another, and by the gap.
+using PatchPolygon = StaticVector<Vec2, 2 * kPatchCorners + 2>;
+
+/// What is left of `polygon` where normal . x <= offset [Sutherland and Hodgman 1974]. `scratch` is working room.
+void clip_polygon(PatchPolygon& polygon, const Vec2& normal, double offset, PatchPolygon& scratch) noexcept;
+
+/// `polygon` clipped by every side of the convex, counter-clockwise `window`.
+void clip_polygon(PatchPolygon& polygon, const PatchPolygon& window, PatchPolygon& scratch) noexcept;
+
+/// Twice the signed area: positive when counter-clockwise.
+double twice_area(const PatchPolygon& polygon) noexcept;
+
+struct PatchMoments {
+  double area = 0.0;             ///< [m^2]
+  Vec2 centroid = Vec2::Zero();  ///< [m]
+  Vec2 axis = Vec2::UnitX();     ///< direction of the larger second moment, unit
+  double major = 0.0;            ///< second moment about the centroid over the area, along axis [m^2]
+  double minor = 0.0;            ///< ... and across it [m^2]
+};
+
+PatchMoments moments_of(const PatchPolygon& polygon) noexcept;
+
+/// A straight piece x0 + (x1 - x0) s of the plane.
+struct PatchInterval {
+  double low = 0.0, high = 1.0;  ///< of s
+  bool empty() const noexcept { return low > high; }
+  /// Keeps where at0 + (at1 - at0) s <= limit.
+  void keep_below(double at0, double at1, double limit) noexcept;
+};
+
+}  // namespace tactum
