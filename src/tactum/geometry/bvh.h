@@ -105,9 +105,9 @@ bool for_each_pair_within(const Bvh& bvh_a, const Bvh& bvh_b, const Pose& X_AB, 
   struct Pair {
     std::int32_t a, b;
   };
-  // Filled as far as it is used: NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init)
-  std::array<Pair, 2 * Bvh::kMaxDepth + 2>
-      stack;  // each step takes one pair and puts two, one level further down
+  // Each step takes one pair and puts two, one level further down; filled as far as it is used.
+  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init)
+  std::array<Pair, 2 * Bvh::kMaxDepth + 2> stack;
   std::size_t size = 0;
   stack[size++] = {0, 0};
   while (size > 0) {

@@ -110,7 +110,7 @@ TriangleMesh group_mesh(const ImportedMesh& mesh, const MeshGroup& group, double
   for (int i = 0; i < group.triangle_count; ++i) {
     const Triangle& t = mesh.mesh.triangles[group.first_triangle + i];
     const int first = static_cast<int>(part.vertices.size());
-    for (int corner : t) part.vertices.push_back(scale * mesh.mesh.vertices[corner]);
+    for (int corner : t) part.vertices.emplace_back(scale * mesh.mesh.vertices[corner]);
     part.triangles.push_back({first, first + 1, first + 2});
   }
   return weld(part).mesh;
@@ -200,7 +200,7 @@ Result<Part> part_from_mesh(const TriangleMesh& mesh, const PartOptions& options
   part.name = options.name;
   if (report.closed && report.oriented && report.volume < 0.0) {
     for (Triangle& t : scaled.triangles) std::swap(t[1], t[2]);
-    part.remarks.push_back("The normals point inward: the surface was turned round.");
+    part.remarks.emplace_back("The normals point inward: the surface was turned round.");
     report = report_mesh(scaled);
   }
   part.mass = mass_properties_or_hull(scaled, options.density_kg_per_m3);

@@ -73,7 +73,7 @@ double number_at(const char* bytes, bool swapped) {
   std::array<char, sizeof(T)> raw{};
   std::memcpy(raw.data(), bytes, sizeof(T));
   if (swapped) std::reverse(raw.begin(), raw.end());
-  T value;
+  T value{};
   std::memcpy(&value, raw.data(), sizeof(T));
   return static_cast<double>(value);
 }

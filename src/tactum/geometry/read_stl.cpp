@@ -67,7 +67,7 @@ class TextReader {
       if (Result<void> done = read_line(word, tokens); !done) return done;
     }
     if (state_ == State::kFacet || state_ == State::kLoop) return wrong("the end of the file", "endfacet");
-    if (state_ == State::kSolid) builder_.report().remarks.push_back("The file ends without endsolid.");
+    if (state_ == State::kSolid) builder_.report().remarks.emplace_back("The file ends without endsolid.");
     return {};
   }
 
