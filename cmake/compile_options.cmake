@@ -19,7 +19,7 @@ endif()
 
 add_library(tactum_warnings INTERFACE)
 target_compile_options(tactum_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
-  -Wnon-virtual-dtor -Wold-style-cast -Woverloaded-virtual -Wnull-dereference -Wdouble-promotion -Werror)
+  -Wnon-virtual-dtor -Wold-style-cast -Woverloaded-virtual -Wnull-dereference -Werror)
 
 # Sanitizers: -DTACTUM_SANITIZE=address,undefined or =thread (see CMakePresets.json).
 set(TACTUM_SANITIZE "" CACHE STRING "Comma-separated sanitizers")

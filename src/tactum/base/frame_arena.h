@@ -1,6 +1,6 @@
 #pragma once
-/// Scratch memory of one frame: a block taken at load time, handed out by moving a mark, taken back whole at the
-/// start of the next frame. Objects in it are trivial; nothing is destroyed.
+/// Scratch memory of one frame: a block taken at load time, handed out by moving a mark, taken back whole at
+/// the start of the next frame. Objects in it are trivial; nothing is destroyed.
 
 #include <cstddef>
 #include <memory>

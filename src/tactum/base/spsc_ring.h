@@ -1,6 +1,6 @@
 #pragma once
-/// A ring for one producer thread and one consumer thread. Neither ever waits: push fails when the ring is full,
-/// pop when it is empty. Storage is allocated once, at construction.
+/// A ring for one producer thread and one consumer thread. Neither ever waits: push fails when the ring is
+/// full, pop when it is empty. Storage is allocated once, at construction.
 
 #include <atomic>
 #include <cstddef>

@@ -5,15 +5,17 @@
 namespace tactum::tolerances {
 
 /// Points of one facet lie in its plane to this much of the size. Qhull's own coordinates are good to a few
-/// 1e-16; merging facets that are less planar than this gives wrong distances, leaving planar ones apart does too.
+/// 1e-16; merging facets that are less planar than this gives wrong distances, leaving planar ones apart does
+/// too.
 inline constexpr double kCoplanar = 1e-12;
 
-/// A corner whose two edges are straight to this much (height over the chord, relative to the size) is no corner.
+/// A corner whose two edges are straight to this much (height over the chord, relative to the size) is no
+/// corner.
 inline constexpr double kCollinear = 1e-12;
 
 /// A closest-feature answer is certified when the support planes' separation agrees with the distance of its
-/// witness points to this much of the size of the pair. Raise it and wrong features pass; lower it and rounding
-/// of far-away coordinates sends good answers to the fallback.
+/// witness points to this much of the size of the pair. Raise it and wrong features pass; lower it and
+/// rounding of far-away coordinates sends good answers to the fallback.
 inline constexpr double kCertificate = 1e-9;
 
 /// Voronoi planes are crossed only when a point is beyond them by this much of the size, so that a point on
@@ -53,13 +55,57 @@ inline constexpr double kWeld = 1e-9;
 /// A triangle thinner than this (height over its longest edge) has no usable normal.
 inline constexpr double kDegenerateTriangle = 1e-10;
 
-/// Edges of a mesh count as convex when the far vertex stays below the neighbour's plane by this share of the size.
+/// Edges of a mesh count as convex when the far vertex stays below the neighbour's plane by this share of the
+/// size.
 inline constexpr double kConvexMesh = 1e-9;
 
+/// The contact solver has converged when a sweep changes no normal velocity by more than this share of the
+/// largest one asked for: a force error far below what a hand or a device resolves (1e-3).
+inline constexpr double kContactVelocity = 1e-6;
+
+/// A pair overlaps when its depth exceeds this share of the pieces' size: below it is the certificate's own doubt.
+inline constexpr double kPenetrating = 1e-9;
+
+/// A one-sided surface piece answers only contacts on its outer side; a normal may lean behind the surface by
+/// this sine before it counts as the inner side (contacts at convex edges lie at a right angle to it).
+inline constexpr double kOneSidedSine = 1e-6;
+
+/// Unit normals that differ by less than this are one: a corner's mean normal is then the face's own, to the bit.
+inline constexpr double kSameNormal = 1e-9;
+
+/// The area that a contact point or segment counts for when it shares a facet's stiffness with patches: small
+/// against any patch a hand can feel (a tenth of a millimetre squared is 1e-8), so it counts only where it is alone [m^2].
+inline constexpr double kPointArea_m2 = 1e-14;
+
+/// A corner of a polygon face turns the wrong way only beyond this (cross product over the square of the polygon's
+/// extent): single-precision corners on a straight side turn by 1e-7 either way, and a fan over them is right.
+inline constexpr double kPolygonTurn = 1e-6;
+
+/// Neighbouring triangles of a mesh belong to one flat face when the sine between their normals is below this. CAD
+/// files hold six to seven digits, so the normals of one wall differ by about 1e-6 over its size and more on
+/// slivers; facets of a finely meshed cylinder (a thousand around) differ by 6e-3 and stay apart.
+inline constexpr double kCoplanarMeshSine = 1e-5;
+
+/// ... and when the corners lie in the face's plane to this much of the mesh's size. Without it a slowly turning row
+/// of triangles would pass for flat, one pair at a time.
+inline constexpr double kCoplanarMeshOffset = 1e-6;
+
+/// Noise of coordinates stored in single precision. It turns the normal of a sliver by noise over height, so slivers
+/// within a flat face are allowed that much more than kCoplanarMeshSine.
+inline constexpr double kStoredNoise = 1.2e-7;
+
+/// Box tests grow the boxes by this share of their size, so that rounding of the rotated axes never parts boxes
+/// that touch.
+inline constexpr double kBoxSlack = 1e-14;
+
 /// Squared angle [rad^2] below which sin(a)/a and its kin are taken from their series: exact to the last bit there.
+
+/// Squared angle [rad^2] below which sin(a)/a and its kin are taken from their series: exact to the last bit
+/// there.
 inline constexpr double kSmallAngleSquared = 1e-6;
 
-/// Sine of a half angle below which a rotation vector is twice the quaternion's vector part, exact to rounding.
+/// Sine of a half angle below which a rotation vector is twice the quaternion's vector part, exact to
+/// rounding.
 inline constexpr double kSmallHalfAngleSine = 1e-9;
 
 /// A matrix read from a file is a rotation when every entry of R R^T - I is below this: sixteen decimals.
@@ -67,5 +113,13 @@ inline constexpr double kRotationExact = 1e-9;
 
 /// ... and is made orthonormal, and the reader told, when below this: six decimals, as many programs write.
 inline constexpr double kRotationNear = 1e-4;
+
+/// The iteration to the nearest rotation stops when no entry changes by more than this. It converges
+/// quadratically, so the next change would be the square of it: below rounding.
+inline constexpr double kRotationConverged = 1e-9;
+
+/// A quaternion read from a file is normalised when its length is this near to one: four decimals, as motion
+/// capture writes, leave 2e-4. Farther off, the columns are not a quaternion.
+inline constexpr double kQuaternionNear = 1e-3;
 
 }  // namespace tactum::tolerances

@@ -18,9 +18,9 @@ namespace tactum {
 
 /// What the device says about the hand at one instant.
 struct DeviceSample {
-  double time_s = 0.0;        ///< when it was measured, on the loop's clock [s]
-  Pose X_DH;                  ///< handle in device frame [m]
-  Twist V_DH;                 ///< of the handle's origin, axes of D [m/s, rad/s]; zero when the device has no estimate
+  double time_s = 0.0;  ///< when it was measured, on the loop's clock [s]
+  Pose X_DH;            ///< handle in device frame [m]
+  Twist V_DH;  ///< of the handle's origin, axes of D [m/s, rad/s]; zero when the device has no estimate
   bool has_velocity = false;  ///< whether V_DH was measured or estimated by the device
   std::uint32_t buttons = 0;  ///< bit 0 is the primary button
   bool valid = false;         ///< false: the read failed, everything else is the last known
@@ -28,16 +28,16 @@ struct DeviceSample {
 
 /// What a device can do; queried, never guessed from its name.
 struct DeviceInfo {
-  std::string name;                      ///< "simulated premium-1.5-6dof"
-  bool senses_rotation = false;          ///< orientation of the handle is measured
-  bool actuates_force = false;           ///< can push
-  bool actuates_torque = false;          ///< can turn the handle
-  double max_force_N = 0.0;              ///< largest force it may be asked for [N]
-  double max_torque_Nm = 0.0;            ///< largest torque it may be asked for [N m]
-  double max_stiffness_N_per_m = 0.0;    ///< stiffest wall its maker or users hold stable at 1 kHz [N/m]
-  double max_stiffness_Nm_per_rad = 0.0; ///< the same for rotation [N m/rad]
-  double workspace_radius_m = 0.0;       ///< largest sphere about the origin it reaches [m]
-  double rate_Hz = 1000.0;               ///< rate it wants to be served at [Hz]
+  std::string name;                       ///< "simulated premium-1.5-6dof"
+  bool senses_rotation = false;           ///< orientation of the handle is measured
+  bool actuates_force = false;            ///< can push
+  bool actuates_torque = false;           ///< can turn the handle
+  double max_force_N = 0.0;               ///< largest force it may be asked for [N]
+  double max_torque_Nm = 0.0;             ///< largest torque it may be asked for [N m]
+  double max_stiffness_N_per_m = 0.0;     ///< stiffest wall its maker or users hold stable at 1 kHz [N/m]
+  double max_stiffness_Nm_per_rad = 0.0;  ///< the same for rotation [N m/rad]
+  double workspace_radius_m = 0.0;        ///< largest sphere about the origin it reaches [m]
+  double rate_Hz = 1000.0;                ///< rate it wants to be served at [Hz]
 };
 
 class Device {

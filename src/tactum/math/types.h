@@ -1,6 +1,6 @@
 #pragma once
-/// The vector types: Eigen's, in double precision. Float was measured to be no faster here and to lose 1e-6 of
-/// a part's size.
+/// The vector types: Eigen's, in double precision. Float was measured to be no faster here and to lose 1e-6
+/// of a part's size.
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>

@@ -1,0 +1,151 @@
+/// tactum feel SCENE: the main job. Opens the scene and a device, runs the loop, shows what is felt, sums it up.
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <thread>
+
+#include "commands.h"
+#include "output.h"
+#include "tactum/scene/builtin_scenes.h"
+#include "tactum/session/session.h"
+
+namespace tactum {
+namespace {
+
+struct FeelOptions {
+  std::string scene = "gears";
+  double duration_s = 0.0;
+  std::uint64_t updates = 0;
+  std::string device;
+  std::string hand;
+  std::string json;
+  bool virtual_clock = false;
+};
+
+// Set by the signal handler, read by the main thread; the loop then ramps the wrench to zero.
+std::atomic<bool> g_interrupted{false};
+static_assert(std::atomic<bool>::is_always_lock_free);
+
+void on_interrupt(int) { g_interrupted.store(true); }
+
+/// One line, overwritten in place, only where a person watches.
+class StatusLine {
+ public:
+  void show(const Session& session, const SessionStatus& status) {
+    if (!on_terminal_) return;
+    fmt::print(stderr, "\r{:>8.2f} s  force {:6.2f} N  torque {:7.1f} mN m  stretch {:6.3f} mm  contacts {:3}  {:5.0f} Hz {}\033[K",
+               static_cast<double>(status.frame) / session.rate_Hz(), status.force_N, status.torque_Nm * 1e3,
+               status.stretch_m * 1e3, status.contact_points, rate(status.frame), safety_flag_names(status.safety));
+    std::fflush(stderr);
+    shown_ = true;
+  }
+  ~StatusLine() {
+    if (shown_) fmt::print(stderr, "\n");
+  }
+
+ private:
+  /// Frames a second since the last call.
+  double rate(std::uint64_t frame) {
+    const auto now = std::chrono::steady_clock::now();
+    const double seconds = std::chrono::duration<double>(now - last_).count();
+    const double frames = static_cast<double>(frame) - static_cast<double>(last_frame_);
+    last_ = now;
+    last_frame_ = frame;
+    return seconds > 0.0 ? frames / seconds : 0.0;
+  }
+  bool on_terminal_ = isatty(STDERR_FILENO) != 0;
+  bool shown_ = false;
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+  std::uint64_t last_frame_ = 0;
+};
+
+/// Times the frames of a virtual run, keeps the status line alive, and passes Ctrl-C on.
+class VirtualWatch final : public LoopObserver {
+ public:
+  explicit VirtualWatch(Session& session) : session_(session) {}
+  bool after_frame(const FrameRecord& record) noexcept override {
+    frame_times.add(static_cast<std::int64_t>(record.frame_time_s * 1e9));
+    if (record.tick.index % kFramesPerLook == 0) status_.show(session_, session_.poll());
+    return !g_interrupted.load();
+  }
+  DurationHistogram frame_times;
+
+ private:
+  static constexpr std::uint64_t kFramesPerLook = 1000;
+  Session& session_;
+  StatusLine status_;
+};
+
+std::uint64_t frames_asked_for(const FeelOptions& options, const Session& session) {
+  if (options.updates > 0) return options.updates;
+  const double duration = options.duration_s > 0.0 ? options.duration_s : session.scene().hand->duration_s();
+  return static_cast<std::uint64_t>(duration * session.rate_Hz());
+}
+
+Summary feel_virtually(Session& session, std::uint64_t frames) {
+  VirtualWatch watch(session);
+  const Result<VirtualRun> run = session.run_virtual(frames, &watch);
+  if (!run) fail(run.error());
+  return watch.frame_times.summary();
+}
+
+/// Runs the loop's own thread until the frames are done, the device is gone or the user stops it.
+Summary feel_live(Session& session, std::uint64_t frames) {
+  if (const Result<void> started = session.start(); !started) fail(started.error());
+  for (const std::string& sentence : session.privileges().sentences) fmt::print(stderr, "{}\n", sentence);
+  StatusLine status;
+  while (session.loop_status().running && session.loop_status().frames < frames && !g_interrupted.load()) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    status.show(session, session.poll());
+  }
+  session.stop();
+  session.poll();
+  return session.frame_times().summary();
+}
+
+void feel(const FeelOptions& options) {
+  Result<Scene> scene = open_scene(options.scene);
+  if (!scene) fail(scene.error());
+  for (const std::string& remark : scene->remarks) fmt::print(stderr, "{}\n", remark);
+  Result<std::unique_ptr<Session>> opened =
+      Session::open(std::move(*scene), {.device = options.device, .grip = options.hand, .rate_Hz = 0.0});
+  if (!opened) fail(opened.error());
+  Session& session = **opened;
+
+  std::signal(SIGINT, on_interrupt);
+  std::signal(SIGTERM, on_interrupt);
+  fmt::print("{}: {}\n{} at {:.0f} Hz, hand {}\n", session.scene().name, session.scene().description,
+             session.device().name, session.rate_Hz(), options.hand.empty() ? session.scene().grip : options.hand);
+  std::fflush(stdout);
+  const std::uint64_t frames = frames_asked_for(options, session);
+  const Summary times = options.virtual_clock ? feel_virtually(session, frames) : feel_live(session, frames);
+  print_summary(session, times);
+  if (!options.json.empty()) write_json(options.json, summary_json(session, times));
+  if (session.loop_status().device_lost)
+    fail({"the device refused every wrench for a while, so the loop has ended", "", "a device that is plugged in and powered", session.device().name});
+}
+
+}  // namespace
+
+void add_feel(CLI::App& app) {
+  auto options = std::make_shared<FeelOptions>();
+  CLI::App* command = app.add_subcommand("feel", "Feel a scene: run the haptic loop on a device");
+  command->add_option("SCENE", options->scene, "a scene's name (see: tactum scenes) or a scene file")
+      ->capture_default_str();
+  command->add_option("--duration", options->duration_s, "how long [s]; by default as long as the hand's motion")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--updates", options->updates, "how many frames, instead of a duration")->check(CLI::PositiveNumber);
+  command->add_option("--device", options->device, "see: tactum devices; by default the scene's simulated one");
+  command->add_option("--hand", options->hand, "grip of the simulated hand: loose, medium or firm");
+  command->add_option("--json", options->json, "write the summary to this file (- for standard output)");
+  command->add_flag("--virtual-clock", options->virtual_clock,
+                    "as fast as the machine can, with the same result on every machine");
+  command->callback([options] { feel(*options); });
+}
+
+}  // namespace tactum

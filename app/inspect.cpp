@@ -1,0 +1,131 @@
+#include <fmt/format.h>
+
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "commands.h"
+#include "tactum/geometry/mesh_import.h"
+#include "tactum/geometry/mesh_report.h"
+
+/// `tactum inspect FILE...`: what is in a mesh file, and what is wrong with it.
+
+namespace tactum {
+namespace {
+
+struct Options {
+  std::vector<std::string> files;
+  std::string json;    ///< file to write, "-" for stdout
+  double scale = 1.0;  ///< metres per unit of the files [m]
+};
+
+struct Inspection {
+  std::string file;
+  ImportedMesh mesh;
+  MeshReport report;
+  UnitGuess unit;
+  int exact_boundary_edges = 0;  ///< when only equal coordinates are joined
+};
+
+Inspection inspected(const std::string& file, ImportedMesh mesh, double scale) {
+  Inspection out;
+  out.file = file;
+  out.report = report_mesh(mesh.mesh);
+  out.exact_boundary_edges = report_mesh(mesh.mesh, 0.0).boundary_edges;
+  Aabb in_file_units = out.report.box;
+  in_file_units.min /= scale;
+  in_file_units.max /= scale;
+  out.unit = guess_unit(in_file_units);
+  out.mesh = std::move(mesh);
+  return out;
+}
+
+std::string as_text(const Inspection& of) {
+  std::string text = fmt::format("{}: {}\n", of.file, of.mesh.report.format);
+  if (of.mesh.groups.size() > 1) {
+    text += fmt::format("{} objects:", of.mesh.groups.size());
+    for (const MeshGroup& group : of.mesh.groups)
+      text += fmt::format(" '{}' ({})", group.name, group.triangle_count);
+    text += "\n";
+  }
+  text += describe(of.report);
+  if (of.exact_boundary_edges != of.report.boundary_edges) {
+    text += fmt::format("{} boundary edges if only equal coordinates are joined\n", of.exact_boundary_edges);
+  }
+  for (const std::string& remark : of.mesh.report.remarks) text += remark + "\n";
+  return text + fmt::format("unit: {}? {}\n", of.unit.name, of.unit.reason);
+}
+
+nlohmann::json vector_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
+nlohmann::json as_json(const Inspection& of) {
+  const MeshReport& r = of.report;
+  nlohmann::json groups = nlohmann::json::array();
+  for (const MeshGroup& g : of.mesh.groups)
+    groups.push_back({{"name", g.name}, {"triangles", g.triangle_count}});
+  return {
+      {"file", of.file},
+      {"format", of.mesh.report.format},
+      {"groups", groups},
+      {"triangles", r.triangles},
+      {"vertices", r.vertices},
+      {"components", r.components},
+      {"closed", r.closed},
+      {"manifold", r.manifold()},
+      {"oriented", r.oriented},
+      {"convex", r.convex},
+      {"boundary_edges", r.boundary_edges},
+      {"boundary_edges_exact", of.exact_boundary_edges},
+      {"non_manifold_edges", r.non_manifold_edges},
+      {"misoriented_edges", r.misoriented_edges},
+      {"degenerate_index", r.index_degenerate},
+      {"degenerate_area", r.zero_area},
+      {"duplicate_triangles", r.duplicate_triangles},
+      {"volume_m3", r.volume},
+      {"area_m2", r.area},
+      {"box_min_m", vector_json(r.box.min)},
+      {"box_max_m", vector_json(r.box.max)},
+      {"unit_guess",
+       {{"name", of.unit.name}, {"metres_per_unit", of.unit.metres_per_unit}, {"reason", of.unit.reason}}},
+      {"remarks", of.mesh.report.remarks}};
+}
+
+void run(const Options& options) {
+  nlohmann::json all = nlohmann::json::array();
+  bool failed = false;
+  for (const std::string& file : options.files) {
+    Result<ImportedMesh> mesh = import_mesh(file, {.scale = options.scale});
+    if (!mesh) {
+      failed = true;
+      fmt::print(stderr, "tactum: {}\n", mesh.error().message());
+      all.push_back({{"file", file}, {"error", mesh.error().message()}});
+      continue;
+    }
+    const Inspection inspection = inspected(file, std::move(*mesh), options.scale);
+    all.push_back(as_json(inspection));
+    if (options.json != "-") fmt::print("{}\n", as_text(inspection));
+  }
+  const std::string text = all.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  if (options.json == "-") {
+    fmt::print("{}", text);
+  } else if (!options.json.empty()) {
+    std::ofstream file(options.json, std::ios::binary);
+    if (!(file << text) || !file.flush()) {
+      fail(Error{"the file cannot be written", "", "a writable place", options.json});
+    }
+  }
+  if (failed) throw CLI::RuntimeError(1);
+}
+
+}  // namespace
+
+void add_inspect(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("inspect", "What is in mesh files, and what is wrong with them.");
+  auto options = std::make_shared<Options>();
+  command->add_option("FILE", options->files, "Mesh files: OBJ, STL, PLY, OFF, glTF, GLB")->required();
+  command->add_option("--json", options->json, "Write the reports to this file (- for stdout)");
+  command->add_option("--scale", options->scale, "Metres per unit of the files")->check(CLI::PositiveNumber);
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace tactum

@@ -1,0 +1,108 @@
+#include "output.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <fstream>
+
+#include "commands.h"
+
+namespace tactum {
+namespace {
+
+double mean(double sum, std::uint64_t count) { return count == 0 ? 0.0 : sum / static_cast<double>(count); }
+
+/// Frame flags as sentences that name the setting to raise.
+std::vector<std::string> frame_notes(const RunRecord& record) {
+  std::vector<std::string> notes;
+  if (record.flags & frame_flag::kBudgetShort)
+    notes.push_back(fmt::format("{} pair checks were left out: raise max_exact_tests", record.unchecked));
+  if (record.flags & frame_flag::kRoomsFull) notes.emplace_back("near pairs or patches were dropped: rooms are full");
+  if (record.flags & frame_flag::kPointsFull)
+    notes.emplace_back("contact points were dropped: raise max_contact_points");
+  if (record.flags & frame_flag::kSolverBounded)
+    notes.emplace_back("the contact solver did not always converge: raise solver_iterations");
+  if (record.flags & frame_flag::kUncertified)
+    notes.push_back(fmt::format("{} distances had no certificate", record.uncertified));
+  return notes;
+}
+
+}  // namespace
+
+void write_json(const std::string& path, const nlohmann::ordered_json& json) {
+  const std::string text = json.dump(2) + "\n";
+  if (path == "-") {
+    std::fputs(text.c_str(), stdout);
+    return;
+  }
+  std::ofstream file(path);
+  file << text;
+  file.close();
+  if (!file) fail({"cannot write the file", "", "", path});
+}
+
+nlohmann::ordered_json summary_us(const Summary& summary) {
+  return {{"mean", summary.mean_ns * 1e-3},
+          {"p50", summary.p50_ns * 1e-3},
+          {"p99", summary.p99_ns * 1e-3},
+          {"p999", summary.p999_ns * 1e-3},
+          {"max", summary.max_ns * 1e-3}};
+}
+
+std::string hash_text(std::uint64_t hash) { return fmt::format("{:016x}", hash); }
+
+void print_summary(const Session& session, const Summary& times) {
+  const RunRecord& record = session.record();
+  fmt::print("\nforce            mean {:8.3f} N     max {:8.3f} N     largest step {:.3f} N\n",
+             mean(record.sum_force_N, record.frames), record.max_force_N, record.max_force_step_N);
+  fmt::print("torque           mean {:8.3f} mN m  max {:8.3f} mN m  largest step {:.3f} mN m\n",
+             mean(record.sum_torque_Nm, record.frames) * 1e3, record.max_torque_Nm * 1e3, record.max_torque_step_Nm * 1e3);
+  fmt::print("contact          {} of {} frames; penetrating {} frames, at most {:.4f} mm\n", record.colliding_frames,
+             record.frames, record.penetrating_frames, record.max_penetration_m * 1e3);
+  fmt::print("frame            mean {:.1f} us   p50 {:.1f}   p99 {:.1f}   p99.9 {:.1f}   max {:.1f}\n",
+             times.mean_ns * 1e-3, times.p50_ns * 1e-3, times.p99_ns * 1e-3, times.p999_ns * 1e-3, times.max_ns * 1e-3);
+  const LoopStatus loop = session.loop_status();
+  if (loop.frames > 0)
+    fmt::print("loop             {} frames, {} missed deadlines, {} late\n", loop.frames, loop.missed_deadlines,
+               loop.late_frames);
+  if (record.non_finite_frames > 0)
+    fmt::print("WRONG            {} frames computed a wrench that is not finite\n", record.non_finite_frames);
+  for (const std::string& note : frame_notes(record)) fmt::print("note             {}\n", note);
+  for (std::size_t i = 0; i < session.scene().goals.size(); ++i)
+    fmt::print("goal             {}\n", session.goals().describe(session.scene().world, i));
+  fmt::print("frames' hash     {}\n", hash_text(record.hash()));
+}
+
+nlohmann::ordered_json summary_json(const Session& session, const Summary& times) {
+  const RunRecord& record = session.record();
+  nlohmann::ordered_json goals = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < session.scene().goals.size(); ++i)
+    goals.push_back({{"met", session.goals().met(i)},
+                     {"what", session.goals().describe(session.scene().world, i)}});
+  const LoopStatus loop = session.loop_status();
+  return {{"scene", session.scene().name},
+          {"device", session.device().name},
+          {"rate_Hz", session.rate_Hz()},
+          {"frames", record.frames},
+          {"colliding_frames", record.colliding_frames},
+          {"penetrating_frames", record.penetrating_frames},
+          {"max_penetration_m", record.max_penetration_m},
+          {"mean_force_N", mean(record.sum_force_N, record.frames)},
+          {"max_force_N", record.max_force_N},
+          {"max_force_step_N", record.max_force_step_N},
+          {"mean_torque_Nm", mean(record.sum_torque_Nm, record.frames)},
+          {"max_torque_Nm", record.max_torque_Nm},
+          {"max_torque_step_Nm", record.max_torque_step_Nm},
+          {"non_finite_frames", record.non_finite_frames},
+          {"exact_tests", record.exact_tests},
+          {"uncertified", record.uncertified},
+          {"unchecked", record.unchecked},
+          {"missed_deadlines", loop.missed_deadlines},
+          {"frame_us", summary_us(times)},
+          {"notes", frame_notes(record)},
+          {"goals", goals},
+          {"goal_met", session.goals().all_met()},
+          {"frame_hash", hash_text(record.hash())}};
+}
+
+}  // namespace tactum

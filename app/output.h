@@ -1,0 +1,27 @@
+#pragma once
+/// What several subcommands print and write.
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tactum/session/session.h"
+#include "tactum/telemetry/statistics.h"
+
+namespace tactum {
+
+/// Writes to a file, or to standard output for "-". Ends the command when it cannot.
+void write_json(const std::string& path, const nlohmann::ordered_json& json);
+
+/// mean, p50, p99, p999, max in microseconds.
+nlohmann::ordered_json summary_us(const Summary& summary);
+
+/// Sixteen hexadecimal digits.
+std::string hash_text(std::uint64_t hash);
+
+/// The run for a person: wrench, contact, times, goals.
+void print_summary(const Session& session, const Summary& frame_times);
+
+/// The same for machines.
+nlohmann::ordered_json summary_json(const Session& session, const Summary& frame_times);
+
+}  // namespace tactum

@@ -1,0 +1,118 @@
+#pragma once
+/// Where do the bodies touch? The first half of a frame, from poses to contact patches, in three steps:
+///
+///   bodies  --- sweep and prune --->  near bodies  --- hierarchies --->  near pieces  --- exact tests --->  patches
+///
+/// What holds from frame to frame is kept: no step is repeated while a bound on the motion proves that its
+/// answer cannot have changed. Every body carries an odometer, `travel`: no point of it has moved farther than that since
+/// the start. A list of pairs made with reach R at the odometers' sum S0 holds all pairs within `tolerance`
+/// while  (S - S0) + tolerance <= R;  a pair found d apart at S0 needs no test while  d - (S - S0) > tolerance.
+/// Both are proofs, not guesses; they are what makes a frame with coherent motion cheap.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "tactum/collision/contact.h"
+#include "tactum/collision/schedule.h"
+#include "tactum/collision/sweep_and_prune.h"
+#include "tactum/geometry/part.h"
+
+namespace tactum {
+
+/// A body as the finder sees it. The part must outlive the finder.
+struct CollisionBody {
+  const Part* part = nullptr;
+  bool moves = true;  ///< two bodies that do not move are never tested
+};
+
+/// Rooms reserved at load time; a full one sets a flag and drops the rest of that step.
+struct ContactFinderRooms {
+  std::size_t pairs = 1 << 16;   ///< near piece pairs
+  std::size_t patches = 4096;    ///< contact patches of a frame
+};
+
+/// Two pieces nearer than their tolerance. Manifold in A's body frame.
+struct ContactPatch {
+  int body_a = -1, body_b = -1;    ///< body_a < body_b
+  int piece_a = -1, piece_b = -1;  ///< within their parts
+  double distance = 0.0;           ///< of the pieces, negative when they overlap [m]
+  double tolerance = 0.0;          ///< delta of the pair of bodies [m]
+  Manifold manifold;
+};
+
+/// Counted work of one frame: N, K and M of the paper's T_h = N t_s + K t_c + M t_f, and what was left.
+struct ContactWork {
+  int broad_phase_runs = 0;  ///< 1 when boxes or lists had to be renewed, else 0 ("N-body tests")
+  int bodies = 0;            ///< N
+  int near_pairs = 0;        ///< pairs on the lists
+  int exact_tests = 0;       ///< K
+  int feature_steps = 0;     ///< feature pairs visited by the exact tests
+  int patches = 0;           ///< M
+  int uncertified = 0;       ///< answers without a certificate
+  int unchecked = 0;         ///< due pairs beyond the budget
+  bool rooms_full = false;   ///< something was dropped: raise ContactFinderRooms
+};
+
+class ContactFinder {
+ public:
+  ContactFinder(std::vector<CollisionBody> bodies, std::span<const Pose> X_WB, const ContactFinderRooms& rooms = {});
+
+  /// Renews what the motion since the last frame has made stale. `reach[i]` [m] bounds how far any point of body i
+  /// moves in this frame; the tolerance of a pair is the sum of its reaches, at least `min_tolerance` [m].
+  void find_near_pairs(std::span<const Pose> X_WB, std::span<const double> reach, double min_tolerance) noexcept;
+
+  /// Exact tests of the near pairs that could be within tolerance, at most `budget` of them, and manifolds.
+  void find_patches(std::span<const Pose> X_WB, int budget) noexcept;
+
+  std::span<const ContactPatch> patches() const noexcept { return patches_; }
+  const ContactWork& work() const noexcept { return work_; }
+  /// Largest distance of a point of body i from its origin [m].
+  double radius(int i) const noexcept { return radius_[static_cast<std::size_t>(i)]; }
+
+ private:
+  struct Pair {
+    std::int32_t body_a, body_b, piece_a, piece_b;
+    PairCache cache;
+    double free_until = -1e300;      ///< odometer sum at which the distance may have shrunk to zero
+    std::int64_t last_checked = -1;  ///< frame
+    bool in_contact = false;
+  };
+  /// The pieces of two near bodies: pairs_[first, first + count), sorted by piece.
+  struct BodyPair {
+    std::int32_t first = 0, count = 0;
+    double odometers = 0.0;  ///< S0
+    double reach = 0.0;      ///< R
+    std::int64_t renewal = -1;  ///< the renewal it was last part of
+  };
+
+  void move_boxes(std::span<const Pose> X_WB) noexcept;
+  bool list_holds(const BodyPair& list, int a, int b) const noexcept;
+  void renew_lists(std::span<const Pose> X_WB) noexcept;
+  void collect(int a, int b, const Pose& X_AB, double reach) noexcept;
+  void inherit(const BodyPair& old, std::size_t first) noexcept;
+  void test(Pair& pair, std::span<const Pose> X_WB) noexcept;
+  double odometers(int a, int b) const noexcept { return travel_[std::size_t(a)] + travel_[std::size_t(b)]; }
+  double tolerance(int a, int b) const noexcept;
+  BodyPair& list_of(int a, int b) noexcept { return lists_[std::size_t(a) * bodies_.size() + std::size_t(b)]; }
+
+  std::vector<CollisionBody> bodies_;
+  std::vector<Aabb> part_box_;  // of the part, in its own frame
+  std::vector<double> radius_;
+  std::vector<Aabb> fat_box_;   // in the world, grown by slack
+  std::vector<double> slack_;   // how far boxes and lists are grown
+  std::vector<double> travel_;
+  std::vector<Pose> last_X_WB_;
+  SweepAndPrune sweep_;
+  std::vector<BodyPair> lists_;
+  std::vector<Pair> pairs_, renewed_;
+  std::vector<DuePair> due_;
+  std::vector<ContactPatch> patches_;
+  std::span<const double> reach_;
+  double min_tolerance_ = 0.0;
+  std::int64_t frame_ = 0;
+  std::int64_t renewal_ = 0;
+  ContactWork work_;
+};
+
+}  // namespace tactum

@@ -1,0 +1,25 @@
+#include "tactum/collision/schedule.h"
+
+#include <algorithm>
+
+namespace tactum {
+namespace {
+
+/// A strict order without ties, so that every standard library selects the same pairs.
+bool more_urgent(const DuePair& a, const DuePair& b) {
+  if (a.was_in_contact != b.was_in_contact) return a.was_in_contact;
+  if (a.last_checked != b.last_checked) return a.last_checked < b.last_checked;
+  return a.pair < b.pair;
+}
+
+}  // namespace
+
+int prioritise(std::span<DuePair> due, int budget) noexcept {
+  if (static_cast<std::size_t>(std::max(budget, 0)) >= due.size()) return static_cast<int>(due.size());
+  const auto cut = due.begin() + std::max(budget, 0);
+  std::nth_element(due.begin(), cut, due.end(), more_urgent);
+  std::sort(due.begin(), cut, [](const DuePair& a, const DuePair& b) { return a.pair < b.pair; });
+  return std::max(budget, 0);
+}
+
+}  // namespace tactum

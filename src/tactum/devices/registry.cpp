@@ -1,0 +1,90 @@
+#include "tactum/devices/registry.h"
+
+#include <array>
+#include <cstdio>
+
+#include "tactum/devices/motion_file.h"
+#include "tactum/devices/replay_device.h"
+#include "tactum/devices/simulated_device.h"
+
+namespace tactum {
+namespace {
+
+using MadeDevice = Result<std::unique_ptr<Device>>;
+
+constexpr const char* kDefaultPreset = "premium-1.5-6dof";
+
+MadeDevice make_simulated(const std::string& preset, const DeviceOptions& options) {
+  Result<SimulatedDeviceModel> model = simulated_device_preset(preset.empty() ? kDefaultPreset : preset);
+  if (!model) return model.error();
+  HandModel hand = no_hand();
+  if (options.grip != hand.name) {
+    Result<HandModel> grip = hand_model(options.grip);
+    if (!grip) return grip.error();
+    hand = *grip;
+  }
+  return MadeDevice(std::make_unique<SimulatedDevice>(*model, hand, options.hand_motion));
+}
+
+MadeDevice make_replay(const std::string& path, const DeviceOptions& options) {
+  if (path.empty()) return Error{"replay needs a file", "no file name", "replay:FILE", ""};
+  Result<Motion> motion = read_motion(path);
+  if (!motion) return motion.error();
+  ReplaySettings settings;
+  settings.at_end = options.repeat_replay ? AtEnd::kRepeat : AtEnd::kRest;
+  if (options.fit_replay) *motion = fitted(*motion, settings.workspace_radius_m);
+  auto played = std::make_shared<RecordedMotion>(std::move(*motion));
+  return MadeDevice(std::make_unique<ReplayDevice>(path, std::move(played), settings));
+}
+
+std::vector<DeviceListing> list_simulated() {
+  std::vector<DeviceListing> listings;
+  for (const SimulatedDeviceModel& model : simulated_device_presets()) {
+    char text[160];
+    std::snprintf(text, sizeof text, "simulated: %.3g N, %.3g N m, reach %.3g m%s", model.max_force_N,
+                  model.max_torque_Nm, model.workspace_radius_m,
+                  model.max_torque_Nm > 0.0 ? "" : " (senses rotation, cannot turn the handle)");
+    listings.push_back({"simulated:" + model.name, text});
+  }
+  return listings;
+}
+
+std::vector<DeviceListing> list_replay() {
+  return {{"replay:FILE", "plays a recorded hand from a motion file; nothing is felt"}};
+}
+
+/// One line per kind of device. NAME or NAME:ARGUMENT makes it.
+struct Kind {
+  const char* name;
+  MadeDevice (*make)(const std::string& argument, const DeviceOptions& options);
+  std::vector<DeviceListing> (*list)();
+};
+
+constexpr std::array<Kind, 2> kKinds = {{
+    {"simulated", make_simulated, list_simulated},
+    {"replay", make_replay, list_replay},
+}};
+
+}  // namespace
+
+Result<std::unique_ptr<Device>> make_device(const std::string& name, const DeviceOptions& options) {
+  const std::size_t colon = name.find(':');
+  const std::string kind_name = name.substr(0, colon);
+  const std::string argument = colon == std::string::npos ? "" : name.substr(colon + 1);
+  for (const Kind& kind : kKinds) {
+    if (kind_name == kind.name) return kind.make(argument, options);
+  }
+  std::string names = kKinds.front().name;
+  for (const DeviceListing& listing : list_devices()) names += ", " + listing.name;
+  return Error{"unknown device", "'" + name + "'", "one of " + names, ""};
+}
+
+std::vector<DeviceListing> list_devices() {
+  std::vector<DeviceListing> listings;
+  for (const Kind& kind : kKinds) {
+    for (DeviceListing& listing : kind.list()) listings.push_back(std::move(listing));
+  }
+  return listings;
+}
+
+}  // namespace tactum

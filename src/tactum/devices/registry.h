@@ -1,0 +1,35 @@
+#pragma once
+/// The devices by name, from one explicit table:
+///
+///   simulated            the premium-1.5-6dof preset
+///   simulated:PRESET     a preset of simulated_device.h
+///   replay:FILE          a motion file (motion_file.h)
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tactum/devices/device.h"
+#include "tactum/devices/hand_motion.h"
+
+namespace tactum {
+
+/// What a device may need beside its name. Real devices ignore the hand.
+struct DeviceOptions {
+  std::shared_ptr<const HandMotion> hand_motion;  ///< of the simulated hand; null: it rests at the origin
+  std::string grip = "medium";                    ///< of the simulated hand; "none" for a free handle
+  bool repeat_replay = false;                     ///< replay starts again at its end
+  bool fit_replay = false;  ///< replay is scaled into the workspace (motion_file.h, fitted)
+};
+
+struct DeviceListing {
+  std::string name;         ///< for make_device
+  std::string description;  ///< one line
+};
+
+/// Makes a device, not yet open. An unknown name is answered with the names there are.
+Result<std::unique_ptr<Device>> make_device(const std::string& name, const DeviceOptions& options);
+
+std::vector<DeviceListing> list_devices();
+
+}  // namespace tactum

@@ -1,0 +1,56 @@
+#pragma once
+/// A device that plays a motion: the hand of a recording that no wrench can move. It senses only; what it is
+/// sent is limited and counted, so that a run against it meets the same limits as one against a device of its
+/// class, and nothing is felt.
+
+#include <memory>
+#include <string>
+
+#include "tactum/devices/device.h"
+#include "tactum/devices/hand_motion.h"
+
+namespace tactum {
+
+/// What happens when the motion is over.
+enum class AtEnd {
+  kRest,   ///< the handle stays at the last pose
+  kRepeat  ///< from the beginning; a recording that does not end where it began jumps
+};
+
+struct ReplaySettings {
+  AtEnd at_end = AtEnd::kRest;
+  double max_force_N = 8.5;          ///< wrenches are limited to this [N]
+  double max_torque_Nm = 0.188;      ///< [N m]
+  double workspace_radius_m = 0.12;  ///< told in DeviceInfo [m]
+};
+
+class ReplayDevice final : public Device {
+ public:
+  /// `name` is shown, mostly the file's.
+  ReplayDevice(std::string name, std::shared_ptr<const HandMotion> motion, const ReplaySettings& settings);
+
+  Result<void> open() override;
+  void close() noexcept override { is_open_ = false; }
+  const DeviceInfo& info() const noexcept override { return info_; }
+  bool read(double now_s, DeviceSample& sample) noexcept override;
+  bool write(const Wrench& F_D) noexcept override;
+
+  bool finished() const noexcept { return finished_; }  ///< the last read was past the end, and no repeat
+  long writes() const noexcept { return writes_; }
+  long saturated_writes() const noexcept { return saturated_writes_; }
+  const Wrench& last_wrench() const noexcept { return last_; }  ///< limited, felt by nobody [N, N m]
+
+ private:
+  std::shared_ptr<const HandMotion> motion_;
+  ReplaySettings settings_;
+  DeviceInfo info_;
+  bool is_open_ = false;
+  bool started_ = false;
+  bool finished_ = false;
+  double start_s_ = 0.0;  // of the first read, the loop's clock
+  long writes_ = 0;
+  long saturated_writes_ = 0;
+  Wrench last_;
+};
+
+}  // namespace tactum

@@ -1,0 +1,28 @@
+#include "tactum/dynamics/world.h"
+
+#include <cmath>
+
+#include "tactum/math/screw.h"
+
+namespace tactum {
+
+WorldState initial_state(const World& world) {
+  WorldState state;
+  for (const Body& body : world.bodies) {
+    state.X_WB.push_back(body.X_WB);
+    state.V_WB.push_back(body.V_WB);
+  }
+  return state;
+}
+
+double hinge_angle(const Body& body, const Pose& X_WB) {
+  // The rotation about the axis that comes closest to the turn since the start: for a turn exactly about the axis,
+  // that turn. Twice the angle of (w, axis . vec) of its quaternion.
+  const Quat turn(X_WB.R * body.X_WB.R.transpose());
+  double angle = 2.0 * std::atan2(body.joint.axis_W.dot(turn.vec()), turn.w());
+  if (angle > kPi) angle -= 2.0 * kPi;
+  if (angle <= -kPi) angle += 2.0 * kPi;
+  return angle;
+}
+
+}  // namespace tactum

@@ -1,0 +1,119 @@
+#include "tactum/geometry/mass_properties.h"
+
+#include <algorithm>
+
+#include "tactum/base/tolerances.h"
+#include "tactum/geometry/hull.h"
+#include "tactum/geometry/mesh_report.h"
+
+namespace tactum {
+namespace {
+
+/// Moments of order 0, 1, 2 about `origin`, signed: negative for a surface that is inside out.
+struct Moments {
+  double volume = 0.0;
+  Vec3 first = Vec3::Zero();   ///< integral of x
+  Mat3 second = Mat3::Zero();  ///< integral of x x^T
+};
+
+/// A tetrahedron (0, a, b, c) has volume det/6, first moment V (a+b+c)/4 and second moment
+/// V/20 (s s^T + a a^T + b b^T + c c^T) with s = a + b + c.
+Moments moments_about(const Vec3& origin, const TriangleMesh& mesh) {
+  Moments sum;
+  for (const Triangle& t : mesh.triangles) {
+    const Vec3 a = mesh.vertices[t[0]] - origin;
+    const Vec3 b = mesh.vertices[t[1]] - origin;
+    const Vec3 c = mesh.vertices[t[2]] - origin;
+    const double volume = a.dot(b.cross(c)) / 6.0;
+    const Vec3 s = a + b + c;
+    sum.volume += volume;
+    sum.first += volume / 4.0 * s;
+    sum.second +=
+        volume / 20.0 * (s * s.transpose() + a * a.transpose() + b * b.transpose() + c * c.transpose());
+  }
+  return sum;
+}
+
+MassProperties from_moments(const Moments& moments, const Vec3& origin, double density) {
+  MassProperties out;
+  out.volume = moments.volume;
+  out.mass = density * moments.volume;
+  const Vec3 center = moments.first / moments.volume;
+  out.center = origin + center;
+  const Mat3 second = density * (moments.second - moments.volume * center * center.transpose());
+  out.inertia = second.trace() * Mat3::Identity() - second;
+  return out;
+}
+
+Vec3 middle(const TriangleMesh& mesh) { return bounds(mesh.vertices).center(); }
+
+TriangleMesh surface_of(const Polytope& hull) {
+  TriangleMesh mesh;
+  mesh.vertices = hull.vertices;
+  for (const Polytope::Face& face : hull.faces) {
+    const int* loop = hull.face_vertices.data() + face.first;
+    for (int i = 1; i + 1 < face.count; ++i) mesh.triangles.push_back({loop[0], loop[i], loop[i + 1]});
+  }
+  return mesh;
+}
+
+/// A box that holds the points, no side thinner than a thousandth of its diagonal.
+MassProperties of_box(const TriangleMesh& mesh, double density) {
+  constexpr double kThinnest = 1e-3;  // of the diagonal: a plate still has a mass
+  const Aabb box = bounds(mesh.vertices);
+  const Vec3 side = (box.max - box.min).cwiseMax(kThinnest * box.diagonal());
+  MassProperties out;
+  out.volume = side.prod();
+  out.mass = density * out.volume;
+  out.center = box.center();
+  const Vec3 sq = side.cwiseProduct(side);
+  out.inertia = (out.mass / 12.0 * (Vec3::Constant(sq.sum()) - sq)).asDiagonal();
+  out.approximation = "The points lie in a plane: mass and inertia are those of the bounding box.";
+  return out;
+}
+
+}  // namespace
+
+Result<MassProperties> mass_properties(const TriangleMesh& mesh, double density_kg_per_m3) {
+  const MeshReport report = report_mesh(mesh);
+  const char* what = "the solid has no mass properties";
+  if (!report.closed) {
+    return Error{what,
+                 std::to_string(report.boundary_edges) + " boundary and " +
+                     std::to_string(report.non_manifold_edges) +
+                     " non-manifold edges, the first at triangle " +
+                     std::to_string(std::max(report.first_boundary, report.first_non_manifold)),
+                 "a closed surface", "mesh"};
+  }
+  if (!report.oriented) {
+    return Error{what,
+                 std::to_string(report.misoriented_edges) + " edges where neighbours face opposite ways",
+                 "triangles that all face outward", "mesh"};
+  }
+  if (!(report.volume > 0.0)) {
+    return Error{what, "a signed volume of " + std::to_string(report.volume) + " m^3",
+                 "a positive one: triangles counter-clockwise seen from outside", "mesh"};
+  }
+  const Vec3 origin = middle(mesh);
+  return from_moments(moments_about(origin, mesh), origin, density_kg_per_m3);
+}
+
+MassProperties mass_properties_or_hull(const TriangleMesh& mesh, double density_kg_per_m3) {
+  if (mesh.vertices.empty()) return {};
+  if (Result<MassProperties> exact = mass_properties(mesh, density_kg_per_m3); exact) return *exact;
+  TriangleMesh turned = mesh;
+  for (Triangle& t : turned.triangles) std::swap(t[1], t[2]);
+  if (Result<MassProperties> exact = mass_properties(turned, density_kg_per_m3); exact) {
+    exact->approximation = "The normals point inward: the surface was turned round.";
+    return *exact;
+  }
+  const Result<Polytope> hull = convex_hull(mesh.vertices);
+  if (!hull || hull->flat) return of_box(mesh, density_kg_per_m3);
+  const TriangleMesh surface = surface_of(*hull);
+  const Vec3 origin = middle(surface);
+  MassProperties out = from_moments(moments_about(origin, surface), origin, density_kg_per_m3);
+  out.approximation = "The surface is not closed: mass and inertia are those of its convex hull.";
+  return out;
+}
+
+}  // namespace tactum

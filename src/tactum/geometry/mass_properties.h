@@ -1,0 +1,30 @@
+#pragma once
+/// Volume, centre of mass and inertia of a solid from its closed surface. Every triangle spans a tetrahedron
+/// with a fixed point; its moments are polynomials of the corners, and signed by orientation they add up to
+/// the solid's (divergence theorem; Mirtich 1996, Tonon 2004). O(triangles), exact up to rounding.
+
+#include <string>
+#include <vector>
+
+#include "tactum/base/result.h"
+#include "tactum/geometry/triangle_mesh.h"
+
+namespace tactum {
+
+struct MassProperties {
+  double volume = 0.0;          ///< [m^3]
+  double mass = 0.0;            ///< [kg]
+  Vec3 center = Vec3::Zero();   ///< of mass, in the mesh's frame [m]
+  Mat3 inertia = Mat3::Zero();  ///< about the centre of mass, axes of the mesh's frame [kg m^2]
+  std::string approximation;    ///< empty when exact; else a sentence that says what stands in for the solid
+};
+
+/// Of a closed, consistently oriented surface with normals outward; anything else is an error that says what
+/// is open.
+Result<MassProperties> mass_properties(const TriangleMesh& mesh, double density_kg_per_m3);
+
+/// Of anything: exact when the surface is closed (turned round when its normals point inward), otherwise of
+/// the convex hull, or of the bounding box when the points lie in a plane; `approximation` says which.
+MassProperties mass_properties_or_hull(const TriangleMesh& mesh, double density_kg_per_m3);
+
+}  // namespace tactum

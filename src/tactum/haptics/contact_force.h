@@ -1,0 +1,50 @@
+#pragma once
+/// From contact patches to the rows of the contact problem: which points push, in which direction, how stiffly.
+///
+/// A patch pushes with the paper's k_s as a whole; its points share it by their weights (quadrature of the area, see
+/// collision/manifold.h). The pieces of a one-sided surface are arbitrary triangles of larger facets, so patches on the
+/// same facet are one patch: their points are weighed by area and reduced to four that carry the same area integrals
+/// (mean, second moments, and the gap as a linear function). A wall feels the same however finely it was meshed.
+
+#include <vector>
+
+#include "tactum/collision/contact_finder.h"
+#include "tactum/dynamics/contact_solver.h"
+#include "tactum/haptics/shading.h"
+
+namespace tactum {
+
+/// One point of a facet: a row in the making.
+struct FacetPoint {
+  Vec3 p_W = Vec3::Zero();     ///< [m]
+  Vec3 n_BA_W = Vec3::Zero();  ///< unit [-]
+  double distance = 0.0;       ///< [m]
+  double weight = 0.0;         ///< share of the facet's stiffness; they add up to one [-]
+};
+
+/// Rows and scratch, allocated at load time.
+struct ContactRows {
+  ContactRows(std::size_t patches, std::size_t most_rows) {
+    facets.reserve(patches);
+    points.reserve(patches * 4);
+    rows.reserve(most_rows);
+  }
+  /// The facet a patch lies on, as a sort key, and the patch.
+  struct Facet {
+    int body_a, body_b, group_a, group_b, patch;
+  };
+  std::vector<Facet> facets;
+  std::vector<FacetPoint> points;  // of one facet
+  std::vector<ContactRow> rows;
+  bool full = false;  ///< points were dropped
+};
+
+/// Fills `out.rows`. `shading` has one entry per body, or is empty for force directions without shading.
+void make_contact_rows(const World& world, std::span<const Pose> X_WB, std::span<const ContactPatch> patches,
+                       const std::vector<ShadingNormals>& shading, double stiffness_N_per_m,
+                       ContactRows& out) noexcept;
+
+/// The sum of the contact forces on `body` at its origin, T = sum R_i x F_i [Gregory 2000, 5.1], from solved rows.
+Wrench contact_wrench(std::span<const ContactRow> rows, int body, const Vec3& p_WB, double h) noexcept;
+
+}  // namespace tactum

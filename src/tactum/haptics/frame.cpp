@@ -1,0 +1,69 @@
+#include "tactum/haptics/frame.h"
+
+#include "tactum/haptics/response.h"
+
+namespace tactum {
+namespace {
+
+std::uint32_t flags_of(const ContactWork& work) {
+  return (work.unchecked > 0 ? frame_flag::kBudgetShort : 0u) | (work.rooms_full ? frame_flag::kRoomsFull : 0u) |
+         (work.uncertified > 0 ? frame_flag::kUncertified : 0u);
+}
+
+}  // namespace
+
+Wrench haptic_frame(const World& world, const FrameSettings& settings, const DeviceSample& sample, const FrameTick& tick,
+                    FrameState& state, FrameReport& report) noexcept {
+  report = {};
+  report.index = tick.index;
+  const double dt = settings.dt_s;
+  Wrench raw;
+
+  // Where is the hand?
+  const bool was_known = state.hand.known;
+  follow_hand(settings.workspace, sample, dt, state.hand);
+  if (!was_known && state.hand.known) grasp(settings, state);
+  state.ended(Stage::kHand);
+
+  if (state.hand.known) {
+    // How fast does everything move, and how far may it come: delta = v_c dt.
+    wanted_velocities(world, settings, dt, state);
+    tolerances_from_speed(dt, state);
+    state.ended(Stage::kVelocities);
+
+    // Which pairs could touch, and where do they?
+    state.finder.find_near_pairs(state.world.X_WB, state.reach, settings.penalty.min_tolerance_m);
+    state.ended(Stage::kNearPairs);
+    state.finder.find_patches(state.world.X_WB, settings.budget.max_exact_tests);
+    report.work = state.finder.work();
+    report.flags |= flags_of(report.work);
+    state.ended(Stage::kExactTests);
+
+    // How do the proxy and the world answer?
+    respond(world, settings, dt, state, report);
+    state.ended(Stage::kResponse);
+
+    // What does the hand feel?
+    raw = felt_wrench(settings, state, report);
+  } else {
+    report.flags |= frame_flag::kNoHand;
+  }
+  report.coupling = raw;
+  report.smoothed = smooth_wrench(settings.smoothing, state.smoothing, to_device(state.hand, raw));
+
+  // Is it safe to send?
+  const SafetyInput input{.wanted = report.smoothed,
+                          .X_DH = sample.X_DH,
+                          .sample_valid = sample.valid,
+                          .sample_age_s = tick.now_s - sample.time_s,
+                          .period_s = tick.period_s,
+                          .late = tick.late,
+                          .stop = tick.stop};
+  SafetyReport safety;
+  report.shown = safe_wrench(settings.safety, state.safety, input, safety);
+  report.safety = safety.flags;
+  state.ended(Stage::kShow);
+  return report.shown;
+}
+
+}  // namespace tactum

@@ -1,0 +1,15 @@
+#pragma once
+/// One haptic frame: from a device sample to a wrench. The heart; read frame.cpp from top to bottom.
+
+#include "tactum/haptics/frame_report.h"
+#include "tactum/haptics/frame_state.h"
+#include "tactum/haptics/loop.h"
+
+namespace tactum {
+
+/// The wrench for the hand, device axes, at the handle. A function of its arguments: it allocates nothing, locks
+/// nothing, throws nothing and reads no clock, and the same inputs give the same bits.
+Wrench haptic_frame(const World& world, const FrameSettings& settings, const DeviceSample& sample, const FrameTick& tick,
+                    FrameState& state, FrameReport& report) noexcept;
+
+}  // namespace tactum

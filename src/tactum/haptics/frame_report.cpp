@@ -1,0 +1,43 @@
+#include "tactum/haptics/frame_report.h"
+
+namespace tactum {
+namespace {
+
+void add(Hash& hash, const Vec3& v) {
+  for (int i = 0; i < 3; ++i) hash.add(v[i] + 0.0);  // one zero, whatever its sign
+}
+
+void add(Hash& hash, const Wrench& F) {
+  add(hash, F.f);
+  add(hash, F.t);
+}
+
+void add(Hash& hash, const Pose& X) {
+  add(hash, X.p);
+  for (int i = 0; i < 3; ++i) add(hash, Vec3(X.R.col(i)));
+}
+
+}  // namespace
+
+void add_to(Hash& hash, const FrameReport& report) noexcept {
+  hash.add(report.index);
+  hash.add(report.flags);
+  hash.add(report.safety);
+  add(hash, report.X_WH);
+  add(hash, report.X_WH_proxy);
+  add(hash, report.restoring);
+  add(hash, report.coupling);
+  add(hash, report.smoothed);
+  add(hash, report.shown);
+  hash.add(report.tolerance_m);
+  hash.add(report.min_distance_m);
+  hash.add(report.time_of_impact_s);
+  hash.add(report.contact_points);
+  hash.add(report.solver_iterations);
+  hash.add(report.work.near_pairs);
+  hash.add(report.work.exact_tests);
+  hash.add(report.work.feature_steps);
+  hash.add(report.work.patches);
+}
+
+}  // namespace tactum

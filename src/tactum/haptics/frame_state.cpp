@@ -1,0 +1,28 @@
+#include "tactum/haptics/frame_state.h"
+
+namespace tactum {
+namespace {
+
+std::vector<CollisionBody> collision_bodies(const World& world) {
+  std::vector<CollisionBody> bodies;
+  for (const Body& body : world.bodies) bodies.push_back({body.part.get(), body.moves()});
+  return bodies;
+}
+
+}  // namespace
+
+FrameState::FrameState(const World& constant_world, const FrameSettings& settings, StageObserver* stage_observer)
+    : world(initial_state(constant_world)),
+      tool(settings.tool),
+      finder(collision_bodies(constant_world), world.X_WB),
+      observer(stage_observer),
+      resistance(constant_world.bodies.size(), Resistance::Zero()),
+      mobility(constant_world.bodies.size(), Mobility::Zero()),
+      reach(constant_world.bodies.size(), 0.0),
+      contacts(ContactFinderRooms{}.patches, static_cast<std::size_t>(settings.budget.max_contact_points)) {
+  hand.X_WD = settings.workspace.X_WD;
+  if (!settings.shading.on) return;
+  for (const Body& body : constant_world.bodies) shading.emplace_back(*body.part, settings.shading.crease_rad);
+}
+
+}  // namespace tactum

@@ -1,0 +1,137 @@
+#include "tactum/haptics/response.h"
+
+#include <algorithm>
+
+#include "tactum/base/tolerances.h"
+#include "tactum/dynamics/step.h"
+#include "tactum/haptics/coupling.h"
+#include "tactum/haptics/proxy.h"
+#include "tactum/math/screw.h"
+
+namespace tactum {
+namespace {
+
+using Index = std::size_t;
+
+/// The held part weighs nothing: it resists as its coupling does, over a step of h seconds.
+Resistance resistance_of(const World& world, const FrameSettings& settings, const FrameState& state, Index i, double h) {
+  const Pose& X_WB = state.world.X_WB[i];
+  if (static_cast<int>(i) == state.tool.body)
+    return coupling_resistance(settings.coupling, X_WB.R * state.tool.X_BH.p, h);
+  return inertial_resistance(world.bodies[i], X_WB);
+}
+
+/// Keeps the held part's step below the threshold distance.
+void limit_held(const FrameSettings& settings, double dt_s, FrameState& state) {
+  if (state.tool.body < 0) return;
+  Twist& V_WB = state.world.V_WB[Index(state.tool.body)];
+  V_WB = within_threshold(V_WB, state.finder.radius(state.tool.body), settings.penalty.max_step_m, dt_s);
+}
+
+/// Gives the held part the whole way that is left to the hand over the `rest` of the frame, and what resists that.
+void pull_held(const World& world, const FrameSettings& settings, double rest, FrameState& state) {
+  if (state.tool.body < 0) return;
+  const Index i = Index(state.tool.body);
+  const Pose& X_WB = state.world.X_WB[i];
+  const Joint& joint = world.bodies[i].joint;
+  state.resistance[i] = resistance_of(world, settings, state, i, rest);
+  state.mobility[i] = mobility(joint, X_WB, state.resistance[i]);
+  const Twist pull = velocity_to_hand(state.tool, X_WB, state.hand.X_WH, rest);
+  state.world.V_WB[i] = constrained_velocity(joint, X_WB, state.resistance[i], pull);
+}
+
+/// Distances are those the frame found, before anything moved.
+void report_distances(const World& world, std::span<const ContactPatch> patches, FrameReport& report) {
+  for (const ContactPatch& patch : patches) {
+    const Polytope& a = world.bodies[Index(patch.body_a)].part->pieces[Index(patch.piece_a)];
+    const Polytope& b = world.bodies[Index(patch.body_b)].part->pieces[Index(patch.piece_b)];
+    report.penetrating |= -patch.distance > tolerances::kPenetrating * (a.size + b.size);
+    report.tolerance_m = std::max(report.tolerance_m, patch.tolerance);
+    const bool first = &patch == patches.data();
+    report.min_distance_m = first ? patch.distance : std::min(report.min_distance_m, patch.distance);
+  }
+}
+
+void report_contacts(const FrameState& state, double h, FrameReport& report) {
+  const int held = state.tool.body;
+  report.contact_points = static_cast<int>(state.contacts.rows.size());
+  for (const ContactRow& row : state.contacts.rows)
+    report.held_contact_points += row.body_a == held || row.body_b == held ? 1 : 0;
+  if (held >= 0) report.restoring = contact_wrench(state.contacts.rows, held, state.world.X_WB[Index(held)].p, h);
+}
+
+}  // namespace
+
+void grasp(const FrameSettings& settings, FrameState& state) noexcept {
+  if (state.tool.body < 0) return;
+  const Pose& X_WB = state.world.X_WB[Index(state.tool.body)];
+  HandTracking& hand = state.hand;
+  hand.X_WD.p += X_WB * settings.tool.X_BH.p - hand.X_WH.p;
+  hand.X_WH.p = X_WB * settings.tool.X_BH.p;
+  state.tool.X_BH.R = X_WB.R.transpose() * hand.X_WH.R;
+}
+
+void wanted_velocities(const World& world, const FrameSettings& settings, double dt_s, FrameState& state) noexcept {
+  for (Index i = 0; i < world.bodies.size(); ++i) {
+    const Body& body = world.bodies[i];
+    if (!body.moves()) continue;
+    const Pose& X_WB = state.world.X_WB[i];
+    Twist& V_WB = state.world.V_WB[i];
+    state.resistance[i] = resistance_of(world, settings, state, i, dt_s);
+    if (static_cast<int>(i) == state.tool.body) {
+      V_WB = velocity_to_hand(state.tool, X_WB, state.hand.X_WH, dt_s);
+    } else {
+      V_WB.v += world.gravity_W * dt_s;
+    }
+    V_WB = constrained_velocity(body.joint, X_WB, state.resistance[i], V_WB);
+    state.mobility[i] = mobility(body.joint, X_WB, state.resistance[i]);
+  }
+  limit_held(settings, dt_s, state);
+  apply_hinge_friction(world, state.world, state.mobility, dt_s, state.world.V_WB);
+}
+
+void tolerances_from_speed(double dt_s, FrameState& state) noexcept {
+  for (Index i = 0; i < state.reach.size(); ++i) {
+    const Twist& V = state.world.V_WB[i];
+    state.reach[i] = (V.v.norm() + V.w.norm() * state.finder.radius(static_cast<int>(i))) * dt_s;
+  }
+}
+
+void respond(const World& world, const FrameSettings& settings, double dt_s, FrameState& state,
+             FrameReport& report) noexcept {
+  std::vector<Pose>& X_WB = state.world.X_WB;
+  std::vector<Twist>& V_WB = state.world.V_WB;
+  std::vector<ContactRow>& rows = state.contacts.rows;
+  make_contact_rows(world, X_WB, state.finder.patches(), state.shading, settings.penalty.stiffness_N_per_m,
+                    state.contacts);
+  report_distances(world, state.finder.patches(), report);
+  const double impact = smallest_time_of_impact(rows, X_WB, V_WB, dt_s);
+  advance_distances(rows, X_WB, V_WB, impact);
+  advance_bodies(world, V_WB, impact, X_WB);
+
+  const double rest = dt_s - impact;
+  if (rest > 0.0) {
+    pull_held(world, settings, rest, state);
+    const SolverResult solved = solve_contacts(rows, X_WB, state.mobility, rest, settings.budget.solver_iterations, V_WB);
+    report.solver_iterations = solved.iterations;
+    if (!solved.converged) report.flags |= frame_flag::kSolverBounded;
+    report_contacts(state, rest, report);
+    limit_held(settings, dt_s, state);
+    advance_bodies(world, V_WB, rest, X_WB);
+  }
+  for (Index i = 0; i < world.bodies.size(); ++i)
+    if (world.bodies[i].moves()) X_WB[i] = constrained_pose(world.bodies[i], X_WB[i]);
+  if (state.contacts.full) report.flags |= frame_flag::kPointsFull;
+  report.time_of_impact_s = impact;
+}
+
+Wrench felt_wrench(const FrameSettings& settings, FrameState& state, FrameReport& report) noexcept {
+  report.X_WH = state.hand.X_WH;
+  if (state.tool.body < 0) return {};
+  const Pose& X_WB = state.world.X_WB[Index(state.tool.body)];
+  report.X_WH_proxy = X_WB * state.tool.X_BH;
+  const Twist V_WH_proxy = moved(state.world.V_WB[Index(state.tool.body)], X_WB.R * state.tool.X_BH.p);
+  return coupling_wrench(settings.coupling, state.hand.X_WH, state.hand.V_WH, report.X_WH_proxy, V_WH_proxy);
+}
+
+}  // namespace tactum

@@ -1,0 +1,131 @@
+#include "tactum/haptics/safety.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactum {
+namespace {
+
+using namespace safety_flag;
+
+constexpr double kFullScaleTime_s = 0.005;
+
+/// Scales `v` to at most `limit`; true when it did. A limit of zero gives exactly zero.
+bool limit_length(Vec3& v, double limit) noexcept {
+  const double length = v.norm();
+  if (!(length > limit)) return false;
+  v *= limit / length;  // a length that overflows to infinity gives zero
+  return true;
+}
+
+/// Moves `v` back to within `step` of `from`; true when it did.
+bool limit_step(const Vec3& from, Vec3& v, double step) noexcept {
+  Vec3 change = v - from;
+  if (!limit_length(change, step)) return false;
+  v = from + change;
+  return true;
+}
+
+std::uint32_t faults(const SafetyLimits& limits, SafetyState& state, const SafetyInput& input) noexcept {
+  std::uint32_t flags = 0;
+  if (!input.wanted.finite() || !std::isfinite(input.period_s)) flags |= kNonFiniteWrench;
+  if (!input.X_DH.finite()) flags |= kNonFinitePose;
+  // Written so that a NaN is stale; a sample from the future comes from a broken clock.
+  if (!(std::abs(input.sample_age_s) <= limits.max_sample_age_s)) flags |= kStaleSample;
+  state.invalid_reads = input.sample_valid ? 0 : std::min(state.invalid_reads + 1, limits.max_invalid_reads);
+  if (!input.sample_valid && state.invalid_reads >= limits.max_invalid_reads) flags |= kReadsFailing;
+  if (input.late) flags |= kMissedDeadline;
+  return flags;
+}
+
+/// Moves the gain along its ramp. A ramp of no length is a step.
+std::uint32_t move_gain(const SafetyLimits& limits, SafetyState& state, const SafetyInput& input) noexcept {
+  const double ramp_s = input.stop ? limits.stop_ramp_s : limits.start_ramp_s;
+  const double step = ramp_s > input.period_s ? input.period_s / ramp_s : 1.0;
+  state.gain = std::clamp(state.gain + (input.stop ? -step : step), 0.0, 1.0);
+  if (input.stop) return kStopping;
+  return state.gain < 1.0 ? kStarting : 0;
+}
+
+}  // namespace
+
+SafetyLimits safety_limits(const DeviceInfo& info) noexcept {
+  SafetyLimits limits;
+  limits.max_force_N = std::max(0.0, info.max_force_N);
+  limits.max_torque_Nm = std::max(0.0, info.max_torque_Nm);
+  limits.max_force_slew_N_per_s = limits.max_force_N / kFullScaleTime_s;
+  limits.max_torque_slew_Nm_per_s = limits.max_torque_Nm / kFullScaleTime_s;
+  return limits;
+}
+
+SafetyLimits tightened(const SafetyLimits& limits, const SafetySettings& settings) noexcept {
+  // std::min and std::max keep their first argument when the second is NaN.
+  const auto smaller = [](double limit, double asked) { return std::max(0.0, std::min(limit, asked)); };
+  SafetyLimits result = limits;
+  result.max_force_N = smaller(limits.max_force_N, settings.max_force_N);
+  result.max_torque_Nm = smaller(limits.max_torque_Nm, settings.max_torque_Nm);
+  result.max_force_slew_N_per_s = smaller(limits.max_force_slew_N_per_s, settings.max_force_slew_N_per_s);
+  result.max_torque_slew_Nm_per_s =
+      smaller(limits.max_torque_slew_Nm_per_s, settings.max_torque_slew_Nm_per_s);
+  result.start_ramp_s = std::max(limits.start_ramp_s, settings.start_ramp_s);
+  result.stop_ramp_s = smaller(limits.stop_ramp_s, settings.stop_ramp_s);
+  return result;
+}
+
+Wrench safe_wrench(const SafetyLimits& limits, SafetyState& state, const SafetyInput& input,
+                   SafetyReport& report) noexcept {
+  report.flags = faults(limits, state, input);
+  if (report.flags != 0) {
+    state.gain = 0.0;
+    state.sent = {};
+    return state.sent;
+  }
+  report.flags |= move_gain(limits, state, input);
+  if (input.stop && state.gain <= 0.0) {
+    report.flags |= kStopped;
+    state.sent = {};
+    return state.sent;
+  }
+  Wrench F = input.wanted;
+  if (limit_length(F.f, limits.max_force_N)) report.flags |= kForceLimited;
+  if (limit_length(F.t, limits.max_torque_Nm)) report.flags |= kTorqueLimited;
+  F = F * state.gain;
+  if (limit_step(state.sent.f, F.f, limits.max_force_slew_N_per_s * input.period_s)) {
+    report.flags |= kForceSlewed;
+  }
+  if (limit_step(state.sent.t, F.t, limits.max_torque_slew_Nm_per_s * input.period_s)) {
+    report.flags |= kTorqueSlewed;
+  }
+  // The last wrench may lie outside limits that were tightened since; a slewed one must not.
+  if (limit_length(F.f, limits.max_force_N)) report.flags |= kForceLimited;
+  if (limit_length(F.t, limits.max_torque_Nm)) report.flags |= kTorqueLimited;
+  state.sent = F;
+  return F;
+}
+
+std::string safety_flag_names(std::uint32_t flags) {
+  static constexpr struct {
+    std::uint32_t flag;
+    const char* name;
+  } kNames[] = {
+      {kForceLimited, "force limited"},
+      {kTorqueLimited, "torque limited"},
+      {kForceSlewed, "force slew limited"},
+      {kTorqueSlewed, "torque slew limited"},
+      {kStarting, "starting"},
+      {kStopping, "stopping"},
+      {kStopped, "stopped"},
+      {kNonFiniteWrench, "wrench not finite"},
+      {kNonFinitePose, "pose not finite"},
+      {kStaleSample, "sample stale"},
+      {kReadsFailing, "reads failing"},
+      {kMissedDeadline, "deadline missed"},
+  };
+  std::string text;
+  for (const auto& entry : kNames) {
+    if ((flags & entry.flag) != 0) text += (text.empty() ? "" : ", ") + std::string(entry.name);
+  }
+  return text;
+}
+
+}  // namespace tactum

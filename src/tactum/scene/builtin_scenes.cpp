@@ -1,0 +1,37 @@
+#include "tactum/scene/builtin_scenes.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "tactum/scene/scene_file.h"
+#include "tactum/scene/toml_reader.h"
+
+namespace tactum {
+
+std::vector<SceneEntry> list_scenes() {
+  std::vector<SceneEntry> entries;
+  for (const BuiltinScene& scene : builtin_scenes()) {
+    const toml::table document = toml::parse(scene.text);  // shipped scenes are tested to parse
+    entries.push_back({std::string(scene.name), document["description"].value_or(std::string())});
+  }
+  return entries;
+}
+
+Result<Scene> open_scene(const std::string& name_or_path) {
+  if (name_or_path.ends_with(".toml") || name_or_path.find('/') != std::string::npos)
+    return read_scene_file(name_or_path);
+  std::vector<std::string> names;
+  for (const BuiltinScene& scene : builtin_scenes()) {
+    if (scene.name == name_or_path)
+      return parse_scene(scene.text, name_or_path, fmt::format("scenes/{}.toml", name_or_path),
+                         data_folders());
+    names.emplace_back(scene.name);
+  }
+  const std::string nearest = nearest_word(name_or_path, names);
+  return Error{"no scene of this name", fmt::format("\"{}\"", name_or_path),
+               nearest.empty() ? fmt::format("one of {}, or a path to a .toml file", fmt::join(names, ", "))
+                               : fmt::format("\"{}\", or a path to a .toml file", nearest),
+               ""};
+}
+
+}  // namespace tactum

@@ -1,0 +1,33 @@
+#pragma once
+/// The scenes that come with the program: scenes/*.toml, kept inside the binary at build time, in the order
+/// of the registry in CMakeLists.txt (tactum_embed_scenes).
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tactum/base/result.h"
+#include "tactum/scene/scene.h"
+
+namespace tactum {
+
+struct BuiltinScene {
+  std::string_view name;  ///< "gears"
+  std::string_view text;  ///< of its file
+};
+
+/// The registry (made at build time).
+const std::vector<BuiltinScene>& builtin_scenes();
+
+struct SceneEntry {
+  std::string name;
+  std::string description;  ///< one line
+};
+
+/// Name and description of every built-in scene, in order.
+std::vector<SceneEntry> list_scenes();
+
+/// A built-in scene by name, or a scene file by path. What ends in .toml or holds a slash is a path.
+Result<Scene> open_scene(const std::string& name_or_path);
+
+}  // namespace tactum

@@ -1,0 +1,56 @@
+#pragma once
+/// What a scene's motion is meant to reach, and whether it did. A GoalRecord watches every frame, because a
+/// hinge's angle is only known modulo a turn from one pose, and because "once was there" outlives the moment.
+
+#include <string>
+#include <vector>
+
+#include "tactum/dynamics/world.h"
+
+namespace tactum {
+
+enum class GoalKind {
+  kTurned,    ///< at some time the hinge's angle was `amount` or beyond it (on the side of its sign)
+  kTurnedTo,  ///< at the end the hinge's angle is within `tolerance` of `amount`
+  kMovedBy,   ///< at some time the point had moved by `amount` or more along `vector_W`
+  kMovedTo,   ///< at some time the point was within `tolerance` of `vector_W`
+  kFollowed   ///< at the end the angle is -`amount` times the leader's, within `tolerance`
+};
+
+struct Goal {
+  GoalKind kind = GoalKind::kTurned;
+  int body = 0;                  ///< whose it is
+  int leader = 0;                ///< kFollowed: the driving body
+  Vec3 p_BQ = Vec3::Zero();      ///< kMoved*: the point of the body that is watched [m]
+  Vec3 vector_W = Vec3::Zero();  ///< kMovedBy: unit direction [-]; kMovedTo: the place [m]
+  double amount = 0.0;           ///< [rad], [m] or the ratio [-]
+  double tolerance = 0.0;        ///< [rad] or [m]
+};
+
+/// What has happened so far.
+class GoalRecord {
+ public:
+  GoalRecord() = default;
+  GoalRecord(const World& world, std::vector<Goal> goals);
+
+  /// Takes one frame in. Hinges must turn by less than half a turn from frame to frame. No allocation.
+  void watch(const World& world, const WorldState& state) noexcept;
+
+  bool met(std::size_t goal) const noexcept;
+  /// Whether all are met; true when there is none.
+  bool all_met() const noexcept;
+  /// Angle of a hinge since the start, full turns included [rad].
+  double angle(std::size_t body) const noexcept { return angles_[body]; }
+  /// "driven followed driving: off by 0.31 degrees, allowed 1.20: met".
+  std::string describe(const World& world, std::size_t goal) const;
+
+ private:
+  /// The number that decides a goal now: an angle, a way, a distance, or how far off.
+  double measure(const Goal& goal, const World& world, const WorldState& state) const noexcept;
+
+  std::vector<Goal> goals_;
+  std::vector<double> angles_;  // of each body, unwrapped
+  std::vector<double> best_;    // of each goal: best so far, or the present value for those told at the end
+};
+
+}  // namespace tactum

@@ -1,0 +1,48 @@
+#include "tactum/telemetry/run_record.h"
+
+#include <algorithm>
+
+namespace tactum {
+
+void RunRecord::add(const FrameReport& report) noexcept {
+  ++frames;
+  if (report.in_contact()) ++colliding_frames;
+  if (report.held_contact_points > 0) ++held_contact_frames;
+  if (report.penetrating) ++penetrating_frames;
+  max_penetration_m = std::max(max_penetration_m, -report.min_distance_m);
+  if (!report.coupling.finite() || !report.smoothed.finite()) ++non_finite_frames;
+
+  const double force = report.shown.f.norm();
+  const double torque = report.shown.t.norm();
+  max_force_N = std::max(max_force_N, force);
+  max_torque_Nm = std::max(max_torque_Nm, torque);
+  sum_force_N += force;
+  sum_torque_Nm += torque;
+  max_force_step_N = std::max(max_force_step_N, (report.shown.f - last_shown_.f).norm());
+  max_torque_step_Nm = std::max(max_torque_step_Nm, (report.shown.t - last_shown_.t).norm());
+  last_shown_ = report.shown;
+
+  broad_phase_runs += static_cast<std::uint64_t>(report.work.broad_phase_runs);
+  exact_tests += static_cast<std::uint64_t>(report.work.exact_tests);
+  uncertified += static_cast<std::uint64_t>(report.work.uncertified);
+  unchecked += static_cast<std::uint64_t>(report.work.unchecked);
+  flags |= report.flags;
+  safety |= report.safety;
+  max_contact_points = std::max(max_contact_points, report.contact_points);
+  max_exact_tests = std::max(max_exact_tests, report.work.exact_tests);
+  add_to(hash_, report);
+}
+
+const char* stage_name(Stage stage) noexcept {
+  switch (stage) {
+    case Stage::kHand: return "hand";
+    case Stage::kVelocities: return "velocities";
+    case Stage::kNearPairs: return "near pairs";
+    case Stage::kExactTests: return "exact tests";
+    case Stage::kResponse: return "response";
+    case Stage::kShow: return "show";
+  }
+  return "";
+}
+
+}  // namespace tactum

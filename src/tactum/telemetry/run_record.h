@@ -1,0 +1,72 @@
+#pragma once
+/// What a whole run amounted to, summed up frame by frame: forces, penetration, counted work, and a hash that names
+/// the run. Trivial to add to from the loop: no allocation, a few dozen additions.
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+
+#include "tactum/base/hash.h"
+#include "tactum/haptics/frame_report.h"
+#include "tactum/haptics/frame_state.h"
+
+namespace tactum {
+
+class RunRecord {
+ public:
+  void add(const FrameReport& report) noexcept;
+
+  std::uint64_t frames = 0;
+  std::uint64_t colliding_frames = 0;     ///< frames with any patch
+  std::uint64_t held_contact_frames = 0;  ///< frames in which something pushed the held part
+  std::uint64_t penetrating_frames = 0;   ///< frames in which pieces overlapped
+  double max_penetration_m = 0.0;         ///< deepest overlap [m]
+  double max_force_N = 0.0;               ///< largest shown force [N]
+  double max_torque_Nm = 0.0;             ///< largest shown torque [N m]
+  double max_force_step_N = 0.0;          ///< largest change of the shown force from frame to frame [N]
+  double max_torque_step_Nm = 0.0;        ///< the same for torque [N m]
+  double sum_force_N = 0.0;               ///< of |shown force|, for the mean [N]
+  double sum_torque_Nm = 0.0;             ///< of |shown torque|, for the mean [N m]
+  std::uint64_t non_finite_frames = 0;    ///< frames whose computed wrench was not finite (zero was sent)
+  std::uint64_t broad_phase_runs = 0;
+  std::uint64_t exact_tests = 0;
+  std::uint64_t uncertified = 0;
+  std::uint64_t unchecked = 0;
+  std::uint32_t flags = 0;   ///< union of all frames' frame_flag
+  std::uint32_t safety = 0;  ///< union of all frames' safety_flag
+  int max_contact_points = 0;
+  int max_exact_tests = 0;  ///< in one frame
+
+  std::uint64_t hash() const noexcept { return hash_.value(); }
+
+ private:
+  Wrench last_shown_;
+  Hash hash_;
+};
+
+/// Takes the time of the stages of a frame. It reads the clock between stages, so that the frame need not.
+class StageClock final : public StageObserver {
+ public:
+  /// Call just before the frame.
+  void frame_begins() noexcept {
+    frame_ns_ = {};
+    last_ = Clock::now();
+  }
+  void stage_ended(Stage stage) noexcept override {
+    const Clock::time_point now = Clock::now();
+    frame_ns_[static_cast<std::size_t>(stage)] = std::chrono::nanoseconds(now - last_).count();
+    last_ = now;
+  }
+  /// Of the last frame; zero for a stage it did not have [ns].
+  std::int64_t stage_ns(Stage stage) const noexcept { return frame_ns_[static_cast<std::size_t>(stage)]; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point last_;
+  std::array<std::int64_t, kStageCount> frame_ns_{};
+};
+
+/// "hand", "velocities", ...
+const char* stage_name(Stage stage) noexcept;
+
+}  // namespace tactum

@@ -1,0 +1,114 @@
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "app/program.h"
+
+namespace tactum {
+namespace {
+
+using testing::ProgramRun;
+using testing::run_tactum;
+using testing::ScratchFolder;
+
+const char* const kCube =
+    "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
+    "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 1 5 8 4\n";
+
+const char* const kHeader =
+    "frame,time_s,a_px,a_py,a_pz,a_m00,a_m01,a_m02,a_m10,a_m11,a_m12,a_m20,a_m21,a_m22,"
+    "b_px,b_py,b_pz,b_m00,b_m01,b_m02,b_m10,b_m11,b_m12,b_m20,b_m21,b_m22\n";
+
+const std::string kStill = "0,0,0,1,0,0,0,1,0,0,0,1";
+
+/// Two unit cubes: a gap of 0.5 along x, an overlap, a turned and moved A.
+std::string motion() {
+  return std::string(kHeader) + "7,0.0," + kStill + ",1.5,0,0,1,0,0,0,1,0,0,0,1\n" + "8,0.5," + kStill +
+         ",0.5,0.5,0.5,1,0,0,0,1,0,0,0,1\n" + "9,1.0,0,0,5,0,-1,0,1,0,0,0,0,1,0,0,8.25,1,0,0,0,1,0,0,0,1\n";
+}
+
+TEST(ClearanceCommand, PrintsTheTable) {
+  const ScratchFolder folder;
+  testing::write(folder / "cube.obj", kCube);
+  testing::write(folder / "motion.csv", motion());
+  const std::string files =
+      (folder / "cube.obj") + " " + (folder / "cube.obj") + " " + (folder / "motion.csv");
+  const ProgramRun run = run_tactum("clearance " + files);
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  std::istringstream lines(run.out);
+  std::string header, first, second, third;
+  std::getline(lines, header);
+  std::getline(lines, first);
+  std::getline(lines, second);
+  std::getline(lines, third);
+  EXPECT_EQ(header, "frame,time_s,distance_m,touching_pairs");
+  EXPECT_EQ(first.substr(0, first.rfind(',')), "7,0,0.5");
+  EXPECT_EQ(second.substr(0, 8), "8,0.5,0,");
+  EXPECT_GT(std::stoi(second.substr(8)), 0);
+  EXPECT_EQ(third, "9,1,2.25,0");  // A turned about z and raised: its top at 6, B's bottom at 8.25
+  EXPECT_NE(run.err.find("3 rows, 1 touching"), std::string::npos) << run.err;
+}
+
+TEST(ClearanceCommand, WritesFilesAndScales) {
+  const ScratchFolder folder;
+  testing::write(folder / "cube.obj", kCube);
+  testing::write(folder / "motion.csv", motion());
+  const ProgramRun run = run_tactum("clearance " + (folder / "cube.obj") + " " + (folder / "cube.obj") + " " +
+                                    (folder / "motion.csv") + " --scale 0.001 --json " +
+                                    (folder / "out.json") + " --csv " + (folder / "out.csv"));
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(run.out.empty());
+  const nlohmann::json json = nlohmann::json::parse(testing::content(folder / "out.json"));
+  ASSERT_EQ(json["rows"].size(), 3u);
+  EXPECT_NEAR(json["rows"][0]["distance_m"].get<double>(), 0.0005, 1e-18);
+  EXPECT_EQ(json["min_distance_m"], 0.0);
+  EXPECT_EQ(json["min_distance_frame"], 8);
+  EXPECT_EQ(json["touching_rows"], 1);
+  EXPECT_EQ(testing::content(folder / "out.csv").substr(0, 38), "frame,time_s,distance_m,touching_pairs");
+}
+
+TEST(ClearanceCommand, RefusesStretchedMatricesAndTellsMendedOnes) {
+  const ScratchFolder folder;
+  testing::write(folder / "cube.obj", kCube);
+  const std::string meshes = "clearance " + (folder / "cube.obj") + " " + (folder / "cube.obj") + " ";
+  testing::write(folder / "near.csv", std::string(kHeader) + "0,0," + kStill +
+                                          ",3,0,0,0.999999,0.001,0,-0.001,0.999999,0,0,0,1\n");
+  const ProgramRun near = run_tactum(meshes + (folder / "near.csv"));
+  EXPECT_EQ(near.exit_code, 0);
+  EXPECT_NE(near.err.find("orthonormal"), std::string::npos) << near.err;
+  testing::write(folder / "far.csv", std::string(kHeader) + "0,0," + kStill + ",3,0,0,1.2,0,0,0,1,0,0,0,1\n");
+  const ProgramRun far = run_tactum(meshes + (folder / "far.csv"));
+  EXPECT_EQ(far.exit_code, 1);
+  EXPECT_FALSE(far.err.empty());
+}
+
+TEST(Program, ExitCodesTellWhoIsAtFault) {
+  const ScratchFolder folder;
+  EXPECT_EQ(run_tactum("--help").exit_code, 0);
+  EXPECT_EQ(run_tactum("").exit_code, 2);
+  EXPECT_EQ(run_tactum("clearance only_one.obj").exit_code, 2);
+  EXPECT_EQ(run_tactum("no-such-command").exit_code, 2);
+  const ProgramRun missing = run_tactum("inspect " + (folder / "missing.obj"));
+  EXPECT_EQ(missing.exit_code, 1);
+  EXPECT_NE(missing.err.find("missing.obj"), std::string::npos);
+}
+
+TEST(InspectCommand, ReportsTheCube) {
+  const ScratchFolder folder;
+  testing::write(folder / "cube.obj", kCube);
+  testing::write(folder / "bad.obj", "f 1 2 3\n");
+  const ProgramRun good = run_tactum("inspect --json - " + (folder / "cube.obj"));
+  ASSERT_EQ(good.exit_code, 0) << good.err;
+  const nlohmann::json json = nlohmann::json::parse(good.out);
+  ASSERT_EQ(json.size(), 1u);
+  EXPECT_EQ(json[0]["triangles"], 12);
+  EXPECT_EQ(json[0]["convex"], true);
+  EXPECT_NEAR(json[0]["volume_m3"].get<double>(), 1.0, 1e-12);
+  const ProgramRun text = run_tactum("inspect " + (folder / "cube.obj") + " " + (folder / "bad.obj"));
+  EXPECT_EQ(text.exit_code, 1);  // one of two is bad, the other is still shown
+  EXPECT_NE(text.out.find("closed yes"), std::string::npos);
+  EXPECT_NE(text.err.find("bad.obj, line 1"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace tactum

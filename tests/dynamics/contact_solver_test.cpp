@@ -1,0 +1,145 @@
+#include "tactum/dynamics/contact_solver.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+
+#include "tactum/base/random.h"
+#include "tactum/dynamics/step.h"
+#include "tactum/math/screw.h"
+
+namespace tactum {
+namespace {
+
+Vec3 random_vector(Random& random, double size) {
+  const double x = random.uniform(-size, size);
+  const double y = random.uniform(-size, size);
+  const double z = random.uniform(-size, size);
+  return {x, y, z};
+}
+
+/// Two bodies, the first one fixed, with random contacts.
+struct Problem {
+  std::vector<Pose> X{2};
+  std::vector<Mobility> W{2, Mobility::Zero()};
+  std::vector<Twist> V{2};
+  std::vector<ContactRow> rows;
+  double h = 0.001;
+
+  explicit Problem(std::uint64_t seed, int contacts) {
+    Random random(seed);
+    X[1].p = random_vector(random, 0.02);
+    const Mat3 R = exp_rotation(random_vector(random, 2));
+    W[1].topLeftCorner<3, 3>() = Mat3::Identity() / 0.3;
+    W[1].bottomRightCorner<3, 3>() = R * Vec3(2e4, 1e4, 3e4).asDiagonal() * R.transpose();
+    V[1] = {random_vector(random, 0.3), random_vector(random, 3)};
+    for (int i = 0; i < contacts; ++i) {
+      ContactRow row;
+      row.body_a = 1;
+      row.body_b = 0;
+      row.n_BA_W = random_vector(random, 1).normalized();
+      row.p_W = X[1].p + random_vector(random, 0.03);
+      row.distance = random.uniform(-1e-4, 4e-4);
+      row.tolerance = 3e-4;
+      row.stiffness = random.uniform(100, 5000);
+      rows.push_back(row);
+    }
+  }
+};
+
+TEST(ContactSolver, SolvesTheComplementarityProblem) {
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    Problem p(seed, 1 + static_cast<int>(seed % 9));
+    const std::vector<Twist> before = p.V;
+    const SolverResult result = solve_contacts(p.rows, p.X, p.W, p.h, 20000, p.V);
+    ASSERT_TRUE(result.converged) << "seed " << seed;
+    Vec6 impulse = Vec6::Zero();
+    for (const ContactRow& row : p.rows) {
+      const Vec3 r = row.p_W - p.X[1].p;
+      const double vn = row.n_BA_W.dot(velocity_at(p.V[1], r));
+      const double end = row.distance + p.h * vn;
+      const double force = row.impulse / p.h;
+      // The published law at the end of the step, or no force where the pair is out of reach.
+      EXPECT_NEAR(force, std::max(0.0, row.stiffness * (row.tolerance - end)), 1e-3) << "seed " << seed;
+      Vec6 J;
+      J << row.n_BA_W, r.cross(row.n_BA_W);
+      impulse += J * row.impulse;
+    }
+    EXPECT_LT((to_vector(p.V[1]) - to_vector(before[1]) - p.W[1] * impulse).norm(), 1e-9);  // momentum
+    EXPECT_EQ(p.V[0].v.norm() + p.V[0].w.norm(), 0.0);
+  }
+}
+
+TEST(ContactSolver, ActionEqualsReaction) {
+  Random random(7);
+  Problem p(3, 5);
+  p.W[0] = 0.5 * Mobility::Identity();
+  p.V[0] = {random_vector(random, 0.1), Vec3::Zero()};
+  const std::vector<Twist> before = p.V;
+  solve_contacts(p.rows, p.X, p.W, p.h, 500, p.V);
+  Wrench total;
+  for (int body : {0, 1}) {
+    Vec6 M_dV = p.W[std::size_t(body)].inverse() *
+                (to_vector(p.V[std::size_t(body)]) - to_vector(before[std::size_t(body)]));
+    const Wrench impulse{M_dV.head<3>(), M_dV.tail<3>()};
+    total = total + moved(impulse, Vec3::Zero() - p.X[std::size_t(body)].p);
+  }
+  EXPECT_LT(total.f.norm(), 1e-12);
+  EXPECT_LT(total.t.norm(), 1e-12);
+}
+
+TEST(ContactSolver, AVeryStiffContactDoesNotShake) {
+  // Explicit springs blow up when k h^2 / m > 4; here it is a million.
+  Problem p(1, 0);
+  ContactRow row;
+  row.body_a = 1;
+  row.body_b = 0;
+  row.n_BA_W = Vec3::UnitZ();
+  row.p_W = p.X[1].p;
+  row.distance = 1e-4;
+  row.stiffness = 3e11;
+  p.V[1] = {Vec3(0, 0, -1), Vec3::Zero()};
+  p.rows.push_back(row);
+  solve_contacts(p.rows, p.X, p.W, p.h, 100, p.V);
+  EXPECT_NEAR(p.rows[0].distance + p.h * p.V[1].v.z(), 0.0, 1e-9);
+}
+
+TEST(Step, SmallestTimeOfImpactIsWhenTheFirstGapCloses) {
+  Problem p(1, 0);
+  p.V[1] = {Vec3(0, 0, -0.5), Vec3::Zero()};
+  for (double d : {3e-4, 1e-4, 2e-4}) {
+    ContactRow row;
+    row.body_a = 1;
+    row.body_b = 0;
+    row.n_BA_W = Vec3::UnitZ();
+    row.p_W = p.X[1].p;
+    row.distance = d;
+    p.rows.push_back(row);
+  }
+  EXPECT_DOUBLE_EQ(smallest_time_of_impact(p.rows, p.X, p.V, 0.001), 1e-4 / 0.5);
+  p.V[1].v.z() = 0.5;
+  EXPECT_EQ(smallest_time_of_impact(p.rows, p.X, p.V, 0.001), 0.001);
+  p.rows[1].distance = -1e-5;
+  EXPECT_EQ(smallest_time_of_impact(p.rows, p.X, p.V, 0.001), 0.0);
+}
+
+TEST(HingeFriction, HoldsBelowItsLimitAndSlowsAboveIt) {
+  World world;
+  world.bodies.resize(1);
+  Body& body = world.bodies[0];
+  body.mass_kg = 0.2;
+  body.inertia_B = 1e-4 * Mat3::Identity();
+  body.joint = {.kind = JointKind::kHinge, .axis_W = Vec3::UnitZ(), .anchor_W = Vec3::Zero(), .damping_Nms = 0.0, .friction_Nm = 0.01};
+  const WorldState state = initial_state(world);
+  const std::vector<Mobility> W{mobility(body.joint, body.X_WB, inertial_resistance(body, body.X_WB))};
+  std::vector<Twist> V(1);
+  V[0].w.z() = 0.05;  // the friction takes 0.01 * 0.001 / 1e-4 = 0.1 rad/s a step
+  apply_hinge_friction(world, state, W, 0.001, V);
+  EXPECT_EQ(V[0].w.z(), 0.0);
+  V[0].w.z() = -0.5;
+  apply_hinge_friction(world, state, W, 0.001, V);
+  EXPECT_NEAR(V[0].w.z(), -0.4, 1e-12);
+}
+
+}  // namespace
+}  // namespace tactum

@@ -1,0 +1,101 @@
+#include "tactum/dynamics/joint.h"
+
+#include <gtest/gtest.h>
+
+#include "tactum/base/random.h"
+#include "tactum/math/screw.h"
+
+namespace tactum {
+namespace {
+
+Vec3 random_vector(Random& random, double size) {
+  const double x = random.uniform(-size, size);
+  const double y = random.uniform(-size, size);
+  const double z = random.uniform(-size, size);
+  return {x, y, z};
+}
+
+Body random_body(Random& random, JointKind kind) {
+  Body body;
+  body.mass_kg = random.uniform(0.05, 2.0);
+  const Mat3 R = exp_rotation(random_vector(random, 2));
+  body.inertia_B = R * Vec3(random.uniform(1e-5, 1e-3), random.uniform(1e-5, 1e-3), random.uniform(1e-5, 1e-3)).asDiagonal() * R.transpose();
+  body.X_WB = {exp_rotation(random_vector(random, 2)), random_vector(random, 0.1)};
+  body.joint.kind = kind;
+  body.joint.axis_W = random_vector(random, 1).normalized();
+  body.joint.anchor_W = random_vector(random, 0.1);
+  return body;
+}
+
+TEST(Joint, FreeMobilityIsTheInverseOfInertia) {
+  Random random(1);
+  for (int i = 0; i < 100; ++i) {
+    const Body body = random_body(random, JointKind::kFree);
+    const Resistance M = inertial_resistance(body, body.X_WB);
+    EXPECT_LT((mobility(body.joint, body.X_WB, M) * M - Mat6::Identity()).norm(), 1e-9);
+  }
+}
+
+TEST(Joint, HingeAnswersAnImpulseWithItsMomentAboutTheAxis) {
+  Random random(2);
+  for (int i = 0; i < 200; ++i) {
+    const Body body = random_body(random, JointKind::kHinge);
+    const Vec3 axis = body.joint.axis_W;
+    const Vec3 impulse = random_vector(random, 1);
+    const Vec3 at = random_vector(random, 0.2);
+    Vec6 p;
+    p << impulse, (at - body.X_WB.p).cross(impulse);
+    const Twist V = to_twist(mobility(body.joint, body.X_WB, inertial_resistance(body, body.X_WB)) * p);
+    // Textbook: angular rate = moment about the axis / (inertia about the axis through the anchor).
+    const Vec3 r = body.X_WB.p - body.joint.anchor_W;
+    const Vec3 off = r - axis * axis.dot(r);
+    const double inertia = axis.dot(body.X_WB.R * body.inertia_B * body.X_WB.R.transpose() * axis) +
+                           body.mass_kg * off.squaredNorm();
+    const double rate = axis.dot((at - body.joint.anchor_W).cross(impulse)) / inertia;
+    EXPECT_NEAR(axis.dot(V.w), rate, 1e-9 * (1 + std::abs(rate)));
+    EXPECT_LT(velocity_at(V, body.joint.anchor_W - body.X_WB.p).norm(), 1e-9 * (1 + std::abs(rate)));
+  }
+}
+
+TEST(Joint, ConstrainedVelocityKeepsTheAnchorStillAndItsOwnResults) {
+  Random random(3);
+  for (int i = 0; i < 200; ++i) {
+    const Body body = random_body(random, JointKind::kHinge);
+    const Resistance M = inertial_resistance(body, body.X_WB);
+    const Twist wanted{random_vector(random, 1), random_vector(random, 5)};
+    const Twist V = constrained_velocity(body.joint, body.X_WB, M, wanted);
+    EXPECT_LT(velocity_at(V, body.joint.anchor_W - body.X_WB.p).norm(), 1e-12);
+    EXPECT_LT((V.w - body.joint.axis_W * body.joint.axis_W.dot(V.w)).norm(), 1e-12);
+    const Twist again = constrained_velocity(body.joint, body.X_WB, M, V);
+    EXPECT_LT((again.v - V.v).norm() + (again.w - V.w).norm(), 1e-9);
+    // Nearest in the metric: what was taken away is M-orthogonal to the free motion.
+    EXPECT_NEAR(hinge_motion(body.joint, body.X_WB).dot(M * (to_vector(wanted) - to_vector(V))), 0.0, 1e-12);
+  }
+}
+
+TEST(Joint, ConstrainedPoseIsTheTurnAboutTheAxis) {
+  Random random(4);
+  for (int i = 0; i < 200; ++i) {
+    const Body body = random_body(random, JointKind::kHinge);
+    const double angle = random.uniform(-3.1, 3.1);
+    const Mat3 turn = exp_rotation(body.joint.axis_W * angle);
+    const Vec3 anchor = body.joint.anchor_W;
+    const Pose exact{turn * body.X_WB.R, anchor + turn * (body.X_WB.p - anchor)};
+    EXPECT_NEAR(hinge_angle(body, exact), angle, 1e-12);
+    const Pose drifted{exp_rotation(random_vector(random, 1e-6)) * exact.R, exact.p + random_vector(random, 1e-6)};
+    const Pose back = constrained_pose(body, drifted);
+    EXPECT_LT((back.R - exact.R).norm(), 1e-5);
+    EXPECT_NEAR((back.p - anchor).norm(), (body.X_WB.p - anchor).norm(), 1e-14);
+  }
+}
+
+TEST(Joint, FixedBodiesStay) {
+  Random random(5);
+  const Body body = random_body(random, JointKind::kFixed);
+  const Resistance M = inertial_resistance(body, body.X_WB);
+  EXPECT_EQ(mobility(body.joint, body.X_WB, M).norm(), 0.0);
+  EXPECT_EQ(constrained_velocity(body.joint, body.X_WB, M, {Vec3::Ones(), Vec3::Ones()}).v.norm(), 0.0);
+}
+
+}  // namespace
+}  // namespace tactum

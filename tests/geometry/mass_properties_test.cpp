@@ -1,0 +1,94 @@
+#include "tactum/geometry/mass_properties.h"
+
+#include <gtest/gtest.h>
+
+#include "support/sample_meshes.h"
+#include "tactum/math/screw.h"
+
+namespace tactum {
+namespace {
+
+using testing::box_mesh;
+using testing::icosphere;
+using testing::prism;
+using testing::transformed;
+
+TEST(MassProperties, BoxAnywhereTurnedAnyhow) {
+  const Vec3 half(0.01, 0.02, 0.03);
+  const Mat3 R = exp_rotation(Vec3(0.3, -1.1, 0.7));
+  const Vec3 p(0.5, -0.2, 3.0);
+  const Result<MassProperties> mass = mass_properties(transformed(box_mesh(half), R, p), 2700.0);
+  ASSERT_TRUE(mass);
+  const double kg = 2700.0 * 8.0 * half.prod();
+  EXPECT_NEAR(mass->mass, kg, 1e-12 * kg);
+  EXPECT_LT((mass->center - p).norm(), 1e-13);
+  const Vec3 sq = half.cwiseProduct(half);
+  const Mat3 expected = R * (kg / 3.0 * (Vec3::Constant(sq.sum()) - sq)).asDiagonal() * R.transpose();
+  EXPECT_LT((mass->inertia - expected).norm(), 1e-11 * expected.norm());
+}
+
+TEST(MassProperties, CornerTetrahedron) {
+  TriangleMesh mesh;
+  mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+  const Result<MassProperties> mass = mass_properties(mesh, 6.0);
+  ASSERT_TRUE(mass);
+  EXPECT_NEAR(mass->mass, 1.0, 1e-15);
+  EXPECT_LT((mass->center - Vec3::Constant(0.25)).norm(), 1e-15);
+  // About the corner: integral of x^2 is 1/10, of xy 1/20 (mass one); about the centre less 1/16 each.
+  EXPECT_NEAR(mass->inertia(0, 0), 2.0 * (0.1 - 0.0625), 1e-15);
+  EXPECT_NEAR(mass->inertia(0, 1), -(0.05 - 0.0625), 1e-15);
+}
+
+TEST(MassProperties, SphereConvergesWithTheSquareOfTheMesh) {
+  double last = 1.0;
+  for (int level = 2; level <= 5; ++level) {
+    const Result<MassProperties> mass = mass_properties(icosphere(level), 1.0);
+    ASSERT_TRUE(mass);
+    const double error = 1.0 - mass->volume / (4.0 / 3.0 * kPi);
+    EXPECT_GT(error, 0.0);
+    EXPECT_TRUE(level == 2 || std::abs(last / error - 4.0) < 0.35) << level;
+    EXPECT_LT((mass->inertia - mass->inertia(0, 0) * Mat3::Identity()).norm(), 1e-12);
+    last = error;
+  }
+  EXPECT_LT(last, 2e-3);
+}
+
+TEST(MassProperties, PrismOverARegularPolygon) {
+  const int n = 7;
+  const double r = 0.4;
+  const double half = 0.9;
+  const Result<MassProperties> mass = mass_properties(prism(n, r, half), 5.0);
+  ASSERT_TRUE(mass);
+  const double area = 0.5 * n * r * r * std::sin(2.0 * kPi / n);
+  EXPECT_NEAR(mass->volume, 2.0 * half * area, 1e-13);
+  const double about_axis = mass->mass * r * r / 6.0 * (2.0 + std::cos(2.0 * kPi / n));
+  EXPECT_NEAR(mass->inertia(2, 2), about_axis, 1e-12);
+  EXPECT_NEAR(mass->inertia(0, 0), about_axis / 2.0 + mass->mass * half * half / 3.0, 1e-12);
+}
+
+TEST(MassProperties, OpenTurnedAndFlatSurfacesAreTold) {
+  TriangleMesh open = box_mesh({1, 1, 1});
+  open.triangles.pop_back();
+  const Result<MassProperties> refused = mass_properties(open, 1.0);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message().find("3 boundary"), std::string::npos) << refused.error().message();
+  const MassProperties hull = mass_properties_or_hull(open, 1.0);
+  EXPECT_NEAR(hull.volume, 8.0, 1e-12);
+  EXPECT_NE(hull.approximation.find("convex hull"), std::string::npos);
+
+  TriangleMesh inward = box_mesh({1, 1, 1});
+  for (Triangle& t : inward.triangles) std::swap(t[0], t[1]);
+  EXPECT_FALSE(mass_properties(inward, 1.0));
+  EXPECT_NEAR(mass_properties_or_hull(inward, 1.0).volume, 8.0, 1e-12);
+
+  TriangleMesh flat;
+  flat.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  flat.triangles = {{0, 1, 2}};
+  EXPECT_NE(mass_properties_or_hull(flat, 1.0).approximation.find("box"), std::string::npos);
+  EXPECT_GT(mass_properties_or_hull(flat, 1.0).mass, 0.0);
+  EXPECT_TRUE(mass_properties_or_hull(box_mesh({1, 1, 1}), 1.0).approximation.empty());
+}
+
+}  // namespace
+}  // namespace tactum

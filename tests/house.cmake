@@ -1,0 +1,38 @@
+# The rules of the house, as tests. Those labelled `house` need nothing built.
+find_program(PYTHON3 python3 HINTS /usr/bin REQUIRED)
+find_program(CLANG_FORMAT clang-format REQUIRED)
+find_program(CLANG_TIDY clang-tidy REQUIRED)
+set(tools ${PROJECT_SOURCE_DIR}/tools)
+
+add_test(NAME house.layers COMMAND ${PYTHON3} ${tools}/check_layers.py)
+add_test(NAME house.docs COMMAND ${PYTHON3} ${tools}/check_docs.py)
+add_test(NAME house.sources COMMAND ${PYTHON3} ${tools}/check_sources.py)
+add_test(NAME house.format COMMAND ${tools}/format.sh --check)
+add_test(NAME house.tools COMMAND ${PYTHON3} -m unittest discover -s ${CMAKE_CURRENT_SOURCE_DIR}/tools)
+set_tests_properties(house.layers house.docs house.sources house.format house.tools PROPERTIES LABELS house)
+
+add_test(NAME house.tidy COMMAND ${PYTHON3} ${tools}/tidy.py ${PROJECT_BINARY_DIR})
+set_tests_properties(house.tidy PROPERTIES LABELS slow PROCESSORS 2 TIMEOUT 1500)
+
+# Every header compiles alone, and twice.
+file(GLOB headers RELATIVE ${PROJECT_SOURCE_DIR}/src CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/tactum/*/*.h)
+foreach(header IN LISTS headers)
+  string(REGEX REPLACE "[/.]" "_" name ${header})
+  set(text "#include \"${header}\"\n#include \"${header}\"\n")
+  file(CONFIGURE OUTPUT headers/${name}.cpp CONTENT "${text}" @ONLY)
+  string(APPEND every_header "#include \"${header}\"\n")
+  list(APPEND header_sources ${CMAKE_CURRENT_BINARY_DIR}/headers/${name}.cpp)
+endforeach()
+file(CONFIGURE OUTPUT headers/every_header.cpp CONTENT "${every_header}" @ONLY)  # for clang-tidy: all at once
+add_library(header_selfcheck OBJECT ${header_sources} ${CMAKE_CURRENT_BINARY_DIR}/headers/every_header.cpp)
+target_compile_options(header_selfcheck PRIVATE -O0)
+target_link_libraries(header_selfcheck PRIVATE tactum_session tactum_warnings)
+
+# One frame, the same bits: g++ and clang++, optimised or not, sanitized or not. ./test builds them all.
+file(GLOB bench_command ${PROJECT_SOURCE_DIR}/app/*bench*.cpp)
+if(bench_command)
+  set(builds ${PROJECT_SOURCE_DIR}/build)
+  add_test(NAME house.same_bits COMMAND ${PYTHON3} ${tools}/same_bits.py ${builds}/release/tactum ${builds}/clang/tactum
+                                        ${builds}/dev/tactum ${builds}/asan/tactum)
+  set_tests_properties(house.same_bits PROPERTIES LABELS slow SKIP_RETURN_CODE 77)
+endif()

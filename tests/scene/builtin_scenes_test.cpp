@@ -1,0 +1,140 @@
+#include "tactum/scene/builtin_scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <toml++/toml.h>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <sstream>
+
+#include "tactum/scene/scene_file.h"
+
+namespace tactum {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Folders with the mesh files of the shipped scenes; empty, and told so, when they are not there.
+std::vector<std::string> meshes() {
+  std::vector<std::string> folders = data_folders();
+  const fs::path beside = fs::path(TACTUM_SOURCE_DIR) / "../shared/data";
+  if (folders.empty() && fs::is_directory(beside)) folders.push_back(beside.string());
+  return folders;
+}
+
+bool needs_meshes(const BuiltinScene& scene) { return scene.text.find("mesh = ") != std::string_view::npos; }
+
+/// The scene, or null with a message when its meshes are absent.
+std::optional<Scene> built(const BuiltinScene& scene, std::string_view text) {
+  if (needs_meshes(scene) && meshes().empty()) {
+    std::cout << "the meshes of " << scene.name << " are absent (TACTUM_DATA): not built\n";
+    return std::nullopt;
+  }
+  Result<Scene> result = parse_scene(text, std::string(scene.name), std::string(scene.name), meshes());
+  EXPECT_TRUE(result) << result.error().message();
+  if (!result) return std::nullopt;
+  return std::move(*result);
+}
+
+TEST(BuiltinScenes, AreTheFilesOfTheScenesFolder) {
+  std::size_t files = 0;
+  for (const auto& entry : fs::directory_iterator(fs::path(TACTUM_SOURCE_DIR) / "scenes"))
+    files += entry.path().extension() == ".toml" ? 1 : 0;
+  EXPECT_EQ(builtin_scenes().size(), files) << "a scene is missing from the registry in CMakeLists.txt";
+  for (const BuiltinScene& scene : builtin_scenes()) {
+    std::ifstream stream(fs::path(TACTUM_SOURCE_DIR) / "scenes" / (std::string(scene.name) + ".toml"));
+    std::stringstream text;
+    text << stream.rdbuf();
+    EXPECT_EQ(text.str(), scene.text) << scene.name;
+  }
+}
+
+TEST(BuiltinScenes, ListTellsNameAndPurpose) {
+  const auto entries = list_scenes();
+  ASSERT_FALSE(entries.empty());
+  EXPECT_EQ(entries.front().name, "gears");
+  for (const SceneEntry& entry : entries) {
+    EXPECT_FALSE(entry.description.empty()) << entry.name;
+    EXPECT_EQ(entry.description.find('\n'), std::string::npos) << entry.name;
+  }
+}
+
+TEST(BuiltinScenes, EveryOneBuildsIsHeldAndHasSomethingToReach) {
+  for (const BuiltinScene& source : builtin_scenes()) {
+    const std::optional<Scene> scene = built(source, source.text);
+    if (!scene) continue;
+    const World& world = scene->world;
+    EXPECT_GE(world.bodies.size(), 2u) << source.name;
+    ASSERT_GE(scene->settings.tool.body, 0) << source.name;
+    for (const Body& body : world.bodies) {
+      EXPECT_GT(body.mass_kg, 0.0) << source.name << " " << body.name;
+      EXPECT_GT(body.inertia_B.determinant(), 0.0) << source.name << " " << body.name;
+      EXPECT_FALSE(body.part->pieces.empty());
+    }
+    EXPECT_FALSE(scene->goals.empty()) << source.name;
+    EXPECT_FALSE(GoalRecord(world, scene->goals).all_met()) << source.name << ": done before it begins";
+    // The hand starts where the handle is.
+    const Pose X_WH = world.bodies[std::size_t(scene->settings.tool.body)].X_WB * scene->settings.tool.X_BH;
+    const Pose X_DH = scene->hand->at(-1.0).X_DH;
+    const Workspace& space = scene->settings.workspace;
+    EXPECT_LT((space.X_WD * (space.scale * X_DH.p) - X_WH.p).norm(), 2e-4)
+        << source.name;  // a tremor may be on
+  }
+}
+
+TEST(BuiltinScenes, GearsAreThePapers) {
+  const Result<Scene> scene = open_scene("gears");
+  ASSERT_TRUE(scene) << scene.error().message();
+  EXPECT_EQ(scene->world.bodies[0].part->pieces.size(), 19u);
+  EXPECT_EQ(scene->world.bodies[1].part->pieces.size(), 21u);
+  EXPECT_GE(frames_of_motion(*scene), 12499);
+  EXPECT_TRUE(scene->world.bodies[0].X_WB.p.isZero(1e-12));
+  EXPECT_TRUE(scene->world.bodies[1].X_WB.p.isApprox(Vec3(0.076, 0, 0), 1e-12));
+}
+
+/// Two scenes with the same bits in everything a frame is made of.
+void expect_equal(const Scene& a, const Scene& b) {
+  ASSERT_EQ(a.world.bodies.size(), b.world.bodies.size());
+  for (std::size_t i = 0; i < a.world.bodies.size(); ++i) {
+    const Body& x = a.world.bodies[i];
+    const Body& y = b.world.bodies[i];
+    EXPECT_EQ(x.name, y.name);
+    EXPECT_EQ(x.mass_kg, y.mass_kg);
+    EXPECT_EQ(x.inertia_B, y.inertia_B);
+    EXPECT_EQ(x.X_WB.p, y.X_WB.p);
+    EXPECT_EQ(x.X_WB.R, y.X_WB.R);
+    EXPECT_EQ(x.joint.axis_W, y.joint.axis_W);
+    ASSERT_EQ(x.part->pieces.size(), y.part->pieces.size());
+    for (std::size_t p = 0; p < x.part->pieces.size(); ++p)
+      EXPECT_EQ(x.part->pieces[p].vertices, y.part->pieces[p].vertices);
+  }
+  for (double t = 0.0; t < a.hand->duration_s(); t += 0.37) {
+    EXPECT_EQ(a.hand->at(t).X_DH.p, b.hand->at(t).X_DH.p);
+    EXPECT_EQ(a.hand->at(t).X_DH.R, b.hand->at(t).X_DH.R);
+  }
+  EXPECT_EQ(a.hand->duration_s(), b.hand->duration_s());
+  EXPECT_EQ(a.goals.size(), b.goals.size());
+}
+
+TEST(BuiltinScenes, RoundTripThroughTomlChangesNoBit) {
+  for (const BuiltinScene& source : builtin_scenes()) {
+    std::stringstream written;
+    written << toml::parse(source.text);
+    const std::optional<Scene> first = built(source, source.text);
+    const std::optional<Scene> second = built(source, written.str());
+    if (first && second) expect_equal(*first, *second);
+  }
+}
+
+TEST(OpenScene, TakesNamesAndPathsAndSaysWhatItKnows) {
+  EXPECT_TRUE(open_scene("block-on-plate"));
+  EXPECT_TRUE(open_scene(std::string(TACTUM_SOURCE_DIR) + "/scenes/block-on-plate.toml"));
+  EXPECT_NE(open_scene("gaers").error().message().find("expected \"gears\""), std::string::npos);
+  EXPECT_NE(open_scene("nonsense-of-a-name").error().message().find("peg-in-hole"), std::string::npos);
+  EXPECT_NE(open_scene("no/such.toml").error().message().find("no such file"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace tactum

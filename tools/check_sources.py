@@ -1,0 +1,80 @@
+#!/usr/bin/env python3
+"""Small rules of the sources:  tools/check_sources.py [ROOT]
+
+- Epsilons live in base/tolerances.h, each with its story. Anywhere else in src/ a number written with an exponent of -4
+  or less (1e-6), or with as many zeros (0.00001), is a fault, unless it has a unit: in the name it is given to
+  (inertia_kg_m2 = 2e-5) or in a tag behind it (///< [N s/m]). A quantity that can have neither is written in thousandths
+  (0.023e-3), a conversion as a division (nanoseconds / 1e9): none of them can be mistaken for a tolerance.
+- haptics/frame.cpp is read from top to bottom: at most 80 lines.
+- Nothing is left for later, no merge is left unfinished, and no file knows the folders of the machine it was written on.
+"""
+import pathlib
+import re
+import sys
+
+FRAME_LINES = 80
+LOOKED_AT = ("src", "app", "tests", "bench", "fuzz", "examples", "scenes", "docs", "cmake", "README.md", "CMakeLists.txt", "run",
+             "test")
+SUFFIXES = (".h", ".cpp", ".md", ".toml", ".cmake", ".txt", ".bib", "")
+
+COMMENT_OR_STRING = re.compile(r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"', re.DOTALL)
+EPSILON = re.compile(r"(?<![\w.])(?:\d[\d']*\.?\d*|\.\d+)[eE]-0*(?:[4-9]|[1-9]\d+)\b|(?<![\w.])0?\.0000\d*(?![\w.])")
+UNIT = r"(?:kg|N|Nm|Ns|Nms|m|m2|m3|s|rad|J|W|Hz)(?:_(?:per_)?(?:kg|N|Nm|m|m2|m3|s|s2|rad|rad2))*"
+NAMED_QUANTITY = re.compile(rf"_{UNIT}\s*(?:=|\{{)\s*-?$")
+TAGGED_QUANTITY = re.compile(r"//.*\[(?:kg|N|m|s|rad|J|W|Hz)\b[^\]\n]*\]")
+FOR_LATER = re.compile(r"\b(?:TODO|FIXME|XXX|HACK)\b")
+UNFINISHED_MERGE = re.compile(r"^(?:<{7}|>{7}) \S+", re.MULTILINE)
+MACHINE_PATH = re.compile(r"(?<![\w.~*-])/(?:home|root|work|Users|tmp)/\w")
+
+
+def places(pattern, text):
+    """Line number and match of each finding."""
+    for match in pattern.finditer(text):
+        yield text.count("\n", 0, match.start()) + 1, match.group(0)
+
+
+def code_only(text):
+    """C++ with comments and strings blanked, lines kept."""
+    return COMMENT_OR_STRING.sub(lambda found: " " + "\n" * found.group(0).count("\n"), text)
+
+
+def epsilon_faults(text, name):
+    lines = text.splitlines()
+    for number, line in enumerate(code_only(text).splitlines()):
+        for match in EPSILON.finditer(line):
+            if not NAMED_QUANTITY.search(line[: match.start()]) and not TAGGED_QUANTITY.search(lines[number]):
+                place = f"{name}:{number + 1}"
+                yield f"{place}: {match.group(0)} looks like an epsilon; those live in base/tolerances.h (a quantity has a unit)"
+
+
+def faults(root):
+    """Everything that is wrong under `root`, a sentence each."""
+    for top in (root / name for name in LOOKED_AT):
+        for path in sorted(top.rglob("*")) if top.is_dir() else [top]:
+            name = path.relative_to(root).as_posix()
+            if not path.is_file() or path.suffix not in SUFFIXES or name.startswith("tests/tools/"):
+                continue
+            text = path.read_text()
+            for line, word in places(FOR_LATER, text):
+                yield f"{name}:{line}: {word} leaves something for later"
+            for line, word in places(UNFINISHED_MERGE, text):
+                yield f"{name}:{line}: {word} was left by a merge"
+            for line, word in places(MACHINE_PATH, text):
+                yield f"{name}:{line}: {word}... is a path of one machine"
+            if name.startswith("src/") and path.suffix in (".h", ".cpp") and name != "src/tactum/base/tolerances.h":
+                yield from epsilon_faults(text, name)
+            if name == "src/tactum/haptics/frame.cpp" and text.count("\n") > FRAME_LINES:
+                yield f"{name}: {text.count(chr(10))} lines; the frame is read at one glance, in at most {FRAME_LINES}"
+
+
+def main(arguments):
+    root = pathlib.Path(arguments[0] if arguments else pathlib.Path(__file__).parent.parent).resolve()
+    found = list(faults(root))
+    for fault in found:
+        print(fault)
+    print(f"sources: {len(found)} faults")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,54 @@
+#!/usr/bin/env python3
+"""clang-tidy (settings: .clang-tidy) over the program's own sources:  tools/tidy.py BUILD_FOLDER [FILE...]
+
+Without files it checks the heart, where a slip moves a motor, and every header at once through one generated
+file; with TACTUM_FULL=1 every source of src/ and app/.
+"""
+import json
+import os
+import pathlib
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+OWN = ("src/", "app/")
+HEART = ("src/tactum/base/", "src/tactum/devices/", "src/tactum/haptics/")
+
+
+def chosen_sources(database, full):
+    """The files of the compilation database that are to be checked, relative to the root."""
+    known = {pathlib.Path(entry["file"]).resolve() for entry in database}
+    own = sorted(path.relative_to(ROOT).as_posix() for path in known if path.is_relative_to(ROOT))
+    return [path for path in own if path.startswith(OWN if full else HEART)]
+
+
+def check(build, path):
+    """Exit code, the path and what clang-tidy said of one file."""
+    command = ["clang-tidy", "-p", str(build), "--quiet", "--extra-arg=-Wno-unknown-warning-option", str(ROOT / path)]
+    done = subprocess.run(command, capture_output=True, text=True)
+    said = done.stdout + (done.stderr if done.returncode and not done.stdout.strip() else "")
+    return done.returncode, path, said
+
+
+def main(arguments):
+    if not arguments:
+        sys.exit(__doc__)
+    build = pathlib.Path(arguments[0]).resolve()
+    database = json.loads((build / "compile_commands.json").read_text())
+    paths = arguments[1:] or chosen_sources(database, os.environ.get("TACTUM_FULL") == "1")
+    every_header = build / "tests/headers/every_header.cpp"
+    if not arguments[1:] and every_header.exists():
+        paths = [str(every_header)] + paths
+    workers = len(os.sched_getaffinity(0))
+    with ThreadPoolExecutor(workers) as pool:
+        results = list(pool.map(lambda path: check(build, path), paths))
+    bad = [result for result in results if result[0] != 0]
+    for _, path, said in bad:
+        print(f"-- {path}\n{said}")
+    print(f"clang-tidy: {len(paths)} files, {len(bad)} with findings")
+    return 1 if bad else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
