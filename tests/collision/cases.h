@@ -179,7 +179,8 @@ inline Pose make_pose(Random& random, const Polytope& A, const Polytope& B, Maki
       const Vec3 step = random_vector(random, 1.0);
       for (int i = 0; i < 3; ++i)  // often flush with A
         on_a[i] = random.index(3) ? on_a[i] : A.center[i] + step[i] * size;
-      outward = Vec3::Unit(random.index(3)) * (random.index(2) ? 1.0 : -1.0);
+      outward = Vec3::Unit(random.index(3));
+      if (random.index(2)) outward = -outward;
       break;
     }
     case Making::kRandom:
@@ -193,6 +194,21 @@ inline Pose make_pose(Random& random, const Polytope& A, const Polytope& B, Maki
   X.p = on_a + outward * gap - X.R * on_b;
   return X;
 }
+
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define TACTUM_CASES_SLOW
+#endif
+#endif
+#if defined(TACTUM_CASES_SLOW) || defined(__SANITIZE_ADDRESS__)
+inline constexpr int kSlowness =
+    100;  ///< a sanitized build takes a few poses only: it looks for faults of memory
+#else
+inline constexpr int kSlowness = 1;
+#endif
+
+/// How many of `poses` this build tries.
+inline int some_of(int poses) { return poses / kSlowness; }
 
 inline bool full() { return std::getenv("TACTUM_FULL") != nullptr; }
 
