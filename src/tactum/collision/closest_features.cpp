@@ -47,14 +47,20 @@ Vec3 features_normal(const PairView& pair, const March& march) noexcept {
   return gap > tolerances::kTouching * pair.size ? Vec3(d / gap) : Vec3::Zero();
 }
 
+/// Of the two faces of a flat piece, the one that looks along `outward`.
+Feature facing_side(const Polytope& P, Feature f, const Vec3& outward) noexcept {
+  if (P.flat && f.kind == Kind::kFace && P.faces[f.index].normal.dot(outward) < 0.0) f.index = 1 - f.index;
+  return f;
+}
+
 Judged judge(const PairView& pair, const March& march, const Vec3& normal) noexcept {
   Judged judged;
   PairDistance& x = judged.answer;
   x.normal = normal;
   x.p_a = march.p_a;
   x.p_b = march.p_b;
-  x.a = march.a;
-  x.b = march.b;
+  x.a = facing_side(pair.A, march.a, -normal);
+  x.b = facing_side(pair.B, march.b, pair.X_BA.R * normal);
   x.distance = normal.dot(march.p_a - march.p_b);
   judged.support_a = vertex_of(pair.A, march.a);
   judged.support_b = vertex_of(pair.B, march.b);

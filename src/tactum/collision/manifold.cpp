@@ -63,8 +63,8 @@ int level_edge(const Polytope& P, const Feature& f, int face, const Vec3& outwar
 /// as little the patch shrinks too, so that rolling from one face to the next passes through their edge.
 Facing facing_feature(const Polytope& P, const Feature& f, const Vec3& outward, double angle) noexcept {
   int face = -1;
-  double lean = 2.0;
-  double next = 2.0;
+  double lean = 3.0;
+  double next = 3.0;
   for_faces_at(P, f, [&](int candidate) {
     const Vec3& normal = P.faces[candidate].normal;
     const double sine = normal.dot(outward) > 0.0 ? normal.cross(outward).norm() : 2.0;
@@ -78,7 +78,11 @@ Facing facing_feature(const Polytope& P, const Feature& f, const Vec3& outward, 
   });
   Facing facing;
   facing.feature = {Kind::kFace, face};
-  if (f.kind == Kind::kFace) return facing;
+  if (f.kind ==
+      Kind::kFace) {  // square to the normal, or the answer is not one of the queries': then a point
+    if (lean >= angle) facing.feature = {Kind::kVertex, vertex_of(P, f)};
+    return facing;
+  }
   double slope = 0.0;
   facing.edge = level_edge(P, f, face, outward, slope);
   // An edge shrinks at a quarter of the angle: where two edges of a leaning face slope alike, both are points
