@@ -27,7 +27,10 @@ PairDistance piece_distance(const Part& part_a, int piece_a, const Part& part_b,
   OneSided sides;
   if (part_a.one_sided) sides.outward_a = part_a.piece_normal[static_cast<std::size_t>(piece_a)];
   if (part_b.one_sided) sides.outward_b = part_b.piece_normal[static_cast<std::size_t>(piece_b)];
-  const PairDistance outward = penetration_one_sided(A, B, X_AB, sides, cache);
+  PairDistance outward = penetration_one_sided(A, B, X_AB, sides, cache);
+  // What counts is proved by true support planes: moved out by it, the pieces are apart. That no neighbouring axis is
+  // shorter, which the certificate of a solid's depth says, need not hold at the border of the allowed axes.
+  outward.stop = Stop::kFallback;
   return outward.distance >= kLongestDetour * apart.distance ? outward : apart;
 }
 
