@@ -17,10 +17,13 @@ using Kind = FeatureKind;
 /// How much of the patch is kept when a feature leans by `lean` out of `most`: all up to half, then less, to none.
 double share_kept(double lean, double most) noexcept { return std::clamp(2.0 * (most - lean) / most, 0.0, 1.0); }
 
-/// The feature of one piece that takes part, and how much of the patch its leaning leaves.
+/// The feature of one piece that takes part, and how its leaning shrinks the patch: a face toward its edge, and where
+/// that leans too much itself, toward the nearest point.
 struct Facing {
   Feature feature;
-  double share = 1.0;
+  int edge = -1;             ///< the edge a leaning face shrinks to; -1: none, the face does not lean
+  double face_share = 1.0;   ///< how much of its rise from that edge is kept
+  double along_share = 1.0;  ///< how much of the rise along it
 };
 
 /// Calls visit(face) for the faces that hold feature `f`.
@@ -33,6 +36,24 @@ void for_faces_at(const Polytope& P, const Feature& f, const Visit& visit) noexc
     return;
   }
   for (int e : P.edges_at(f.index)) visit(P.edges[e].tail == f.index ? P.edges[e].left : P.edges[e].right);
+}
+
+/// Of the edges at feature `f`, that bound `face`, the one most square to `outward`; its slope in `slope`.
+int level_edge(const Polytope& P, const Feature& f, int face, const Vec3& outward, double& slope) noexcept {
+  if (f.kind == Kind::kEdge) {
+    slope = std::abs(P.edges[f.index].direction.dot(outward));
+    return f.index;
+  }
+  int best = -1;
+  slope = 2.0;
+  for (int e : P.edges_at(f.index)) {
+    if (P.edges[e].left != face && P.edges[e].right != face) continue;
+    if (const double rise = std::abs(P.edges[e].direction.dot(outward)); rise < slope) {
+      slope = rise;
+      best = e;
+    }
+  }
+  return best;
 }
 
 /// The largest feature at `f` square to `outward` (unit, P's frame) within `angle`. Beside a face that leans as little
@@ -52,19 +73,18 @@ Facing facing_feature(const Polytope& P, const Feature& f, const Vec3& outward, 
       next = std::min(next, sine);
     }
   });
-  if (lean < angle) {
-    const double lead = next > lean ? 2.0 * (next - lean) / (next + lean) : 0.0;
-    return {{Kind::kFace, face}, share_kept(lean, angle) * std::min(1.0, lead)};
-  }
-  if (f.kind != Kind::kVertex) return {f, 1.0};
-  int edge = -1;
-  lean = angle;
-  for (int e : P.edges_at(f.index))
-    if (const double slope = std::abs(P.edges[e].direction.dot(outward)); slope < lean) {
-      lean = slope;
-      edge = e;
-    }
-  return edge >= 0 ? Facing{{Kind::kEdge, edge}, share_kept(lean, angle)} : Facing{f, 1.0};
+  Facing facing;
+  facing.feature = {Kind::kFace, face};
+  if (f.kind == Kind::kFace) return facing;
+  double slope = 0.0;
+  facing.edge = level_edge(P, f, face, outward, slope);
+  // An edge shrinks at a quarter of the angle: where two edges of a leaning face slope alike, both are points by then.
+  facing.along_share = share_kept(slope, 0.25 * angle);
+  const double lead = next > lean ? 2.0 * (next - lean) / (next + lean) : 0.0;
+  facing.face_share = share_kept(lean, angle) * std::min(1.0, lead);
+  if (facing.face_share > 0.0) return facing;
+  facing.feature = facing.along_share > 0.0 ? Feature{Kind::kEdge, facing.edge} : f;
+  return facing;
 }
 
 /// The contact plane: coordinates x along e1, e2 and height along n, from a point near the contact.
@@ -113,8 +133,25 @@ Height face_height(const Tangent& tangent, const Polytope& P, int face_index, co
 
 /// The gap above which the patch ends: the tolerance, or nearer the least gap when the features lean.
 double cut_level(const Work& w, double least_gap) noexcept {
-  const double share = w.a.share * w.b.share;
+  const auto share_of = [](const Facing& f) {
+    return f.feature.kind == Kind::kFace ? std::max(f.face_share, f.along_share) : f.along_share;
+  };
+  const double share = std::min(share_of(w.a), share_of(w.b));
   return share >= 1.0 ? w.tolerance : least_gap + (w.tolerance - least_gap) * share;
+}
+
+/// How far a leaning face has risen from the line of its edge: linear, zero on the line.
+struct Rise {
+  Vec2 slope = Vec2::Zero();
+  double offset = 0.0;
+  double operator()(const Vec2& x) const noexcept { return slope.dot(x) - offset; }
+};
+
+Rise rise_from_edge(const Tangent& tangent, const Polytope& P, int edge, const Pose& X, const Vec2& face_slope) noexcept {
+  const Vec2 on_line = tangent.flat(X * P.vertices[P.edges[edge].tail]);
+  const Vec2 along = (tangent.flat(X * P.vertices[P.edges[edge].head]) - on_line).normalized();
+  const Vec2 across = face_slope - along * along.dot(face_slope);
+  return {across, across.dot(on_line)};
 }
 
 void add_point(const Work& w, const Vec2& x, double za, double zb, double weight) noexcept {
@@ -132,8 +169,13 @@ struct Strip {
   Vec3 a0, a1, b0, b1;
 };
 
+/// The cut that a leaning face makes: only this share of its rise is kept. Told by the rise at a strip's ends.
+struct StripCut {
+  double at0 = 0.0, at1 = 0.0, share = 1.0;
+};
+
 /// Two Gauss points on the kept part of a strip.
-void interval_contact(const Work& w, const Strip& strip, PatchInterval kept) noexcept {
+void interval_contact(const Work& w, const Strip& strip, PatchInterval kept, const StripCut& cut = {}) noexcept {
   const double gap0 = w.tangent.n.dot(strip.a0 - strip.b0);
   const double gap1 = w.tangent.n.dot(strip.a1 - strip.b1);
   const auto gap = [&](double s) { return gap0 + (gap1 - gap0) * s; };
@@ -142,6 +184,11 @@ void interval_contact(const Work& w, const Strip& strip, PatchInterval kept) noe
   if (least >= w.tolerance) return point_contact(w);
   kept.keep_below(gap0, gap1, cut_level(w, least));
   if (kept.empty()) return point_contact(w);
+  if (cut.share < 1.0) {
+    const auto rise = [&](double s) { return cut.at0 + (cut.at1 - cut.at0) * s; };
+    kept.keep_below(cut.at0, cut.at1, std::max({0.0, rise(kept.low), rise(kept.high)}) * cut.share);
+    if (kept.empty()) return point_contact(w);
+  }
   const double middle = 0.5 * (kept.low + kept.high);
   const double reach = 0.5 * (kept.high - kept.low) / std::sqrt(3.0);
   for (double s : {middle - reach, middle + reach})
@@ -166,10 +213,13 @@ PatchInterval clip_segment(const Vec2& x0, const Vec2& x1, const PatchPolygon& w
 struct EdgeOverFace {
   Vec3 edge0, edge1, face0, face1;
   PatchInterval kept;
+  StripCut cut;
 };
 
-EdgeOverFace edge_over_face(const Work& w, const Polytope& E, int edge, const Pose& X_E, const Polytope& F, int face,
-                            const Pose& X_F) noexcept {
+/// `up` is +1 when the face is A's, which rises over the contact plane, -1 when it is B's.
+EdgeOverFace edge_over_face(const Work& w, const Polytope& E, int edge, const Pose& X_E, const Polytope& F,
+                            const Facing& facing, const Pose& X_F, double up) noexcept {
+  const int face = facing.feature.index;
   EdgeOverFace strip;
   strip.edge0 = X_E * E.vertices[E.edges[edge].tail];
   strip.edge1 = X_E * E.vertices[E.edges[edge].head];
@@ -181,17 +231,21 @@ EdgeOverFace edge_over_face(const Work& w, const Polytope& E, int edge, const Po
   PatchPolygon window;
   face_outline(w.tangent, F, face, X_F, window);
   strip.kept = clip_segment(x0, x1, window);
+  if (facing.face_share < 1.0) {
+    const Rise rise = rise_from_edge(w.tangent, F, facing.edge, X_F, up * height.slope);
+    strip.cut = {rise(x0), rise(x1), facing.face_share};
+  }
   return strip;
 }
 
 void edge_a_face_b(const Work& w) noexcept {
-  const EdgeOverFace x = edge_over_face(w, w.pair.A, w.a.feature.index, {}, w.pair.B, w.b.feature.index, w.pair.X_AB);
-  interval_contact(w, {x.edge0, x.edge1, x.face0, x.face1}, x.kept);
+  const EdgeOverFace x = edge_over_face(w, w.pair.A, w.a.feature.index, {}, w.pair.B, w.b, w.pair.X_AB, -1.0);
+  interval_contact(w, {x.edge0, x.edge1, x.face0, x.face1}, x.kept, x.cut);
 }
 
 void face_a_edge_b(const Work& w) noexcept {
-  const EdgeOverFace x = edge_over_face(w, w.pair.B, w.b.feature.index, w.pair.X_AB, w.pair.A, w.a.feature.index, {});
-  interval_contact(w, {x.face0, x.face1, x.edge0, x.edge1}, x.kept);
+  const EdgeOverFace x = edge_over_face(w, w.pair.B, w.b.feature.index, w.pair.X_AB, w.pair.A, w.a, {}, 1.0);
+  interval_contact(w, {x.face0, x.face1, x.edge0, x.edge1}, x.kept, x.cut);
 }
 
 /// Parallel edges share an interval. Edges that cross at a small angle share the part about the crossing where they are
@@ -254,6 +308,15 @@ void face_face_contact(const Work& w) noexcept {
   for (const Vec2& x : polygon) least = std::min(least, za(x) - zb(x));
   if (least >= w.tolerance) return point_contact(w);
   clip_polygon(polygon, za.slope - zb.slope, cut_level(w, least) - (za.at_origin - zb.at_origin), scratch);
+  const auto cut_toward_edge = [&](const Rise& rise, double share) {
+    double most = 0.0;
+    for (const Vec2& x : polygon) most = std::max(most, rise(x));
+    clip_polygon(polygon, rise.slope, rise.offset + most * share, scratch);
+  };
+  if (w.a.face_share < 1.0)
+    cut_toward_edge(rise_from_edge(w.tangent, w.pair.A, w.a.edge, {}, za.slope), w.a.face_share);
+  if (w.b.face_share < 1.0)
+    cut_toward_edge(rise_from_edge(w.tangent, w.pair.B, w.b.edge, w.pair.X_AB, -zb.slope), w.b.face_share);
   if (polygon.empty()) return point_contact(w);
   const PatchMoments m = moments_of(polygon);
   if (m.area <= tolerances::kPatchArea * w.pair.size * w.pair.size) return sliver_contact(w, polygon, za, zb);

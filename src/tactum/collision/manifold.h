@@ -10,7 +10,8 @@
 ///          edge       point      point or shared interval edge clipped by the face
 ///          face       point      edge clipped by the face polygon clipped by polygon
 ///
-///   3. Cut off where the gap exceeds the tolerance: as the pieces tilt the patch shrinks, it does not jump.
+///   3. Cut off where the gap exceeds the tolerance, and as a feature leans toward the limit of 1., toward its edge and
+///      its vertex: as the pieces tilt the patch shrinks, it does not jump.
 ///   4. Replace the patch by points with the same area, centroid and second moments: a polygon by four on its principal
 ///      axes, c +- sqrt(2 l1) e1 and c +- sqrt(2 l2) e2; an interval by its two Gauss points. Any force that is linear in
 ///      the gap, and its torque, is then the exact integral over the patch.

@@ -1,0 +1,93 @@
+#include "tactum/collision/time_of_impact.h"
+
+#include <gtest/gtest.h>
+
+#include "collision/cases.h"
+#include "tactum/base/tolerances.h"
+#include "tactum/collision/closest_features.h"
+
+namespace tactum {
+namespace {
+
+double distance_at(const Polytope& A, const Pose& X_WA, const Twist& V_WA, const Polytope& B, const Pose& X_WB,
+                   const Twist& V_WB, double t, PairCache& cache) {
+  return closest_features(A, B, relative_pose(advanced(X_WA, V_WA, t), advanced(X_WB, V_WB, t)), cache).distance;
+}
+
+TEST(TimeOfImpact, StraightFlightOfBoxesIsExact) {
+  const Polytope box = make_box({0.01, 0.01, 0.01});
+  PairCache cache;
+  const TimeOfImpact hit = time_of_impact(box, {}, {}, box, {Mat3::Identity(), {0.05, 0.002, 0}},
+                                          {{-0.5, 0, 0}, Vec3::Zero()}, 1.0, 0.001, cache);
+  EXPECT_EQ(hit.status, ImpactStatus::kHit);
+  EXPECT_NEAR(hit.time, (0.03 - 0.001) / 0.5, 1e-7);
+  EXPECT_LE(hit.steps, 3);
+}
+
+TEST(TimeOfImpact, SaysMissAndStartedInside) {
+  const Polytope box = make_box({0.01, 0.01, 0.01});
+  PairCache cache;
+  const Pose beside{Mat3::Identity(), {0.05, 0, 0}};
+  EXPECT_EQ(time_of_impact(box, {}, {}, box, beside, {{0.5, 0, 0}, Vec3::Zero()}, 1.0, 0.001, cache).status,
+            ImpactStatus::kMiss);
+  EXPECT_EQ(time_of_impact(box, {}, {}, box, beside, {{-0.5, 0, 0}, Vec3::Zero()}, 0.01, 0.001, cache).status,
+            ImpactStatus::kMiss);
+  const TimeOfImpact inside = time_of_impact(box, {}, {}, box, beside, {{-0.5, 0, 0}, Vec3::Zero()}, 1.0, 0.031, cache);
+  EXPECT_EQ(inside.status, ImpactStatus::kStartedInside);
+  EXPECT_EQ(inside.time, 0.0);
+}
+
+/// Spinning pieces: never past the contact (sampled finely before it), and near the target when it says hit.
+TEST(TimeOfImpact, NeverOvershoots) {
+  const std::uint64_t seed = 51;
+  Random random(seed);
+  const auto shapes = cases::shapes(random, true);
+  const int runs = cases::full() ? 20000 : 1500;
+  int hits = 0;
+  int misses = 0;
+  int bounded = 0;
+  int steps = 0;
+  for (int i = 0; i < runs; ++i) {
+    const Polytope& A = shapes[std::size_t(random.index(int(shapes.size())))].polytope;
+    const Polytope& B = shapes[std::size_t(random.index(int(shapes.size())))].polytope;
+    const double size = std::max(A.size, B.size);
+    const Mat3 R_WA = cases::random_rotation(random);
+    const Mat3 R_WB = cases::random_rotation(random);
+    const Pose X_WA{R_WA, cases::random_vector(random, 0.05)};
+    const Vec3 away = cases::random_unit(random) * (A.radius + B.radius) * random.uniform(0.7, 1.5);
+    const Pose X_WB{R_WB, X_WA.p + away};
+    const Vec3 aim = away + cases::random_vector(random, 0.03);
+    const Twist V_WA{aim * random.uniform(0.0, 2.0), cases::random_vector(random, 6.0)};
+    const Twist V_WB{cases::random_vector(random, 0.05), cases::random_vector(random, 6.0)};
+    const double target = 1e-4 * size;
+    PairCache cache;
+    const TimeOfImpact impact = time_of_impact(A, X_WA, V_WA, B, X_WB, V_WB, 1.0, target, cache);
+    SCOPED_TRACE("seed " + std::to_string(seed) + ", case " + std::to_string(i));
+    hits += impact.status == ImpactStatus::kHit;
+    misses += impact.status == ImpactStatus::kMiss;
+    bounded += impact.status == ImpactStatus::kBounded;
+    steps += impact.steps;
+    if (impact.status == ImpactStatus::kStartedInside) {
+      EXPECT_LE(distance_at(A, X_WA, V_WA, B, X_WB, V_WB, 0.0, cache), target + 1e-9 * size);
+      continue;
+    }
+    PairCache warm;
+    for (int k = 0; k < 150; ++k)
+      ASSERT_GT(distance_at(A, X_WA, V_WA, B, X_WB, V_WB, impact.time * k / 150, warm), target - 1e-9 * size);
+    if (impact.status == ImpactStatus::kHit) {
+      const double d = distance_at(A, X_WA, V_WA, B, X_WB, V_WB, impact.time, warm);
+      ASSERT_LE(d, target + 1.01 * tolerances::kImpactGap * size);
+      ASSERT_GE(d, target - 1e-9 * size);
+    } else if (impact.status == ImpactStatus::kMiss) {
+      ASSERT_EQ(impact.time, 1.0);
+    }
+  }
+  std::printf("  seed %llu: %d hits, %d misses, %d out of steps of %d; %.1f steps each\n",
+              static_cast<unsigned long long>(seed), hits, misses, bounded, runs, double(steps) / runs);
+  EXPECT_GT(hits, runs / 10);
+  EXPECT_GT(misses, runs / 10);
+  EXPECT_LT(bounded, runs / 50);
+}
+
+}  // namespace
+}  // namespace tactum
