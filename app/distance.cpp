@@ -27,8 +27,10 @@ constexpr double kMostEdgePairs = 4e9;
 struct Place {
   std::string file, item, field;
   Place at(const std::string& next) const { return {file, item, field.empty() ? next : field + "." + next}; }
-  [[noreturn]] void refuse(const std::string& what, const std::string& found, const std::string& expected) const {
-    fail({what, found, expected, item.empty() ? file : file + ": " + item + (field.empty() ? "" : ", " + field)});
+  [[noreturn]] void refuse(const std::string& what, const std::string& found,
+                           const std::string& expected) const {
+    fail({what, found, expected,
+          item.empty() ? file : file + ": " + item + (field.empty() ? "" : ", " + field)});
   }
 };
 
@@ -84,8 +86,8 @@ Pose read_pose(const Json& object, const Place& place) {
     here.refuse("the matrix is no rotation", fmt::format("|M M^T - I| up to {:.3g}", nearest.deviation),
                 fmt::format("at most {:g}, and no reflection", tolerances::kRotationNear));
   if (nearest.deviation > tolerances::kRotationExact)
-    fmt::print(stderr, "{}: {}, {}: made orthonormal, it was off by {:.1g}\n", here.file, here.item, here.field,
-               nearest.deviation);
+    fmt::print(stderr, "{}: {}, {}: made orthonormal, it was off by {:.1g}\n", here.file, here.item,
+               here.field, nearest.deviation);
   return {nearest.R, M.topRightCorner<3, 1>()};
 }
 
@@ -95,8 +97,8 @@ PairDistance signed_distance(const Polytope& A, const Polytope& B, const Pose& X
   const PairDistance found = closest_features(A, B, X_AB, cache);
   if (found.distance >= 0.0) return found;
   if (static_cast<double>(A.edges.size()) * static_cast<double>(B.edges.size()) > kMostEdgePairs) {
-    fmt::print(stderr, "{}: {}: too many edges to search them all; the depth is a local minimum\n", place.file,
-               place.item);
+    fmt::print(stderr, "{}: {}: too many edges to search them all; the depth is a local minimum\n",
+               place.file, place.item);
     return found;
   }
   PairDistance deepest = penetration_exhaustive(A, B, X_AB);
@@ -139,7 +141,8 @@ void distance(const std::string& path, const std::string& json) {
   for (std::size_t i = 0; i < cases.size(); ++i) {
     const bool named = cases[i].is_object() && cases[i].contains("id");
     const Json id = named ? cases[i]["id"] : Json(i);
-    results.push_back(answer(cases[i], id, {path, fmt::format("case {}", named ? id.dump() : fmt::to_string(i)), ""}));
+    results.push_back(
+        answer(cases[i], id, {path, fmt::format("case {}", named ? id.dump() : fmt::to_string(i)), ""}));
   }
   write_json(json.empty() ? "-" : json, {{"results", results}});
 }
@@ -153,8 +156,9 @@ void add_distance(CLI::App& app) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("distance", "Signed distance of pairs of convex vertex clouds");
   command
-      ->add_option("CASES", options->cases,
-                   R"({"cases":[{"id","a":{"vertices":[[x,y,z],...],"pose":[16 numbers, row-major]},"b":{...}}]})")
+      ->add_option(
+          "CASES", options->cases,
+          R"({"cases":[{"id","a":{"vertices":[[x,y,z],...],"pose":[16 numbers, row-major]},"b":{...}}]})")
       ->required();
   command->add_option("--json", options->json, "write the results to this file instead of standard output");
   command->callback([options] { distance(options->cases, options->json); });

@@ -1,5 +1,6 @@
 #pragma once
-/// The shapes and poses the contact core is tried on: compact, thin, flat, round; and poses made to be degenerate.
+/// The shapes and poses the contact core is tried on: compact, thin, flat, round; and poses made to be
+/// degenerate.
 
 #include <cmath>
 #include <cstdio>
@@ -60,8 +61,14 @@ inline std::vector<Shape> shapes(Random& random, bool large) {
   list.push_back({"icosahedron", make_icosphere(0, 0.03)});
   list.push_back({"triangle", *flat_polygon({{0, 0, 0.01}, {0.05, 0, 0.01}, {0.01, 0.03, 0.01}})});
   list.push_back({"thin triangle", *flat_polygon({{0, 0, 0}, {0.05, 0, 0}, {0.025, 0.0005, 0}})});
-  list.push_back({"flat octagon", *convex_hull({{3, 1, 0}, {1, 3, 0}, {-1, 3, 0}, {-3, 1, 0}, {-3, -1, 0}, {-1, -3, 0},
-                                                {1, -3, 0}, {3, -1, 0}})});
+  list.push_back({"flat octagon", *convex_hull({{3, 1, 0},
+                                                {1, 3, 0},
+                                                {-1, 3, 0},
+                                                {-3, 1, 0},
+                                                {-3, -1, 0},
+                                                {-1, -3, 0},
+                                                {1, -3, 0},
+                                                {3, -1, 0}})});
   for (Vec3& v : list.back().polytope.vertices) v *= 0.01;
   {
     std::vector<Vec3> corners = list.back().polytope.vertices;
@@ -78,7 +85,16 @@ inline std::vector<Shape> shapes(Random& random, bool large) {
 }
 
 /// What a pose of the list is made to show.
-enum class Making { kRandom, kFaceToFace, kEdgeToEdge, kVertexOverEdge, kVertexOverFace, kVertexToVertex, kAligned, kCount };
+enum class Making {
+  kRandom,
+  kFaceToFace,
+  kEdgeToEdge,
+  kVertexOverEdge,
+  kVertexOverFace,
+  kVertexToVertex,
+  kAligned,
+  kCount
+};
 
 /// A rotation that takes unit `from` to unit `to`, then turned about `to` by `angle`.
 inline Mat3 turning(const Vec3& from, const Vec3& to, double angle) {
@@ -93,11 +109,14 @@ inline double random_gap(Random& random) {
   return kind < 6 ? magnitude : -magnitude;
 }
 
-/// X_AB of the given making: features of A and B set against each other at a random gap along A's outward direction.
+/// X_AB of the given making: features of A and B set against each other at a random gap along A's outward
+/// direction.
 inline Pose make_pose(Random& random, const Polytope& A, const Polytope& B, Making making) {
   const double size = 0.5 * (A.size + B.size);
   Pose X{random_rotation(random), Vec3::Zero()};
-  const auto pick = [&](std::size_t n) { return static_cast<std::size_t>(random.index(static_cast<int>(n))); };
+  const auto pick = [&](std::size_t n) {
+    return static_cast<std::size_t>(random.index(static_cast<int>(n)));
+  };
   const Polytope::Face& fa = A.faces[pick(A.faces.size())];
   const Polytope::Face& fb = B.faces[pick(B.faces.size())];
   const Polytope::Edge& ea = A.edges[pick(A.edges.size())];
@@ -126,9 +145,11 @@ inline Pose make_pose(Random& random, const Polytope& A, const Polytope& B, Maki
       on_b = B.vertices[std::size_t(B.face_vertices[std::size_t(fb.first)])];
       break;
     case Making::kEdgeToEdge: {
-      outward = (A.side_normals[std::size_t(ea.left_slot)] + A.side_normals[std::size_t(ea.right_slot)]).normalized();
+      outward = (A.side_normals[std::size_t(ea.left_slot)] + A.side_normals[std::size_t(ea.right_slot)])
+                    .normalized();
       const Vec3 out_b =
-          (B.side_normals[std::size_t(eb.left_slot)] + B.side_normals[std::size_t(eb.right_slot)]).normalized();
+          (B.side_normals[std::size_t(eb.left_slot)] + B.side_normals[std::size_t(eb.right_slot)])
+              .normalized();
       X.R = turning(out_b, -outward, angle);
       if (random.index(2)) {  // parallel edges
         const Vec3 u = X.R * eb.direction;
@@ -140,7 +161,8 @@ inline Pose make_pose(Random& random, const Polytope& A, const Polytope& B, Maki
       break;
     }
     case Making::kVertexOverEdge:
-      outward = (A.side_normals[std::size_t(ea.left_slot)] + A.side_normals[std::size_t(ea.right_slot)]).normalized();
+      outward = (A.side_normals[std::size_t(ea.left_slot)] + A.side_normals[std::size_t(ea.right_slot)])
+                    .normalized();
       X.R = turning((B.vertices[vb] - B.center).normalized(), -outward, angle);
       on_a = A.vertices[std::size_t(ea.tail)] + ea.direction * (ea.length * share);
       break;
@@ -176,9 +198,10 @@ inline bool full() { return std::getenv("TACTUM_FULL") != nullptr; }
 
 inline std::string describe(const Pose& X) {
   char text[400];
-  std::snprintf(text, sizeof text, "R = %.17g %.17g %.17g / %.17g %.17g %.17g / %.17g %.17g %.17g, p = %.17g %.17g %.17g",
-                X.R(0, 0), X.R(0, 1), X.R(0, 2), X.R(1, 0), X.R(1, 1), X.R(1, 2), X.R(2, 0), X.R(2, 1), X.R(2, 2),
-                X.p.x(), X.p.y(), X.p.z());
+  std::snprintf(text, sizeof text,
+                "R = %.17g %.17g %.17g / %.17g %.17g %.17g / %.17g %.17g %.17g, p = %.17g %.17g %.17g",
+                X.R(0, 0), X.R(0, 1), X.R(0, 2), X.R(1, 0), X.R(1, 1), X.R(1, 2), X.R(2, 0), X.R(2, 1),
+                X.R(2, 2), X.p.x(), X.p.y(), X.p.z());
   return text;
 }
 

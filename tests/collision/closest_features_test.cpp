@@ -30,8 +30,8 @@ void complain(Tally& tally, const cases::Shape& a, const cases::Shape& b, const 
               const PairDistance& answer, const std::string& why) {
   ++tally.wrong;
   if (tally.wrong <= 10)
-    ADD_FAILURE() << a.name << " / " << b.name << ", making " << making << ", distance " << answer.distance << ": "
-                  << why << " " << cases::describe(X);
+    ADD_FAILURE() << a.name << " / " << b.name << ", making " << making << ", distance " << answer.distance
+                  << ": " << why << " " << cases::describe(X);
 }
 
 TEST(ClosestFeatures, AgreesWithEveryPairOfFeaturesOnSmallShapes) {
@@ -85,7 +85,8 @@ TEST(ClosestFeatures, LargeShapesProveThemselves) {
     std::string why = oracle::complaint(a.polytope, b.polytope, X, answer, tolerance);
     if (answer.distance < -tolerance) {
       ++tally.overlapping;
-      if (i % 16 == 0 && !oracle::surely_overlap(a.polytope, b.polytope, X, 0.0L)) why += "they do not overlap; ";
+      if (i % 16 == 0 && !oracle::surely_overlap(a.polytope, b.polytope, X, 0.0L))
+        why += "they do not overlap; ";
     }
     if (!why.empty()) complain(tally, a, b, X, making, answer, why);
   }

@@ -47,7 +47,7 @@ TEST(ContactFinder, FindsEveryPatchThatTestingAllPairsFinds) {
     std::vector<Twist> V;
     for (int i = 0; i < 4; ++i) {
       parts.push_back(cluttered_part(random));
-      X.push_back({exp_rotation(random_vector(random, 1)), random_vector(random, 0.05)});
+      X.push_back({exp_rotation(random_vector(random, 1)), random_vector(random, 0.025)});
       V.emplace_back();
     }
     for (int i = 0; i < 4; ++i) bodies.push_back({&parts[std::size_t(i)], i != 2});
@@ -80,7 +80,8 @@ TEST(ContactFinder, FindsEveryPatchThatTestingAllPairsFinds) {
           for (int p = 0; p < 14; ++p)
             for (int q = 0; q < 14; ++q) {
               PairCache cold;
-              const PairDistance d = piece_distance(parts[std::size_t(a)], p, parts[std::size_t(b)], q, X_AB, cold);
+              const PairDistance d =
+                  piece_distance(parts[std::size_t(a)], p, parts[std::size_t(b)], q, X_AB, cold);
               const auto at = found.find({a, b, p, q});
               if (std::abs(d.distance - tolerance) < 1e-9) continue;
               ASSERT_EQ(at != found.end(), d.distance < tolerance)
@@ -136,7 +137,8 @@ TEST(Schedule, PairsInContactComeFirstThenTheLongestUnchecked) {
   ASSERT_EQ(prioritise(due, budget), budget);
   const auto urgency = [](const DuePair& d) { return std::tuple(!d.was_in_contact, d.last_checked, d.pair); };
   auto least_urgent_taken = urgency(due[0]);
-  for (int i = 0; i < budget; ++i) least_urgent_taken = std::max(least_urgent_taken, urgency(due[std::size_t(i)]));
+  for (int i = 0; i < budget; ++i)
+    least_urgent_taken = std::max(least_urgent_taken, urgency(due[std::size_t(i)]));
   for (std::size_t i = budget; i < due.size(); ++i) EXPECT_GT(urgency(due[i]), least_urgent_taken);
   for (int i = 1; i < budget; ++i) EXPECT_LT(due[std::size_t(i) - 1].pair, due[std::size_t(i)].pair);
   EXPECT_EQ(prioritise(due, 1000), 100);

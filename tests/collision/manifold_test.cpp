@@ -117,7 +117,8 @@ TEST(Manifold, CrossingEdgesMeetInAPoint) {
 }
 
 TEST(Manifold, VertexOnFaceEdgeAndVertex) {
-  const Polytope tip = *convex_hull({{0, 0, 0}, {0.01, 0, -0.03}, {-0.01, 0.01, -0.03}, {-0.01, -0.01, -0.03}});
+  const Polytope tip =
+      *convex_hull({{0, 0, 0}, {0.01, 0, -0.03}, {-0.01, 0.01, -0.03}, {-0.01, -0.01, -0.03}});
   const Contact face = contact(box(), tip, above(0.003, 0.004, -0.0101), 0.001);
   expect_kinds(face.patch, Kind::kFace, Kind::kVertex, 1);
   EXPECT_TRUE(face.patch.points[0].p_b.isApprox(Vec3(0.003, 0.004, -0.0101), 1e-12));
@@ -231,8 +232,8 @@ TEST(Manifold, SwappingAAndBTurnsTheNormalAndKeepsThePatch) {
   }
 }
 
-/// Largest step of the patch's centroid while a prism rocks through flat against a box, by 3.4 degrees to either side, in
-/// steps of `step` [rad], at a distance of half the tolerance.
+/// Largest step of the patch's centroid while a prism rocks through flat against a box, by 3.4 degrees to
+/// either side, in steps of `step` [rad], at a distance of half the tolerance.
 double largest_jump(std::uint64_t seed, double step) {
   Random random(seed);
   const Polytope A = make_box({0.0125, 0.0125, 0.0125});
@@ -263,8 +264,8 @@ double largest_jump(std::uint64_t seed, double step) {
   return worst;
 }
 
-/// No jump: with finer steps the largest one shrinks in proportion. (It is not small by itself: with a gap of 50 um the
-/// normal turns by 3 mrad while two edges slide past each other by 0.2 um.)
+/// No jump: with finer steps the largest one shrinks in proportion. (It is not small by itself: with a gap of
+/// 50 um the normal turns by 3 mrad while two edges slide past each other by 0.2 um.)
 TEST(Manifold, CentroidMovesContinuously) {
   const std::uint64_t seed = 33;
   const double coarse = largest_jump(seed, 2e-5);
@@ -283,7 +284,8 @@ TEST(Manifold, NeverEmptyBelowTheTolerance) {
   for (int i = 0; i < 20000; ++i) {
     const cases::Shape& a = shapes[std::size_t(random.index(int(shapes.size())))];
     const cases::Shape& b = shapes[std::size_t(random.index(int(shapes.size())))];
-    const Pose X = cases::make_pose(random, a.polytope, b.polytope, cases::Making(i % int(cases::Making::kCount)));
+    const Pose X =
+        cases::make_pose(random, a.polytope, b.polytope, cases::Making(i % int(cases::Making::kCount)));
     const double size = std::max(a.polytope.size, b.polytope.size);
     const Contact c = contact(a.polytope, b.polytope, X, 0.01 * size);
     if (c.closest.distance >= 0.01 * size) {
@@ -291,8 +293,8 @@ TEST(Manifold, NeverEmptyBelowTheTolerance) {
       continue;
     }
     ++patches;
-    SCOPED_TRACE(a.name + " / " + b.name + ", seed " + std::to_string(seed) + ", case " + std::to_string(i) + " " +
-                 cases::describe(X));
+    SCOPED_TRACE(a.name + " / " + b.name + ", seed " + std::to_string(seed) + ", case " + std::to_string(i) +
+                 " " + cases::describe(X));
     ASSERT_FALSE(c.patch.points.empty());
     double weight = 0.0;
     for (const ContactPoint& p : c.patch.points) {

@@ -65,10 +65,11 @@ TEST(Penetration, MovingByTheDepthJustSeparates) {
 TEST(Penetration, WalkMissesFewGlobalMinimaOfCompactShapes) {
   const std::uint64_t seed = 43;
   Random random(seed);
-  const std::vector<cases::Shape> shapes = {{"sphere 162", make_icosphere(2, 0.025)},
-                                            {"hull 150", cases::random_hull(random, 150, {0.02, 0.025, 0.03})},
-                                            {"prism 64", make_prism(64, 0.02, 0.04)},
-                                            {"box", make_box({0.02, 0.025, 0.03})}};
+  const std::vector<cases::Shape> shapes = {
+      {"sphere 162", make_icosphere(2, 0.025)},
+      {"hull 150", cases::random_hull(random, 150, {0.02, 0.025, 0.03})},
+      {"prism 64", make_prism(64, 0.02, 0.04)},
+      {"box", make_box({0.02, 0.025, 0.03})}};
   int missed = 0;
   int total = 0;
   double worst = 0.0;
@@ -99,7 +100,8 @@ TEST(Penetration, DeepSpheresAreMeasuredByExhaustion) {
 }
 
 TEST(Penetration, FlatPiecesHaveTheDepthOfTheirPlane) {
-  const Polytope square = *flat_polygon({{-0.01, -0.01, 0}, {0.01, -0.01, 0}, {0.01, 0.01, 0}, {-0.01, 0.01, 0}});
+  const Polytope square =
+      *flat_polygon({{-0.01, -0.01, 0}, {0.01, -0.01, 0}, {0.01, 0.01, 0}, {-0.01, 0.01, 0}});
   const Polytope box = make_box({0.03, 0.03, 0.03});
   PairCache cache;
   const PairDistance inside = closest_features(box, square, {Mat3::Identity(), {0, 0, 0.028}}, cache);
@@ -121,7 +123,8 @@ TEST(Penetration, OneSidedPushesOutOfTheSurface) {
                                         make_icosphere(2, 0.01)};
   for (int i = 0; i < 3000; ++i) {
     const Polytope& piece = shapes[std::size_t(i % 3)];
-    const Pose X{cases::random_rotation(random), cases::random_vector(random, 0.012)};  // the piece in the triangle
+    const Pose X{cases::random_rotation(random),
+                 cases::random_vector(random, 0.012)};  // the piece in the triangle
     PairCache cache;
     const OneSided sides{triangle.faces[0].normal, std::nullopt};
     const PairDistance a = penetration_one_sided(triangle, piece, X, sides, cache);
@@ -131,7 +134,8 @@ TEST(Penetration, OneSidedPushesOutOfTheSurface) {
     for (const Vec3& v : piece.vertices) low = std::min(low, (X * v).z());
     EXPECT_GE(a.distance, std::min(0.0, low) - 1e-12);
     PairCache swapped_cache;
-    const PairDistance b = penetration_one_sided(piece, triangle, X.inverse(), {std::nullopt, sides.outward_a}, swapped_cache);
+    const PairDistance b =
+        penetration_one_sided(piece, triangle, X.inverse(), {std::nullopt, sides.outward_a}, swapped_cache);
     EXPECT_NEAR(a.distance, b.distance, 1e-12);
     EXPECT_LT((X.R * b.normal + a.normal).norm(), 1e-6) << "seed " << seed << " case " << i;
   }
@@ -154,7 +158,8 @@ TEST(Penetration, AlongADirectionAgreesWithBisection) {
     double outside = 2.0 * (a.polytope.radius + b.polytope.radius);
     for (int k = 0; k < 50; ++k) {
       const double middle = 0.5 * (inside + outside);
-      const PairDistance at = closest_features(a.polytope, b.polytope, moved_away(X, direction * middle), cache);
+      const PairDistance at =
+          closest_features(a.polytope, b.polytope, moved_away(X, direction * middle), cache);
       (at.distance < 0.0 ? inside : outside) = middle;
     }
     ASSERT_TRUE(along.certified()) << a.name << " / " << b.name << " seed " << seed << " case " << i;
@@ -187,7 +192,9 @@ TEST(Penetration, WarmTrackingStaysCertified) {
       X = advanced(X, {v, w}, 1e-3);
       const PairDistance deep = closest_features(a.polytope, b.polytope, X, cache);
       ++frames;
-      ASSERT_EQ(oracle::complaint(a.polytope, b.polytope, X, deep, 2e-9 * std::max(a.polytope.size, b.polytope.size)), "")
+      ASSERT_EQ(oracle::complaint(a.polytope, b.polytope, X, deep,
+                                  2e-9 * std::max(a.polytope.size, b.polytope.size)),
+                "")
           << a.name << " / " << b.name << " seed " << seed << " run " << run << " frame " << frame;
     }
   }

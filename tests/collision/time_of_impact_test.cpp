@@ -9,9 +9,10 @@
 namespace tactum {
 namespace {
 
-double distance_at(const Polytope& A, const Pose& X_WA, const Twist& V_WA, const Polytope& B, const Pose& X_WB,
-                   const Twist& V_WB, double t, PairCache& cache) {
-  return closest_features(A, B, relative_pose(advanced(X_WA, V_WA, t), advanced(X_WB, V_WB, t)), cache).distance;
+double distance_at(const Polytope& A, const Pose& X_WA, const Twist& V_WA, const Polytope& B,
+                   const Pose& X_WB, const Twist& V_WB, double t, PairCache& cache) {
+  return closest_features(A, B, relative_pose(advanced(X_WA, V_WA, t), advanced(X_WB, V_WB, t)), cache)
+      .distance;
 }
 
 TEST(TimeOfImpact, StraightFlightOfBoxesIsExact) {
@@ -32,7 +33,8 @@ TEST(TimeOfImpact, SaysMissAndStartedInside) {
             ImpactStatus::kMiss);
   EXPECT_EQ(time_of_impact(box, {}, {}, box, beside, {{-0.5, 0, 0}, Vec3::Zero()}, 0.01, 0.001, cache).status,
             ImpactStatus::kMiss);
-  const TimeOfImpact inside = time_of_impact(box, {}, {}, box, beside, {{-0.5, 0, 0}, Vec3::Zero()}, 1.0, 0.031, cache);
+  const TimeOfImpact inside =
+      time_of_impact(box, {}, {}, box, beside, {{-0.5, 0, 0}, Vec3::Zero()}, 1.0, 0.031, cache);
   EXPECT_EQ(inside.status, ImpactStatus::kStartedInside);
   EXPECT_EQ(inside.time, 0.0);
 }

@@ -129,7 +129,11 @@ TEST(HingeFriction, HoldsBelowItsLimitAndSlowsAboveIt) {
   Body& body = world.bodies[0];
   body.mass_kg = 0.2;
   body.inertia_B = 1e-4 * Mat3::Identity();
-  body.joint = {.kind = JointKind::kHinge, .axis_W = Vec3::UnitZ(), .anchor_W = Vec3::Zero(), .damping_Nms = 0.0, .friction_Nm = 0.01};
+  body.joint = {.kind = JointKind::kHinge,
+                .axis_W = Vec3::UnitZ(),
+                .anchor_W = Vec3::Zero(),
+                .damping_Nms = 0.0,
+                .friction_Nm = 0.01};
   const WorldState state = initial_state(world);
   const std::vector<Mobility> W{mobility(body.joint, body.X_WB, inertial_resistance(body, body.X_WB))};
   std::vector<Twist> V(1);

@@ -12,7 +12,8 @@ constexpr double kPlateTop = 0.0;  // z of the plate's upper face [m]
 std::shared_ptr<const Part> box_part(const Vec3& half) {
   std::vector<Vec3> corners;
   for (int i = 0; i < 8; ++i)
-    corners.emplace_back(i & 1 ? half.x() : -half.x(), i & 2 ? half.y() : -half.y(), i & 4 ? half.z() : -half.z());
+    corners.emplace_back(i & 1 ? half.x() : -half.x(), i & 2 ? half.y() : -half.y(),
+                         i & 4 ? half.z() : -half.z());
   Result<Part> part = part_from_clouds({corners});
   EXPECT_TRUE(part);
   return std::make_shared<const Part>(std::move(*part));
@@ -42,14 +43,16 @@ struct Bench {
   FrameSettings settings;
   Pose X_WU;  // the whole set-up in the world
 
-  explicit Bench(const Pose& X = {}, std::shared_ptr<const Part> plate = box_part({0.05, 0.05, 0.01})) : X_WU(X) {
+  explicit Bench(const Pose& X = {}, std::shared_ptr<const Part> plate = box_part({0.05, 0.05, 0.01}))
+      : X_WU(X) {
     world.bodies.resize(2);
     world.bodies[0].part = box_part({0.010, 0.007, 0.005});
     world.bodies[0].mass_kg = 0.05;
     world.bodies[0].inertia_B = 1e-5 * Mat3::Identity();
     world.bodies[0].X_WB = X * Pose{Mat3::Identity(), {0, 0, 0.008}};
     world.bodies[1].part = std::move(plate);
-    world.bodies[1].X_WB = X * Pose{Mat3::Identity(), {0, 0, world.bodies[1].part->one_sided ? kPlateTop : -0.01}};
+    world.bodies[1].X_WB =
+        X * Pose{Mat3::Identity(), {0, 0, world.bodies[1].part->one_sided ? kPlateTop : -0.01}};
     world.bodies[1].joint.kind = JointKind::kFixed;
     settings.tool.body = 0;
     settings.workspace.X_WD = {X.R, Vec3::Zero()};
@@ -103,7 +106,8 @@ TEST(Frame, PressedFlatTheForceIsThePublishedLaw) {
   EXPECT_LT(report.shown.t.norm(), 1e-6);
   EXPECT_EQ(report.held_contact_points, 4);
   EXPECT_TRUE(report.penetrating);
-  EXPECT_LT((report.restoring.f - report.coupling.f).norm(), 1e-3);  // what pushes the part is what the hand feels
+  EXPECT_LT((report.restoring.f - report.coupling.f).norm(),
+            1e-3);  // what pushes the part is what the hand feels
 }
 
 TEST(Frame, PressedOffCentreTheTorqueIsLeverTimesForce) {
@@ -130,15 +134,17 @@ TEST(Frame, TheSameEverywhereInTheWorld) {
 TEST(Frame, AWallFeelsTheSameHoweverFinelyItIsMeshed) {
   const auto pressed = [](std::shared_ptr<const Part> plate, double depth) {
     Bench bench({}, std::move(plate));
-    bench.settings.penalty.stiffness_N_per_m = 1200.0;  // twice the coupling's: held off while the hand is near
+    bench.settings.penalty.stiffness_N_per_m =
+        1200.0;  // twice the coupling's: held off while the hand is near
     return bench.press({Mat3::Identity(), {0.0012, 0.0007, -0.003 - depth}});
   };
   const std::shared_ptr<const Part> solid = box_part({0.05, 0.05, 0.01});
   for (double depth : {0.0003, 0.002}) {
     const FrameReport expected = pressed(solid, depth);
     EXPECT_EQ(expected.penetrating, depth > 0.001);
-    // Apart, the patches add up exactly. Overlapping, a triangle that only just reaches under the block is left by its
-    // side, the shorter way, and the patch ends there: the pressure's centre moves by hundredths of a millimetre.
+    // Apart, the patches add up exactly. Overlapping, a triangle that only just reaches under the block is
+    // left by its side, the shorter way, and the patch ends there: the pressure's centre moves by hundredths
+    // of a millimetre.
     const double torque_error = expected.penetrating ? 5e-5 : 1e-8;
     for (int n : {1, 3, 16}) {
       const FrameReport meshed = pressed(grid_part(n), depth);

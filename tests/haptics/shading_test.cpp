@@ -36,11 +36,12 @@ TEST(Shading, AFacetedCylinderHasTheNormalsOfARoundOne) {
     const double radius = 0.01 * std::cos(kPi / sides) / std::cos(in_facet);  // on the flat side
     const int f = face_towards(P, radial);
     const Vec3 face = P.faces[std::size_t(f)].normal;
-    const Vec3 shaded = face + shading.deviation(0, {FeatureKind::kFace, f}, radius * radial + Vec3(0, 0, 0.004));
+    const Vec3 shaded =
+        face + shading.deviation(0, {FeatureKind::kFace, f}, radius * radial + Vec3(0, 0, 0.004));
     worst = std::max(worst, (shaded - radial).norm());
     worst_flat = std::max(worst_flat, (face - radial).norm());
   }
-  EXPECT_LT(worst, 1e-3);        // of a normal that turns by 0.2 rad from facet to facet
+  EXPECT_LT(worst, 1e-3);  // of a normal that turns by 0.2 rad from facet to facet
   EXPECT_GT(worst_flat, 0.09);
 }
 
@@ -61,7 +62,8 @@ TEST(Shading, ContinuousAcrossTheEdgesOfASphere) {
   for (const Polytope::Edge& edge : P.edges) {
     for (double t : {0.0, 0.3, 0.5, 1.0}) {
       const Vec3 p = (1 - t) * P.vertices[std::size_t(edge.tail)] + t * P.vertices[std::size_t(edge.head)];
-      const Vec3 left = P.faces[std::size_t(edge.left)].normal + shading.deviation(0, {FeatureKind::kFace, edge.left}, p);
+      const Vec3 left =
+          P.faces[std::size_t(edge.left)].normal + shading.deviation(0, {FeatureKind::kFace, edge.left}, p);
       const Vec3 right =
           P.faces[std::size_t(edge.right)].normal + shading.deviation(0, {FeatureKind::kFace, edge.right}, p);
       ASSERT_LT((left - right).norm(), 1e-9);

@@ -155,7 +155,8 @@ long double axes_separation(const Polytope& A, const Polytope& B, const Pose& X_
       }
     }
   for (const auto& [p0, p1] : a.sides)
-    for (const auto& [q0, q1] : b.sides) try_axis(Point(p1 - p0).normalized().cross(Point(q1 - q0).normalized()));
+    for (const auto& [q0, q1] : b.sides)
+      try_axis(Point(p1 - p0).normalized().cross(Point(q1 - q0).normalized()));
   return best;
 }
 

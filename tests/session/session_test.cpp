@@ -56,7 +56,8 @@ TEST_P(EveryScene, RunsWithoutAllocatingTwiceTheSameAndReachesItsGoals) {
   const std::unique_ptr<Session> first = open_session(GetParam());
   if (!first) GTEST_SKIP() << "its meshes are not on this machine";
   AllocationWatch watch;
-  const std::uint64_t frames = std::max<std::uint64_t>(10000, static_cast<std::uint64_t>(frames_of_motion(first->scene())));
+  const std::uint64_t frames =
+      std::max<std::uint64_t>(10000, static_cast<std::uint64_t>(frames_of_motion(first->scene())));
   ASSERT_TRUE(first->run_virtual(frames, &watch));
   EXPECT_EQ(watch.allocations, 0u);
   EXPECT_EQ(first->record().frames, frames);
@@ -119,7 +120,8 @@ TEST(SessionThread, RunsOnItsOwnThreadAndStopsWithZeroWrench) {
 TEST(Session, AnUnknownDeviceIsToldBeforeAnythingRuns) {
   Result<Scene> scene = open_scene("gears");
   ASSERT_TRUE(scene);
-  const auto session = Session::open(std::move(*scene), {.device = "phantom-of-the-opera", .grip = "", .rate_Hz = 0.0});
+  const auto session =
+      Session::open(std::move(*scene), {.device = "phantom-of-the-opera", .grip = "", .rate_Hz = 0.0});
   ASSERT_FALSE(session);
   EXPECT_NE(session.error().message().find("simulated"), std::string::npos);
 }

@@ -16,7 +16,7 @@ using Kind = FeatureKind;
 /// Distance and normal as the features give them, and what the support planes say about it.
 struct Judged {
   PairDistance answer;
-  double doubt = 0.0;          ///< distance minus the support planes' gap [m]
+  double doubt = 0.0;  ///< distance minus the support planes' gap [m]
   int support_a = 0, support_b = 0;
 };
 
@@ -67,8 +67,8 @@ Judged judge(const PairView& pair, const March& march, const Vec3& normal) noexc
   return judged;
 }
 
-/// The nearest normal inside the normal cones of both features, by projecting on their half-spaces in turn. Heals a
-/// normal that is off by rounding over a very small gap.
+/// The nearest normal inside the normal cones of both features, by projecting on their half-spaces in turn.
+/// Heals a normal that is off by rounding over a very small gap.
 Vec3 inside_cones(const PairView& pair, const Feature& fa, const Feature& fb, Vec3 n) noexcept {
   const auto project = [](const Polytope& P, const Feature& f, Vec3& outward) {
     if (f.kind == Kind::kVertex) {
@@ -81,7 +81,8 @@ Vec3 inside_cones(const PairView& pair, const Feature& fa, const Feature& fb, Ve
       const Polytope::Edge& edge = P.edges[f.index];
       outward -= edge.direction * edge.direction.dot(outward);
       for (int slot : {edge.left_slot, edge.right_slot})
-        if (const double in = P.side_normals[slot].dot(outward); in < 0.0) outward -= P.side_normals[slot] * in;
+        if (const double in = P.side_normals[slot].dot(outward); in < 0.0)
+          outward -= P.side_normals[slot] * in;
     }
   };
   for (int round = 0; round < 16; ++round) {
@@ -168,9 +169,9 @@ class Query {
     return certified(march, Stop::kFallback) || on_planes();
   }
 
-  /// A facet of the Minkowski difference tells the normal where the points' difference cannot. Its witness points lie on
-  /// the pieces, so a certified answer that is not below zero proves itself; below zero it takes points of both that
-  /// coincide.
+  /// A facet of the Minkowski difference tells the normal where the points' difference cannot. Its witness
+  /// points lie on the pieces, so a certified answer that is not below zero proves itself; below zero it
+  /// takes points of both that coincide.
   bool on_planes() noexcept {
     PairCache cache = cache_;
     const PairDistance planes = penetration_depth(pair_.A, pair_.B, pair_.X_AB, cache);
@@ -204,7 +205,8 @@ class Query {
 
 }  // namespace
 
-PairDistance closest_features(const Polytope& A, const Polytope& B, const Pose& X_AB, PairCache& cache) noexcept {
+PairDistance closest_features(const Polytope& A, const Polytope& B, const Pose& X_AB,
+                              PairCache& cache) noexcept {
   const PairView pair(A, B, X_AB);
   return Query(pair, cache).run();
 }

@@ -13,8 +13,8 @@ namespace {
 
 using Index = std::size_t;
 
-/// Boxes and lists of near pairs are grown by this share of the smaller body's radius beyond the tolerance: more
-/// means they are renewed less often but hold more pairs. Flat around here for the gears (0.01 - 0.05).
+/// Boxes and lists of near pairs are grown by this share of the smaller body's radius beyond the tolerance:
+/// more means they are renewed less often but hold more pairs. Flat around here for the gears (0.01 - 0.05).
 constexpr double kSlack = 0.02;
 
 /// The axis-aligned box around a turned box.
@@ -24,8 +24,8 @@ Aabb turned(const Aabb& box, const Pose& X, double grown) {
   return {center - half, center + half};
 }
 
-/// How far any point within `radius` of the origin has moved: the origin's way plus the chord of the turn, whose
-/// matrix difference has Frobenius norm sqrt(2) chord / radius.
+/// How far any point within `radius` of the origin has moved: the origin's way plus the chord of the turn,
+/// whose matrix difference has Frobenius norm sqrt(2) chord / radius.
 double displacement(const Pose& from, const Pose& to, double radius) {
   return (to.p - from.p).norm() + radius * (to.R - from.R).norm() / std::sqrt(2.0);
 }
@@ -152,18 +152,18 @@ void ContactFinder::collect(int a, int b, const Pose& X_AB, double reach) noexce
                            work_.rooms_full = true;
                            return false;
                          }
-                         Pair pair{};
+                         Pair pair;
                          pair.body_a = a;
                          pair.body_b = b;
                          pair.piece_a = piece_a;
                          pair.piece_b = piece_b;
-                         pair.free_until = -1e300;
                          renewed_.push_back(pair);
                          return true;
                        });
-  std::sort(renewed_.begin() + static_cast<std::ptrdiff_t>(first), renewed_.end(), [](const Pair& p, const Pair& q) {
-    return p.piece_a != q.piece_a ? p.piece_a < q.piece_a : p.piece_b < q.piece_b;
-  });
+  std::sort(renewed_.begin() + static_cast<std::ptrdiff_t>(first), renewed_.end(),
+            [](const Pair& p, const Pair& q) {
+              return p.piece_a != q.piece_a ? p.piece_a < q.piece_a : p.piece_b < q.piece_b;
+            });
 }
 
 /// Hands the caches of the old list on: both are sorted, so one walk along both suffices.
@@ -173,7 +173,8 @@ void ContactFinder::inherit(const BodyPair& old, std::size_t first) noexcept {
   for (Index to = first; to < renewed_.size(); ++to) {
     const auto key = std::pair(renewed_[to].piece_a, renewed_[to].piece_b);
     while (from < end && std::pair(pairs_[from].piece_a, pairs_[from].piece_b) < key) ++from;
-    if (from < end && std::pair(pairs_[from].piece_a, pairs_[from].piece_b) == key) renewed_[to] = pairs_[from];
+    if (from < end && std::pair(pairs_[from].piece_a, pairs_[from].piece_b) == key)
+      renewed_[to] = pairs_[from];
   }
 }
 
@@ -189,7 +190,8 @@ void ContactFinder::test(Pair& pair, std::span<const Pose> X_WB) noexcept {
   pair.free_until = odometers(pair.body_a, pair.body_b) + found.distance;
 
   const double reach = tolerance(pair.body_a, pair.body_b);
-  pair.in_contact = found.distance < reach && faces_outward(part_a, pair.piece_a, part_b, pair.piece_b, X_AB, found);
+  pair.in_contact =
+      found.distance < reach && faces_outward(part_a, pair.piece_a, part_b, pair.piece_b, X_AB, found);
   if (!pair.in_contact) return;
   if (patches_.size() == patches_.capacity()) {
     work_.rooms_full = true;

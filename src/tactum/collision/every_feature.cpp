@@ -63,7 +63,8 @@ March closest_of_every_feature(const PairView& pair) noexcept {
       const Polytope::Edge& ea = pair.A.edges[i];
       const Vec3& a0 = pair.vertex_a(ea.tail);
       const SegmentPair at = nearest_on_segments(a0, ea.direction, ea.length, b0, w, eb.length);
-      nearest.take(along_edge(pair.A, i, at.s), along_edge(pair.B, j, at.t), a0 + ea.direction * at.s, b0 + w * at.t);
+      nearest.take(along_edge(pair.A, i, at.s), along_edge(pair.B, j, at.t), a0 + ea.direction * at.s,
+                   b0 + w * at.t);
     }
   }
   nearest.march.end = MarchEnd::kClosest;

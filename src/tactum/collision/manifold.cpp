@@ -14,11 +14,14 @@ namespace {
 
 using Kind = FeatureKind;
 
-/// How much of the patch is kept when a feature leans by `lean` out of `most`: all up to half, then less, to none.
-double share_kept(double lean, double most) noexcept { return std::clamp(2.0 * (most - lean) / most, 0.0, 1.0); }
+/// How much of the patch is kept when a feature leans by `lean` out of `most`: all up to half, then less, to
+/// none.
+double share_kept(double lean, double most) noexcept {
+  return std::clamp(2.0 * (most - lean) / most, 0.0, 1.0);
+}
 
-/// The feature of one piece that takes part, and how its leaning shrinks the patch: a face toward its edge, and where
-/// that leans too much itself, toward the nearest point.
+/// The feature of one piece that takes part, and how its leaning shrinks the patch: a face toward its edge,
+/// and where that leans too much itself, toward the nearest point.
 struct Facing {
   Feature feature;
   int edge = -1;             ///< the edge a leaning face shrinks to; -1: none, the face does not lean
@@ -56,8 +59,8 @@ int level_edge(const Polytope& P, const Feature& f, int face, const Vec3& outwar
   return best;
 }
 
-/// The largest feature at `f` square to `outward` (unit, P's frame) within `angle`. Beside a face that leans as little
-/// the patch shrinks too, so that rolling from one face to the next passes through their edge.
+/// The largest feature at `f` square to `outward` (unit, P's frame) within `angle`. Beside a face that leans
+/// as little the patch shrinks too, so that rolling from one face to the next passes through their edge.
 Facing facing_feature(const Polytope& P, const Feature& f, const Vec3& outward, double angle) noexcept {
   int face = -1;
   double lean = 2.0;
@@ -78,7 +81,8 @@ Facing facing_feature(const Polytope& P, const Feature& f, const Vec3& outward, 
   if (f.kind == Kind::kFace) return facing;
   double slope = 0.0;
   facing.edge = level_edge(P, f, face, outward, slope);
-  // An edge shrinks at a quarter of the angle: where two edges of a leaning face slope alike, both are points by then.
+  // An edge shrinks at a quarter of the angle: where two edges of a leaning face slope alike, both are points
+  // by then.
   facing.along_share = share_kept(slope, 0.25 * angle);
   const double lead = next > lean ? 2.0 * (next - lean) / (next + lean) : 0.0;
   facing.face_share = share_kept(lean, angle) * std::min(1.0, lead);
@@ -104,7 +108,8 @@ struct Height {
 
 Height height_of_plane(const Tangent& tangent, const Vec3& normal, const Vec3& on_plane) noexcept {
   const double up = normal.dot(tangent.n);
-  return {normal.dot(on_plane - tangent.origin) / up, {-normal.dot(tangent.e1) / up, -normal.dot(tangent.e2) / up}};
+  return {normal.dot(on_plane - tangent.origin) / up,
+          {-normal.dot(tangent.e1) / up, -normal.dot(tangent.e2) / up}};
 }
 
 struct Work {
@@ -117,7 +122,8 @@ struct Work {
   Manifold& out;
 };
 
-void face_outline(const Tangent& tangent, const Polytope& P, int face_index, const Pose& X, PatchPolygon& loop) noexcept {
+void face_outline(const Tangent& tangent, const Polytope& P, int face_index, const Pose& X,
+                  PatchPolygon& loop) noexcept {
   const Polytope::Face& face = P.faces[face_index];
   const int stride = (face.count + kPatchCorners - 1) / kPatchCorners;
   loop.clear();
@@ -147,7 +153,8 @@ struct Rise {
   double operator()(const Vec2& x) const noexcept { return slope.dot(x) - offset; }
 };
 
-Rise rise_from_edge(const Tangent& tangent, const Polytope& P, int edge, const Pose& X, const Vec2& face_slope) noexcept {
+Rise rise_from_edge(const Tangent& tangent, const Polytope& P, int edge, const Pose& X,
+                    const Vec2& face_slope) noexcept {
   const Vec2 on_line = tangent.flat(X * P.vertices[P.edges[edge].tail]);
   const Vec2 along = (tangent.flat(X * P.vertices[P.edges[edge].head]) - on_line).normalized();
   const Vec2 across = face_slope - along * along.dot(face_slope);
@@ -169,13 +176,15 @@ struct Strip {
   Vec3 a0, a1, b0, b1;
 };
 
-/// The cut that a leaning face makes: only this share of its rise is kept. Told by the rise at a strip's ends.
+/// The cut that a leaning face makes: only this share of its rise is kept. Told by the rise at a strip's
+/// ends.
 struct StripCut {
   double at0 = 0.0, at1 = 0.0, share = 1.0;
 };
 
 /// Two Gauss points on the kept part of a strip.
-void interval_contact(const Work& w, const Strip& strip, PatchInterval kept, const StripCut& cut = {}) noexcept {
+void interval_contact(const Work& w, const Strip& strip, PatchInterval kept,
+                      const StripCut& cut = {}) noexcept {
   const double gap0 = w.tangent.n.dot(strip.a0 - strip.b0);
   const double gap1 = w.tangent.n.dot(strip.a1 - strip.b1);
   const auto gap = [&](double s) { return gap0 + (gap1 - gap0) * s; };
@@ -248,8 +257,9 @@ void face_a_edge_b(const Work& w) noexcept {
   interval_contact(w, {x.face0, x.face1, x.edge0, x.edge1}, x.kept, x.cut);
 }
 
-/// Parallel edges share an interval. Edges that cross at a small angle share the part about the crossing where they are
-/// no farther apart sideways than the tolerance; the larger the angle, the less, down to the crossing.
+/// Parallel edges share an interval. Edges that cross at a small angle share the part about the crossing
+/// where they are no farther apart sideways than the tolerance; the larger the angle, the less, down to the
+/// crossing.
 void edge_edge_contact(const Work& w) noexcept {
   const Polytope::Edge& ea = w.pair.A.edges[w.a.feature.index];
   const Polytope::Edge& eb = w.pair.B.edges[w.b.feature.index];
@@ -271,7 +281,8 @@ void edge_edge_contact(const Work& w) noexcept {
   PatchInterval kept{std::max(0.0, std::min(s0, s1)), std::min(1.0, std::max(s0, s1))};
   if (std::abs(rate) > tolerances::kSamePlane) {
     const double crossing = s0 - side0 / rate;
-    const double apart = std::max(w.tolerance, 0.0) / std::sqrt(length_sq) * share_kept(std::abs(rate), w.angle);
+    const double apart =
+        std::max(w.tolerance, 0.0) / std::sqrt(length_sq) * share_kept(std::abs(rate), w.angle);
     kept.low = std::max(kept.low, crossing - apart / std::abs(rate));
     kept.high = std::min(kept.high, crossing + apart / std::abs(rate));
   }
@@ -324,7 +335,8 @@ void face_face_contact(const Work& w) noexcept {
   const Vec2 across(-m.axis.y(), m.axis.x());
   const Vec2 major = m.axis * std::sqrt(2.0 * m.major);
   const Vec2 minor = across * std::sqrt(2.0 * m.minor);
-  for (const Vec2& x : {Vec2(m.centroid + major), Vec2(m.centroid - major), Vec2(m.centroid + minor), Vec2(m.centroid - minor)})
+  for (const Vec2& x : {Vec2(m.centroid + major), Vec2(m.centroid - major), Vec2(m.centroid + minor),
+                        Vec2(m.centroid - minor)})
     add_point(w, x, za(x), zb(x), 0.25);
 }
 
@@ -333,21 +345,24 @@ using Handler = void (*)(const Work&) noexcept;
 /// The six combinations (nine with A and B exchanged), by the kinds of A's and B's feature.
 constexpr std::array<std::array<Handler, 3>, 3> kHandlers = {{
     // B: vertex       edge               face
-    {point_contact, point_contact, point_contact},          // A: vertex
-    {point_contact, edge_edge_contact, edge_a_face_b},      // A: edge
-    {point_contact, face_a_edge_b, face_face_contact},      // A: face
+    {point_contact, point_contact, point_contact},      // A: vertex
+    {point_contact, edge_edge_contact, edge_a_face_b},  // A: edge
+    {point_contact, face_a_edge_b, face_face_contact},  // A: face
 }};
 
 }  // namespace
 
-void contact_manifold_within(const Polytope& A, const Polytope& B, const Pose& X_AB, const PairDistance& closest,
-                             double tolerance, double angle, Manifold& out) noexcept {
+void contact_manifold_within(const Polytope& A, const Polytope& B, const Pose& X_AB,
+                             const PairDistance& closest, double tolerance, double angle,
+                             Manifold& out) noexcept {
   out.points.clear();
   out.area = 0.0;
   out.normal = closest.normal;
   out.a = closest.a;
   out.b = closest.b;
-  if (!(closest.distance < tolerance) || closest.normal.isZero() || closest.a.index < 0 || closest.b.index < 0) return;
+  if (!(closest.distance < tolerance) || closest.normal.isZero() || closest.a.index < 0 ||
+      closest.b.index < 0)
+    return;
   const PairView pair(A, B, X_AB);
   const Vec3& n = closest.normal;
   Tangent tangent{closest.p_b, any_orthogonal(n), Vec3::Zero(), n};

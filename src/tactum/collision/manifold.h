@@ -1,8 +1,9 @@
 #pragma once
-/// The contact patch of two convex pieces: where, over a common tangent plane, both have surface and the gap is below the
-/// tolerance; told as a few weighted points.
+/// The contact patch of two convex pieces: where, over a common tangent plane, both have surface and the gap
+/// is below the tolerance; told as a few weighted points.
 ///
-///   1. On each side take the largest feature at the closest point that is square to the normal within 2 degrees.
+///   1. On each side take the largest feature at the closest point that is square to the normal within 2
+///   degrees.
 ///   2. Look along the normal: both are flat figures in one plane, the gap between them is linear.
 ///
 ///          A \ B      vertex     edge                     face
@@ -10,28 +11,31 @@
 ///          edge       point      point or shared interval edge clipped by the face
 ///          face       point      edge clipped by the face polygon clipped by polygon
 ///
-///   3. Cut off where the gap exceeds the tolerance, and as a feature leans toward the limit of 1., toward its edge and
+///   3. Cut off where the gap exceeds the tolerance, and as a feature leans toward the limit of 1., toward
+///   its edge and
 ///      its vertex: as the pieces tilt the patch shrinks, it does not jump.
-///   4. Replace the patch by points with the same area, centroid and second moments: a polygon by four on its principal
-///      axes, c +- sqrt(2 l1) e1 and c +- sqrt(2 l2) e2; an interval by its two Gauss points. Any force that is linear in
-///      the gap, and its torque, is then the exact integral over the patch.
+///   4. Replace the patch by points with the same area, centroid and second moments: a polygon by four on its
+///   principal
+///      axes, c +- sqrt(2 l1) e1 and c +- sqrt(2 l2) e2; an interval by its two Gauss points. Any force that
+///      is linear in the gap, and its torque, is then the exact integral over the patch.
 ///
 /// The figures are cut along the contact normal, by the borders of the face they are cut with. Departs from
-/// [Gregory 2000, 4.1] in 3 and 4: the bare corners of the clipped polygon come and go, and their mean with them.
-/// Cost: see docs/algorithms/manifold.md.
+/// [Gregory 2000, 4.1] in 3 and 4: the bare corners of the clipped polygon come and go, and their mean with
+/// them. Cost: see docs/algorithms/manifold.md.
 
 #include "tactum/collision/contact.h"
 #include "tactum/geometry/polytope.h"
 
 namespace tactum {
 
-/// The patch at `closest`, an answer of closest_features or penetration_depth for the same pose, where the gap is below
-/// `tolerance` [m]. Empty only when closest.distance >= tolerance (or it has no normal).
+/// The patch at `closest`, an answer of closest_features or penetration_depth for the same pose, where the
+/// gap is below `tolerance` [m]. Empty only when closest.distance >= tolerance (or it has no normal).
 void contact_manifold(const Polytope& A, const Polytope& B, const Pose& X_AB, const PairDistance& closest,
                       double tolerance, Manifold& out) noexcept;
 
 /// The same with another angle [rad] for "square to the normal".
-void contact_manifold_within(const Polytope& A, const Polytope& B, const Pose& X_AB, const PairDistance& closest,
-                             double tolerance, double angle, Manifold& out) noexcept;
+void contact_manifold_within(const Polytope& A, const Polytope& B, const Pose& X_AB,
+                             const PairDistance& closest, double tolerance, double angle,
+                             Manifold& out) noexcept;
 
 }  // namespace tactum

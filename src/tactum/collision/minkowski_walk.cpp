@@ -10,30 +10,32 @@ namespace {
 
 using Kind = FeatureKind;
 
-/// The arc of an edge of P in the Gauss maps' overlay: P's outward direction turns from `m0` with tangent `t0`
-/// toward the normal of `end`, while `vertex` of the other piece Q stays its support.
+/// The arc of an edge of P in the Gauss maps' overlay: P's outward direction turns from `m0` with tangent
+/// `t0` toward the normal of `end`, while `vertex` of the other piece Q stays its support.
 struct Arc {
-  int edge = -1;   // of P
-  int end = -1;    // face of P
-  int vertex = -1; // of Q
+  int edge = -1;    // of P
+  int end = -1;     // face of P
+  int vertex = -1;  // of Q
   Vec3 m0 = Vec3::Zero();
   Vec3 t0 = Vec3::Zero();
 };
 
 /// What the arc meets first.
 struct ArcEnd {
-  int edge = -1;           // of Q; -1: the end face
-  Vec3 m = Vec3::Zero();   // P's outward direction there, when it is an edge
+  int edge = -1;          // of Q; -1: the end face
+  Vec3 m = Vec3::Zero();  // P's outward direction there, when it is an edge
 };
 
-/// Angles along the arc are compared by their cotangents: larger is earlier. A flat piece's arcs are half circles.
+/// Angles along the arc are compared by their cotangents: larger is earlier. A flat piece's arcs are half
+/// circles.
 double cotangent(double cosine, double sine) noexcept {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   if (sine > 0.0) return cosine / sine;
   return cosine > 0.0 ? kInfinity : -kInfinity;
 }
 
-ArcEnd follow_arc(const Polytope& P, const Polytope& Q, const Mat3& R_QP, const Arc& arc, int excluded) noexcept {
+ArcEnd follow_arc(const Polytope& P, const Polytope& Q, const Mat3& R_QP, const Arc& arc,
+                  int excluded) noexcept {
   const Vec3& m1 = P.faces[arc.end].normal;
   double first = cotangent(arc.m0.dot(m1), arc.t0.dot(m1));
   const Vec3 o0 = -(R_QP * arc.m0);  // Q's outward direction
@@ -43,7 +45,8 @@ ArcEnd follow_arc(const Polytope& P, const Polytope& Q, const Mat3& R_QP, const 
     if (e == excluded) continue;
     const Polytope::Edge& edge = Q.edges[e];
     const double sign = edge.tail == arc.vertex ? 1.0 : -1.0;
-    const double below = std::max(0.0, -sign * edge.direction.dot(o0));  // how much lower the far end is, per metre
+    const double below =
+        std::max(0.0, -sign * edge.direction.dot(o0));  // how much lower the far end is, per metre
     const double rising = sign * edge.direction.dot(o_t);
     if (rising <= tolerances::kSameArc && below <= tolerances::kSameArc) continue;  // rolls on the edge
     const double at = cotangent(rising, below);
@@ -55,8 +58,8 @@ ArcEnd follow_arc(const Polytope& P, const Polytope& Q, const Mat3& R_QP, const 
   return meets;
 }
 
-/// Outward direction of N on two crossing arcs, by the edges; `near` decides the sign, and stands in for the cross
-/// product where the edges are so nearly parallel that it has no digits.
+/// Outward direction of N on two crossing arcs, by the edges; `near` decides the sign, and stands in for the
+/// cross product where the edges are so nearly parallel that it has no digits.
 Vec3 crossing_normal(const Vec3& u_a, const Vec3& u_b, const Vec3& near) noexcept {
   const Vec3 c = u_a.cross(u_b);
   const double sine = c.norm();
@@ -114,8 +117,8 @@ Crossing worst_side(const Polytope& P, int face_index, const Vec3& point, double
   return worst.crossing;
 }
 
-/// Puts the witness points (p_b - p_a = target) on the features and tells the worst border they are beyond, of those
-/// with less than `cap` outside.
+/// Puts the witness points (p_b - p_a = target) on the features and tells the worst border they are beyond,
+/// of those with less than `cap` outside.
 Crossing place(const PairView& pair, const MinkowskiFacet& facet, const Vec3& target, double cap,
                MinkowskiWalk& walk) noexcept {
   if (facet.a.kind == Kind::kFace) {
@@ -138,7 +141,8 @@ Crossing place(const PairView& pair, const MinkowskiFacet& facet, const Vec3& ta
   if (!nearest_on_lines(a0, ea.direction, b0 - target, u_b, tolerances::kSameArc, s, t)) {
     s = std::clamp(ea.direction.dot(b0 - target - a0), 0.0, ea.length);
     t = u_b.dot(a0 + ea.direction * s - b0 + target);
-    walk.outside = (b0 + u_b * t - a0 - ea.direction * s - target).norm();  // no facet: the lines run side by side
+    walk.outside =
+        (b0 + u_b * t - a0 - ea.direction * s - target).norm();  // no facet: the lines run side by side
   }
   walk.p_a = a0 + ea.direction * s;
   walk.p_b = b0 + u_b * t;
@@ -150,7 +154,9 @@ Crossing place(const PairView& pair, const MinkowskiFacet& facet, const Vec3& ta
   return worst.crossing;
 }
 
-int other_face(const Polytope::Edge& edge, int face) noexcept { return edge.left == face ? edge.right : edge.left; }
+int other_face(const Polytope::Edge& edge, int face) noexcept {
+  return edge.left == face ? edge.right : edge.left;
+}
 
 MinkowskiFacet across_face_border(const PairView& pair, const MinkowskiFacet& facet, int slot) noexcept {
   const bool on_a = facet.a.kind == Kind::kFace;
@@ -165,9 +171,10 @@ MinkowskiFacet across_face_border(const PairView& pair, const MinkowskiFacet& fa
   return on_a ? facet_behind_a(pair, arc, -1) : facet_behind_b(pair, arc, -1);
 }
 
-/// Beyond an end of one edge, that end is the vertex and the *other* edge's arc is followed, in the direction in
-/// which the end becomes the support.
-MinkowskiFacet across_edge_border(const PairView& pair, const MinkowskiFacet& facet, const Crossing& crossing) noexcept {
+/// Beyond an end of one edge, that end is the vertex and the *other* edge's arc is followed, in the direction
+/// in which the end becomes the support.
+MinkowskiFacet across_edge_border(const PairView& pair, const MinkowskiFacet& facet,
+                                  const Crossing& crossing) noexcept {
   const Polytope& P = crossing.on_a ? pair.B : pair.A;  // whose arc is followed
   const Polytope& Q = crossing.on_a ? pair.A : pair.B;
   const int followed = crossing.on_a ? facet.b.index : facet.a.index;
@@ -184,7 +191,8 @@ MinkowskiFacet across_edge_border(const PairView& pair, const MinkowskiFacet& fa
   const double toward_head = -arc.t0.dot(u_P);
   const bool backward = (toward_head > 0.0) == crossing.at_tail;
   if (backward) arc.t0 = -arc.t0;
-  arc.end = backward ? edge.left : edge.right;  // about +direction an arc turns from the left face to the right
+  arc.end =
+      backward ? edge.left : edge.right;  // about +direction an arc turns from the left face to the right
   return crossing.on_a ? facet_behind_b(pair, arc, ended) : facet_behind_a(pair, arc, ended);
 }
 
@@ -229,7 +237,8 @@ MinkowskiWalk walk(const PairView& pair, const MinkowskiFacet& start, const Vec3
       improved = step;
     }
     best.steps = step;
-    // Across the worst border, or where rounding has bent the facets the next worst, whose plane is not farther.
+    // Across the worst border, or where rounding has bent the facets the next worst, whose plane is not
+    // farther.
     bool moved = false;
     while (!moved && crossing.outside > slack) {
       const MinkowskiFacet next = across(pair, here.facet, crossing);
@@ -319,7 +328,8 @@ MinkowskiWalk walk_to_foot(const PairView& pair, const MinkowskiFacet& start) no
   return walk(pair, start, nullptr);
 }
 
-MinkowskiWalk walk_along_ray(const PairView& pair, const MinkowskiFacet& start, const Vec3& direction) noexcept {
+MinkowskiWalk walk_along_ray(const PairView& pair, const MinkowskiFacet& start,
+                             const Vec3& direction) noexcept {
   return walk(pair, start, &direction);
 }
 

@@ -1,19 +1,20 @@
 #pragma once
 /// The walk over the facets of the Minkowski difference N = { b - a : a in A, b in B }, told in A's frame.
 ///
-/// N is never built. Its facets are pairs of features whose normals meet when both Gauss maps are laid over each other:
+/// N is never built. Its facets are pairs of features whose normals meet when both Gauss maps are laid over
+/// each other:
 ///
 ///     face of A, vertex of B       n = -normal of the face          a node of A's map inside a cell of B's
 ///     vertex of A, face of B       n =  normal of the face          a node of B's map inside a cell of A's
 ///     edge of A, edge of B         n =  +-(edge x edge)             a crossing of two arcs
 ///
-/// The pieces overlap when the origin is inside N; moving A by t puts it at b - a = t. So the plane of a facet,
-/// height h = n . (b - a), is left by moving A by h along n; and the shortest way out ends on the facet that holds
-/// the foot of its own plane. Where the foot lies beyond a border of the facet, the plane of the neighbour across it
-/// is nearer: go there. The same walk with "where the ray leaves the plane" in place of the foot finds the way out
-/// along a given direction. (Closest-feature marching continued inside, after the pseudo-internal Voronoi regions of
-/// [Ponamgi, Manocha and Lin 1997]; the facets are found on the fly, not stored.)
-/// Cost: about 60 ns a facet.
+/// The pieces overlap when the origin is inside N; moving A by t puts it at b - a = t. So the plane of a
+/// facet, height h = n . (b - a), is left by moving A by h along n; and the shortest way out ends on the
+/// facet that holds the foot of its own plane. Where the foot lies beyond a border of the facet, the plane of
+/// the neighbour across it is nearer: go there. The same walk with "where the ray leaves the plane" in place
+/// of the foot finds the way out along a given direction. (Closest-feature marching continued inside, after
+/// the pseudo-internal Voronoi regions of [Ponamgi, Manocha and Lin 1997]; the facets are found on the fly,
+/// not stored.) Cost: about 60 ns a facet.
 
 #include <optional>
 
@@ -53,6 +54,7 @@ MinkowskiWalk stand_on(const PairView& pair, const MinkowskiFacet& facet) noexce
 MinkowskiWalk walk_to_foot(const PairView& pair, const MinkowskiFacet& start) noexcept;
 
 /// Walks from `start` to the facet where the ray along unit `direction` leaves N; start.n . direction > 0.
-MinkowskiWalk walk_along_ray(const PairView& pair, const MinkowskiFacet& start, const Vec3& direction) noexcept;
+MinkowskiWalk walk_along_ray(const PairView& pair, const MinkowskiFacet& start,
+                             const Vec3& direction) noexcept;
 
 }  // namespace tactum

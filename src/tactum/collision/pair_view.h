@@ -1,8 +1,9 @@
 #pragma once
-/// Two convex pieces and where they are, as every query of this folder looks at them: B's pose in A, its inverse, and
-/// the lengths that tolerances are measured by. Lives for one query.
+/// Two convex pieces and where they are, as every query of this folder looks at them: B's pose in A, its
+/// inverse, and the lengths that tolerances are measured by. Lives for one query.
 ///
-///   separation(n) = min_A n.a - max_B n.b     the gap between the two support planes across n (unit, from B to A):
+///   separation(n) = min_A n.a - max_B n.b     the gap between the two support planes across n (unit, from B
+///   to A):
 ///                                             a rigorous lower bound on the signed distance, whatever n is.
 
 #include <algorithm>
@@ -44,9 +45,12 @@ struct PairView {
 /// Some vertex of a feature.
 inline int vertex_of(const Polytope& P, const Feature& f) noexcept {
   switch (f.kind) {
-    case FeatureKind::kVertex: return f.index;
-    case FeatureKind::kEdge: return P.edges[f.index].tail;
-    case FeatureKind::kFace: return P.face_vertices[P.faces[f.index].first];
+    case FeatureKind::kVertex:
+      return f.index;
+    case FeatureKind::kEdge:
+      return P.edges[f.index].tail;
+    case FeatureKind::kFace:
+      return P.face_vertices[P.faces[f.index].first];
   }
   return 0;
 }

@@ -40,9 +40,9 @@ void for_every_facet(const PairView& pair, const Visit& visit) noexcept {
       if (const auto facet = facet_of_edges(pair, static_cast<int>(i), static_cast<int>(j))) visit(*facet);
 }
 
-/// Where faces or edges of both pieces lie in the support planes, several facets of the difference make one, and the
-/// walk may end beside the foot. Then the features of the support vertices `a`, `b` are clipped against each other. False
-/// when they do not meet.
+/// Where faces or edges of both pieces lie in the support planes, several facets of the difference make one,
+/// and the walk may end beside the foot. Then the features of the support vertices `a`, `b` are clipped
+/// against each other. False when they do not meet.
 bool witness_on_plane(const PairView& pair, int a, int b, PairDistance& result) noexcept {
   PairDistance supports = result;
   supports.a = {Kind::kVertex, a};
@@ -50,15 +50,16 @@ bool witness_on_plane(const PairView& pair, int a, int b, PairDistance& result) 
   supports.p_a = pair.vertex_a(a);
   supports.p_b = pair.vertex_b(b);
   Manifold patch;
-  contact_manifold_within(pair.A, pair.B, pair.X_AB, supports, result.distance + pair.size, tolerances::kSamePlane,
-                          patch);
+  contact_manifold_within(pair.A, pair.B, pair.X_AB, supports, result.distance + pair.size,
+                          tolerances::kSamePlane, patch);
   Vec3 p_a = Vec3::Zero();
   Vec3 p_b = Vec3::Zero();
   for (const ContactPoint& point : patch.points) {
     p_a += point.p_a * point.weight;
     p_b += point.p_b * point.weight;
   }
-  if ((p_a - p_b - result.normal * result.distance).norm() > tolerances::kCertificate * pair.size) return false;
+  if ((p_a - p_b - result.normal * result.distance).norm() > tolerances::kCertificate * pair.size)
+    return false;
   result.p_b = p_b;
   result.p_a = p_b + result.normal * result.distance;
   result.a = patch.a;
@@ -120,8 +121,10 @@ class Shallowest {
 /// The facet of the cached features, if the pair of kinds makes one and (for edges) their arcs still cross.
 std::optional<MinkowskiFacet> cached_facet(const PairView& pair, const PairCache& cache) noexcept {
   if (!valid_feature(pair.A, cache.a) || !valid_feature(pair.B, cache.b)) return std::nullopt;
-  if (cache.a.kind == Kind::kFace) return facet_of_face(pair, true, cache.a.index, vertex_of(pair.B, cache.b));
-  if (cache.b.kind == Kind::kFace) return facet_of_face(pair, false, cache.b.index, vertex_of(pair.A, cache.a));
+  if (cache.a.kind == Kind::kFace)
+    return facet_of_face(pair, true, cache.a.index, vertex_of(pair.B, cache.b));
+  if (cache.b.kind == Kind::kFace)
+    return facet_of_face(pair, false, cache.b.index, vertex_of(pair.A, cache.a));
   if (cache.a.kind == Kind::kEdge && cache.b.kind == Kind::kEdge)
     return facet_of_edges(pair, cache.a.index, cache.b.index);
   return std::nullopt;
@@ -132,8 +135,8 @@ Vec3 line_of_centers(const PairView& pair) noexcept {
   return n.isZero() ? Vec3::UnitX() : n;
 }
 
-/// Walks from the line of centres and from the shallowest facets near 26 directions all around: three of them, and
-/// more until one ends certified.
+/// Walks from the line of centres and from the shallowest facets near 26 directions all around: three of
+/// them, and more until one ends certified.
 void from_many_directions(const PairView& pair, Shallowest& shallowest) noexcept {
   constexpr int kWalked = 3;
   shallowest.from(facet_near(pair, line_of_centers(pair)));
@@ -149,8 +152,8 @@ void from_many_directions(const PairView& pair, Shallowest& shallowest) noexcept
     if (walked++ < kWalked || !shallowest.best().certified()) shallowest.from(seed);
 }
 
-/// Every facet that `allowed(n)` lets pass: the walk from the shallowest finds witness points inside its features, or
-/// they are inside those of another facet as shallow.
+/// Every facet that `allowed(n)` lets pass: the walk from the shallowest finds witness points inside its
+/// features, or they are inside those of another facet as shallow.
 template <class Allowed>
 void from_every_facet(const PairView& pair, Shallowest& shallowest, const Allowed& allowed) noexcept {
   MinkowskiFacet best;
@@ -176,7 +179,8 @@ void remember(const PairDistance& result, PairCache& cache) noexcept {
 
 }  // namespace
 
-PairDistance penetration_depth(const Polytope& A, const Polytope& B, const Pose& X_AB, PairCache& cache) noexcept {
+PairDistance penetration_depth(const Polytope& A, const Polytope& B, const Pose& X_AB,
+                               PairCache& cache) noexcept {
   const PairView pair(A, B, X_AB);
   Shallowest shallowest(pair);
   if (!cache.normal_A.isZero()) {
@@ -203,8 +207,8 @@ PairDistance penetration_exhaustive(const Polytope& A, const Polytope& B, const 
   return shallowest.best();
 }
 
-PairDistance penetration_one_sided(const Polytope& A, const Polytope& B, const Pose& X_AB, const OneSided& sides,
-                                   PairCache& cache) noexcept {
+PairDistance penetration_one_sided(const Polytope& A, const Polytope& B, const Pose& X_AB,
+                                   const OneSided& sides, PairCache& cache) noexcept {
   const PairView pair(A, B, X_AB);
   const auto allowed = [&](const Vec3& n) {
     return (!sides.outward_a || n.dot(*sides.outward_a) <= 0.0) &&
@@ -231,7 +235,8 @@ PairDistance penetration_one_sided(const Polytope& A, const Polytope& B, const P
   return result;
 }
 
-PairDistance depth_along(const Polytope& A, const Polytope& B, const Pose& X_AB, const Vec3& direction) noexcept {
+PairDistance depth_along(const Polytope& A, const Polytope& B, const Pose& X_AB,
+                         const Vec3& direction) noexcept {
   const PairView pair(A, B, X_AB);
   const MinkowskiWalk walk = walk_along_ray(pair, facet_near(pair, direction), direction);
   PairDistance result = answer(pair, walk, walk.steps);

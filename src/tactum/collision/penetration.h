@@ -1,10 +1,11 @@
 #pragma once
-/// How far two overlapping convex pieces are inside each other: the shortest translation of A that clears it, told as a
-/// negative distance along the contact normal (contact.h). Found by the walk of minkowski_walk.h.
+/// How far two overlapping convex pieces are inside each other: the shortest translation of A that clears it,
+/// told as a negative distance along the contact normal (contact.h). Found by the walk of minkowski_walk.h.
 ///
-/// Every depth is that of true support planes along the unit normal, so moving A by it always separates. `certified`
-/// says that the facet of the Minkowski difference is real and holds its own foot: a local minimum. That it is the
-/// global one is sure after penetration_exhaustive, and in a cold start when both pieces are small.
+/// Every depth is that of true support planes along the unit normal, so moving A by it always separates.
+/// `certified` says that the facet of the Minkowski difference is real and holds its own foot: a local
+/// minimum. That it is the global one is sure after penetration_exhaustive, and in a cold start when both
+/// pieces are small.
 
 #include <optional>
 
@@ -13,13 +14,14 @@
 
 namespace tactum {
 
-/// From the last frame's features or normal when `cache` has them (and from the line of centres beside), else from
-/// many directions, or over all separating axes of small pieces. Cost: 0.3 us warm, 1-15 us cold.
-/// For pieces that do not overlap: a separating axis, and a lower bound on their distance.
-PairDistance penetration_depth(const Polytope& A, const Polytope& B, const Pose& X_AB, PairCache& cache) noexcept;
+/// From the last frame's features or normal when `cache` has them (and from the line of centres beside), else
+/// from many directions, or over all separating axes of small pieces. Cost: 0.3 us warm, 1-15 us cold. For
+/// pieces that do not overlap: a separating axis, and a lower bound on their distance.
+PairDistance penetration_depth(const Polytope& A, const Polytope& B, const Pose& X_AB,
+                               PairCache& cache) noexcept;
 
-/// The global minimum, over every facet of the Minkowski difference. Not for the frame: E_A E_B x 10 ns (two spheres of
-/// 642 vertices: 40 ms).
+/// The global minimum, over every facet of the Minkowski difference. Not for the frame: E_A E_B x 10 ns (two
+/// spheres of 642 vertices: 40 ms).
 PairDistance penetration_exhaustive(const Polytope& A, const Polytope& B, const Pose& X_AB) noexcept;
 
 /// Outward normals of pieces that are only the surface of a solid and must push out of it.
@@ -28,14 +30,15 @@ struct OneSided {
   std::optional<Vec3> outward_b;  ///< unit, B's frame: allows n . outward_b >= 0
 };
 
-/// The smallest depth among the axes that push out of the surface. The normal of a flat one-sided piece is itself always
-/// allowed, so there is always an answer. Over all axes for small pieces, else from the walk.
-PairDistance penetration_one_sided(const Polytope& A, const Polytope& B, const Pose& X_AB, const OneSided& sides,
-                                   PairCache& cache) noexcept;
+/// The smallest depth among the axes that push out of the surface. The normal of a flat one-sided piece is
+/// itself always allowed, so there is always an answer. Over all axes for small pieces, else from the walk.
+PairDistance penetration_one_sided(const Polytope& A, const Polytope& B, const Pose& X_AB,
+                                   const OneSided& sides, PairCache& cache) noexcept;
 
-/// The paper's depth: how far A must move along unit `direction` (A's frame) until it is clear of B, exactly; as a
-/// negative distance, with the normal of the features that touch then, p_a and p_b touching after the motion.
-/// Zero and `kBounded` when the motion never touches.
-PairDistance depth_along(const Polytope& A, const Polytope& B, const Pose& X_AB, const Vec3& direction) noexcept;
+/// The paper's depth: how far A must move along unit `direction` (A's frame) until it is clear of B, exactly;
+/// as a negative distance, with the normal of the features that touch then, p_a and p_b touching after the
+/// motion. Zero and `kBounded` when the motion never touches.
+PairDistance depth_along(const Polytope& A, const Polytope& B, const Pose& X_AB,
+                         const Vec3& direction) noexcept;
 
 }  // namespace tactum

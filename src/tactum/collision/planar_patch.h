@@ -6,13 +6,15 @@
 
 namespace tactum {
 
-/// Corners taken of one face; of a face with more, every k-th: an inner polygon, so that no contact is invented.
+/// Corners taken of one face; of a face with more, every k-th: an inner polygon, so that no contact is
+/// invented.
 inline constexpr int kPatchCorners = 64;
 
 /// Counter-clockwise. Room for one face clipped by another, and by the gap.
 using PatchPolygon = StaticVector<Vec2, 2 * kPatchCorners + 2>;
 
-/// What is left of `polygon` where normal . x <= offset [Sutherland and Hodgman 1974]. `scratch` is working room.
+/// What is left of `polygon` where normal . x <= offset [Sutherland and Hodgman 1974]. `scratch` is working
+/// room.
 void clip_polygon(PatchPolygon& polygon, const Vec2& normal, double offset, PatchPolygon& scratch) noexcept;
 
 /// `polygon` clipped by every side of the convex, counter-clockwise `window`.

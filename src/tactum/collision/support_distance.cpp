@@ -20,8 +20,10 @@ struct Simplex {
   int count = 0;
 };
 
-/// Shares of the corners in the point of their affine hull nearest to the origin; false when it is outside them.
-bool interior_shares(const std::array<const Corner*, 4>& c, int count, std::array<double, 4>& share) noexcept {
+/// Shares of the corners in the point of their affine hull nearest to the origin; false when it is outside
+/// them.
+bool interior_shares(const std::array<const Corner*, 4>& c, int count,
+                     std::array<double, 4>& share) noexcept {
   if (count == 1) return share[0] = 1.0, true;
   const Vec3& o = c[0]->d;
   const Vec3 u = c[1]->d - o;
@@ -152,7 +154,8 @@ March closest_by_supports(const PairView& pair) noexcept {
       return march_of(pair, simplex, MarchEnd::kOverlap, steps);
     const Corner next = support(pair, d, &simplex.corners[0]);
     bool known = false;
-    for (int i = 0; i < simplex.count; ++i) known |= simplex.corners[i].a == next.a && simplex.corners[i].b == next.b;
+    for (int i = 0; i < simplex.count; ++i)
+      known |= simplex.corners[i].a == next.a && simplex.corners[i].b == next.b;
     if (known || d.dot(d - next.d) <= tolerances::kVoronoiSlack * d.squaredNorm()) break;
     const Simplex before = simplex;
     simplex.corners[simplex.count++] = next;

@@ -13,9 +13,9 @@ namespace {
 /// One moving piece at the start of a step, in its own frame.
 struct Mover {
   const Polytope& P;
-  Vec3 n;         ///< the normal now
-  Vec3 turning;   ///< n x w
-  double curving; ///< w^2 rho / 2: how fast a point can leave its tangent [m/s^2]
+  Vec3 n;          ///< the normal now
+  Vec3 turning;    ///< n x w
+  double curving;  ///< w^2 rho / 2: how fast a point can leave its tangent [m/s^2]
   int support = 0;
 
   Mover(const Polytope& piece, const Pose& X_W, const Twist& V_W, const Vec3& n_W) noexcept
@@ -48,8 +48,8 @@ struct GapBound {
   }
 };
 
-/// A time in [0, rest] up to which the bound stays above `target`; it starts above by `room`. Halving brings the far end
-/// near, and the chord, which lies below a concave function, the near end.
+/// A time in [0, rest] up to which the bound stays above `target`; it starts above by `room`. Halving brings
+/// the far end near, and the chord, which lies below a concave function, the near end.
 double free_time(GapBound& bound, double room, double target, double rest) noexcept {
   constexpr int kRounds = 6;
   double beyond = rest;
@@ -77,8 +77,9 @@ double free_time(GapBound& bound, double room, double target, double rest) noexc
 
 }  // namespace
 
-TimeOfImpact time_of_impact(const Polytope& A, const Pose& X_WA, const Twist& V_WA, const Polytope& B, const Pose& X_WB,
-                            const Twist& V_WB, double dt, double target, PairCache& cache) noexcept {
+TimeOfImpact time_of_impact(const Polytope& A, const Pose& X_WA, const Twist& V_WA, const Polytope& B,
+                            const Pose& X_WB, const Twist& V_WB, double dt, double target,
+                            PairCache& cache) noexcept {
   constexpr int kSteps = 64;
   const double tolerance = tolerances::kImpactGap * std::max(A.size, B.size);
   TimeOfImpact impact;
@@ -88,7 +89,8 @@ TimeOfImpact time_of_impact(const Polytope& A, const Pose& X_WA, const Twist& V_
     impact.closest = closest_features(A, B, relative_pose(X_WA_now, X_WB_now), cache);
     const double room = impact.closest.distance - target;
     if (room <= tolerance) {
-      // Above the target by less than the tolerance counts as a hit even at the start: there is no room to move.
+      // Above the target by less than the tolerance counts as a hit even at the start: there is no room to
+      // move.
       const bool inside = impact.steps == 1 && room <= 0.0;
       impact.status = inside ? ImpactStatus::kStartedInside : ImpactStatus::kHit;
       return impact;
@@ -99,7 +101,10 @@ TimeOfImpact time_of_impact(const Polytope& A, const Pose& X_WA, const Twist& V_
       return impact;
     }
     const Vec3 n = X_WA_now.R * impact.closest.normal;
-    GapBound bound{{A, X_WA_now, V_WA, n}, {B, X_WB_now, V_WB, n}, n.dot(X_WA_now.p - X_WB_now.p), n.dot(V_WA.v - V_WB.v)};
+    GapBound bound{{A, X_WA_now, V_WA, n},
+                   {B, X_WB_now, V_WB, n},
+                   n.dot(X_WA_now.p - X_WB_now.p),
+                   n.dot(V_WA.v - V_WB.v)};
     // A quarter of the tolerance is kept back for rounding.
     const double keep = 0.25 * tolerance;
     impact.time += free_time(bound, room - keep, target + keep, dt - impact.time);

@@ -2,18 +2,18 @@
 /// When two moving convex pieces first come as near as a target distance, rotation included, by conservative
 /// advancement [Mirtich 1996].
 ///
-///   Each piece moves as advanced(X, V, t) of math/screw.h: its origin on a line, turning about it at constant rate. With n
-///   the normal now, a point r of a piece is after t at least as high along n as
+///   Each piece moves as advanced(X, V, t) of math/screw.h: its origin on a line, turning about it at
+///   constant rate. With n the normal now, a point r of a piece is after t at least as high along n as
 ///
 ///        n . (r + v t + w x r t) - w^2 rho t^2 / 2  =  (n + t n x w) . r + t n . v - w^2 rho t^2 / 2
 ///
-///   (rho: its distance from the axis), so one support query in the direction n + t n x w gives a rigorous bound L(t) on
-///   the gap. L is concave in t: wherever it is above the target, the gap is so all the way there, and a chord from a
-///   time that is free cuts the target before L does. Go there and ask again.
+///   (rho: its distance from the axis), so one support query in the direction n + t n x w gives a rigorous
+///   bound L(t) on the gap. L is concave in t: wherever it is above the target, the gap is so all the way
+///   there, and a chord from a time that is free cuts the target before L does. Go there and ask again.
 ///
-/// Departs from Mirtich's bound (closing speed of the fastest point), which needs 30 steps and more where pieces spin:
-/// this one is exact to first order. A time it returns is never beyond the first contact.
-/// Cost: a warm distance query and four pairs of supports a step, 0.4 us; 3-6 steps.
+/// Departs from Mirtich's bound (closing speed of the fastest point), which needs 30 steps and more where
+/// pieces spin: this one is exact to first order. A time it returns is never beyond the first contact. Cost:
+/// a warm distance query and four pairs of supports a step, 0.4 us; 3-6 steps.
 
 #include "tactum/collision/contact.h"
 #include "tactum/geometry/polytope.h"
@@ -35,9 +35,10 @@ struct TimeOfImpact {
   int steps = 0;         ///< distance queries
 };
 
-/// First time in [0, dt] when the distance is `target` [m] or less. `target` should be above zero (a skin): at zero the
-/// normal of the last step comes from touching features.
-TimeOfImpact time_of_impact(const Polytope& A, const Pose& X_WA, const Twist& V_WA, const Polytope& B, const Pose& X_WB,
-                            const Twist& V_WB, double dt, double target, PairCache& cache) noexcept;
+/// First time in [0, dt] when the distance is `target` [m] or less. `target` should be above zero (a skin):
+/// at zero the normal of the last step comes from touching features.
+TimeOfImpact time_of_impact(const Polytope& A, const Pose& X_WA, const Twist& V_WA, const Polytope& B,
+                            const Pose& X_WB, const Twist& V_WB, double dt, double target,
+                            PairCache& cache) noexcept;
 
 }  // namespace tactum

@@ -150,7 +150,8 @@ int face_toward(const Polytope& P, const Polytope::Edge& edge, const Vec3& d, do
   return left < right ? edge.left : edge.right;
 }
 
-/// From edge to edge: the points' difference, or the cross product where it has more digits; and its angular error.
+/// From edge to edge: the points' difference, or the cross product where it has more digits; and its angular
+/// error.
 struct Across {
   Vec3 direction;
   double slack;
@@ -161,7 +162,8 @@ Across across_edges(const Sides& S, const Vec3& u, const Vec3& w, const Vec3& d)
   const Vec3 c = u.cross(w);
   const double sine = c.norm();
   if (gap >= sine * S.P.size) return {gap > 0.0 ? Vec3(d / gap) : d, gap > 0.0 ? S.slack / gap : 0.0};
-  return {c.dot(d) < 0.0 ? Vec3(-c / sine) : Vec3(c / sine), std::max(S.slack / S.P.size, tolerances::kVoronoiSlack) / sine};
+  return {c.dot(d) < 0.0 ? Vec3(-c / sine) : Vec3(c / sine),
+          std::max(S.slack / S.P.size, tolerances::kVoronoiSlack) / sine};
 }
 
 Step edge_edge(const Sides& S, Feature& fp, Feature& fq, Points& x) noexcept {
@@ -188,7 +190,8 @@ Step edge_edge(const Sides& S, Feature& fp, Feature& fq, Points& x) noexcept {
 }
 
 /// The edge of a face nearest to a segment that lies wholly outside the face's column.
-int nearest_edge(const Polytope& Q, const Polytope::Face& face, const Vec3& p0, const Vec3& u, double length) noexcept {
+int nearest_edge(const Polytope& Q, const Polytope::Face& face, const Vec3& p0, const Vec3& u,
+                 double length) noexcept {
   int best = -1;
   double least = std::numeric_limits<double>::infinity();
   for (int slot = face.first; slot < face.first + face.count; ++slot) {
@@ -211,8 +214,8 @@ struct Clip {
   bool empty = false;
 };
 
-Clip clip_to_column(const Polytope& Q, const Polytope::Face& face, const Vec3& p0, const Vec3& u, double length,
-                    double slack) noexcept {
+Clip clip_to_column(const Polytope& Q, const Polytope::Face& face, const Vec3& p0, const Vec3& u,
+                    double length, double slack) noexcept {
   Clip clip;
   clip.high = length;
   for (int slot = face.first; slot < face.first + face.count; ++slot) {
@@ -232,7 +235,8 @@ Clip clip_to_column(const Polytope& Q, const Polytope::Face& face, const Vec3& p
   return clip;
 }
 
-/// P has the edge, Q the face. Never the end of the walk: the nearer end of the clipped edge is a vertex or on an edge.
+/// P has the edge, Q the face. Never the end of the walk: the nearer end of the clipped edge is a vertex or
+/// on an edge.
 Step edge_face(const Sides& S, Feature& fp, Feature& fq, Points& x) noexcept {
   const Polytope::Edge& e = S.P.edges[fp.index];
   const Polytope::Face& face = S.Q.faces[fq.index];
@@ -275,7 +279,8 @@ Step step(const Sides& S, Feature& fp, Feature& fq, Points& x) noexcept {
 March voronoi_march(const PairView& pair, Feature a, Feature b, double slack) noexcept {
   const Sides forward{pair.A, pair.B, pair.X_AB, pair.X_BA, slack};
   const Sides backward{pair.B, pair.A, pair.X_BA, pair.X_AB, slack};
-  if (a.kind == FeatureKind::kFace && b.kind == FeatureKind::kFace) b = {FeatureKind::kVertex, vertex_of(pair.B, b)};
+  if (a.kind == FeatureKind::kFace && b.kind == FeatureKind::kFace)
+    b = {FeatureKind::kVertex, vertex_of(pair.B, b)};
 
   March best;
   double least = std::numeric_limits<double>::infinity();
@@ -294,7 +299,12 @@ March voronoi_march(const PairView& pair, Feature a, Feature b, double slack) no
       const double gap = (x.p - x.q).squaredNorm();
       if (gap < least || outcome != Step::kMoved) {
         least = gap;
-        best = {was_a, was_b, swapped ? pair.X_AB * x.q : x.p, swapped ? pair.X_AB * x.p : x.q, MarchEnd::kBounded, 0};
+        best = {was_a,
+                was_b,
+                swapped ? pair.X_AB * x.q : x.p,
+                swapped ? pair.X_AB * x.p : x.q,
+                MarchEnd::kBounded,
+                0};
       }
     }
     if (outcome != Step::kMoved) {

@@ -83,8 +83,9 @@ class DenseProblem {
     }
   }
 
-  /// Block principal pivoting [Portugal 1994]: solve for the active rows, swap all that came out with the wrong sign,
-  /// and when that stops making progress swap one at a time, which always ends. Returns the rounds, 0 when it did not.
+  /// Block principal pivoting [Portugal 1994]: solve for the active rows, swap all that came out with the
+  /// wrong sign, and when that stops making progress swap one at a time, which always ends. Returns the
+  /// rounds, 0 when it did not.
   int solve() {
     Index fewest = n_ + 1;
     int tries = kTries;
@@ -132,7 +133,8 @@ class DenseProblem {
       for (Index j = 0; j <= i; ++j) {
         double sum = A_[row_[i]][row_[j]];
         for (Index k = 0; k < j; ++k) sum -= L_[i][k] * L_[j][k];
-        L_[i][j] = i == j ? std::sqrt(sum) : sum / L_[j][j];  // A is positive definite: the compliance is on its diagonal
+        L_[i][j] = i == j ? std::sqrt(sum)
+                          : sum / L_[j][j];  // A is positive definite: the compliance is on its diagonal
       }
       for (Index k = 0; k < i; ++k) y -= L_[i][k] * y_[k];
       y_[i] = y / L_[i][i];
@@ -148,7 +150,9 @@ class DenseProblem {
       for (Index k = 0; k < m; ++k) x_[i] += A_[i][row_[k]] * x_[row_[k]];
     }
   }
-  bool is_wrong(Index i) const { return active_[i] ? x_[i] < 0.0 : x_[i] < -tolerances::kContactVelocity * scale_; }
+  bool is_wrong(Index i) const {
+    return active_[i] ? x_[i] < 0.0 : x_[i] < -tolerances::kContactVelocity * scale_;
+  }
   Index count_wrong() const {
     Index wrong = 0;
     for (Index i = 0; i < n_; ++i) wrong += is_wrong(i) ? 1 : 0;
@@ -179,8 +183,9 @@ void apply_hinge_friction(const World& world, const WorldState& state, std::span
   }
 }
 
-SolverResult solve_contacts(std::span<ContactRow> rows, std::span<const Pose> X_WB, std::span<const Mobility> W,
-                            double h, int max_sweeps, std::span<Twist> V) noexcept {
+SolverResult solve_contacts(std::span<ContactRow> rows, std::span<const Pose> X_WB,
+                            std::span<const Mobility> W, double h, int max_sweeps,
+                            std::span<Twist> V) noexcept {
   for (ContactRow& row : rows) prepare(row, X_WB, W);
   if (rows.empty()) return {.iterations = 0, .converged = true};
   if (rows.size() <= DenseProblem::kMostRows) {

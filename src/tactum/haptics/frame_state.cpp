@@ -11,7 +11,8 @@ std::vector<CollisionBody> collision_bodies(const World& world) {
 
 }  // namespace
 
-FrameState::FrameState(const World& constant_world, const FrameSettings& settings, StageObserver* stage_observer)
+FrameState::FrameState(const World& constant_world, const FrameSettings& settings,
+                       StageObserver* stage_observer)
     : world(initial_state(constant_world)),
       tool(settings.tool),
       finder(collision_bodies(constant_world), world.X_WB),
@@ -22,7 +23,8 @@ FrameState::FrameState(const World& constant_world, const FrameSettings& setting
       contacts(ContactFinderRooms{}.patches, static_cast<std::size_t>(settings.budget.max_contact_points)) {
   hand.X_WD = settings.workspace.X_WD;
   if (!settings.shading.on) return;
-  for (const Body& body : constant_world.bodies) shading.emplace_back(*body.part, settings.shading.crease_rad);
+  for (const Body& body : constant_world.bodies)
+    shading.emplace_back(*body.part, settings.shading.crease_rad);
 }
 
 }  // namespace tactum

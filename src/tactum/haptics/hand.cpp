@@ -4,15 +4,16 @@
 
 namespace tactum {
 
-void follow_hand(const Workspace& workspace, const DeviceSample& sample, double dt_s, HandTracking& hand) noexcept {
+void follow_hand(const Workspace& workspace, const DeviceSample& sample, double dt_s,
+                 HandTracking& hand) noexcept {
   if (!sample.valid || !sample.X_DH.finite()) {
     hand.V_WH = {};
     return;
   }
   if (!hand.known) hand.X_WD = workspace.X_WD;
   const Pose scaled{sample.X_DH.R, workspace.scale * sample.X_DH.p};
-  const bool pressed =
-      workspace.clutch_button >= 0 && (sample.buttons >> static_cast<unsigned>(workspace.clutch_button) & 1u) != 0;
+  const bool pressed = workspace.clutch_button >= 0 &&
+                       (sample.buttons >> static_cast<unsigned>(workspace.clutch_button) & 1u) != 0;
   if (pressed && hand.known) {
     // The mapping's origin follows, so that the hand keeps its place; orientation is never clutched.
     hand.X_WD.p = hand.X_WH.p - hand.X_WD.R * scaled.p;

@@ -14,7 +14,8 @@ namespace {
 using Index = std::size_t;
 
 /// The held part weighs nothing: it resists as its coupling does, over a step of h seconds.
-Resistance resistance_of(const World& world, const FrameSettings& settings, const FrameState& state, Index i, double h) {
+Resistance resistance_of(const World& world, const FrameSettings& settings, const FrameState& state, Index i,
+                         double h) {
   const Pose& X_WB = state.world.X_WB[i];
   if (static_cast<int>(i) == state.tool.body)
     return coupling_resistance(settings.coupling, X_WB.R * state.tool.X_BH.p, h);
@@ -28,7 +29,8 @@ void limit_held(const FrameSettings& settings, double dt_s, FrameState& state) {
   V_WB = within_threshold(V_WB, state.finder.radius(state.tool.body), settings.penalty.max_step_m, dt_s);
 }
 
-/// Gives the held part the whole way that is left to the hand over the `rest` of the frame, and what resists that.
+/// Gives the held part the whole way that is left to the hand over the `rest` of the frame, and what resists
+/// that.
 void pull_held(const World& world, const FrameSettings& settings, double rest, FrameState& state) {
   if (state.tool.body < 0) return;
   const Index i = Index(state.tool.body);
@@ -57,7 +59,8 @@ void report_contacts(const FrameState& state, double h, FrameReport& report) {
   report.contact_points = static_cast<int>(state.contacts.rows.size());
   for (const ContactRow& row : state.contacts.rows)
     report.held_contact_points += row.body_a == held || row.body_b == held ? 1 : 0;
-  if (held >= 0) report.restoring = contact_wrench(state.contacts.rows, held, state.world.X_WB[Index(held)].p, h);
+  if (held >= 0)
+    report.restoring = contact_wrench(state.contacts.rows, held, state.world.X_WB[Index(held)].p, h);
 }
 
 }  // namespace
@@ -71,7 +74,8 @@ void grasp(const FrameSettings& settings, FrameState& state) noexcept {
   state.tool.X_BH.R = X_WB.R.transpose() * hand.X_WH.R;
 }
 
-void wanted_velocities(const World& world, const FrameSettings& settings, double dt_s, FrameState& state) noexcept {
+void wanted_velocities(const World& world, const FrameSettings& settings, double dt_s,
+                       FrameState& state) noexcept {
   for (Index i = 0; i < world.bodies.size(); ++i) {
     const Body& body = world.bodies[i];
     if (!body.moves()) continue;
@@ -112,7 +116,8 @@ void respond(const World& world, const FrameSettings& settings, double dt_s, Fra
   const double rest = dt_s - impact;
   if (rest > 0.0) {
     pull_held(world, settings, rest, state);
-    const SolverResult solved = solve_contacts(rows, X_WB, state.mobility, rest, settings.budget.solver_iterations, V_WB);
+    const SolverResult solved =
+        solve_contacts(rows, X_WB, state.mobility, rest, settings.budget.solver_iterations, V_WB);
     report.solver_iterations = solved.iterations;
     if (!solved.converged) report.flags |= frame_flag::kSolverBounded;
     report_contacts(state, rest, report);

@@ -35,12 +35,18 @@ void RunRecord::add(const FrameReport& report) noexcept {
 
 const char* stage_name(Stage stage) noexcept {
   switch (stage) {
-    case Stage::kHand: return "hand";
-    case Stage::kVelocities: return "velocities";
-    case Stage::kNearPairs: return "near pairs";
-    case Stage::kExactTests: return "exact tests";
-    case Stage::kResponse: return "response";
-    case Stage::kShow: return "show";
+    case Stage::kHand:
+      return "hand";
+    case Stage::kVelocities:
+      return "velocities";
+    case Stage::kNearPairs:
+      return "near pairs";
+    case Stage::kExactTests:
+      return "exact tests";
+    case Stage::kResponse:
+      return "response";
+    case Stage::kShow:
+      return "show";
   }
   return "";
 }

@@ -1,6 +1,6 @@
 #pragma once
-/// What a whole run amounted to, summed up frame by frame: forces, penetration, counted work, and a hash that names
-/// the run. Trivial to add to from the loop: no allocation, a few dozen additions.
+/// What a whole run amounted to, summed up frame by frame: forces, penetration, counted work, and a hash that
+/// names the run. Trivial to add to from the loop: no allocation, a few dozen additions.
 
 #include <array>
 #include <chrono>
