@@ -93,5 +93,122 @@ TEST(ClosestFeatures, LargeShapesProveThemselves) {
   report(tally, seed);
 }
 
+/// A pose, its two pieces and what must hold for every answer about them.
+struct Case {
+  const cases::Shape& a;
+  const cases::Shape& b;
+  Pose X_AB;
+  double size;
+};
+
+/// Calls check(case) for `poses` poses of all makings, from nearly touching to far apart and overlapping.
+template <class Check>
+void for_cases(std::uint64_t seed, int poses, const Check& check) {
+  Random random(seed);
+  const auto shapes = cases::shapes(random, true);
+  for (int i = 0; i < poses; ++i) {
+    const cases::Shape& a = shapes[std::size_t(random.index(int(shapes.size())))];
+    const cases::Shape& b = shapes[std::size_t(random.index(int(shapes.size())))];
+    const Pose X = cases::make_pose(random, a.polytope, b.polytope, Making(i % int(Making::kCount)));
+    SCOPED_TRACE(a.name + " / " + b.name + ", seed " + std::to_string(seed) + ", case " + std::to_string(i) +
+                 " " + cases::describe(X));
+    check(random, Case{a, b, X, std::max(a.polytope.size, b.polytope.size)});
+  }
+}
+
+PairDistance cold(const Polytope& A, const Polytope& B, const Pose& X_AB) {
+  PairCache cache;
+  return closest_features(A, B, X_AB, cache);
+}
+
+bool small(const Case& c) { return c.a.polytope.edges.size() * c.b.polytope.edges.size() <= 4096; }
+
+TEST(ClosestFeatures, SwappingAAndBKeepsTheDistance) {
+  for_cases(20263, 20000, [](Random&, const Case& c) {
+    const PairDistance ab = cold(c.a.polytope, c.b.polytope, c.X_AB);
+    const PairDistance ba = cold(c.b.polytope, c.a.polytope, c.X_AB.inverse());
+    if (ab.distance < 0.0 && !small(c)) return;  // a local minimum may be another from the other side
+    EXPECT_NEAR(ab.distance, ba.distance, 4e-9 * c.size);
+    // Away from touching the points' line is the normal, and there is one nearest distance vector.
+    if (ab.distance > 1e-3 * c.size) {
+      EXPECT_LT((c.X_AB.R * ba.normal + ab.normal).norm(), 1e-3);
+    }
+  });
+}
+
+TEST(ClosestFeatures, MovingTheWorldChangesNothing) {
+  for_cases(20264, 20000, [](Random& random, const Case& c) {
+    if (!small(c)) return;
+    const Pose X_WA{cases::random_rotation(random), cases::random_vector(random, 0.3)};
+    const Pose X_WB = X_WA * c.X_AB;
+    const PairDistance here = cold(c.a.polytope, c.b.polytope, c.X_AB);
+    const PairDistance there = cold(c.a.polytope, c.b.polytope, relative_pose(X_WA, X_WB));
+    EXPECT_NEAR(here.distance, there.distance, 4e-9 * c.size);
+  });
+}
+
+TEST(ClosestFeatures, ScalesWithThePieces) {
+  const auto scaled = [](const Polytope& P, double by) {
+    std::vector<Vec3> points;
+    for (const Vec3& v : P.vertices) points.push_back(v * by);
+    return *convex_hull(points);
+  };
+  for_cases(20265, 600, [&](Random&, const Case& c) {
+    if (!small(c)) return;
+    for (double by : {1e-3, 1e3}) {
+      const Pose X{c.X_AB.R, c.X_AB.p * by};
+      const PairDistance one = cold(c.a.polytope, c.b.polytope, c.X_AB);
+      const PairDistance other = cold(scaled(c.a.polytope, by), scaled(c.b.polytope, by), X);
+      EXPECT_NEAR(one.distance * by, other.distance, 4e-9 * c.size * by);
+      EXPECT_TRUE(other.certified());
+    }
+  });
+}
+
+/// The cache may hold anything: features of another pair, of another pose, or none. The answer is the same.
+TEST(ClosestFeatures, TheCacheOnlySavesTime) {
+  for_cases(20266, 20000, [](Random& random, const Case& c) {
+    if (!small(c)) return;
+    PairCache stale;
+    stale.a = {FeatureKind(random.index(3)), random.index(40) - 2};
+    stale.b = {FeatureKind(random.index(3)), random.index(40) - 2};
+    const PairDistance fresh = cold(c.a.polytope, c.b.polytope, c.X_AB);
+    const PairDistance answer = closest_features(c.a.polytope, c.b.polytope, c.X_AB, stale);
+    EXPECT_TRUE(answer.certified());
+    EXPECT_NEAR(answer.distance, fresh.distance, 4e-9 * c.size);
+    const PairDistance again = closest_features(c.a.polytope, c.b.polytope, c.X_AB, stale);
+    EXPECT_TRUE(again.certified());
+    EXPECT_NEAR(again.distance, fresh.distance, 4e-9 * c.size);
+  });
+}
+
+/// Tracked pairs: the next answer comes from the last one's features, every one certified.
+TEST(ClosestFeatures, TrackedMotionIsCertifiedInFewSteps) {
+  Random random(20267);
+  const auto shapes = cases::shapes(random, true);
+  long steps = 0;
+  long frames = 0;
+  for (int run = 0; run < 200; ++run) {
+    const Polytope& A = shapes[std::size_t(random.index(int(shapes.size())))].polytope;
+    const Polytope& B = shapes[std::size_t(random.index(int(shapes.size())))].polytope;
+    Pose X{cases::random_rotation(random), Vec3::Zero()};
+    X.p = A.center - X.R * B.center + cases::random_unit(random) * (A.radius + B.radius) * 1.05;
+    const Vec3 v = cases::random_vector(random, 0.05);
+    const Vec3 w = cases::random_vector(random, 1.0);
+    PairCache cache;
+    for (int frame = 0; frame < 200; ++frame) {
+      X = advanced(X, {v, w}, 1e-3);
+      const PairDistance x = closest_features(A, B, X, cache);
+      ASSERT_EQ(oracle::complaint(A, B, X, x, 2e-9 * std::max(A.size, B.size)), "")
+          << "run " << run << " frame " << frame;
+      if (x.distance <= 0.0) break;
+      steps += x.steps;
+      ++frames;
+    }
+  }
+  std::printf("  %ld tracked frames, %.2f feature pairs a frame\n", frames, double(steps) / double(frames));
+  EXPECT_LT(double(steps), 1.5 * double(frames));
+}
+
 }  // namespace
 }  // namespace tactum

@@ -2,9 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <vector>
+
 #include "collision/cases.h"
 #include "tactum/base/tolerances.h"
 #include "tactum/collision/closest_features.h"
+#include "tactum/collision/planar_patch.h"
 
 namespace tactum {
 namespace {
@@ -141,6 +145,41 @@ TEST(Manifold, ManyCorneredFacesFit) {
   const double lens = 2 * r * r * std::acos(0.001 / (2 * r)) - 0.0005 * std::sqrt(4 * r * r - 1e-6);
   EXPECT_NEAR(c.patch.area / lens, 1.0, 0.01);
   EXPECT_LT(c.patch.area, lens);  // never more than there is
+}
+
+/// A convex polygon of random corners on an ellipse, some of them often shared with another's.
+PatchPolygon random_polygon(Random& random) {
+  std::vector<double> angles;
+  const int corners = 3 + random.index(kPatchCorners - 2);
+  for (int i = 0; i < corners; ++i)
+    angles.push_back(random.index(2) ? 0.1 * random.index(62) : random.uniform(0.0, 2.0 * kPi));
+  std::sort(angles.begin(), angles.end());
+  angles.erase(std::unique(angles.begin(), angles.end()), angles.end());
+  const Vec2 middle(0.1 * random.index(3), random.index(2) ? 0.0 : random.unit());
+  const double wide = random.index(2) ? 1.0 : random.uniform(0.01, 1.0);
+  PatchPolygon polygon;
+  for (double angle : angles) polygon.push_back(middle + Vec2(wide * std::cos(angle), std::sin(angle)));
+  return polygon;
+}
+
+/// Going around both polygons once against cutting by one side after the other.
+TEST(Manifold, ClippingAroundAgreesWithClippingSideBySide) {
+  const std::uint64_t seed = 35;
+  Random random(seed);
+  for (int i = 0; i < 20000; ++i) {
+    const PatchPolygon polygon = random_polygon(random);
+    const PatchPolygon window = random_polygon(random);
+    if (polygon.size() < 3 || window.size() < 3) continue;
+    PatchPolygon around = polygon;
+    clip_polygon(around, window);
+    PatchPolygon by_sides = polygon;
+    for (std::size_t k = 0; k < window.size(); ++k) {
+      const Vec2 side = window[(k + 1) % window.size()] - window[k];
+      const Vec2 outward = Vec2(side.y(), -side.x()).normalized();
+      clip_polygon(by_sides, outward, outward.dot(window[k]));
+    }
+    ASSERT_NEAR(twice_area(around), twice_area(by_sides), 1e-9) << "seed " << seed << " case " << i;
+  }
 }
 
 /// Area, centroid and second moments by counting points of a fine grid.

@@ -308,21 +308,20 @@ void sliver_contact(const Work& w, const PatchPolygon& polygon, const Height& za
 void face_face_contact(const Work& w) noexcept {
   PatchPolygon polygon;
   PatchPolygon window;
-  PatchPolygon scratch;
   face_outline(w.tangent, w.pair.A, w.a.feature.index, {}, polygon);
   face_outline(w.tangent, w.pair.B, w.b.feature.index, w.pair.X_AB, window);
   const Height za = face_height(w.tangent, w.pair.A, w.a.feature.index, {});
   const Height zb = face_height(w.tangent, w.pair.B, w.b.feature.index, w.pair.X_AB);
-  clip_polygon(polygon, window, scratch);
+  clip_polygon(polygon, window);
   if (polygon.empty()) return point_contact(w);
   double least = std::numeric_limits<double>::infinity();
   for (const Vec2& x : polygon) least = std::min(least, za(x) - zb(x));
   if (least >= w.tolerance) return point_contact(w);
-  clip_polygon(polygon, za.slope - zb.slope, cut_level(w, least) - (za.at_origin - zb.at_origin), scratch);
+  clip_polygon(polygon, za.slope - zb.slope, cut_level(w, least) - (za.at_origin - zb.at_origin));
   const auto cut_toward_edge = [&](const Rise& rise, double share) {
     double most = 0.0;
     for (const Vec2& x : polygon) most = std::max(most, rise(x));
-    clip_polygon(polygon, rise.slope, rise.offset + most * share, scratch);
+    clip_polygon(polygon, rise.slope, rise.offset + most * share);
   };
   if (w.a.face_share < 1.0)
     cut_toward_edge(rise_from_edge(w.tangent, w.pair.A, w.a.edge, {}, za.slope), w.a.face_share);

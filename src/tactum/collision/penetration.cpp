@@ -138,7 +138,7 @@ Vec3 line_of_centers(const PairView& pair) noexcept {
 /// Walks from the line of centres and from the shallowest facets near 26 directions all around: three of
 /// them, and more until one ends certified.
 void from_many_directions(const PairView& pair, Shallowest& shallowest) noexcept {
-  constexpr int kWalked = 3;
+  constexpr int kWalked = 8;
   shallowest.from(facet_near(pair, line_of_centers(pair)));
   std::array<MinkowskiFacet, 26> seeds;
   std::size_t count = 0;

@@ -10,15 +10,16 @@ namespace tactum {
 /// invented.
 inline constexpr int kPatchCorners = 64;
 
-/// Counter-clockwise. Room for one face clipped by another, and by the gap.
-using PatchPolygon = StaticVector<Vec2, 2 * kPatchCorners + 2>;
+/// Counter-clockwise. Room for one face clipped by another, and by the gap and the lean of both.
+using PatchPolygon = StaticVector<Vec2, 2 * kPatchCorners + 4>;
 
-/// What is left of `polygon` where normal . x <= offset [Sutherland and Hodgman 1974]. `scratch` is working
-/// room.
-void clip_polygon(PatchPolygon& polygon, const Vec2& normal, double offset, PatchPolygon& scratch) noexcept;
+/// What is left of convex `polygon` where normal . x <= offset [Sutherland and Hodgman 1974].
+void clip_polygon(PatchPolygon& polygon, const Vec2& normal, double offset) noexcept;
 
-/// `polygon` clipped by every side of the convex, counter-clockwise `window`.
-void clip_polygon(PatchPolygon& polygon, const PatchPolygon& window, PatchPolygon& scratch) noexcept;
+/// `polygon` clipped by every side of `window`, both convex and counter-clockwise. The outermost corner of
+/// the polygon moves around with the side of the window, so all sides together cost as much as going around
+/// both once.
+void clip_polygon(PatchPolygon& polygon, const PatchPolygon& window) noexcept;
 
 /// Twice the signed area: positive when counter-clockwise.
 double twice_area(const PatchPolygon& polygon) noexcept;
