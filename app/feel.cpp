@@ -123,13 +123,15 @@ void feel(const FeelOptions& options) {
 
   std::signal(SIGINT, on_interrupt);
   std::signal(SIGTERM, on_interrupt);
-  fmt::print("{}: {}\n{} at {:.0f} Hz, hand {}\n", session.scene().name, session.scene().description,
+  // With --json - the standard output is for machines alone.
+  std::FILE* out = options.json == "-" ? stderr : stdout;
+  fmt::print(out, "{}: {}\n{} at {:.0f} Hz, hand {}\n", session.scene().name, session.scene().description,
              session.device().name, session.rate_Hz(),
              options.hand.empty() ? session.scene().grip : options.hand);
-  std::fflush(stdout);
+  std::fflush(out);
   const std::uint64_t frames = frames_asked_for(options, session);
   const Summary times = options.virtual_clock ? feel_virtually(session, frames) : feel_live(session, frames);
-  print_summary(session, times);
+  print_summary(out, session, times);
   if (!options.json.empty()) write_json(options.json, summary_json(session, times));
   if (session.loop_status().device_lost)
     fail({"the device refused every wrench for a while, so the loop has ended", "",

@@ -52,29 +52,30 @@ nlohmann::ordered_json summary_us(const Summary& summary) {
 
 std::string hash_text(std::uint64_t hash) { return fmt::format("{:016x}", hash); }
 
-void print_summary(const Session& session, const Summary& times) {
+void print_summary(std::FILE* out, const Session& session, const Summary& times) {
   const RunRecord& record = session.record();
-  fmt::print("\nforce            mean {:8.3f} N     max {:8.3f} N     largest step {:.3f} N\n",
+  fmt::print(out, "\nforce            mean {:8.3f} N     max {:8.3f} N     largest step {:.3f} N\n",
              mean(record.sum_force_N, record.frames), record.max_force_N, record.max_force_step_N);
-  fmt::print("torque           mean {:8.3f} mN m  max {:8.3f} mN m  largest step {:.3f} mN m\n",
+  fmt::print(out, "torque           mean {:8.3f} mN m  max {:8.3f} mN m  largest step {:.3f} mN m\n",
              mean(record.sum_torque_Nm, record.frames) * 1e3, record.max_torque_Nm * 1e3,
              record.max_torque_step_Nm * 1e3);
-  fmt::print("contact          {} of {} frames; penetrating {} frames, at most {:.4f} mm\n",
+  fmt::print(out, "contact          {} of {} frames; penetrating {} frames, at most {:.4f} mm\n",
              record.colliding_frames, record.frames, record.penetrating_frames,
              record.max_penetration_m * 1e3);
-  fmt::print("frame            mean {:.1f} us   p50 {:.1f}   p99 {:.1f}   p99.9 {:.1f}   max {:.1f}\n",
+  fmt::print(out, "frame            mean {:.1f} us   p50 {:.1f}   p99 {:.1f}   p99.9 {:.1f}   max {:.1f}\n",
              times.mean_ns * 1e-3, times.p50_ns * 1e-3, times.p99_ns * 1e-3, times.p999_ns * 1e-3,
              times.max_ns * 1e-3);
   const LoopStatus loop = session.loop_status();
   if (loop.frames > 0)
-    fmt::print("loop             {} frames, {} missed deadlines, {} late\n", loop.frames,
+    fmt::print(out, "loop             {} frames, {} missed deadlines, {} late\n", loop.frames,
                loop.missed_deadlines, loop.late_frames);
   if (record.non_finite_frames > 0)
-    fmt::print("WRONG            {} frames computed a wrench that is not finite\n", record.non_finite_frames);
-  for (const std::string& note : frame_notes(record)) fmt::print("note             {}\n", note);
+    fmt::print(out, "WRONG            {} frames computed a wrench that is not finite\n",
+               record.non_finite_frames);
+  for (const std::string& note : frame_notes(record)) fmt::print(out, "note             {}\n", note);
   for (std::size_t i = 0; i < session.scene().goals.size(); ++i)
-    fmt::print("goal             {}\n", session.goals().describe(session.scene().world, i));
-  fmt::print("frames' hash     {}\n", hash_text(record.hash()));
+    fmt::print(out, "goal             {}\n", session.goals().describe(session.scene().world, i));
+  fmt::print(out, "frames' hash     {}\n", hash_text(record.hash()));
 }
 
 nlohmann::ordered_json summary_json(const Session& session, const Summary& times) {
