@@ -67,10 +67,7 @@ class WholeFrames final : public LoopObserver {
 /// The stages' times, in a replay of their own because looking costs time.
 class Stages final : public LoopObserver {
  public:
-  explicit Stages(Session& session) : session_(session) {
-    session.observe_stages(&clock_);
-    clock_.frame_begins();
-  }
+  explicit Stages(Session& session) : session_(session) { session.time_stages(&clock_); }
   bool after_frame(const FrameRecord&) noexcept override {
     const FrameReport& report = session_.last_report();
     const double near_ns = static_cast<double>(clock_.stage_ns(Stage::kNearPairs));
@@ -82,7 +79,6 @@ class Stages final : public LoopObserver {
     }
     if (report.work.broad_phase_runs > 0) broad_ns += near_ns;
     if (report.in_contact()) response_ns += static_cast<double>(clock_.stage_ns(Stage::kResponse));
-    clock_.frame_begins();
     return true;
   }
   std::uint64_t detections = 0;

@@ -121,6 +121,9 @@ void feel(const FeelOptions& options) {
   if (!opened) fail(opened.error());
   Session& session = **opened;
 
+  StageClock stages;
+  session.time_stages(&stages);
+
   std::signal(SIGINT, on_interrupt);
   std::signal(SIGTERM, on_interrupt);
   // With --json - the standard output is for machines alone.
@@ -131,8 +134,8 @@ void feel(const FeelOptions& options) {
   std::fflush(out);
   const std::uint64_t frames = frames_asked_for(options, session);
   const Summary times = options.virtual_clock ? feel_virtually(session, frames) : feel_live(session, frames);
-  print_summary(out, session, times);
-  if (!options.json.empty()) write_json(options.json, summary_json(session, times));
+  print_summary(out, session, times, stages);
+  if (!options.json.empty()) write_json(options.json, summary_json(session, times, stages));
   if (session.loop_status().device_lost)
     fail({"the device refused every wrench for a while, so the loop has ended", "",
           "a device that is plugged in and powered", session.device().name});

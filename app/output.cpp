@@ -52,7 +52,7 @@ nlohmann::ordered_json summary_us(const Summary& summary) {
 
 std::string hash_text(std::uint64_t hash) { return fmt::format("{:016x}", hash); }
 
-void print_summary(std::FILE* out, const Session& session, const Summary& times) {
+void print_summary(std::FILE* out, const Session& session, const Summary& times, const StageClock& stages) {
   const RunRecord& record = session.record();
   fmt::print(out, "\nforce            mean {:8.3f} N     max {:8.3f} N     largest step {:.3f} N\n",
              mean(record.sum_force_N, record.frames), record.max_force_N, record.max_force_step_N);
@@ -65,6 +65,7 @@ void print_summary(std::FILE* out, const Session& session, const Summary& times)
   fmt::print(out, "frame            mean {:.1f} us   p50 {:.1f}   p99 {:.1f}   p99.9 {:.1f}   max {:.1f}\n",
              times.mean_ns * 1e-3, times.p50_ns * 1e-3, times.p99_ns * 1e-3, times.p999_ns * 1e-3,
              times.max_ns * 1e-3);
+  fmt::print(out, "{}", table_of(stages.summaries()));
   const LoopStatus loop = session.loop_status();
   if (loop.frames > 0)
     fmt::print(out, "loop             {} frames, {} missed deadlines, {} late\n", loop.frames,
@@ -78,12 +79,14 @@ void print_summary(std::FILE* out, const Session& session, const Summary& times)
   fmt::print(out, "frames' hash     {}\n", hash_text(record.hash()));
 }
 
-nlohmann::ordered_json summary_json(const Session& session, const Summary& times) {
+nlohmann::ordered_json summary_json(const Session& session, const Summary& times, const StageClock& stages) {
   const RunRecord& record = session.record();
   nlohmann::ordered_json goals = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < session.scene().goals.size(); ++i)
     goals.push_back(
         {{"met", session.goals().met(i)}, {"what", session.goals().describe(session.scene().world, i)}});
+  nlohmann::ordered_json stages_us;
+  for (const StageSummary& stage : stages.summaries()) stages_us[stage.name] = summary_us(stage.summary);
   const LoopStatus loop = session.loop_status();
   return {{"scene", session.scene().name},
           {"device", session.device().name},
@@ -104,6 +107,7 @@ nlohmann::ordered_json summary_json(const Session& session, const Summary& times
           {"unchecked", record.unchecked},
           {"missed_deadlines", loop.missed_deadlines},
           {"frame_us", summary_us(times)},
+          {"stages_us", stages_us},
           {"notes", frame_notes(record)},
           {"goals", goals},
           {"goal_met", session.goals().all_met()},

@@ -53,6 +53,7 @@ SessionStatus Session::poll() noexcept {
 }
 
 Wrench Session::run(const DeviceSample& sample, const FrameTick& tick) noexcept {
+  if (stage_clock_ != nullptr) stage_clock_->frame_begins();
   const Wrench F_D = haptic_frame(scene_.world, scene_.settings, sample, tick, state_, report_);
   record_.add(report_);
   goals_.watch(scene_.world, state_.world);

@@ -33,6 +33,21 @@ void RunRecord::add(const FrameReport& report) noexcept {
   add_to(hash_, report);
 }
 
+void StageClock::stage_ended(Stage stage) noexcept {
+  const Clock::time_point now = Clock::now();
+  const std::int64_t duration_ns = std::chrono::nanoseconds(now - last_).count();
+  frame_ns_[static_cast<std::size_t>(stage)] = duration_ns;
+  histograms_[static_cast<std::size_t>(stage)].add(duration_ns);
+  last_ = now;
+}
+
+std::vector<StageSummary> StageClock::summaries() const {
+  std::vector<StageSummary> stages;
+  for (int i = 0; i < kStageCount; ++i)
+    stages.push_back({stage_name(static_cast<Stage>(i)), histograms_[static_cast<std::size_t>(i)].summary()});
+  return stages;
+}
+
 const char* stage_name(Stage stage) noexcept {
   switch (stage) {
     case Stage::kHand:
