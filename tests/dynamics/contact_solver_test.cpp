@@ -49,7 +49,8 @@ struct Problem {
 
 TEST(ContactSolver, SolvesTheComplementarityProblem) {
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
-    Problem p(seed, 1 + static_cast<int>(seed % 9));
+    // Few rows are solved by pivoting, more than 48 by sweeps.
+    Problem p(seed, seed % 40 == 0 ? 60 : 1 + static_cast<int>(seed % 17));
     const std::vector<Twist> before = p.V;
     const SolverResult result = solve_contacts(p.rows, p.X, p.W, p.h, 20000, p.V);
     ASSERT_TRUE(result.converged) << "seed " << seed;
