@@ -190,7 +190,7 @@ void add_bench(CLI::App& app) {
       bench->add_subcommand("table1", "The timing table of the paper, beside the published values");
   table1->add_option("--scene", options->scene, "another scene than the gears")->capture_default_str();
   table1->add_option("--updates", options->updates, "how many frames")
-      ->check(CLI::PositiveNumber)
+      ->check(CLI::Range(1, 100000000))
       ->capture_default_str();
   table1
       ->add_option("--replays", options->replays,

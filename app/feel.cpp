@@ -88,7 +88,11 @@ class VirtualWatch final : public LoopObserver {
 std::uint64_t frames_asked_for(const FeelOptions& options, const Session& session) {
   if (options.updates > 0) return options.updates;
   const double duration = options.duration_s > 0.0 ? options.duration_s : session.scene().hand->duration_s();
-  return static_cast<std::uint64_t>(duration * session.rate_Hz());
+  const auto frames = static_cast<std::uint64_t>(duration * session.rate_Hz());
+  if (frames == 0)
+    fail({"there is nothing to run", "a hand that does not move", "--duration or --updates",
+          session.scene().name});
+  return frames;
 }
 
 Summary feel_virtually(Session& session, std::uint64_t frames) {
@@ -150,9 +154,10 @@ void add_feel(CLI::App& app) {
       ->capture_default_str();
   command
       ->add_option("--duration", options->duration_s, "how long [s]; by default as long as the hand's motion")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(1e-3, 1e7));
   command->add_option("--updates", options->updates, "how many frames, instead of a duration")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 40))
+      ->excludes("--duration");
   command->add_option("--device", options->device,
                       "see: tactum devices; by default the scene's simulated one");
   command->add_option("--hand", options->hand, "grip of the simulated hand: loose, medium or firm");

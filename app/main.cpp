@@ -1,6 +1,8 @@
 /// The `tactum` command: one file per subcommand, listed in commands.h.
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
 
 #include "commands.h"
 
@@ -16,6 +18,9 @@ int main(int argc, char** argv) {
     return error.get_exit_code();
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "tactum: %s\n", error.what());
+    return 1;
   }
   return 0;
 }

@@ -76,7 +76,8 @@ void print_summary(std::FILE* out, const Session& session, const Summary& times,
   for (const std::string& note : frame_notes(record)) fmt::print(out, "note             {}\n", note);
   for (std::size_t i = 0; i < session.scene().goals.size(); ++i)
     fmt::print(out, "goal             {}\n", session.goals().describe(session.scene().world, i));
-  fmt::print(out, "frames' hash     {}\n", hash_text(record.hash()));
+  if (loop.frames == 0)
+    fmt::print(out, "frames' hash     {}\n", hash_text(record.hash()));  // of a virtual run
 }
 
 nlohmann::ordered_json summary_json(const Session& session, const Summary& times, const StageClock& stages) {

@@ -105,9 +105,6 @@ inline constexpr double kBoxSlack = 1e-14;
 
 /// Squared angle [rad^2] below which sin(a)/a and its kin are taken from their series: exact to the last bit
 /// there.
-
-/// Squared angle [rad^2] below which sin(a)/a and its kin are taken from their series: exact to the last bit
-/// there.
 inline constexpr double kSmallAngleSquared = 1e-6;
 
 /// Sine of a half angle below which a rotation vector is twice the quaternion's vector part, exact to

@@ -53,7 +53,7 @@ struct ContactWork {
   int patches = 0;           ///< M
   int uncertified = 0;       ///< answers without a certificate
   int unchecked = 0;         ///< due pairs beyond the budget
-  bool rooms_full = false;   ///< something was dropped: raise ContactFinderRooms
+  bool rooms_full = false;   ///< something was dropped: raise the rooms
 };
 
 class ContactFinder {
@@ -88,13 +88,14 @@ class ContactFinder {
     std::int32_t first = 0, count = 0;
     double odometers = 0.0;     ///< S0
     double reach = 0.0;         ///< R
+    bool cut_short = false;     ///< the room was full: pairs are missing
     std::int64_t renewal = -1;  ///< the renewal it was last part of
   };
 
   void move_boxes(std::span<const Pose> X_WB) noexcept;
   bool list_holds(const BodyPair& list, int a, int b) const noexcept;
   void renew_lists(std::span<const Pose> X_WB) noexcept;
-  void collect(int a, int b, const Pose& X_AB, double reach) noexcept;
+  bool collect(int a, int b, const Pose& X_AB, double reach) noexcept;
   void inherit(const BodyPair& old, std::size_t first) noexcept;
   void test(Pair& pair, std::span<const Pose> X_WB) noexcept;
   double odometers(int a, int b) const noexcept { return travel_[std::size_t(a)] + travel_[std::size_t(b)]; }

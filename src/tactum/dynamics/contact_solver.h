@@ -40,10 +40,11 @@ struct SolverResult {
   bool converged = false;  ///< false: the sweeps ran out; the impulses are usable, not exact
 };
 
-/// Dry friction of the hinges: a torque that stops the turning, up to the joint's friction. Changes V in
-/// place.
-void apply_hinge_friction(const World& world, const WorldState& state, std::span<const Mobility> W, double h,
-                          std::span<Twist> V) noexcept;
+/// What is left of a hinged body's twist after its joint's damping and dry friction have acted for `h`
+/// seconds: a torque against the turning, up to the joint's friction, that stops but never reverses it.
+/// Applied after whatever else pushed in these `h` seconds, so that pushes below the friction move nothing.
+Twist after_hinge_friction(const Joint& joint, const Pose& X_WB, const Mobility& W, double h,
+                           const Twist& V) noexcept;
 
 /// Finds the impulses and adds their effect to the twists `V` (one per body). `h` [s] is the step they act
 /// for.

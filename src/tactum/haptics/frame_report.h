@@ -6,6 +6,7 @@
 
 #include "tactum/base/hash.h"
 #include "tactum/collision/contact_finder.h"
+#include "tactum/dynamics/world.h"
 #include "tactum/math/spatial.h"
 
 namespace tactum {
@@ -13,11 +14,13 @@ namespace tactum {
 /// What the frame could not do in full, each with the setting to raise. A frame never stops for these.
 namespace frame_flag {
 inline constexpr std::uint32_t kBudgetShort = 1u << 0;  ///< pairs left unchecked: WorkBudget::max_exact_tests
-inline constexpr std::uint32_t kRoomsFull = 1u << 1;    ///< pairs or patches dropped: ContactFinderRooms
+inline constexpr std::uint32_t kRoomsFull = 1u << 1;    ///< pairs or patches dropped: WorkBudget::rooms
 inline constexpr std::uint32_t kPointsFull =
     1u << 2;  ///< contact points dropped: WorkBudget::max_contact_points
 inline constexpr std::uint32_t kSolverBounded = 1u << 3;  ///< not converged: WorkBudget::solver_iterations
 inline constexpr std::uint32_t kUncertified = 1u << 4;    ///< a distance without its certificate was used
+inline constexpr std::uint32_t kMotionUndone =
+    1u << 6;  ///< a motion was no number; the body stayed where it was
 inline constexpr std::uint32_t kNoHand = 1u
                                          << 5;  ///< no valid sample yet: nothing is held, the wrench is zero
 }  // namespace frame_flag
@@ -46,7 +49,10 @@ struct FrameReport {
   bool in_contact() const { return work.patches > 0; }
 };
 
-/// Adds everything that was computed to the hash: equal hashes mean equal frames, bit for bit.
+/// Adds everything that was computed and counted to the hash (a negative zero as zero): equal hashes mean
+/// equal frames.
 void add_to(Hash& hash, const FrameReport& report) noexcept;
+/// The same for where the bodies are and how they move.
+void add_to(Hash& hash, const WorldState& state) noexcept;
 
 }  // namespace tactum

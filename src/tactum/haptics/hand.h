@@ -16,11 +16,13 @@ struct HandTracking {
   Pose X_WD;              ///< the mapping as the clutch has left it [m]
   Pose X_WH;              ///< the hand in the world in the last frame [m]
   Twist V_WH;             ///< its velocity [m/s, rad/s]
+  double time_s = 0.0;    ///< of the last valid sample [s]
   bool known = false;     ///< false until the first valid sample
   bool clutched = false;  ///< the clutch was pressed in the last frame
 };
 
-/// Takes a sample in. An invalid one leaves the hand where it was. `dt_s` is the time since the last sample.
+/// Takes a sample in. An invalid or implausible one leaves the hand where it was. `dt_s` is the nominal time
+/// between frames; the time between samples counts where it is longer.
 void follow_hand(const Workspace& workspace, const DeviceSample& sample, double dt_s,
                  HandTracking& hand) noexcept;
 

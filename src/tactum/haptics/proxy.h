@@ -1,7 +1,8 @@
 #pragma once
 /// How the held part's proxy moves: straight to where the hand holds it, but no farther in one frame than the
-/// safe threshold distance [Gregory 2000, 3.2]. The tolerance of contact determination grows with the speed,
-/// so what cannot travel farther cannot slip past what it was tested against.
+/// safe threshold distance [Gregory 2000, 3.2]. The tolerance of contact determination grows with that
+/// speed, so what moves towards the hand cannot slip past what it was tested against. (What contacts push it
+/// back by is bounded by the threshold too, but first tested in the next frame.)
 ///
 /// The threshold limits the step that is taken, not the pull that the contact forces are weighed against:
 /// with the pull cut to the threshold a held gear could never push harder than the spring over half a

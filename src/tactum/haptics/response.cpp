@@ -42,6 +42,26 @@ void pull_held(const World& world, const FrameSettings& settings, double rest, F
   state.world.V_WB[i] = constrained_velocity(joint, X_WB, state.resistance[i], pull);
 }
 
+/// Damping and friction of every hinge but that of body `spared`.
+void slow_hinges(const World& world, double h, int spared, FrameState& state) {
+  for (Index i = 0; i < world.bodies.size(); ++i) {
+    if (static_cast<int>(i) == spared || !world.bodies[i].moves()) continue;
+    Twist& V_WB = state.world.V_WB[i];
+    V_WB = after_hinge_friction(world.bodies[i].joint, state.world.X_WB[i], state.mobility[i], h, V_WB);
+  }
+}
+
+/// A body whose motion is not a number stays where it was, at rest: one bad frame must not be the last good
+/// one.
+void undo_non_finite(FrameState& state, FrameReport& report) {
+  for (Index i = 0; i < state.world.X_WB.size(); ++i) {
+    if (state.world.X_WB[i].finite() && state.world.V_WB[i].finite()) continue;
+    state.world.X_WB[i] = state.X_WB_start[i];
+    state.world.V_WB[i] = {};
+    report.flags |= frame_flag::kMotionUndone;
+  }
+}
+
 /// Distances are those the frame found, before anything moved.
 void report_distances(const World& world, std::span<const ContactPatch> patches, FrameReport& report) {
   for (const ContactPatch& patch : patches) {
@@ -91,7 +111,6 @@ void wanted_velocities(const World& world, const FrameSettings& settings, double
     state.mobility[i] = mobility(body.joint, X_WB, state.resistance[i]);
   }
   limit_held(settings, dt_s, state);
-  apply_hinge_friction(world, state.world, state.mobility, dt_s, state.world.V_WB);
 }
 
 void tolerances_from_speed(double dt_s, FrameState& state) noexcept {
@@ -106,14 +125,17 @@ void respond(const World& world, const FrameSettings& settings, double dt_s, Fra
   std::vector<Pose>& X_WB = state.world.X_WB;
   std::vector<Twist>& V_WB = state.world.V_WB;
   std::vector<ContactRow>& rows = state.contacts.rows;
+  state.X_WB_start = X_WB;  // same size: nothing is allocated
   make_contact_rows(world, X_WB, state.finder.patches(), state.shading, settings.penalty.stiffness_N_per_m,
                     state.contacts);
   report_distances(world, state.finder.patches(), report);
   const double impact = smallest_time_of_impact(rows, X_WB, V_WB, dt_s);
+  const double rest = dt_s - impact;
+  // The held part has no mass to be slowed before the impact: its friction acts where it is pulled.
+  slow_hinges(world, impact, rest > 0.0 ? state.tool.body : -1, state);
   advance_distances(rows, X_WB, V_WB, impact);
   advance_bodies(world, V_WB, impact, X_WB);
 
-  const double rest = dt_s - impact;
   if (rest > 0.0) {
     pull_held(world, settings, rest, state);
     const SolverResult solved =
@@ -121,11 +143,13 @@ void respond(const World& world, const FrameSettings& settings, double dt_s, Fra
     report.solver_iterations = solved.iterations;
     if (!solved.converged) report.flags |= frame_flag::kSolverBounded;
     report_contacts(state, rest, report);
+    slow_hinges(world, rest, -1, state);
     limit_held(settings, dt_s, state);
     advance_bodies(world, V_WB, rest, X_WB);
   }
   for (Index i = 0; i < world.bodies.size(); ++i)
     if (world.bodies[i].moves()) X_WB[i] = constrained_pose(world.bodies[i], X_WB[i]);
+  undo_non_finite(state, report);
   if (state.contacts.full) report.flags |= frame_flag::kPointsFull;
   report.time_of_impact_s = impact;
 }
@@ -135,7 +159,9 @@ Wrench felt_wrench(const FrameSettings& settings, FrameState& state, FrameReport
   if (state.tool.body < 0) return {};
   const Pose& X_WB = state.world.X_WB[Index(state.tool.body)];
   report.X_WH_proxy = X_WB * state.tool.X_BH;
-  const Twist V_WH_proxy = moved(state.world.V_WB[Index(state.tool.body)], X_WB.R * state.tool.X_BH.p);
+  // The velocity that counts is the way of the whole frame, not the last part's after an impact.
+  const Pose X_WH_before = state.X_WB_start[Index(state.tool.body)] * state.tool.X_BH;
+  const Twist V_WH_proxy = twist_between(X_WH_before, report.X_WH_proxy, settings.dt_s);
   return coupling_wrench(settings.coupling, state.hand.X_WH, state.hand.V_WH, report.X_WH_proxy, V_WH_proxy);
 }
 

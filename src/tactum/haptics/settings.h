@@ -3,6 +3,7 @@
 /// the paper's value. Constant while frames run. [Gregory 2000]: "Six Degree-of-Freedom Haptic Display of
 /// Polygonal Models".
 
+#include "tactum/collision/contact_finder.h"
 #include "tactum/haptics/safety.h"
 #include "tactum/haptics/smoothing.h"
 #include "tactum/math/spatial.h"
@@ -47,6 +48,7 @@ struct Shading {
 struct WorkBudget {
   int max_exact_tests = 4096;    ///< exact tests a frame (paper 4.2: the array of fixed length) [-]
   int max_contact_points = 512;  ///< contact points a frame [-]
+  ContactFinderRooms rooms;      ///< near pairs and patches there is memory for
   int solver_iterations = 60;    ///< sweeps of the contact solver over many rows, at most [-]
 };
 

@@ -4,7 +4,7 @@
 
 namespace tactum {
 
-void RunRecord::add(const FrameReport& report) noexcept {
+void RunRecord::add(const FrameReport& report, const WorldState& world) noexcept {
   ++frames;
   if (report.in_contact()) ++colliding_frames;
   if (report.held_contact_points > 0) ++held_contact_frames;
@@ -31,6 +31,7 @@ void RunRecord::add(const FrameReport& report) noexcept {
   max_contact_points = std::max(max_contact_points, report.contact_points);
   max_exact_tests = std::max(max_exact_tests, report.work.exact_tests);
   add_to(hash_, report);
+  add_to(hash_, world);
 }
 
 void StageClock::stage_ended(Stage stage) noexcept {

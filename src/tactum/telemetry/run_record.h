@@ -16,7 +16,7 @@ namespace tactum {
 
 class RunRecord {
  public:
-  void add(const FrameReport& report) noexcept;
+  void add(const FrameReport& report, const WorldState& world) noexcept;
 
   std::uint64_t frames = 0;
   std::uint64_t colliding_frames = 0;     ///< frames with any patch
