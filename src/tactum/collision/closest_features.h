@@ -9,7 +9,7 @@
 /// where they agree the answer is right, however the walk came to it. Where they do not, in this order: the
 /// walk again from the supports just found, with wider Voronoi slack; the normal put back into its features'
 /// cones (gaps so small that the points' difference has lost its direction); the walk on the Minkowski
-/// difference; distance by support mapping [Gilbert, Johnson and Keerthi 1988]; every pair of features of
+/// difference; distance by support mapping [Gilbert 1988]; every pair of features of
 /// small pieces. Each is judged by the same check, and the stop says which it was.
 ///
 /// Overlapping pieces are found by a point of both, and answered by penetration.h.

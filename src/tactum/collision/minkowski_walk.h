@@ -13,7 +13,7 @@
 /// facet that holds the foot of its own plane. Where the foot lies beyond a border of the facet, the plane of
 /// the neighbour across it is nearer: go there. The same walk with "where the ray leaves the plane" in place
 /// of the foot finds the way out along a given direction. (Closest-feature marching continued inside, after
-/// the pseudo-internal Voronoi regions of [Ponamgi, Manocha and Lin 1997]; the facets are found on the fly,
+/// the pseudo-internal Voronoi regions of [Ponamgi 1997]; the facets are found on the fly,
 /// not stored.) Cost: about 60 ns a facet.
 
 #include <optional>

@@ -1,5 +1,5 @@
 #pragma once
-/// Distance by support mapping alone [Gilbert, Johnson and Keerthi 1988]: a simplex of the Minkowski
+/// Distance by support mapping alone [Gilbert 1988]: a simplex of the Minkowski
 /// difference is moved toward the origin. No features are needed and nothing can go in circles; but where the
 /// pieces nearly touch, or nearly parallel faces meet, its last digits are lost: the caller's certificate
 /// judges it. A fallback. The nearest point of the simplex is taken over all its corners, edges and faces:
