@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <optional>
@@ -11,6 +12,7 @@
 #include "support/allocation_guard.h"
 #include "support/real_data.h"
 #include "tactum/scene/builtin_scenes.h"
+#include "tactum/scene/scene_file.h"
 
 namespace tactum {
 namespace {
@@ -99,6 +101,51 @@ TEST(Session, TheDrivenGearPushesBackOnlyWhileTouching) {
   EXPECT_LT(record.colliding_frames, 12499u);  // backlash: not always
   EXPECT_GT(record.max_torque_Nm, 0.005);      // the driven gear's friction is 10 mN m
   EXPECT_LT(record.max_penetration_m, 5e-4);
+}
+
+/// A block held in the hand pushes on a lever, less than the friction of its hinge.
+const char* const kLever = R"(
+schema = 1
+description = "lever with friction pushed below its friction"
+[[body]]
+name = "lever"
+part = { box = { size_m = [0.1,0.02,0.01] } }
+joint = { kind = "hinge", axis = [0,1,0], anchor_m=[-0.05,0,0], friction_Nm = 0.5 }
+[[body]]
+name = "block"
+part = { box = { size_m = [0.01,0.01,0.01] } }
+pos_m = [0.045,0,0.0105]
+[tool]
+body = "block"
+[hand]
+grip = "firm"
+[[hand.step]]
+offset_m = [0,0,-0.004]
+duration_s = 0.5
+[[hand.step]]
+hold_s = 5
+[[goal]]
+kind = "turned"
+body = "lever"
+at_least_deg = 0.1
+[[goal]]
+kind = "moved"
+body = "block"
+direction = [0,0,-1]
+at_least_m = 0.001
+)";
+
+TEST(Session, APushBelowTheFrictionOfAHingeMovesNothing) {
+  Result<Scene> scene = parse_scene(kLever, "lever", "lever.toml", {});
+  ASSERT_TRUE(scene) << scene.error().message();
+  Result<std::unique_ptr<Session>> session = Session::open(std::move(*scene), {});
+  ASSERT_TRUE(session);
+  ASSERT_TRUE((*session)->run_virtual(4000, nullptr));
+  EXPECT_GT((*session)->record().max_force_N, 0.4);
+  EXPECT_GT((*session)->record().held_contact_frames, 3000u);
+  for (std::size_t i = 0; i < (*session)->scene().world.bodies.size(); ++i) {
+    EXPECT_LT(std::abs((*session)->goals().angle(i)), 1e-6) << (*session)->scene().world.bodies[i].name;
+  }
 }
 
 TEST(SessionThread, RunsOnItsOwnThreadAndStopsWithZeroWrench) {
