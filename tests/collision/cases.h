@@ -196,6 +196,19 @@ inline Pose make_pose(Random& random, const Polytope& A, const Polytope& B, Maki
 
 inline bool full() { return std::getenv("TACTUM_FULL") != nullptr; }
 
+/// How many cases to try: `many` in a full run, else `some`, and a tenth of those under a sanitizer, which
+/// looks for other faults and takes twenty times as long.
+inline int sample(int many, int some) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  return some / 10;
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+  return some / 10;
+#endif
+#endif
+  return full() ? many : some;
+}
+
 inline std::string describe(const Pose& X) {
   char text[400];
   std::snprintf(text, sizeof text,

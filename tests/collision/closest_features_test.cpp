@@ -38,7 +38,7 @@ TEST(ClosestFeatures, AgreesWithEveryPairOfFeaturesOnSmallShapes) {
   const std::uint64_t seed = 20261;
   Random random(seed);
   const auto shapes = cases::shapes(random, false);
-  const int poses = cases::full() ? 1000000 : 30000;
+  const int poses = cases::sample(1000000, 30000);
   Tally tally;
   for (int i = 0; i < poses; ++i) {
     const cases::Shape& a = shapes[std::size_t(random.index(int(shapes.size())))];
@@ -69,7 +69,7 @@ TEST(ClosestFeatures, LargeShapesProveThemselves) {
   const std::uint64_t seed = 20262;
   Random random(seed);
   const auto shapes = cases::shapes(random, true);
-  const int poses = cases::full() ? 300000 : 6000;
+  const int poses = cases::sample(300000, 6000);
   Tally tally;
   for (int i = 0; i < poses; ++i) {
     const cases::Shape& a = shapes[std::size_t(random.index(int(shapes.size())))];

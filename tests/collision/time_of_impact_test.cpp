@@ -44,7 +44,7 @@ TEST(TimeOfImpact, NeverOvershoots) {
   const std::uint64_t seed = 51;
   Random random(seed);
   const auto shapes = cases::shapes(random, true);
-  const int runs = cases::full() ? 20000 : 1500;
+  const int runs = cases::sample(20000, 1500);
   int hits = 0;
   int misses = 0;
   int bounded = 0;
