@@ -179,7 +179,8 @@ inline Pose make_pose(Random& random, const Polytope& A, const Polytope& B, Maki
       const Vec3 step = random_vector(random, 1.0);
       for (int i = 0; i < 3; ++i)  // often flush with A
         on_a[i] = random.index(3) ? on_a[i] : A.center[i] + step[i] * size;
-      outward = Vec3::Unit(random.index(3)) * (random.index(2) ? 1.0 : -1.0);
+      outward = Vec3::Unit(random.index(3));
+      if (random.index(2)) outward = -outward;
       break;
     }
     case Making::kRandom:
