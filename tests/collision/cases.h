@@ -195,20 +195,22 @@ inline Pose make_pose(Random& random, const Polytope& A, const Polytope& B, Maki
   return X;
 }
 
-inline bool full() { return std::getenv("TACTUM_FULL") != nullptr; }
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define TACTUM_CASES_SLOW
+#endif
+#endif
+#if defined(TACTUM_CASES_SLOW) || defined(__SANITIZE_ADDRESS__)
+inline constexpr int kSlowness =
+    100;  ///< a sanitized build takes a few poses only: it looks for faults of memory
+#else
+inline constexpr int kSlowness = 1;
+#endif
 
-/// How many cases to try: `many` in a full run, else `some`, and a tenth of those under a sanitizer, which
-/// looks for other faults and takes twenty times as long.
-inline int sample(int many, int some) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  return some / 10;
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-  return some / 10;
-#endif
-#endif
-  return full() ? many : some;
-}
+/// How many of `poses` this build tries.
+inline int some_of(int poses) { return poses / kSlowness; }
+
+inline bool full() { return std::getenv("TACTUM_FULL") != nullptr; }
 
 inline std::string describe(const Pose& X) {
   char text[400];

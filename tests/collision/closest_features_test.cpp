@@ -38,7 +38,7 @@ TEST(ClosestFeatures, AgreesWithEveryPairOfFeaturesOnSmallShapes) {
   const std::uint64_t seed = 20261;
   Random random(seed);
   const auto shapes = cases::shapes(random, false);
-  const int poses = cases::sample(1000000, 30000);
+  const int poses = cases::full() ? 1000000 : cases::some_of(30000);
   Tally tally;
   for (int i = 0; i < poses; ++i) {
     const cases::Shape& a = shapes[std::size_t(random.index(int(shapes.size())))];
@@ -69,7 +69,7 @@ TEST(ClosestFeatures, LargeShapesProveThemselves) {
   const std::uint64_t seed = 20262;
   Random random(seed);
   const auto shapes = cases::shapes(random, true);
-  const int poses = cases::sample(300000, 6000);
+  const int poses = cases::full() ? 300000 : cases::some_of(6000);
   Tally tally;
   for (int i = 0; i < poses; ++i) {
     const cases::Shape& a = shapes[std::size_t(random.index(int(shapes.size())))];
@@ -106,7 +106,7 @@ template <class Check>
 void for_cases(std::uint64_t seed, int poses, const Check& check) {
   Random random(seed);
   const auto shapes = cases::shapes(random, true);
-  for (int i = 0; i < poses; ++i) {
+  for (int i = 0; i < cases::some_of(poses); ++i) {
     const cases::Shape& a = shapes[std::size_t(random.index(int(shapes.size())))];
     const cases::Shape& b = shapes[std::size_t(random.index(int(shapes.size())))];
     const Pose X = cases::make_pose(random, a.polytope, b.polytope, Making(i % int(Making::kCount)));
@@ -188,7 +188,7 @@ TEST(ClosestFeatures, TrackedMotionIsCertifiedInFewSteps) {
   const auto shapes = cases::shapes(random, true);
   long steps = 0;
   long frames = 0;
-  for (int run = 0; run < 200; ++run) {
+  for (int run = 0; run < cases::some_of(200); ++run) {
     const Polytope& A = shapes[std::size_t(random.index(int(shapes.size())))].polytope;
     const Polytope& B = shapes[std::size_t(random.index(int(shapes.size())))].polytope;
     Pose X{cases::random_rotation(random), Vec3::Zero()};
