@@ -184,6 +184,33 @@ TEST(Frame, ANonFinitePoseSendsZeroAndHarmsNothing) {
   }
 }
 
+TEST(Frame, APoseThatIsNoneIsNotFollowed) {
+  const Bench bench;
+  const Pose none[] = {{Mat3::Zero(), Vec3::Zero()},            // a driver's empty buffer
+                       {-Mat3::Identity(), Vec3::Zero()},       // a reflection
+                       {Mat3::Identity(), Vec3(0, 0, 1e200)}};  // finite, and nowhere
+  for (const Pose& X_DH : none) {
+    FrameState state(bench.world, bench.settings);
+    FrameReport report;
+    const Pose before = state.world.X_WB[0];
+    for (int i = 0; i < 20; ++i) {
+      DeviceSample sample;
+      sample.valid = true;
+      sample.time_s = i * 1e-3;
+      if (i == 0 || i == 10) sample.X_DH = X_DH;  // as the very first sample, and later
+      FrameTick tick;
+      tick.now_s = sample.time_s;
+      const Wrench sent = haptic_frame(bench.world, bench.settings, sample, tick, state, report);
+      if (i == 0 || i == 10) {
+        EXPECT_TRUE(is_zero(sent));
+        EXPECT_TRUE(report.safety & safety_flag::kImplausiblePose);
+      }
+    }
+    EXPECT_LT((state.world.X_WB[0].p - before.p).norm(), 1e-12);
+    EXPECT_LT((state.tool.X_BH.R - Mat3::Identity()).norm(), 1e-12);
+  }
+}
+
 TEST(Frame, GraspingPullsNothing) {
   Bench bench;
   bench.settings.tool.X_BH.p = {0.003, 0.0, 0.005};
