@@ -85,6 +85,10 @@ std::string as_json(const Options& options, const TwoBodyMotion& motion, const s
 }
 
 void write_file(const std::string& path, const std::string& text) {
+  if (path == "-") {
+    fmt::print("{}", text);
+    return;
+  }
   std::ofstream file(path, std::ios::binary);
   if (!(file << text) || !file.flush())
     fail(Error{"the file cannot be written", "", "a writable place", path});

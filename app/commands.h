@@ -12,6 +12,7 @@ namespace tactum {
 void add_bench(CLI::App& app);
 void add_clearance(CLI::App& app);
 void add_devices(CLI::App& app);
+void add_distance(CLI::App& app);
 void add_feel(CLI::App& app);
 void add_inspect(CLI::App& app);
 void add_scenes(CLI::App& app);

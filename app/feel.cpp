@@ -1,4 +1,5 @@
-/// tactum feel SCENE: the main job. Opens the scene and a device, runs the loop, shows what is felt, sums it up.
+/// tactum feel SCENE: the main job. Opens the scene and a device, runs the loop, shows what is felt, sums it
+/// up.
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -38,9 +39,12 @@ class StatusLine {
  public:
   void show(const Session& session, const SessionStatus& status) {
     if (!on_terminal_) return;
-    fmt::print(stderr, "\r{:>8.2f} s  force {:6.2f} N  torque {:7.1f} mN m  stretch {:6.3f} mm  contacts {:3}  {:5.0f} Hz {}\033[K",
+    fmt::print(stderr,
+               "\r{:>8.2f} s  force {:6.2f} N  torque {:7.1f} mN m  stretch {:6.3f} mm  contacts {:3}  "
+               "{:5.0f} Hz {}\033[K",
                static_cast<double>(status.frame) / session.rate_Hz(), status.force_N, status.torque_Nm * 1e3,
-               status.stretch_m * 1e3, status.contact_points, rate(status.frame), safety_flag_names(status.safety));
+               status.stretch_m * 1e3, status.contact_points, rate(status.frame),
+               safety_flag_names(status.safety));
     std::fflush(stderr);
     shown_ = true;
   }
@@ -84,7 +88,11 @@ class VirtualWatch final : public LoopObserver {
 std::uint64_t frames_asked_for(const FeelOptions& options, const Session& session) {
   if (options.updates > 0) return options.updates;
   const double duration = options.duration_s > 0.0 ? options.duration_s : session.scene().hand->duration_s();
-  return static_cast<std::uint64_t>(duration * session.rate_Hz());
+  const auto frames = static_cast<std::uint64_t>(duration * session.rate_Hz());
+  if (frames == 0)
+    fail({"there is nothing to run", "a hand that does not move", "--duration or --updates",
+          session.scene().name});
+  return frames;
 }
 
 Summary feel_virtually(Session& session, std::uint64_t frames) {
@@ -117,17 +125,24 @@ void feel(const FeelOptions& options) {
   if (!opened) fail(opened.error());
   Session& session = **opened;
 
+  StageClock stages;
+  session.time_stages(&stages);
+
   std::signal(SIGINT, on_interrupt);
   std::signal(SIGTERM, on_interrupt);
-  fmt::print("{}: {}\n{} at {:.0f} Hz, hand {}\n", session.scene().name, session.scene().description,
-             session.device().name, session.rate_Hz(), options.hand.empty() ? session.scene().grip : options.hand);
-  std::fflush(stdout);
+  // With --json - the standard output is for machines alone.
+  std::FILE* out = options.json == "-" ? stderr : stdout;
+  fmt::print(out, "{}: {}\n{} at {:.0f} Hz, hand {}\n", session.scene().name, session.scene().description,
+             session.device().name, session.rate_Hz(),
+             options.hand.empty() ? session.scene().grip : options.hand);
+  std::fflush(out);
   const std::uint64_t frames = frames_asked_for(options, session);
   const Summary times = options.virtual_clock ? feel_virtually(session, frames) : feel_live(session, frames);
-  print_summary(session, times);
-  if (!options.json.empty()) write_json(options.json, summary_json(session, times));
+  print_summary(out, session, times, stages);
+  if (!options.json.empty()) write_json(options.json, summary_json(session, times, stages));
   if (session.loop_status().device_lost)
-    fail({"the device refused every wrench for a while, so the loop has ended", "", "a device that is plugged in and powered", session.device().name});
+    fail({"the device refused every wrench for a while, so the loop has ended", "",
+          "a device that is plugged in and powered", session.device().name});
 }
 
 }  // namespace
@@ -137,10 +152,14 @@ void add_feel(CLI::App& app) {
   CLI::App* command = app.add_subcommand("feel", "Feel a scene: run the haptic loop on a device");
   command->add_option("SCENE", options->scene, "a scene's name (see: tactum scenes) or a scene file")
       ->capture_default_str();
-  command->add_option("--duration", options->duration_s, "how long [s]; by default as long as the hand's motion")
-      ->check(CLI::PositiveNumber);
-  command->add_option("--updates", options->updates, "how many frames, instead of a duration")->check(CLI::PositiveNumber);
-  command->add_option("--device", options->device, "see: tactum devices; by default the scene's simulated one");
+  command
+      ->add_option("--duration", options->duration_s, "how long [s]; by default as long as the hand's motion")
+      ->check(CLI::Range(1e-3, 1e7));
+  command->add_option("--updates", options->updates, "how many frames, instead of a duration")
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 40))
+      ->excludes("--duration");
+  command->add_option("--device", options->device,
+                      "see: tactum devices; by default the scene's simulated one");
   command->add_option("--hand", options->hand, "grip of the simulated hand: loose, medium or firm");
   command->add_option("--json", options->json, "write the summary to this file (- for standard output)");
   command->add_flag("--virtual-clock", options->virtual_clock,

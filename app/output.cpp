@@ -17,7 +17,8 @@ std::vector<std::string> frame_notes(const RunRecord& record) {
   std::vector<std::string> notes;
   if (record.flags & frame_flag::kBudgetShort)
     notes.push_back(fmt::format("{} pair checks were left out: raise max_exact_tests", record.unchecked));
-  if (record.flags & frame_flag::kRoomsFull) notes.emplace_back("near pairs or patches were dropped: rooms are full");
+  if (record.flags & frame_flag::kRoomsFull)
+    notes.emplace_back("near pairs or patches were dropped: rooms are full");
   if (record.flags & frame_flag::kPointsFull)
     notes.emplace_back("contact points were dropped: raise max_contact_points");
   if (record.flags & frame_flag::kSolverBounded)
@@ -51,34 +52,42 @@ nlohmann::ordered_json summary_us(const Summary& summary) {
 
 std::string hash_text(std::uint64_t hash) { return fmt::format("{:016x}", hash); }
 
-void print_summary(const Session& session, const Summary& times) {
+void print_summary(std::FILE* out, const Session& session, const Summary& times, const StageClock& stages) {
   const RunRecord& record = session.record();
-  fmt::print("\nforce            mean {:8.3f} N     max {:8.3f} N     largest step {:.3f} N\n",
+  fmt::print(out, "\nforce            mean {:8.3f} N     max {:8.3f} N     largest step {:.3f} N\n",
              mean(record.sum_force_N, record.frames), record.max_force_N, record.max_force_step_N);
-  fmt::print("torque           mean {:8.3f} mN m  max {:8.3f} mN m  largest step {:.3f} mN m\n",
-             mean(record.sum_torque_Nm, record.frames) * 1e3, record.max_torque_Nm * 1e3, record.max_torque_step_Nm * 1e3);
-  fmt::print("contact          {} of {} frames; penetrating {} frames, at most {:.4f} mm\n", record.colliding_frames,
-             record.frames, record.penetrating_frames, record.max_penetration_m * 1e3);
-  fmt::print("frame            mean {:.1f} us   p50 {:.1f}   p99 {:.1f}   p99.9 {:.1f}   max {:.1f}\n",
-             times.mean_ns * 1e-3, times.p50_ns * 1e-3, times.p99_ns * 1e-3, times.p999_ns * 1e-3, times.max_ns * 1e-3);
+  fmt::print(out, "torque           mean {:8.3f} mN m  max {:8.3f} mN m  largest step {:.3f} mN m\n",
+             mean(record.sum_torque_Nm, record.frames) * 1e3, record.max_torque_Nm * 1e3,
+             record.max_torque_step_Nm * 1e3);
+  fmt::print(out, "contact          {} of {} frames; penetrating {} frames, at most {:.4f} mm\n",
+             record.colliding_frames, record.frames, record.penetrating_frames,
+             record.max_penetration_m * 1e3);
+  fmt::print(out, "frame            mean {:.1f} us   p50 {:.1f}   p99 {:.1f}   p99.9 {:.1f}   max {:.1f}\n",
+             times.mean_ns * 1e-3, times.p50_ns * 1e-3, times.p99_ns * 1e-3, times.p999_ns * 1e-3,
+             times.max_ns * 1e-3);
+  fmt::print(out, "{}", table_of(stages.summaries()));
   const LoopStatus loop = session.loop_status();
   if (loop.frames > 0)
-    fmt::print("loop             {} frames, {} missed deadlines, {} late\n", loop.frames, loop.missed_deadlines,
-               loop.late_frames);
+    fmt::print(out, "loop             {} frames, {} missed deadlines, {} late\n", loop.frames,
+               loop.missed_deadlines, loop.late_frames);
   if (record.non_finite_frames > 0)
-    fmt::print("WRONG            {} frames computed a wrench that is not finite\n", record.non_finite_frames);
-  for (const std::string& note : frame_notes(record)) fmt::print("note             {}\n", note);
+    fmt::print(out, "WRONG            {} frames computed a wrench that is not finite\n",
+               record.non_finite_frames);
+  for (const std::string& note : frame_notes(record)) fmt::print(out, "note             {}\n", note);
   for (std::size_t i = 0; i < session.scene().goals.size(); ++i)
-    fmt::print("goal             {}\n", session.goals().describe(session.scene().world, i));
-  fmt::print("frames' hash     {}\n", hash_text(record.hash()));
+    fmt::print(out, "goal             {}\n", session.goals().describe(session.scene().world, i));
+  if (loop.frames == 0)
+    fmt::print(out, "frames' hash     {}\n", hash_text(record.hash()));  // of a virtual run
 }
 
-nlohmann::ordered_json summary_json(const Session& session, const Summary& times) {
+nlohmann::ordered_json summary_json(const Session& session, const Summary& times, const StageClock& stages) {
   const RunRecord& record = session.record();
   nlohmann::ordered_json goals = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < session.scene().goals.size(); ++i)
-    goals.push_back({{"met", session.goals().met(i)},
-                     {"what", session.goals().describe(session.scene().world, i)}});
+    goals.push_back(
+        {{"met", session.goals().met(i)}, {"what", session.goals().describe(session.scene().world, i)}});
+  nlohmann::ordered_json stages_us;
+  for (const StageSummary& stage : stages.summaries()) stages_us[stage.name] = summary_us(stage.summary);
   const LoopStatus loop = session.loop_status();
   return {{"scene", session.scene().name},
           {"device", session.device().name},
@@ -99,6 +108,7 @@ nlohmann::ordered_json summary_json(const Session& session, const Summary& times
           {"unchecked", record.unchecked},
           {"missed_deadlines", loop.missed_deadlines},
           {"frame_us", summary_us(times)},
+          {"stages_us", stages_us},
           {"notes", frame_notes(record)},
           {"goals", goals},
           {"goal_met", session.goals().all_met()},

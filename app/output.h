@@ -1,6 +1,7 @@
 #pragma once
 /// What several subcommands print and write.
 
+#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -19,9 +20,11 @@ nlohmann::ordered_json summary_us(const Summary& summary);
 std::string hash_text(std::uint64_t hash);
 
 /// The run for a person: wrench, contact, times, goals.
-void print_summary(const Session& session, const Summary& frame_times);
+void print_summary(std::FILE* out, const Session& session, const Summary& frame_times,
+                   const StageClock& stages);
 
 /// The same for machines.
-nlohmann::ordered_json summary_json(const Session& session, const Summary& frame_times);
+nlohmann::ordered_json summary_json(const Session& session, const Summary& frame_times,
+                                    const StageClock& stages);
 
 }  // namespace tactum

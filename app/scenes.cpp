@@ -16,7 +16,8 @@ void add_scenes(CLI::App& app) {
 
 void add_devices(CLI::App& app) {
   app.add_subcommand("devices", "List the devices that can be asked for")->callback([] {
-    for (const DeviceListing& device : list_devices()) fmt::print("{:<32}{}\n", device.name, device.description);
+    for (const DeviceListing& device : list_devices())
+      fmt::print("{:<32}{}\n", device.name, device.description);
   });
 }
 

@@ -8,7 +8,6 @@ if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release)
 endif()
 set(CMAKE_CXX_FLAGS_RELEASE "-O2")
-set(CMAKE_CXX_FLAGS_DEBUG "-O0 -g")
 add_compile_options(-ffp-contract=off)
 add_compile_definitions(EIGEN_DONT_VECTORIZE EIGEN_MPL2_ONLY)
 
@@ -23,7 +22,9 @@ target_compile_options(tactum_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshad
 
 # Sanitizers: -DTACTUM_SANITIZE=address,undefined or =thread (see CMakePresets.json).
 set(TACTUM_SANITIZE "" CACHE STRING "Comma-separated sanitizers")
+set(CMAKE_CXX_FLAGS_DEBUG "-O0 -g")
 if(TACTUM_SANITIZE)
+  set(CMAKE_CXX_FLAGS_DEBUG "-O1 -g1")  # as the sanitizers' makers advise: several times faster than -O0
   add_compile_options(-fsanitize=${TACTUM_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   add_link_options(-fsanitize=${TACTUM_SANITIZE})
 endif()

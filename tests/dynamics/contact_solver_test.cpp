@@ -49,7 +49,8 @@ struct Problem {
 
 TEST(ContactSolver, SolvesTheComplementarityProblem) {
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
-    Problem p(seed, 1 + static_cast<int>(seed % 9));
+    // Few rows are solved by pivoting, more than 48 by sweeps.
+    Problem p(seed, seed % 40 == 0 ? 60 : 1 + static_cast<int>(seed % 17));
     const std::vector<Twist> before = p.V;
     const SolverResult result = solve_contacts(p.rows, p.X, p.W, p.h, 20000, p.V);
     ASSERT_TRUE(result.converged) << "seed " << seed;
@@ -124,21 +125,22 @@ TEST(Step, SmallestTimeOfImpactIsWhenTheFirstGapCloses) {
 }
 
 TEST(HingeFriction, HoldsBelowItsLimitAndSlowsAboveIt) {
-  World world;
-  world.bodies.resize(1);
-  Body& body = world.bodies[0];
+  const Joint joint{.kind = JointKind::kHinge,
+                    .axis_W = Vec3::UnitZ(),
+                    .anchor_W = Vec3::Zero(),
+                    .damping_Nms = 0.0,
+                    .friction_Nm = 0.01};
+  Body body;
   body.mass_kg = 0.2;
   body.inertia_B = 1e-4 * Mat3::Identity();
-  body.joint = {.kind = JointKind::kHinge, .axis_W = Vec3::UnitZ(), .anchor_W = Vec3::Zero(), .damping_Nms = 0.0, .friction_Nm = 0.01};
-  const WorldState state = initial_state(world);
-  const std::vector<Mobility> W{mobility(body.joint, body.X_WB, inertial_resistance(body, body.X_WB))};
-  std::vector<Twist> V(1);
-  V[0].w.z() = 0.05;  // the friction takes 0.01 * 0.001 / 1e-4 = 0.1 rad/s a step
-  apply_hinge_friction(world, state, W, 0.001, V);
-  EXPECT_EQ(V[0].w.z(), 0.0);
-  V[0].w.z() = -0.5;
-  apply_hinge_friction(world, state, W, 0.001, V);
-  EXPECT_NEAR(V[0].w.z(), -0.4, 1e-12);
+  const Mobility W = mobility(joint, body.X_WB, inertial_resistance(body, body.X_WB));
+  const auto rate_after = [&](double rate) {
+    Twist V;
+    V.w.z() = rate;
+    return after_hinge_friction(joint, body.X_WB, W, 0.001, V).w.z();
+  };
+  EXPECT_EQ(rate_after(0.05), 0.0);  // the friction takes 0.01 * 0.001 / 1e-4 = 0.1 rad/s a step
+  EXPECT_NEAR(rate_after(-0.5), -0.4, 1e-12);
 }
 
 }  // namespace

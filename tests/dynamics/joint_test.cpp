@@ -19,7 +19,10 @@ Body random_body(Random& random, JointKind kind) {
   Body body;
   body.mass_kg = random.uniform(0.05, 2.0);
   const Mat3 R = exp_rotation(random_vector(random, 2));
-  body.inertia_B = R * Vec3(random.uniform(1e-5, 1e-3), random.uniform(1e-5, 1e-3), random.uniform(1e-5, 1e-3)).asDiagonal() * R.transpose();
+  body.inertia_B =
+      R *
+      Vec3(random.uniform(1e-5, 1e-3), random.uniform(1e-5, 1e-3), random.uniform(1e-5, 1e-3)).asDiagonal() *
+      R.transpose();
   body.X_WB = {exp_rotation(random_vector(random, 2)), random_vector(random, 0.1)};
   body.joint.kind = kind;
   body.joint.axis_W = random_vector(random, 1).normalized();
@@ -82,7 +85,8 @@ TEST(Joint, ConstrainedPoseIsTheTurnAboutTheAxis) {
     const Vec3 anchor = body.joint.anchor_W;
     const Pose exact{turn * body.X_WB.R, anchor + turn * (body.X_WB.p - anchor)};
     EXPECT_NEAR(hinge_angle(body, exact), angle, 1e-12);
-    const Pose drifted{exp_rotation(random_vector(random, 1e-6)) * exact.R, exact.p + random_vector(random, 1e-6)};
+    const Pose drifted{exp_rotation(random_vector(random, 1e-6)) * exact.R,
+                       exact.p + random_vector(random, 1e-6)};
     const Pose back = constrained_pose(body, drifted);
     EXPECT_LT((back.R - exact.R).norm(), 1e-5);
     EXPECT_NEAR((back.p - anchor).norm(), (body.X_WB.p - anchor).norm(), 1e-14);

@@ -71,7 +71,8 @@ TEST(Hull, RandomCloudsAreSoundAndSupportMatchesScan) {
 }
 
 TEST(Hull, FlatAndThinPoints) {
-  const Result<Polytope> square = convex_hull({{0, 0, 1}, {1, 0, 1}, {0.5, 0, 1}, {1, 1, 1}, {0, 1, 1}, {0.4, 0.4, 1}});
+  const Result<Polytope> square =
+      convex_hull({{0, 0, 1}, {1, 0, 1}, {0.5, 0, 1}, {1, 1, 1}, {0, 1, 1}, {0.4, 0.4, 1}});
   ASSERT_TRUE(square) << square.error().message();
   EXPECT_TRUE(square->flat);
   EXPECT_EQ(square->vertices.size(), 4u);

@@ -19,8 +19,8 @@ inline constexpr double kCollinear = 1e-12;
 inline constexpr double kCertificate = 1e-9;
 
 /// Voronoi planes are crossed only when a point is beyond them by this much of the size, so that a point on
-/// a plane does not walk to and fro. A few roundings: at 1e-13 the walk stopped short beside gaps of 1e-8, where
-/// a point 1e-13 off its region means a normal 1e-5 off.
+/// a plane does not walk to and fro. A few roundings: at 1e-13 the walk stopped short beside gaps of 1e-8,
+/// where a point 1e-13 off its region means a normal 1e-5 off.
 inline constexpr double kVoronoiSlack = 1e-15;
 
 /// Below this share of the size a vector between witness points no longer has a direction of its own.
@@ -30,13 +30,14 @@ inline constexpr double kTouching = 1e-12;
 /// keeps about eight digits there.
 inline constexpr double kParallelSine = 1e-8;
 
-/// Arcs of two edges on the Gauss map are one arc when their planes differ by less than this angle: what is left of
-/// a crossing is then smaller than the certificate can see.
+/// Arcs of two edges on the Gauss map are one arc when their planes differ by less than this angle: what is
+/// left of a crossing is then smaller than the certificate can see.
 inline constexpr double kSameArc = 1e-12;
 
-/// A face (edge) takes part in a contact patch when its plane (line) is within this angle [rad] of square to the normal:
-/// 2 degrees. Below half of it the patch is whole, above it is none, between it shrinks to the nearest point, so that
-/// the hand feels no step. Smaller, and a nearly flat contact jumps; larger, and a sharp edge feels blunt.
+/// A face (edge) takes part in a contact patch when its plane (line) is within this angle [rad] of square to
+/// the normal: 2 degrees. Below half of it the patch is whole, above it is none, between it shrinks to the
+/// nearest point, so that the hand feels no step. Smaller, and a nearly flat contact jumps; larger, and a
+/// sharp edge feels blunt.
 inline constexpr double kPatchAngle = 0.035;
 
 /// Planes of one supporting plane of a Minkowski facet, by rounding this angle [rad] apart.
@@ -45,8 +46,8 @@ inline constexpr double kSamePlane = 1e-8;
 /// A patch with less area than this share of the squared size is a line.
 inline constexpr double kPatchArea = 1e-14;
 
-/// A time of impact is found when the distance is above its target by less than this share of the size. Lower costs
-/// steps: each halves what is left, at worst.
+/// A time of impact is found when the distance is above its target by less than this share of the size. Lower
+/// costs steps: each halves what is left, at worst.
 inline constexpr double kImpactGap = 1e-7;
 
 /// Vertices nearer than this share of the mesh's size are one vertex. STL stores single precision (6e-8).
@@ -63,42 +64,44 @@ inline constexpr double kConvexMesh = 1e-9;
 /// largest one asked for: a force error far below what a hand or a device resolves (1e-3).
 inline constexpr double kContactVelocity = 1e-6;
 
-/// A pair overlaps when its depth exceeds this share of the pieces' size: below it is the certificate's own doubt.
+/// A pair overlaps when its depth exceeds this share of the pieces' size: below it is the certificate's own
+/// doubt.
 inline constexpr double kPenetrating = 1e-9;
 
 /// A one-sided surface piece answers only contacts on its outer side; a normal may lean behind the surface by
 /// this sine before it counts as the inner side (contacts at convex edges lie at a right angle to it).
 inline constexpr double kOneSidedSine = 1e-6;
 
-/// Unit normals that differ by less than this are one: a corner's mean normal is then the face's own, to the bit.
+/// Unit normals that differ by less than this are one: a corner's mean normal is then the face's own, to the
+/// bit.
 inline constexpr double kSameNormal = 1e-9;
 
 /// The area that a contact point or segment counts for when it shares a facet's stiffness with patches: small
-/// against any patch a hand can feel (a tenth of a millimetre squared is 1e-8), so it counts only where it is alone [m^2].
+/// against any patch a hand can feel (a tenth of a millimetre squared is 1e-8), so it counts only where it is
+/// alone [m^2].
 inline constexpr double kPointArea_m2 = 1e-14;
 
-/// A corner of a polygon face turns the wrong way only beyond this (cross product over the square of the polygon's
-/// extent): single-precision corners on a straight side turn by 1e-7 either way, and a fan over them is right.
+/// A corner of a polygon face turns the wrong way only beyond this (cross product over the square of the
+/// polygon's extent): single-precision corners on a straight side turn by 1e-7 either way, and a fan over
+/// them is right.
 inline constexpr double kPolygonTurn = 1e-6;
 
-/// Neighbouring triangles of a mesh belong to one flat face when the sine between their normals is below this. CAD
-/// files hold six to seven digits, so the normals of one wall differ by about 1e-6 over its size and more on
-/// slivers; facets of a finely meshed cylinder (a thousand around) differ by 6e-3 and stay apart.
+/// Neighbouring triangles of a mesh belong to one flat face when the sine between their normals is below
+/// this. CAD files hold six to seven digits, so the normals of one wall differ by about 1e-6 over its size
+/// and more on slivers; facets of a finely meshed cylinder (a thousand around) differ by 6e-3 and stay apart.
 inline constexpr double kCoplanarMeshSine = 1e-5;
 
-/// ... and when the corners lie in the face's plane to this much of the mesh's size. Without it a slowly turning row
-/// of triangles would pass for flat, one pair at a time.
+/// ... and when the corners lie in the face's plane to this much of the mesh's size. Without it a slowly
+/// turning row of triangles would pass for flat, one pair at a time.
 inline constexpr double kCoplanarMeshOffset = 1e-6;
 
-/// Noise of coordinates stored in single precision. It turns the normal of a sliver by noise over height, so slivers
-/// within a flat face are allowed that much more than kCoplanarMeshSine.
+/// Noise of coordinates stored in single precision. It turns the normal of a sliver by noise over height, so
+/// slivers within a flat face are allowed that much more than kCoplanarMeshSine.
 inline constexpr double kStoredNoise = 1.2e-7;
 
-/// Box tests grow the boxes by this share of their size, so that rounding of the rotated axes never parts boxes
-/// that touch.
+/// Box tests grow the boxes by this share of their size, so that rounding of the rotated axes never parts
+/// boxes that touch.
 inline constexpr double kBoxSlack = 1e-14;
-
-/// Squared angle [rad^2] below which sin(a)/a and its kin are taken from their series: exact to the last bit there.
 
 /// Squared angle [rad^2] below which sin(a)/a and its kin are taken from their series: exact to the last bit
 /// there.

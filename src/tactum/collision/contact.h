@@ -1,6 +1,6 @@
 #pragma once
-/// The one convention of contact, and the numbers that name it. Everything is told in A's frame; A and B are convex
-/// pieces, X_AB is B's pose in A.
+/// The one convention of contact, and the numbers that name it. Everything is told in A's frame; A and B are
+/// convex pieces, X_AB is B's pose in A.
 ///
 ///            A   /                     n (= n_BA_A): unit, from B to A
 ///          -----*  p_a                 distance = n . (p_a - p_b), negative when they overlap
@@ -27,7 +27,8 @@ struct Feature {
   bool operator==(const Feature&) const = default;
 };
 
-/// The closest features of a pair in the last frame: the coherence the tracker lives on. Value-initialised means none.
+/// The closest features of a pair in the last frame: the coherence the tracker lives on. Value-initialised
+/// means none.
 struct PairCache {
   Feature a, b;
   Vec3 normal_A = Vec3::Zero();  ///< last normal from B to A, unit, or zero when there was none [-]
@@ -52,7 +53,8 @@ struct PairDistance {
   bool certified() const { return stop != Stop::kBounded; }
 };
 
-/// One point of a contact patch. The points of a patch stand for an integral over its area: their weights add up to one.
+/// One point of a contact patch. The points of a patch stand for an integral over its area: their weights add
+/// up to one.
 struct ContactPoint {
   Vec3 p_a = Vec3::Zero();  ///< on A, A's frame [m]
   Vec3 p_b = Vec3::Zero();  ///< on B, A's frame [m]
@@ -60,7 +62,8 @@ struct ContactPoint {
   double weight = 0.0;      ///< share of the patch's stiffness [-]
 };
 
-/// Where two convex pieces touch or nearly touch: one normal and up to four points (quadrature of the clipped area).
+/// Where two convex pieces touch or nearly touch: one normal and up to four points (quadrature of the clipped
+/// area).
 struct Manifold {
   Vec3 normal = Vec3::Zero();  ///< n_BA_A, unit [-]
   Feature a, b;                ///< features the patch lies on

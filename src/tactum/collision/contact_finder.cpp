@@ -13,9 +13,12 @@ namespace {
 
 using Index = std::size_t;
 
-/// Boxes and lists of near pairs are grown by this share of the smaller body's radius beyond the tolerance: more
-/// means they are renewed less often but hold more pairs. Flat around here for the gears (0.01 - 0.05).
+/// Boxes and lists of near pairs are grown by this share of the smaller body's radius beyond the tolerance:
+/// more means they are renewed less often but hold more pairs. Flat around here for the gears (0.01 - 0.05).
 constexpr double kSlack = 0.02;
+
+/// Below every odometer reading less a tolerance.
+constexpr double kAlwaysDue = -1e300;
 
 /// The axis-aligned box around a turned box.
 Aabb turned(const Aabb& box, const Pose& X, double grown) {
@@ -24,8 +27,8 @@ Aabb turned(const Aabb& box, const Pose& X, double grown) {
   return {center - half, center + half};
 }
 
-/// How far any point within `radius` of the origin has moved: the origin's way plus the chord of the turn, whose
-/// matrix difference has Frobenius norm sqrt(2) chord / radius.
+/// How far any point within `radius` of the origin has moved: the origin's way plus the chord of the turn,
+/// whose matrix difference has Frobenius norm sqrt(2) chord / radius.
 double displacement(const Pose& from, const Pose& to, double radius) {
   return (to.p - from.p).norm() + radius * (to.R - from.R).norm() / std::sqrt(2.0);
 }
@@ -75,6 +78,8 @@ void ContactFinder::find_near_pairs(std::span<const Pose> X_WB, std::span<const 
     return list_holds(list_of(pair.a, pair.b), pair.a, pair.b);
   });
   if (!lists_hold) renew_lists(X_WB);
+  for (const SweepAndPrune::Pair& near : sweep_.pairs())
+    work_.rooms_full |= list_of(near.a, near.b).cut_short;
   work_.near_pairs = static_cast<int>(pairs_.size());
 }
 
@@ -128,12 +133,16 @@ void ContactFinder::renew_lists(std::span<const Pose> X_WB) noexcept {
     BodyPair& list = list_of(near.a, near.b);
     const Index first = renewed_.size();
     if (list_holds(list, near.a, near.b)) {
-      for (int i = 0; i < list.count; ++i) renewed_.push_back(pairs_[Index(list.first + i)]);
+      const Index room = renewed_.capacity() - renewed_.size();
+      list.cut_short = list.cut_short || Index(list.count) > room;
+      for (Index i = 0; i < std::min(Index(list.count), room); ++i)
+        renewed_.push_back(pairs_[Index(list.first) + i]);
     } else {
       const BodyPair old = list;
       list.odometers = odometers(near.a, near.b);
       list.reach = tolerance(near.a, near.b) + std::min(slack_[Index(near.a)], slack_[Index(near.b)]);
-      collect(near.a, near.b, relative_pose(X_WB[Index(near.a)], X_WB[Index(near.b)]), list.reach);
+      list.cut_short =
+          !collect(near.a, near.b, relative_pose(X_WB[Index(near.a)], X_WB[Index(near.b)]), list.reach);
       inherit(old, first);
     }
     list.first = static_cast<std::int32_t>(first);
@@ -144,26 +153,26 @@ void ContactFinder::renew_lists(std::span<const Pose> X_WB) noexcept {
   pairs_.swap(renewed_);
 }
 
-void ContactFinder::collect(int a, int b, const Pose& X_AB, double reach) noexcept {
+/// False when the room did not suffice.
+bool ContactFinder::collect(int a, int b, const Pose& X_AB, double reach) noexcept {
   const Index first = renewed_.size();
-  for_each_pair_within(bodies_[Index(a)].part->hierarchy, bodies_[Index(b)].part->hierarchy, X_AB, reach,
-                       [&](int piece_a, int piece_b) {
-                         if (renewed_.size() == renewed_.capacity()) {
-                           work_.rooms_full = true;
-                           return false;
-                         }
-                         Pair pair{};
-                         pair.body_a = a;
-                         pair.body_b = b;
-                         pair.piece_a = piece_a;
-                         pair.piece_b = piece_b;
-                         pair.free_until = -1e300;
-                         renewed_.push_back(pair);
-                         return true;
-                       });
-  std::sort(renewed_.begin() + static_cast<std::ptrdiff_t>(first), renewed_.end(), [](const Pair& p, const Pair& q) {
-    return p.piece_a != q.piece_a ? p.piece_a < q.piece_a : p.piece_b < q.piece_b;
-  });
+  const bool complete =
+      for_each_pair_within(bodies_[Index(a)].part->hierarchy, bodies_[Index(b)].part->hierarchy, X_AB, reach,
+                           [&](int piece_a, int piece_b) {
+                             if (renewed_.size() == renewed_.capacity()) return false;
+                             Pair pair;
+                             pair.body_a = a;
+                             pair.body_b = b;
+                             pair.piece_a = piece_a;
+                             pair.piece_b = piece_b;
+                             renewed_.push_back(pair);
+                             return true;
+                           });
+  std::sort(renewed_.begin() + static_cast<std::ptrdiff_t>(first), renewed_.end(),
+            [](const Pair& p, const Pair& q) {
+              return p.piece_a != q.piece_a ? p.piece_a < q.piece_a : p.piece_b < q.piece_b;
+            });
+  return complete;
 }
 
 /// Hands the caches of the old list on: both are sorted, so one walk along both suffices.
@@ -173,7 +182,8 @@ void ContactFinder::inherit(const BodyPair& old, std::size_t first) noexcept {
   for (Index to = first; to < renewed_.size(); ++to) {
     const auto key = std::pair(renewed_[to].piece_a, renewed_[to].piece_b);
     while (from < end && std::pair(pairs_[from].piece_a, pairs_[from].piece_b) < key) ++from;
-    if (from < end && std::pair(pairs_[from].piece_a, pairs_[from].piece_b) == key) renewed_[to] = pairs_[from];
+    if (from < end && std::pair(pairs_[from].piece_a, pairs_[from].piece_b) == key)
+      renewed_[to] = pairs_[from];
   }
 }
 
@@ -186,10 +196,12 @@ void ContactFinder::test(Pair& pair, std::span<const Pose> X_WB) noexcept {
   work_.feature_steps += found.steps;
   if (!found.certified()) ++work_.uncertified;
   pair.last_checked = frame_;
-  pair.free_until = odometers(pair.body_a, pair.body_b) + found.distance;
+  // What is not certified proves nothing: the pair is due again in the next frame.
+  pair.free_until = found.certified() ? odometers(pair.body_a, pair.body_b) + found.distance : kAlwaysDue;
 
   const double reach = tolerance(pair.body_a, pair.body_b);
-  pair.in_contact = found.distance < reach && faces_outward(part_a, pair.piece_a, part_b, pair.piece_b, X_AB, found);
+  pair.in_contact =
+      found.distance < reach && faces_outward(part_a, pair.piece_a, part_b, pair.piece_b, X_AB, found);
   if (!pair.in_contact) return;
   if (patches_.size() == patches_.capacity()) {
     work_.rooms_full = true;

@@ -1,7 +1,8 @@
 #pragma once
 /// Real-time scheduling, paper 4.2: when more pairs are near than a frame may check, which go first? Pairs in
 /// contact in the last frame, then those unchecked for longest; greedily into an array of fixed length. The
-/// length is a work budget, an input of the frame and never a clock reading, so that a cut-short frame replays exactly.
+/// length is a work budget, an input of the frame and never a clock reading, so that a cut-short frame
+/// replays exactly.
 
 #include <cstdint>
 #include <span>

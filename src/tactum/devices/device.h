@@ -7,11 +7,13 @@
 ///
 /// One thread (the loop's) calls read and write after open; nothing else touches the device meanwhile.
 
+#include <Eigen/LU>
 #include <cstdint>
 #include <memory>
 #include <string>
 
 #include "tactum/base/result.h"
+#include "tactum/base/tolerances.h"
 #include "tactum/math/spatial.h"
 
 namespace tactum {
@@ -25,6 +27,16 @@ struct DeviceSample {
   std::uint32_t buttons = 0;  ///< bit 0 is the primary button
   bool valid = false;         ///< false: the read failed, everything else is the last known
 };
+
+/// No device reaches farther than this; a handle reported beyond it is a driver's mistake.
+inline constexpr double kFarthestHandle_m = 10.0;  ///< [m]
+
+/// Whether a pose can be that of a handle: finite, within reach, and its matrix a rotation to six decimals. A
+/// buffer of zeros is finite and would otherwise pass for a turn by half a circle.
+inline bool plausible(const Pose& X_DH) noexcept {
+  return X_DH.finite() && X_DH.p.norm() < kFarthestHandle_m && X_DH.R.determinant() > 0.0 &&
+         (X_DH.R * X_DH.R.transpose() - Mat3::Identity()).cwiseAbs().maxCoeff() < tolerances::kRotationNear;
+}
 
 /// What a device can do; queried, never guessed from its name.
 struct DeviceInfo {

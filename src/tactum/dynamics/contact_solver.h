@@ -1,17 +1,17 @@
 #pragma once
 /// Contact forces by the penalty law, solved together and implicitly.
 ///
-/// The published law pushes with  F = k (delta - d)  while d < delta [Gregory 2000, 5.2]; D_p is -d, so the same line
-/// serves the overlapping pair, F = k (delta + D_p). Applied with the distance of the *start* of the step, such a spring
-/// shakes as soon as k h^2 exceeds what it pushes on, and the proxy weighs nothing. So the law is asked to hold at
-/// the *end* of the step: with  d' = d + h vn  and the impulse  lambda = h F,
+/// The published law pushes with  F = k (delta - d)  while d < delta [Gregory 2000, 5.2]; D_p is -d, so the
+/// same line serves the overlapping pair, F = k (delta + D_p). Applied with the distance of the *start* of
+/// the step, such a spring shakes as soon as k h^2 exceeds what it pushes on, and the proxy weighs nothing.
+/// So the law is asked to hold at the *end* of the step: with  d' = d + h vn  and the impulse  lambda = h F,
 ///
 ///     vn + lambda / (k h^2) = (delta - d) / h,     lambda >= 0,     vn = n . (v_A - v_B) after all impulses,
 ///
-/// which is a linear complementarity problem with a positive definite matrix. Up to 48 rows it is solved exactly by
-/// principal pivoting (14 rows of two gears: 3 us; Gauss-Seidel needed 50 sweeps, 15 us), beyond that by projected
-/// Gauss-Seidel with a bounded number of sweeps. It is stable for every k, h and mass, and at rest its forces are the
-/// published ones exactly.
+/// which is a linear complementarity problem with a positive definite matrix. Up to 48 rows it is solved
+/// exactly by principal pivoting (14 rows of two gears: 3 us; Gauss-Seidel needed 50 sweeps, 15 us), beyond
+/// that by projected Gauss-Seidel with a bounded number of sweeps. It is stable for every k, h and mass, and
+/// at rest its forces are the published ones exactly.
 
 #include <span>
 
@@ -40,12 +40,16 @@ struct SolverResult {
   bool converged = false;  ///< false: the sweeps ran out; the impulses are usable, not exact
 };
 
-/// Dry friction of the hinges: a torque that stops the turning, up to the joint's friction. Changes V in place.
-void apply_hinge_friction(const World& world, const WorldState& state, std::span<const Mobility> W, double h,
-                          std::span<Twist> V) noexcept;
+/// What is left of a hinged body's twist after its joint's damping and dry friction have acted for `h`
+/// seconds: a torque against the turning, up to the joint's friction, that stops but never reverses it.
+/// Applied after whatever else pushed in these `h` seconds, so that pushes below the friction move nothing.
+Twist after_hinge_friction(const Joint& joint, const Pose& X_WB, const Mobility& W, double h,
+                           const Twist& V) noexcept;
 
-/// Finds the impulses and adds their effect to the twists `V` (one per body). `h` [s] is the step they act for.
-SolverResult solve_contacts(std::span<ContactRow> rows, std::span<const Pose> X_WB, std::span<const Mobility> W,
-                            double h, int max_sweeps, std::span<Twist> V) noexcept;
+/// Finds the impulses and adds their effect to the twists `V` (one per body). `h` [s] is the step they act
+/// for.
+SolverResult solve_contacts(std::span<ContactRow> rows, std::span<const Pose> X_WB,
+                            std::span<const Mobility> W, double h, int max_sweeps,
+                            std::span<Twist> V) noexcept;
 
 }  // namespace tactum

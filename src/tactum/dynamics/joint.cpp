@@ -21,19 +21,26 @@ Vec6 hinge_motion(const Joint& joint, const Pose& X_WB) noexcept {
 
 Mobility mobility(const Joint& joint, const Pose& X_WB, const Resistance& M) noexcept {
   switch (joint.kind) {
-    case JointKind::kFixed: return Mobility::Zero();
-    case JointKind::kFree: return M.llt().solve(Mat6::Identity());
-    case JointKind::kHinge: break;
+    case JointKind::kFixed:
+      return Mobility::Zero();
+    case JointKind::kFree:
+      return M.llt().solve(Mat6::Identity());
+    case JointKind::kHinge:
+      break;
   }
   const Vec6 S = hinge_motion(joint, X_WB);
   return S * S.transpose() / S.dot(M * S);
 }
 
-Twist constrained_velocity(const Joint& joint, const Pose& X_WB, const Resistance& M, const Twist& V) noexcept {
+Twist constrained_velocity(const Joint& joint, const Pose& X_WB, const Resistance& M,
+                           const Twist& V) noexcept {
   switch (joint.kind) {
-    case JointKind::kFixed: return {};
-    case JointKind::kFree: return V;
-    case JointKind::kHinge: break;
+    case JointKind::kFixed:
+      return {};
+    case JointKind::kFree:
+      return V;
+    case JointKind::kHinge:
+      break;
   }
   const Vec6 S = hinge_motion(joint, X_WB);
   const Vec6 MS = M * S;
@@ -42,9 +49,12 @@ Twist constrained_velocity(const Joint& joint, const Pose& X_WB, const Resistanc
 
 Pose constrained_pose(const Body& body, const Pose& X_WB) noexcept {
   switch (body.joint.kind) {
-    case JointKind::kFixed: return body.X_WB;
-    case JointKind::kFree: return renormalized(X_WB);
-    case JointKind::kHinge: break;
+    case JointKind::kFixed:
+      return body.X_WB;
+    case JointKind::kFree:
+      return renormalized(X_WB);
+    case JointKind::kHinge:
+      break;
   }
   const Mat3 turn = exp_rotation(body.joint.axis_W * hinge_angle(body, X_WB));
   const Vec3& anchor = body.joint.anchor_W;

@@ -1,14 +1,15 @@
 #pragma once
-/// Joints as the paper applies them: to the velocities at the start of the frame and to the transforms at its end
-/// [Gregory 2000, 6.2]. In between, a body answers impulses through its mobility, which lets through only what
-/// the joint leaves free.
+/// Joints as the paper applies them: to the velocities at the start of the frame and to the transforms at its
+/// end [Gregory 2000, 6.2]. In between, a body answers impulses through its mobility, which lets through only
+/// what the joint leaves free.
 
 #include "tactum/dynamics/world.h"
 
 namespace tactum {
 
-/// How a body resists: the symmetric positive matrix M of  impulse = M (change of twist), about the centre of mass,
-/// world axes, twist order (v, w). A rigid body's is its inertia; a held proxy's comes from the coupling.
+/// How a body resists: the symmetric positive matrix M of  impulse = M (change of twist), about the centre of
+/// mass, world axes, twist order (v, w). A rigid body's is its inertia; a held proxy's comes from the
+/// coupling.
 using Resistance = Mat6;
 
 /// The twist change of an impulse: the inverse of the resistance, restricted to the joint's free motions.
@@ -25,9 +26,11 @@ Mobility mobility(const Joint& joint, const Pose& X_WB, const Resistance& M) noe
 
 /// The velocity the joint allows that is nearest to V in the metric of the resistance: constraints applied to
 /// velocities at the start of the frame.
-Twist constrained_velocity(const Joint& joint, const Pose& X_WB, const Resistance& M, const Twist& V) noexcept;
+Twist constrained_velocity(const Joint& joint, const Pose& X_WB, const Resistance& M,
+                           const Twist& V) noexcept;
 
-/// The pose the joint allows that is nearest to X_WB: constraints applied to transforms at the end of the frame.
+/// The pose the joint allows that is nearest to X_WB: constraints applied to transforms at the end of the
+/// frame.
 Pose constrained_pose(const Body& body, const Pose& X_WB) noexcept;
 
 inline Vec6 to_vector(const Twist& V) {

@@ -1,6 +1,6 @@
 #pragma once
-/// The step of a frame as published: find the smallest time of impact, advance everything to it, apply the contact
-/// forces, advance with the new velocities for the rest of the frame [Gregory 2000, 6.1].
+/// The step of a frame as published: find the smallest time of impact, advance everything to it, apply the
+/// contact forces, advance with the new velocities for the rest of the frame [Gregory 2000, 6.1].
 
 #include <span>
 

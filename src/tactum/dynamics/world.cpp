@@ -16,8 +16,8 @@ WorldState initial_state(const World& world) {
 }
 
 double hinge_angle(const Body& body, const Pose& X_WB) {
-  // The rotation about the axis that comes closest to the turn since the start: for a turn exactly about the axis,
-  // that turn. Twice the angle of (w, axis . vec) of its quaternion.
+  // The rotation about the axis that comes closest to the turn since the start: for a turn exactly about the
+  // axis, that turn. Twice the angle of (w, axis . vec) of its quaternion.
   const Quat turn(X_WB.R * body.X_WB.R.transpose());
   double angle = 2.0 * std::atan2(body.joint.axis_W.dot(turn.vec()), turn.w());
   if (angle > kPi) angle -= 2.0 * kPi;

@@ -1,8 +1,9 @@
 #pragma once
-/// Bodies, how they are held, and where they are: World is constant while frames run, WorldState is what they change.
+/// Bodies, how they are held, and where they are: World is constant while frames run, WorldState is what they
+/// change.
 ///
-/// A body's frame B has its origin at the centre of mass and the axes of its part's file, so that a twist at the
-/// origin is a twist at the centre of mass. V_WB is told in world axes.
+/// A body's frame B has its origin at the centre of mass and the axes of its part's file, so that a twist at
+/// the origin is a twist at the centre of mass. V_WB is told in world axes.
 
 #include <memory>
 #include <string>
@@ -22,20 +23,20 @@ enum class JointKind {
 
 struct Joint {
   JointKind kind = JointKind::kFree;
-  Vec3 axis_W = Vec3::UnitZ();    ///< hinge axis, unit, fixed in the world [-]
-  Vec3 anchor_W = Vec3::Zero();   ///< a point of the axis [m]
-  double damping_Nms = 0.0;       ///< viscous torque about the axis [N m s/rad]
-  double friction_Nm = 0.0;       ///< largest dry-friction torque about the axis [N m]
+  Vec3 axis_W = Vec3::UnitZ();   ///< hinge axis, unit, fixed in the world [-]
+  Vec3 anchor_W = Vec3::Zero();  ///< a point of the axis [m]
+  double damping_Nms = 0.0;      ///< viscous torque about the axis [N m s/rad]
+  double friction_Nm = 0.0;      ///< largest dry-friction torque about the axis [N m]
 };
 
 /// A rigid body; its part's pieces are told in B.
 struct Body {
   std::string name;
   std::shared_ptr<const Part> part;
-  double mass_kg = 0.0;                 ///< [kg]
-  Mat3 inertia_B = Mat3::Zero();        ///< about the centre of mass [kg m^2]
-  Pose X_WB;                            ///< at the start [m]
-  Twist V_WB;                           ///< at the start [m/s, rad/s]
+  double mass_kg = 0.0;           ///< [kg]
+  Mat3 inertia_B = Mat3::Zero();  ///< about the centre of mass [kg m^2]
+  Pose X_WB;                      ///< at the start [m]
+  Twist V_WB;                     ///< at the start [m/s, rad/s]
   Joint joint;
 
   bool moves() const { return joint.kind != JointKind::kFixed; }

@@ -60,9 +60,10 @@ Result<Hull> triangulated_hull(const std::vector<Vec3>& points) {
   QhullSession session;
   qhT* qh = &session.state;
   char options[] = "qhull Qt";
-  const int status =
-      qh_new_qhull(qh, 3, static_cast<int>(points.size()), coordinates.data(), False, options, nullptr, session.log);
-  if (status != 0) return Error{"the convex hull failed", session.first_line(), "points that span a volume", ""};
+  const int status = qh_new_qhull(qh, 3, static_cast<int>(points.size()), coordinates.data(), False, options,
+                                  nullptr, session.log);
+  if (status != 0)
+    return Error{"the convex hull failed", session.first_line(), "points that span a volume", ""};
 
   Hull hull;
   for (facetT* facet = qh->facet_list; facet && facet->next; facet = facet->next) {
@@ -94,8 +95,9 @@ Plane plane_of(const std::vector<Vec3>& points, const Triangle& t) {
   return {cross / length, cross.dot(a) / length, 0.5 * length};
 }
 
-/// Groups triangles into planar facets, grown from the largest triangle left over the neighbours whose corners all
-/// lie in the first one's plane, so that error cannot creep along a chain of slightly bent neighbours.
+/// Groups triangles into planar facets, grown from the largest triangle left over the neighbours whose
+/// corners all lie in the first one's plane, so that error cannot creep along a chain of slightly bent
+/// neighbours.
 std::vector<int> facet_of_triangles(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
                                     double height) {
   std::map<std::pair<int, int>, int> triangle_at;
@@ -139,7 +141,8 @@ std::vector<int> facet_of_triangles(const std::vector<Vec3>& points, const std::
 }
 
 /// The outline of each facet as a loop of corners. Empty when an outline is not one loop.
-std::vector<std::vector<int>> facet_loops(const std::vector<Triangle>& triangles, const std::vector<int>& facet) {
+std::vector<std::vector<int>> facet_loops(const std::vector<Triangle>& triangles,
+                                          const std::vector<int>& facet) {
   std::map<std::pair<int, int>, int> facet_at;  // directed edge -> facet
   for (Index t = 0; t < triangles.size(); ++t)
     for (Index i = 0; i < 3; ++i) facet_at[{triangles[t][i], triangles[t][(i + 1) % 3]}] = facet[t];
@@ -196,7 +199,8 @@ struct Frame {
   int rank = 0;  // 0 point, 1 line, 2 plane, 3 volume
 };
 
-/// The plane through the farthest points, and how many dimensions they span (heights below `height` are zero).
+/// The plane through the farthest points, and how many dimensions they span (heights below `height` are
+/// zero).
 Frame principal_frame(const std::vector<Vec3>& points, double height) {
   const auto farthest = [&](const auto& measure) {
     return *std::max_element(points.begin(), points.end(),
@@ -285,7 +289,8 @@ Result<Polytope> convex_hull(const std::vector<Vec3>& points) {
   const double height = bounds(points).diagonal() * tolerances::kCoplanar;
   const Frame frame = principal_frame(points, height);
   if (frame.rank < 2)
-    return Error{"the points have no hull", frame.rank == 0 ? "points all in one place" : "points all on one line",
+    return Error{"the points have no hull",
+                 frame.rank == 0 ? "points all in one place" : "points all on one line",
                  "points that span a plane or a volume", ""};
   if (frame.rank == 2) return flat_polygon(planar_hull(points, frame, height));
 

@@ -120,17 +120,21 @@ TriangleMesh group_mesh(const ImportedMesh& mesh, const MeshGroup& group, double
 void add_surface_pieces(Part& part) {
   const std::vector<int> groups = coplanar_groups(part.surface);
   part.one_sided = true;
+  std::vector<Triangle> kept;  // piece i is triangle i of the surface
+  const std::size_t given = part.surface.triangles.size();
   for (std::size_t i = 0; i < part.surface.triangles.size(); ++i) {
-    const Triangle& t = part.surface.triangles[i];
+    const Triangle t = part.surface.triangles[i];
     Result<Polytope> piece =
         flat_polygon({part.surface.vertices[t[0]], part.surface.vertices[t[1]], part.surface.vertices[t[2]]});
     if (!piece) continue;
+    kept.push_back(t);
     part.piece_normal.push_back(piece->faces[0].normal);
     part.surface_group.push_back(groups[i]);
     part.pieces.push_back(std::move(*piece));
   }
+  part.surface.triangles = std::move(kept);
   part.group_count = groups.empty() ? 0 : 1 + *std::max_element(groups.begin(), groups.end());
-  if (const std::size_t thin = part.surface.triangles.size() - part.pieces.size(); thin > 0) {
+  if (const std::size_t thin = given - part.pieces.size(); thin > 0) {
     part.remarks.push_back(
         fmt::format("{} triangles are too thin to be pieces; their neighbours' edges cover them.", thin));
   }

@@ -24,11 +24,11 @@ namespace tactum {
 struct Polytope {
   /// Seen from outside, the left face runs tail -> head and the right face head -> tail.
   struct Edge {
-    int tail = 0, head = 0;            ///< vertices
-    int left = 0, right = 0;           ///< faces
-    int left_slot = 0, right_slot = 0; ///< where the edge stands in face_vertices, face_edges, side_normals
-    double length = 0.0;               ///< [m]
-    Vec3 direction = Vec3::Zero();     ///< unit, tail to head
+    int tail = 0, head = 0;             ///< vertices
+    int left = 0, right = 0;            ///< faces
+    int left_slot = 0, right_slot = 0;  ///< where the edge stands in face_vertices, face_edges, side_normals
+    double length = 0.0;                ///< [m]
+    Vec3 direction = Vec3::Zero();      ///< unit, tail to head
   };
   /// The plane is normal . x = offset, the solid below it.
   struct Face {
@@ -44,7 +44,7 @@ struct Polytope {
   // Loops of the faces, counter-clockwise seen from outside; slot i runs from its vertex to the next slot's.
   std::vector<int> face_vertices;
   std::vector<int> face_edges;
-  std::vector<Vec3> side_normals;    ///< unit, in the face's plane, pointing away from the face across the edge
+  std::vector<Vec3> side_normals;  ///< unit, in the face's plane, pointing away from the face across the edge
   std::vector<double> side_offsets;  ///< side_normal . x <= side_offset inside the face's column [m]
 
   // Edges around each vertex: vertex_edges[vertex_first[v] .. vertex_first[v + 1]).
@@ -56,8 +56,8 @@ struct Polytope {
   double size = 0.0;           ///< diagonal of the bounding box [m]
   bool flat = false;           ///< a polygon with two faces, no inside
 
-  /// Direction lookup table [Ehmann and Lin 2000]: for directions on a cube around the center, the vertex farthest
-  /// along each. 6 x 8 x 8 entries of two bytes: 768 bytes.
+  /// Direction lookup table [Ehmann and Lin 2000]: for directions on a cube around the center, the vertex
+  /// farthest along each. 6 x 8 x 8 entries of two bytes: 768 bytes.
   static constexpr int kTableSide = 8;
   std::array<std::uint16_t, 6 * kTableSide * kTableSide> direction_table{};
 
@@ -85,8 +85,8 @@ inline int support_vertex(const Polytope& polytope, const Vec3& direction) noexc
   return support_vertex(polytope, direction, table_vertex(polytope, direction));
 }
 
-/// Completes a polytope of which vertices and the loops of the faces (faces[].first, count; face_vertices) are
-/// given: planes, edges, adjacency, Voronoi planes, table. False when the loops do not close up to a
+/// Completes a polytope of which vertices and the loops of the faces (faces[].first, count; face_vertices)
+/// are given: planes, edges, adjacency, Voronoi planes, table. False when the loops do not close up to a
 /// two-manifold sphere (V - E + F = 2), with the reason in `why`.
 bool complete_polytope(Polytope& polytope, const char** why);
 

@@ -15,13 +15,12 @@ using Facet = ContactRows::Facet;
 auto key(const Facet& f) { return std::tie(f.body_a, f.body_b, f.group_a, f.group_b, f.patch); }
 
 bool same_facet(const Facet& a, const Facet& b) {
-  return std::tie(a.body_a, a.body_b, a.group_a, a.group_b) == std::tie(b.body_a, b.body_b, b.group_a, b.group_b);
+  return std::tie(a.body_a, a.body_b, a.group_a, a.group_b) ==
+         std::tie(b.body_a, b.body_b, b.group_a, b.group_b);
 }
 
 /// A patch's claim on its facet's stiffness: its area, or next to nothing for points and segments.
-double claim(const ContactPatch& patch) {
-  return std::max(patch.manifold.area, tolerances::kPointArea_m2);
-}
+double claim(const ContactPatch& patch) { return std::max(patch.manifold.area, tolerances::kPointArea_m2); }
 
 /// What the rows are made from.
 struct Source {
@@ -43,9 +42,9 @@ void gather_points(const Source& from, std::span<const Facet> facet, std::vector
     for (const ContactPoint& point : patch.manifold.points) {
       Vec3 normal_A = patch.manifold.normal;
       if (!from.shading.empty()) {
-        normal_A = shaded_normal(from.shading[Index(patch.body_a)], patch.piece_a, from.shading[Index(patch.body_b)],
-                                 patch.piece_b, relative_pose(X_WA, from.X_WB[Index(patch.body_b)]), patch.manifold,
-                                 point);
+        normal_A = shaded_normal(from.shading[Index(patch.body_a)], patch.piece_a,
+                                 from.shading[Index(patch.body_b)], patch.piece_b,
+                                 relative_pose(X_WA, from.X_WB[Index(patch.body_b)]), patch.manifold, point);
       }
       points.push_back(
           {X_WA * (0.5 * (point.p_a + point.p_b)), X_WA.R * normal_A, point.distance, share * point.weight});
@@ -53,8 +52,8 @@ void gather_points(const Source& from, std::span<const Facet> facet, std::vector
   }
 }
 
-/// Four points with the mean, the second moments and the linear gap of many: mean +- sqrt(2 l) e for the two principal
-/// axes e of the spread in the facet's plane, l its variance along e.
+/// Four points with the mean, the second moments and the linear gap of many: mean +- sqrt(2 l) e for the two
+/// principal axes e of the spread in the facet's plane, l its variance along e.
 void reduce_to_four(std::vector<FacetPoint>& points) {
   Vec3 mean = Vec3::Zero();
   Vec3 normal = Vec3::Zero();
@@ -80,8 +79,10 @@ void reduce_to_four(std::vector<FacetPoint>& points) {
   const double angle = 0.5 * std::atan2(2.0 * uv, uu - vv);
   const double c = std::cos(angle);
   const double s = std::sin(angle);
-  const double variance[2] = {c * c * uu + 2.0 * c * s * uv + s * s * vv, s * s * uu - 2.0 * c * s * uv + c * c * vv};
-  const double slope[2] = {c * ud + s * vd, c * vd - s * ud};  // of the gap along each axis, times the variance
+  const double variance[2] = {c * c * uu + 2.0 * c * s * uv + s * s * vv,
+                              s * s * uu - 2.0 * c * s * uv + c * c * vv};
+  const double slope[2] = {c * ud + s * vd,
+                           c * vd - s * ud};  // of the gap along each axis, times the variance
   const Vec3 axis[2] = {c * u + s * v, c * v - s * u};
   points.clear();
   for (int i = 0; i < 2; ++i) {
@@ -107,11 +108,13 @@ void make_contact_rows(const World& world, std::span<const Pose> X_WB, std::span
                           world.bodies[Index(patch.body_b)].part->surface_group[Index(patch.piece_b)],
                           static_cast<int>(i)});
   }
-  std::sort(out.facets.begin(), out.facets.end(), [](const Facet& a, const Facet& b) { return key(a) < key(b); });
+  std::sort(out.facets.begin(), out.facets.end(),
+            [](const Facet& a, const Facet& b) { return key(a) < key(b); });
 
   const Source source{world, X_WB, patches, shading};
   for (auto first = out.facets.begin(); first != out.facets.end();) {
-    const auto last = std::find_if(first, out.facets.end(), [&](const Facet& f) { return !same_facet(f, *first); });
+    const auto last =
+        std::find_if(first, out.facets.end(), [&](const Facet& f) { return !same_facet(f, *first); });
     gather_points(source, {first, last}, out.points);
     if (out.points.size() > 4) reduce_to_four(out.points);
     const double tolerance = patches[Index(first->patch)].tolerance;

@@ -1,10 +1,12 @@
 #pragma once
-/// From contact patches to the rows of the contact problem: which points push, in which direction, how stiffly.
+/// From contact patches to the rows of the contact problem: which points push, in which direction, how
+/// stiffly.
 ///
-/// A patch pushes with the paper's k_s as a whole; its points share it by their weights (quadrature of the area, see
-/// collision/manifold.h). The pieces of a one-sided surface are arbitrary triangles of larger facets, so patches on the
-/// same facet are one patch: their points are weighed by area and reduced to four that carry the same area integrals
-/// (mean, second moments, and the gap as a linear function). A wall feels the same however finely it was meshed.
+/// A patch pushes with the paper's k_s as a whole; its points share it by their weights (quadrature of the
+/// area, see collision/manifold.h). The pieces of a one-sided surface are arbitrary triangles of larger
+/// facets, so patches on the same facet are one patch: their points are weighed by area and reduced to four
+/// that carry the same area integrals (mean, second moments, and the gap as a linear function). A wall feels
+/// the same however finely it was meshed.
 
 #include <vector>
 
@@ -44,7 +46,8 @@ void make_contact_rows(const World& world, std::span<const Pose> X_WB, std::span
                        const std::vector<ShadingNormals>& shading, double stiffness_N_per_m,
                        ContactRows& out) noexcept;
 
-/// The sum of the contact forces on `body` at its origin, T = sum R_i x F_i [Gregory 2000, 5.1], from solved rows.
+/// The sum of the contact forces on `body` at its origin, T = sum R_i x F_i [Gregory 2000, 5.1], from solved
+/// rows.
 Wrench contact_wrench(std::span<const ContactRow> rows, int body, const Vec3& p_WB, double h) noexcept;
 
 }  // namespace tactum

@@ -6,14 +6,15 @@ namespace tactum {
 namespace {
 
 std::uint32_t flags_of(const ContactWork& work) {
-  return (work.unchecked > 0 ? frame_flag::kBudgetShort : 0u) | (work.rooms_full ? frame_flag::kRoomsFull : 0u) |
+  return (work.unchecked > 0 ? frame_flag::kBudgetShort : 0u) |
+         (work.rooms_full ? frame_flag::kRoomsFull : 0u) |
          (work.uncertified > 0 ? frame_flag::kUncertified : 0u);
 }
 
 }  // namespace
 
-Wrench haptic_frame(const World& world, const FrameSettings& settings, const DeviceSample& sample, const FrameTick& tick,
-                    FrameState& state, FrameReport& report) noexcept {
+Wrench haptic_frame(const World& world, const FrameSettings& settings, const DeviceSample& sample,
+                    const FrameTick& tick, FrameState& state, FrameReport& report) noexcept {
   report = {};
   report.index = tick.index;
   const double dt = settings.dt_s;

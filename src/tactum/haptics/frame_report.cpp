@@ -38,6 +38,19 @@ void add_to(Hash& hash, const FrameReport& report) noexcept {
   hash.add(report.work.exact_tests);
   hash.add(report.work.feature_steps);
   hash.add(report.work.patches);
+  hash.add(report.held_contact_points);
+  hash.add(report.penetrating);
+  hash.add(report.work.broad_phase_runs);
+  hash.add(report.work.unchecked);
+  hash.add(report.work.uncertified);
+}
+
+void add_to(Hash& hash, const WorldState& state) noexcept {
+  for (const Pose& X_WB : state.X_WB) add(hash, X_WB);
+  for (const Twist& V_WB : state.V_WB) {
+    add(hash, V_WB.v);
+    add(hash, V_WB.w);
+  }
 }
 
 }  // namespace tactum

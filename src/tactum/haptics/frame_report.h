@@ -1,38 +1,46 @@
 #pragma once
-/// The one plain report of a frame: everything a display, a recording or a test wants to know about it. Numbers only.
+/// The one plain report of a frame: everything a display, a recording or a test wants to know about it.
+/// Numbers only.
 
 #include <cstdint>
 
 #include "tactum/base/hash.h"
 #include "tactum/collision/contact_finder.h"
+#include "tactum/dynamics/world.h"
 #include "tactum/math/spatial.h"
 
 namespace tactum {
 
 /// What the frame could not do in full, each with the setting to raise. A frame never stops for these.
 namespace frame_flag {
-inline constexpr std::uint32_t kBudgetShort = 1u << 0;    ///< pairs left unchecked: WorkBudget::max_exact_tests
-inline constexpr std::uint32_t kRoomsFull = 1u << 1;      ///< pairs or patches dropped: ContactFinderRooms
-inline constexpr std::uint32_t kPointsFull = 1u << 2;     ///< contact points dropped: WorkBudget::max_contact_points
+inline constexpr std::uint32_t kBudgetShort = 1u << 0;  ///< pairs left unchecked: WorkBudget::max_exact_tests
+inline constexpr std::uint32_t kRoomsFull = 1u << 1;    ///< pairs or patches dropped: WorkBudget::rooms
+inline constexpr std::uint32_t kPointsFull =
+    1u << 2;  ///< contact points dropped: WorkBudget::max_contact_points
 inline constexpr std::uint32_t kSolverBounded = 1u << 3;  ///< not converged: WorkBudget::solver_iterations
 inline constexpr std::uint32_t kUncertified = 1u << 4;    ///< a distance without its certificate was used
-inline constexpr std::uint32_t kNoHand = 1u << 5;         ///< no valid sample yet: nothing is held, the wrench is zero
+inline constexpr std::uint32_t kMotionUndone =
+    1u << 6;  ///< a motion was no number; the body stayed where it was
+inline constexpr std::uint32_t kNoHand = 1u
+                                         << 5;  ///< no valid sample yet: nothing is held, the wrench is zero
 }  // namespace frame_flag
 
 struct FrameReport {
-  std::uint64_t index = 0;      ///< frames since the start
-  std::uint32_t flags = 0;      ///< frame_flag
-  std::uint32_t safety = 0;     ///< safety_flag
-  Pose X_WH;                    ///< where the hand is [m]
-  Pose X_WH_proxy;              ///< where the proxy would have it [m]
-  Wrench restoring;             ///< sum of the contact forces on the held part, at its centre of mass, world axes [N, N m]
-  Wrench coupling;              ///< spring from hand to proxy, at the handle, world axes: the raw wrench [N, N m]
-  Wrench smoothed;              ///< after smoothing, device axes [N, N m]
-  Wrench shown;                 ///< after safety, device axes: what was sent [N, N m]
+  std::uint64_t index = 0;   ///< frames since the start
+  std::uint32_t flags = 0;   ///< frame_flag
+  std::uint32_t safety = 0;  ///< safety_flag
+  Pose X_WH;                 ///< where the hand is [m]
+  Pose X_WH_proxy;           ///< where the proxy would have it [m]
+  Wrench
+      restoring;  ///< sum of the contact forces on the held part, at its centre of mass, world axes [N, N m]
+  Wrench coupling;  ///< spring from hand to proxy, at the handle, world axes: the raw wrench [N, N m]
+  Wrench smoothed;  ///< after smoothing, device axes [N, N m]
+  Wrench shown;     ///< after safety, device axes: what was sent [N, N m]
   double tolerance_m = 0.0;     ///< largest delta of a pair in contact; 0 without contact [m]
   double min_distance_m = 0.0;  ///< smallest signed distance of the pairs in contact; 0 without contact [m]
   bool penetrating = false;     ///< some pair overlaps by more than its certificate could doubt
-  double time_of_impact_s = 0.0; ///< smallest, from the start of the frame; the whole step without impact [s]
+  double time_of_impact_s =
+      0.0;                      ///< smallest, from the start of the frame; the whole step without impact [s]
   int contact_points = 0;       ///< rows of the contact problem
   int held_contact_points = 0;  ///< ... that push the held part
   int solver_iterations = 0;
@@ -41,7 +49,10 @@ struct FrameReport {
   bool in_contact() const { return work.patches > 0; }
 };
 
-/// Adds everything that was computed to the hash: equal hashes mean equal frames, bit for bit.
+/// Adds everything that was computed and counted to the hash (a negative zero as zero): equal hashes mean
+/// equal frames.
 void add_to(Hash& hash, const FrameReport& report) noexcept;
+/// The same for where the bodies are and how they move.
+void add_to(Hash& hash, const WorldState& state) noexcept;
 
 }  // namespace tactum

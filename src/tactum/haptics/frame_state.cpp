@@ -11,18 +11,21 @@ std::vector<CollisionBody> collision_bodies(const World& world) {
 
 }  // namespace
 
-FrameState::FrameState(const World& constant_world, const FrameSettings& settings, StageObserver* stage_observer)
+FrameState::FrameState(const World& constant_world, const FrameSettings& settings,
+                       StageObserver* stage_observer)
     : world(initial_state(constant_world)),
       tool(settings.tool),
-      finder(collision_bodies(constant_world), world.X_WB),
+      finder(collision_bodies(constant_world), world.X_WB, settings.budget.rooms),
       observer(stage_observer),
       resistance(constant_world.bodies.size(), Resistance::Zero()),
       mobility(constant_world.bodies.size(), Mobility::Zero()),
+      X_WB_start(world.X_WB),
       reach(constant_world.bodies.size(), 0.0),
-      contacts(ContactFinderRooms{}.patches, static_cast<std::size_t>(settings.budget.max_contact_points)) {
+      contacts(settings.budget.rooms.patches, static_cast<std::size_t>(settings.budget.max_contact_points)) {
   hand.X_WD = settings.workspace.X_WD;
   if (!settings.shading.on) return;
-  for (const Body& body : constant_world.bodies) shading.emplace_back(*body.part, settings.shading.crease_rad);
+  for (const Body& body : constant_world.bodies)
+    shading.emplace_back(*body.part, settings.shading.crease_rad);
 }
 
 }  // namespace tactum

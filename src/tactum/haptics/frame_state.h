@@ -39,6 +39,7 @@ struct FrameState {
   // Scratch of one frame, one entry per body.
   std::vector<Resistance> resistance;
   std::vector<Mobility> mobility;
+  std::vector<Pose> X_WB_start;  ///< poses at the start of the frame
   std::vector<double> reach;
   ContactRows contacts;
 

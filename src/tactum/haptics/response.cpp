@@ -14,7 +14,8 @@ namespace {
 using Index = std::size_t;
 
 /// The held part weighs nothing: it resists as its coupling does, over a step of h seconds.
-Resistance resistance_of(const World& world, const FrameSettings& settings, const FrameState& state, Index i, double h) {
+Resistance resistance_of(const World& world, const FrameSettings& settings, const FrameState& state, Index i,
+                         double h) {
   const Pose& X_WB = state.world.X_WB[i];
   if (static_cast<int>(i) == state.tool.body)
     return coupling_resistance(settings.coupling, X_WB.R * state.tool.X_BH.p, h);
@@ -28,7 +29,8 @@ void limit_held(const FrameSettings& settings, double dt_s, FrameState& state) {
   V_WB = within_threshold(V_WB, state.finder.radius(state.tool.body), settings.penalty.max_step_m, dt_s);
 }
 
-/// Gives the held part the whole way that is left to the hand over the `rest` of the frame, and what resists that.
+/// Gives the held part the whole way that is left to the hand over the `rest` of the frame, and what resists
+/// that.
 void pull_held(const World& world, const FrameSettings& settings, double rest, FrameState& state) {
   if (state.tool.body < 0) return;
   const Index i = Index(state.tool.body);
@@ -38,6 +40,26 @@ void pull_held(const World& world, const FrameSettings& settings, double rest, F
   state.mobility[i] = mobility(joint, X_WB, state.resistance[i]);
   const Twist pull = velocity_to_hand(state.tool, X_WB, state.hand.X_WH, rest);
   state.world.V_WB[i] = constrained_velocity(joint, X_WB, state.resistance[i], pull);
+}
+
+/// Damping and friction of every hinge but that of body `spared`.
+void slow_hinges(const World& world, double h, int spared, FrameState& state) {
+  for (Index i = 0; i < world.bodies.size(); ++i) {
+    if (static_cast<int>(i) == spared || !world.bodies[i].moves()) continue;
+    Twist& V_WB = state.world.V_WB[i];
+    V_WB = after_hinge_friction(world.bodies[i].joint, state.world.X_WB[i], state.mobility[i], h, V_WB);
+  }
+}
+
+/// A body whose motion is not a number stays where it was, at rest: one bad frame must not be the last good
+/// one.
+void undo_non_finite(FrameState& state, FrameReport& report) {
+  for (Index i = 0; i < state.world.X_WB.size(); ++i) {
+    if (state.world.X_WB[i].finite() && state.world.V_WB[i].finite()) continue;
+    state.world.X_WB[i] = state.X_WB_start[i];
+    state.world.V_WB[i] = {};
+    report.flags |= frame_flag::kMotionUndone;
+  }
 }
 
 /// Distances are those the frame found, before anything moved.
@@ -57,7 +79,8 @@ void report_contacts(const FrameState& state, double h, FrameReport& report) {
   report.contact_points = static_cast<int>(state.contacts.rows.size());
   for (const ContactRow& row : state.contacts.rows)
     report.held_contact_points += row.body_a == held || row.body_b == held ? 1 : 0;
-  if (held >= 0) report.restoring = contact_wrench(state.contacts.rows, held, state.world.X_WB[Index(held)].p, h);
+  if (held >= 0)
+    report.restoring = contact_wrench(state.contacts.rows, held, state.world.X_WB[Index(held)].p, h);
 }
 
 }  // namespace
@@ -71,7 +94,8 @@ void grasp(const FrameSettings& settings, FrameState& state) noexcept {
   state.tool.X_BH.R = X_WB.R.transpose() * hand.X_WH.R;
 }
 
-void wanted_velocities(const World& world, const FrameSettings& settings, double dt_s, FrameState& state) noexcept {
+void wanted_velocities(const World& world, const FrameSettings& settings, double dt_s,
+                       FrameState& state) noexcept {
   for (Index i = 0; i < world.bodies.size(); ++i) {
     const Body& body = world.bodies[i];
     if (!body.moves()) continue;
@@ -87,7 +111,6 @@ void wanted_velocities(const World& world, const FrameSettings& settings, double
     state.mobility[i] = mobility(body.joint, X_WB, state.resistance[i]);
   }
   limit_held(settings, dt_s, state);
-  apply_hinge_friction(world, state.world, state.mobility, dt_s, state.world.V_WB);
 }
 
 void tolerances_from_speed(double dt_s, FrameState& state) noexcept {
@@ -102,25 +125,31 @@ void respond(const World& world, const FrameSettings& settings, double dt_s, Fra
   std::vector<Pose>& X_WB = state.world.X_WB;
   std::vector<Twist>& V_WB = state.world.V_WB;
   std::vector<ContactRow>& rows = state.contacts.rows;
+  state.X_WB_start = X_WB;  // same size: nothing is allocated
   make_contact_rows(world, X_WB, state.finder.patches(), state.shading, settings.penalty.stiffness_N_per_m,
                     state.contacts);
   report_distances(world, state.finder.patches(), report);
   const double impact = smallest_time_of_impact(rows, X_WB, V_WB, dt_s);
+  const double rest = dt_s - impact;
+  // The held part has no mass to be slowed before the impact: its friction acts where it is pulled.
+  slow_hinges(world, impact, rest > 0.0 ? state.tool.body : -1, state);
   advance_distances(rows, X_WB, V_WB, impact);
   advance_bodies(world, V_WB, impact, X_WB);
 
-  const double rest = dt_s - impact;
   if (rest > 0.0) {
     pull_held(world, settings, rest, state);
-    const SolverResult solved = solve_contacts(rows, X_WB, state.mobility, rest, settings.budget.solver_iterations, V_WB);
+    const SolverResult solved =
+        solve_contacts(rows, X_WB, state.mobility, rest, settings.budget.solver_iterations, V_WB);
     report.solver_iterations = solved.iterations;
     if (!solved.converged) report.flags |= frame_flag::kSolverBounded;
     report_contacts(state, rest, report);
+    slow_hinges(world, rest, -1, state);
     limit_held(settings, dt_s, state);
     advance_bodies(world, V_WB, rest, X_WB);
   }
   for (Index i = 0; i < world.bodies.size(); ++i)
     if (world.bodies[i].moves()) X_WB[i] = constrained_pose(world.bodies[i], X_WB[i]);
+  undo_non_finite(state, report);
   if (state.contacts.full) report.flags |= frame_flag::kPointsFull;
   report.time_of_impact_s = impact;
 }
@@ -130,7 +159,9 @@ Wrench felt_wrench(const FrameSettings& settings, FrameState& state, FrameReport
   if (state.tool.body < 0) return {};
   const Pose& X_WB = state.world.X_WB[Index(state.tool.body)];
   report.X_WH_proxy = X_WB * state.tool.X_BH;
-  const Twist V_WH_proxy = moved(state.world.V_WB[Index(state.tool.body)], X_WB.R * state.tool.X_BH.p);
+  // The velocity that counts is the way of the whole frame, not the last part's after an impact.
+  const Pose X_WH_before = state.X_WB_start[Index(state.tool.body)] * state.tool.X_BH;
+  const Twist V_WH_proxy = twist_between(X_WH_before, report.X_WH_proxy, settings.dt_s);
   return coupling_wrench(settings.coupling, state.hand.X_WH, state.hand.V_WH, report.X_WH_proxy, V_WH_proxy);
 }
 

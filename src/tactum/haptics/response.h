@@ -10,15 +10,17 @@ namespace tactum {
 /// and the part is grasped in the orientation it has: nothing is pulled.
 void grasp(const FrameSettings& settings, FrameState& state) noexcept;
 
-/// How fast does everything want to move: the held part towards the hand, at most the threshold distance; free bodies
-/// as they moved, pulled by gravity; all as their joints allow. Fills state.world.V_WB and state.resistance.
-void wanted_velocities(const World& world, const FrameSettings& settings, double dt_s, FrameState& state) noexcept;
+/// How fast does everything want to move: the held part towards the hand, at most the threshold distance;
+/// free bodies as they moved, pulled by gravity; all as their joints allow. Fills state.world.V_WB and
+/// state.resistance.
+void wanted_velocities(const World& world, const FrameSettings& settings, double dt_s,
+                       FrameState& state) noexcept;
 
 /// v_c dt of every body: linear and angular speed bound [Gregory 2000, 5.2]. Fills state.reach.
 void tolerances_from_speed(double dt_s, FrameState& state) noexcept;
 
-/// Advances to the smallest time of impact, applies the contact forces, advances with the new velocities for the rest
-/// of the frame, and puts every transform back on its joint. Fills the report's response fields.
+/// Advances to the smallest time of impact, applies the contact forces, advances with the new velocities for
+/// the rest of the frame, and puts every transform back on its joint. Fills the report's response fields.
 void respond(const World& world, const FrameSettings& settings, double dt_s, FrameState& state,
              FrameReport& report) noexcept;
 

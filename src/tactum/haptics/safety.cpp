@@ -28,8 +28,9 @@ bool limit_step(const Vec3& from, Vec3& v, double step) noexcept {
 
 std::uint32_t faults(const SafetyLimits& limits, SafetyState& state, const SafetyInput& input) noexcept {
   std::uint32_t flags = 0;
-  if (!input.wanted.finite() || !std::isfinite(input.period_s)) flags |= kNonFiniteWrench;
-  if (!input.X_DH.finite()) flags |= kNonFinitePose;
+  if (!input.wanted.finite() || !std::isfinite(input.period_s) || input.period_s <= 0.0)
+    flags |= kNonFiniteWrench;
+  if (!plausible(input.X_DH)) flags |= kImplausiblePose;
   // Written so that a NaN is stale; a sample from the future comes from a broken clock.
   if (!(std::abs(input.sample_age_s) <= limits.max_sample_age_s)) flags |= kStaleSample;
   state.invalid_reads = input.sample_valid ? 0 : std::min(state.invalid_reads + 1, limits.max_invalid_reads);
@@ -116,7 +117,7 @@ std::string safety_flag_names(std::uint32_t flags) {
       {kStopping, "stopping"},
       {kStopped, "stopped"},
       {kNonFiniteWrench, "wrench not finite"},
-      {kNonFinitePose, "pose not finite"},
+      {kImplausiblePose, "pose not finite"},
       {kStaleSample, "sample stale"},
       {kReadsFailing, "reads failing"},
       {kMissedDeadline, "deadline missed"},

@@ -64,12 +64,12 @@ inline constexpr std::uint32_t kStarting = 1u << 4;         ///< start ramp not 
 inline constexpr std::uint32_t kStopping = 1u << 5;         ///< a stop was requested
 inline constexpr std::uint32_t kStopped = 1u << 6;          ///< ... and the wrench is zero
 inline constexpr std::uint32_t kNonFiniteWrench = 1u << 7;  ///< fault
-inline constexpr std::uint32_t kNonFinitePose = 1u << 8;    ///< fault
+inline constexpr std::uint32_t kImplausiblePose = 1u << 8;  ///< fault
 inline constexpr std::uint32_t kStaleSample = 1u << 9;      ///< fault
 inline constexpr std::uint32_t kReadsFailing = 1u << 10;    ///< fault
 inline constexpr std::uint32_t kMissedDeadline = 1u << 11;  ///< fault
 inline constexpr std::uint32_t kFaults =
-    kNonFiniteWrench | kNonFinitePose | kStaleSample | kReadsFailing | kMissedDeadline;
+    kNonFiniteWrench | kImplausiblePose | kStaleSample | kReadsFailing | kMissedDeadline;
 }  // namespace safety_flag
 
 /// "force limited, starting": for displays and logs, not for the frame.

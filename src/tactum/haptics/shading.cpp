@@ -10,7 +10,8 @@ namespace {
 
 using Index = std::size_t;
 
-/// Wachspress' product form needs n^2 products; faces with more corners are flat ends, not parts of curved surfaces.
+/// Wachspress' product form needs n^2 products; faces with more corners are flat ends, not parts of curved
+/// surfaces.
 constexpr int kMostCorners = 16;
 
 /// The interpolated normal inside a convex polygon: w_i = A(i-1,i,i+1) prod_{j != i-1,i} A(j,j+1,p).
@@ -63,7 +64,8 @@ void ShadingNormals::shade_polytope(const Polytope& piece, double cosine) {
     for (int slot = face.first; slot < face.first + face.count; ++slot) {
       Vec3 sum = Vec3::Zero();
       for (int e : piece.edges_at(piece.face_vertices[Index(slot)])) {
-        // Every face around the corner is on the left or the right of two of its edges: counted twice, all alike.
+        // Every face around the corner is on the left or the right of two of its edges: counted twice, all
+        // alike.
         for (int f : {piece.edges[Index(e)].left, piece.edges[Index(e)].right}) {
           const Vec3& normal = piece.faces[Index(f)].normal;
           if (normal.dot(face.normal) >= cosine) sum += normal;
@@ -102,11 +104,12 @@ Vec3 ShadingNormals::deviation(int piece, const Feature& feature, const Vec3& po
   if (!curved_face_[Index(first_face_[Index(piece)] + feature.index)]) return Vec3::Zero();
   const Polytope& polytope = part_->pieces[Index(piece)];
   const Polytope::Face& face = polytope.faces[Index(feature.index)];
-  return interpolated(polytope, face, &normals_[Index(first_slot_[Index(piece)] + face.first)], point) - face.normal;
+  return interpolated(polytope, face, &normals_[Index(first_slot_[Index(piece)] + face.first)], point) -
+         face.normal;
 }
 
-Vec3 shaded_normal(const ShadingNormals& a, int piece_a, const ShadingNormals& b, int piece_b, const Pose& X_AB,
-                   const Manifold& manifold, const ContactPoint& point) noexcept {
+Vec3 shaded_normal(const ShadingNormals& a, int piece_a, const ShadingNormals& b, int piece_b,
+                   const Pose& X_AB, const Manifold& manifold, const ContactPoint& point) noexcept {
   const Vec3 from_a = a.deviation(piece_a, manifold.a, point.p_a);
   const Vec3 from_b = b.deviation(piece_b, manifold.b, X_AB.inverse() * point.p_b);
   return (manifold.normal + X_AB.R * from_b - from_a).normalized();

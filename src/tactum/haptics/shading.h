@@ -1,10 +1,12 @@
 #pragma once
-/// Force shading: over facets that approximate a curved surface the direction of the force is interpolated from normals
-/// at the corners, as light is in Phong shading, so that a faceted cylinder feels round [Gregory 2000, 5.3; Ruspini 1997].
+/// Force shading: over facets that approximate a curved surface the direction of the force is interpolated
+/// from normals at the corners, as light is in Phong shading, so that a faceted cylinder feels round [Gregory
+/// 2000, 5.3; Ruspini 1997].
 ///
-/// A corner's normal on a face is the mean of the normals of the faces around the corner that meet that face at less than
-/// the crease angle; at a sharp edge it is the face's own. Inside a face, Wachspress coordinates of the polygon
-/// weigh the corners: linear on its edges, so that the direction is continuous from face to face.
+/// A corner's normal on a face is the mean of the normals of the faces around the corner that meet that face
+/// at less than the crease angle; at a sharp edge it is the face's own. Inside a face, Wachspress coordinates
+/// of the polygon weigh the corners: linear on its edges, so that the direction is continuous from face to
+/// face.
 
 #include <vector>
 
@@ -19,8 +21,8 @@ class ShadingNormals {
   /// Cost: once per part, linear in its corners.
   ShadingNormals(const Part& part, double crease_rad);
 
-  /// How much the interpolated normal at `point` (part's frame) differs from the face's own; zero for features
-  /// that are no faces, and on faces whose edges are all sharp.
+  /// How much the interpolated normal at `point` (part's frame) differs from the face's own; zero for
+  /// features that are no faces, and on faces whose edges are all sharp.
   Vec3 deviation(int piece, const Feature& feature, const Vec3& point) const noexcept;
 
  private:
@@ -34,9 +36,9 @@ class ShadingNormals {
   std::vector<int> first_face_;    // per piece, into curved_face_
 };
 
-/// The manifold's normal, turned by the deviations of the faces it lies on; told in A's frame. `p_a` and `p_b` as in
-/// ContactPoint, X_AB the pose of body B in A.
-Vec3 shaded_normal(const ShadingNormals& a, int piece_a, const ShadingNormals& b, int piece_b, const Pose& X_AB,
-                   const Manifold& manifold, const ContactPoint& point) noexcept;
+/// The manifold's normal, turned by the deviations of the faces it lies on; told in A's frame. `p_a` and
+/// `p_b` as in ContactPoint, X_AB the pose of body B in A.
+Vec3 shaded_normal(const ShadingNormals& a, int piece_a, const ShadingNormals& b, int piece_b,
+                   const Pose& X_AB, const Manifold& manifold, const ContactPoint& point) noexcept;
 
 }  // namespace tactum

@@ -124,8 +124,9 @@ void read_mesh(const TomlReader& part, const SearchFolders& folders, Shape& shap
       if (try_file(fs::path(folder) / name)) break;
   }
   if (shape.file.empty()) {
-    part.fail("mesh", "cannot find the mesh", fmt::format("no file {}", fmt::join(tried, ", nor ")),
-              "one of them; TACTUM_DATA may name more folders, colons between");
+    part.fail("mesh", "cannot find the mesh \"" + name + "\"",
+              tried.empty() ? "no folder to look in" : fmt::format("no file {}", fmt::join(tried, ", nor ")),
+              "the file beside the scene file or in a folder named by TACTUM_DATA (colons between)");
     return;
   }
   Result<ImportedMesh> imported = import_mesh(shape.file, options);

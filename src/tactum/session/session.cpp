@@ -7,9 +7,29 @@ namespace {
 
 constexpr std::size_t kGlances = 4096;  // four seconds at 1 kHz between two polls
 
+/// Scene files cannot say these things; programs that build a scene of their own can.
+Result<void> check(const Scene& scene) {
+  for (const Body& body : scene.world.bodies) {
+    if (!body.part || body.part->pieces.empty())
+      return Error{"a body has no part", "none", "convex pieces", body.name};
+    if (body.moves() && !(body.mass_kg > 0.0 && body.inertia_B.allFinite() && body.inertia_B.trace() > 0.0))
+      return Error{"a body that moves has no mass or inertia", std::to_string(body.mass_kg) + " kg", "more",
+                   body.name};
+    if (!body.X_WB.finite()) return Error{"a body's pose is not finite", "", "numbers", body.name};
+  }
+  const int bodies = static_cast<int>(scene.world.bodies.size());
+  if (scene.settings.tool.body >= bodies)
+    return Error{"the tool holds a body that is not there", std::to_string(scene.settings.tool.body),
+                 "less than " + std::to_string(bodies), scene.name};
+  if (!(scene.settings.dt_s > 0.0)) return Error{"the frame's step is not positive", "", "", scene.name};
+  if (!scene.hand) return Error{"the scene has no hand motion", "", "one, if only a hold", scene.name};
+  return {};
+}
+
 }  // namespace
 
 Result<std::unique_ptr<Session>> Session::open(Scene scene, const SessionOptions& options) {
+  if (const Result<void> checked = check(scene); !checked) return checked.error();
   DeviceOptions device_options;
   device_options.hand_motion = scene.hand;
   device_options.grip = options.grip.empty() ? scene.grip : options.grip;
@@ -53,8 +73,9 @@ SessionStatus Session::poll() noexcept {
 }
 
 Wrench Session::run(const DeviceSample& sample, const FrameTick& tick) noexcept {
+  if (stage_clock_ != nullptr) stage_clock_->frame_begins();
   const Wrench F_D = haptic_frame(scene_.world, scene_.settings, sample, tick, state_, report_);
-  record_.add(report_);
+  if (!tick.stop) record_.add(report_, state_.world);
   goals_.watch(scene_.world, state_.world);
   // A full ring means nobody has looked for seconds: the newest glance is then lost, the frame is not.
   glances_.push({report_.index, report_.shown.f.norm(), report_.shown.t.norm(), report_.contact_points,

@@ -1,7 +1,8 @@
 #pragma once
 /// The façade: open a scene and a device, run, watch, stop. One Session is one run.
 ///
-///   Scene + device name --open--> Session --run_virtual()--> or --start(), status(), stop()--> RunRecord, goals
+///   Scene + device name --open--> Session --run_virtual()--> or --start(), status(), stop()--> RunRecord,
+///   goals
 ///
 /// The loop's thread owns the frame; other threads see it only through a ring of small status records.
 
@@ -20,16 +21,16 @@
 namespace tactum {
 
 struct SessionOptions {
-  std::string device;            ///< as in devices/registry.h; empty: the scene's simulated preset
-  std::string grip;              ///< of the simulated hand; empty: the scene's
-  double rate_Hz = 0.0;          ///< 0: the scene's [Hz]
+  std::string device;    ///< as in devices/registry.h; empty: the scene's simulated preset
+  std::string grip;      ///< of the simulated hand; empty: the scene's
+  double rate_Hz = 0.0;  ///< 0: the scene's [Hz]
 };
 
 /// A glance at a running loop.
 struct SessionStatus {
   std::uint64_t frame = 0;
-  double force_N = 0.0;      ///< shown [N]
-  double torque_Nm = 0.0;    ///< shown [N m]
+  double force_N = 0.0;    ///< shown [N]
+  double torque_Nm = 0.0;  ///< shown [N m]
   int contact_points = 0;
   double stretch_m = 0.0;    ///< hand to proxy [m]
   std::uint32_t safety = 0;  ///< safety_flag
@@ -39,7 +40,7 @@ class Session final : private HapticFrame {
  public:
   /// Makes the device (not yet open) and reserves everything the frames need.
   static Result<std::unique_ptr<Session>> open(Scene scene, const SessionOptions& options);
-  ~Session() { stop(); }
+  ~Session() override { stop(); }
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
@@ -65,8 +66,11 @@ class Session final : private HapticFrame {
   const GoalRecord& goals() const noexcept { return goals_; }
   const FrameReport& last_report() const noexcept { return report_; }
   const FrameState& state() const noexcept { return state_; }
-  /// Called between the stages of every frame; set before the run. For benches.
-  void observe_stages(StageObserver* observer) noexcept { state_.observer = observer; }
+  /// Takes the times of the stages of every frame (about 0.2 us a frame); set before the run, null for none.
+  void time_stages(StageClock* clock) noexcept {
+    stage_clock_ = clock;
+    state_.observer = clock;
+  }
 
  private:
   Session(Scene scene, std::unique_ptr<Device> device);
@@ -75,6 +79,7 @@ class Session final : private HapticFrame {
   Scene scene_;
   std::unique_ptr<Device> device_;
   FrameState state_;
+  StageClock* stage_clock_ = nullptr;
   FrameReport report_;
   RunRecord record_;
   GoalRecord goals_;

@@ -4,7 +4,7 @@
 
 namespace tactum {
 
-void RunRecord::add(const FrameReport& report) noexcept {
+void RunRecord::add(const FrameReport& report, const WorldState& world) noexcept {
   ++frames;
   if (report.in_contact()) ++colliding_frames;
   if (report.held_contact_points > 0) ++held_contact_frames;
@@ -31,16 +31,38 @@ void RunRecord::add(const FrameReport& report) noexcept {
   max_contact_points = std::max(max_contact_points, report.contact_points);
   max_exact_tests = std::max(max_exact_tests, report.work.exact_tests);
   add_to(hash_, report);
+  add_to(hash_, world);
+}
+
+void StageClock::stage_ended(Stage stage) noexcept {
+  const Clock::time_point now = Clock::now();
+  const std::int64_t duration_ns = std::chrono::nanoseconds(now - last_).count();
+  frame_ns_[static_cast<std::size_t>(stage)] = duration_ns;
+  histograms_[static_cast<std::size_t>(stage)].add(duration_ns);
+  last_ = now;
+}
+
+std::vector<StageSummary> StageClock::summaries() const {
+  std::vector<StageSummary> stages;
+  for (int i = 0; i < kStageCount; ++i)
+    stages.push_back({stage_name(static_cast<Stage>(i)), histograms_[static_cast<std::size_t>(i)].summary()});
+  return stages;
 }
 
 const char* stage_name(Stage stage) noexcept {
   switch (stage) {
-    case Stage::kHand: return "hand";
-    case Stage::kVelocities: return "velocities";
-    case Stage::kNearPairs: return "near pairs";
-    case Stage::kExactTests: return "exact tests";
-    case Stage::kResponse: return "response";
-    case Stage::kShow: return "show";
+    case Stage::kHand:
+      return "hand";
+    case Stage::kVelocities:
+      return "velocities";
+    case Stage::kNearPairs:
+      return "near pairs";
+    case Stage::kExactTests:
+      return "exact tests";
+    case Stage::kResponse:
+      return "response";
+    case Stage::kShow:
+      return "show";
   }
   return "";
 }

@@ -1,20 +1,22 @@
 #pragma once
-/// What a whole run amounted to, summed up frame by frame: forces, penetration, counted work, and a hash that names
-/// the run. Trivial to add to from the loop: no allocation, a few dozen additions.
+/// What a whole run amounted to, summed up frame by frame: forces, penetration, counted work, and a hash that
+/// names the run. Trivial to add to from the loop: no allocation, a few dozen additions.
 
 #include <array>
 #include <chrono>
 #include <cstdint>
+#include <vector>
 
 #include "tactum/base/hash.h"
 #include "tactum/haptics/frame_report.h"
 #include "tactum/haptics/frame_state.h"
+#include "tactum/telemetry/statistics.h"
 
 namespace tactum {
 
 class RunRecord {
  public:
-  void add(const FrameReport& report) noexcept;
+  void add(const FrameReport& report, const WorldState& world) noexcept;
 
   std::uint64_t frames = 0;
   std::uint64_t colliding_frames = 0;     ///< frames with any patch
@@ -44,7 +46,7 @@ class RunRecord {
   Hash hash_;
 };
 
-/// Takes the time of the stages of a frame. It reads the clock between stages, so that the frame need not.
+/// Takes the times of the stages of frames. It reads the clock between stages, so that the frame need not.
 class StageClock final : public StageObserver {
  public:
   /// Call just before the frame.
@@ -52,18 +54,17 @@ class StageClock final : public StageObserver {
     frame_ns_ = {};
     last_ = Clock::now();
   }
-  void stage_ended(Stage stage) noexcept override {
-    const Clock::time_point now = Clock::now();
-    frame_ns_[static_cast<std::size_t>(stage)] = std::chrono::nanoseconds(now - last_).count();
-    last_ = now;
-  }
+  void stage_ended(Stage stage) noexcept override;
   /// Of the last frame; zero for a stage it did not have [ns].
   std::int64_t stage_ns(Stage stage) const noexcept { return frame_ns_[static_cast<std::size_t>(stage)]; }
+  /// Of all frames so far; a stage counts where it took place.
+  std::vector<StageSummary> summaries() const;
 
  private:
   using Clock = std::chrono::steady_clock;
   Clock::time_point last_;
   std::array<std::int64_t, kStageCount> frame_ns_{};
+  std::array<DurationHistogram, kStageCount> histograms_;
 };
 
 /// "hand", "velocities", ...

@@ -1,0 +1,167 @@
+/// tactum distance CASES.json: signed distance, witness points and normal of pairs of convex vertex clouds.
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "commands.h"
+#include "output.h"
+#include "tactum/base/tolerances.h"
+#include "tactum/collision/closest_features.h"
+#include "tactum/collision/penetration.h"
+#include "tactum/geometry/hull.h"
+#include "tactum/math/rotation.h"
+
+namespace tactum {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Edge pairs up to which overlapping clouds are searched in full; at 10 ns each, the most costs 40 s.
+constexpr double kMostEdgePairs = 4e9;
+
+/// Where in the file we are, for errors: "cases.json: case 3 (\"lid\"), a.pose".
+struct Place {
+  std::string file, item, field;
+  Place at(const std::string& next) const { return {file, item, field.empty() ? next : field + "." + next}; }
+  [[noreturn]] void refuse(const std::string& what, const std::string& found,
+                           const std::string& expected) const {
+    fail({what, found, expected,
+          item.empty() ? file : file + ": " + item + (field.empty() ? "" : ", " + field)});
+  }
+};
+
+const Json& member(const Json& object, const std::string& key, const Place& place) {
+  if (!object.is_object()) place.refuse("wrong type", object.type_name(), "an object");
+  const auto found = object.find(key);
+  if (found == object.end()) place.refuse("a field is missing", "no \"" + key + "\"", "it");
+  return *found;
+}
+
+double number(const Json& value, const Place& place) {
+  if (!value.is_number()) place.refuse("wrong type", value.type_name(), "a number");
+  const double number = value.get<double>();
+  if (!std::isfinite(number)) place.refuse("a number is out of range", value.dump(), "a finite number");
+  return number;
+}
+
+void expect_array(const Json& value, std::size_t size, const Place& place) {
+  if (!value.is_array()) place.refuse("wrong type", value.type_name(), "an array");
+  if (value.size() != size)
+    place.refuse("wrong size", fmt::format("{} entries", value.size()), fmt::format("{}", size));
+}
+
+Polytope read_cloud(const Json& value, const Place& place) {
+  if (!value.is_array()) place.refuse("wrong type", value.type_name(), "an array of [x, y, z]");
+  std::vector<Vec3> points;
+  for (std::size_t i = 0; i < value.size(); ++i) {
+    const Place here = {place.file, place.item, fmt::format("{}[{}]", place.field, i)};
+    expect_array(value[i], 3, here);
+    Vec3 point;
+    for (std::size_t k = 0; k < 3; ++k) point[static_cast<Eigen::Index>(k)] = number(value[i][k], here);
+    points.push_back(point);
+  }
+  Result<Polytope> hull = convex_hull(points);
+  if (!hull) place.refuse(hull.error().what, hull.error().found, hull.error().expected);
+  return std::move(*hull);
+}
+
+/// Row-major 4 x 4; absent: identity. Rounded rotations are mended and told.
+Pose read_pose(const Json& object, const Place& place) {
+  const auto found = object.find("pose");
+  if (found == object.end()) return {};
+  const Place here = place.at("pose");
+  expect_array(*found, 16, here);
+  Eigen::Matrix4d M;
+  for (std::size_t i = 0; i < 16; ++i)
+    M(static_cast<Eigen::Index>(i / 4), static_cast<Eigen::Index>(i % 4)) = number((*found)[i], here);
+  if (M.row(3) != Eigen::RowVector4d(0, 0, 0, 1))
+    here.refuse("the last row of the matrix is wrong",
+                fmt::format("{} {} {} {}", M(3, 0), M(3, 1), M(3, 2), M(3, 3)), "0 0 0 1");
+  const NearestRotation nearest = orthonormalized(M.topLeftCorner<3, 3>());
+  if (!nearest.exists || nearest.deviation > tolerances::kRotationNear)
+    here.refuse("the matrix is no rotation", fmt::format("|M M^T - I| up to {:.3g}", nearest.deviation),
+                fmt::format("at most {:g}, and no reflection", tolerances::kRotationNear));
+  if (nearest.deviation > tolerances::kRotationExact)
+    fmt::print(stderr, "{}: {}, {}: made orthonormal, it was off by {:.1g}\n", here.file, here.item,
+               here.field, nearest.deviation);
+  return {nearest.R, M.topRightCorner<3, 1>()};
+}
+
+/// Certified and global: overlapping pairs are searched over every separating axis.
+PairDistance signed_distance(const Polytope& A, const Polytope& B, const Pose& X_AB, const Place& place) {
+  PairCache cache;
+  const PairDistance found = closest_features(A, B, X_AB, cache);
+  if (found.distance >= 0.0) return found;
+  if (static_cast<double>(A.edges.size()) * static_cast<double>(B.edges.size()) > kMostEdgePairs) {
+    fmt::print(stderr, "{}: {}: too many edges to search them all; the depth is a local minimum\n",
+               place.file, place.item);
+    return found;
+  }
+  PairDistance deepest = penetration_exhaustive(A, B, X_AB);
+  deepest.steps += found.steps;
+  return deepest;
+}
+
+Json vector(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
+Json answer(const Json& item, const Json& id, const Place& place) {
+  const Json& a = member(item, "a", place);
+  const Json& b = member(item, "b", place);
+  const Polytope A = read_cloud(member(a, "vertices", place.at("a")), place.at("a.vertices"));
+  const Polytope B = read_cloud(member(b, "vertices", place.at("b")), place.at("b.vertices"));
+  const Pose X_WA = read_pose(a, place.at("a"));
+  const Pose X_WB = read_pose(b, place.at("b"));
+  const PairDistance found = signed_distance(A, B, relative_pose(X_WA, X_WB), place);
+  return {{"id", id},
+          {"signed_distance", found.distance},
+          {"p_a", vector(X_WA * found.p_a)},
+          {"p_b", vector(X_WA * found.p_b)},
+          {"normal", vector(X_WA.R * found.normal)},
+          {"certified", found.certified()},
+          {"steps", found.steps}};
+}
+
+void distance(const std::string& path, const std::string& json) {
+  std::ifstream file(path);
+  const Place place{path, "", ""};
+  if (!file) place.refuse("cannot read the cases", "no readable file", "a JSON file");
+  Json input;
+  try {
+    input = Json::parse(file);
+  } catch (const Json::exception& error) {
+    place.refuse("this is no JSON", error.what(), R"({"cases": [...]})");
+  }
+  const Json& cases = member(input, "cases", place);
+  if (!cases.is_array()) place.refuse("\"cases\" has the wrong type", cases.type_name(), "an array");
+  Json results = Json::array();
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    const bool named = cases[i].is_object() && cases[i].contains("id");
+    const Json id = named ? cases[i]["id"] : Json(i);
+    results.push_back(
+        answer(cases[i], id, {path, fmt::format("case {}", named ? id.dump() : fmt::to_string(i)), ""}));
+  }
+  write_json(json.empty() ? "-" : json, {{"results", results}});
+}
+
+}  // namespace
+
+void add_distance(CLI::App& app) {
+  struct Options {
+    std::string cases, json;
+  };
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("distance", "Signed distance of pairs of convex vertex clouds");
+  command
+      ->add_option(
+          "CASES", options->cases,
+          R"({"cases":[{"id","a":{"vertices":[[x,y,z],...],"pose":[16 numbers, row-major]},"b":{...}}]})")
+      ->required();
+  command->add_option("--json", options->json, "write the results to this file instead of standard output");
+  command->callback([options] { distance(options->cases, options->json); });
+}
+
+}  // namespace tactum

@@ -1,0 +1,96 @@
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "app/program.h"
+
+namespace tactum {
+namespace {
+
+using testing::ProgramRun;
+using testing::run_tactum;
+using testing::ScratchFolder;
+using Json = nlohmann::json;
+
+TEST(FeelCommand, TheSummaryForMachinesHasItsKeys) {
+  const ProgramRun run = run_tactum("feel gears --virtual-clock --updates 3000 --json -");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const Json summary = Json::parse(run.out);
+  EXPECT_EQ(summary["frames"], 3000);
+  for (const char* key : {"penetrating_frames", "max_penetration_m", "max_force_N", "max_force_step_N"})
+    EXPECT_TRUE(summary[key].is_number()) << key;
+  for (const char* key : {"mean", "p50", "p99", "p999", "max"})
+    EXPECT_GT(summary["frame_us"][key], 0.0) << key;
+  EXPECT_EQ(summary["stages_us"].size(), 6u);
+  EXPECT_EQ(summary["frame_hash"].get<std::string>().size(), 16u);
+  EXPECT_TRUE(summary["goal_met"].is_boolean());
+  EXPECT_GT(summary["colliding_frames"], 1000);
+}
+
+TEST(FeelCommand, TheSameTwiceAndADurationInsteadOfUpdates) {
+  const ProgramRun updates = run_tactum("feel block-on-plate --virtual-clock --updates 2000 --json -");
+  const ProgramRun duration = run_tactum("feel block-on-plate --virtual-clock --duration 2 --json -");
+  ASSERT_EQ(updates.exit_code, 0) << updates.err;
+  ASSERT_EQ(duration.exit_code, 0) << duration.err;
+  EXPECT_EQ(Json::parse(updates.out)["frame_hash"], Json::parse(duration.out)["frame_hash"]);
+}
+
+TEST(FeelCommand, EveryGripAndSimulatedDeviceRuns) {
+  for (const char* grip : {"loose", "medium", "firm"}) {
+    const ProgramRun run =
+        run_tactum(std::string("feel gears --virtual-clock --updates 1500 --json - --hand ") + grip);
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_EQ(Json::parse(run.out)["non_finite_frames"], 0);
+  }
+  for (const char* device : {"touch", "omega.6", "sigma.7", "virtuose-6d"}) {
+    const ProgramRun run = run_tactum(
+        std::string("feel block-on-plate --virtual-clock --updates 3000 --json - --device simulated:") +
+        device);
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_GT(Json::parse(run.out)["max_force_N"], 0.1) << device;
+  }
+}
+
+TEST(FeelCommand, InterruptedItEndsCleanlyWithItsSummary) {
+  const ProgramRun run =
+      run_tactum("feel gears --duration 600 & tactum=$!; sleep 1; kill -INT $tactum; wait $tactum");
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+}
+
+TEST(FeelCommand, WhatIsNotThereIsNamedWithWhatThereIs) {
+  const ProgramRun scene = run_tactum("feel nowhere");
+  EXPECT_EQ(scene.exit_code, 1);
+  EXPECT_NE(scene.err.find("gears-rim"), std::string::npos) << scene.err;
+  const ProgramRun device = run_tactum("feel gears --device spoon");
+  EXPECT_EQ(device.exit_code, 1);
+  EXPECT_NE(device.err.find("simulated:omega.6"), std::string::npos) << device.err;
+  EXPECT_EQ(run_tactum("feel gears --updates minus").exit_code, 2);
+  EXPECT_EQ(run_tactum("").exit_code, 2);
+}
+
+TEST(BenchCommand, Table1HasThePublishedRowsAndKeys) {
+  const ScratchFolder folder;
+  const ProgramRun run = run_tactum("bench table1 --updates 1500 --replays 2 --json " + (folder / "t.json"));
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NE(run.out.find("0.178922"), std::string::npos);  // published average
+  EXPECT_NE(run.out.find("10870"), std::string::npos);     // published collisions
+  const Json table = Json::parse(testing::content(folder / "t.json"));
+  for (const char* key : {"updates", "average_us", "worst_us", "worst_us_min_of_replays", "collision_tests",
+                          "collision_average_us", "nbody_tests", "nbody_average_us", "exact_tests",
+                          "exact_average_us", "collisions", "response_average_us", "missed_deadlines"})
+    EXPECT_TRUE(table[key].is_number()) << key;
+  EXPECT_EQ(table["updates"], 1500);
+  EXPECT_LE(table["worst_us_min_of_replays"], table["worst_us"]);
+  EXPECT_GT(table["exact_tests"], 1500);
+}
+
+TEST(ScenesCommand, ListsThem) {
+  const ProgramRun run = run_tactum("scenes");
+  EXPECT_EQ(run.exit_code, 0);
+  for (const char* scene : {"gears", "gears-rim", "peg-in-hole", "peg-file", "block-on-plate"})
+    EXPECT_NE(run.out.find(scene), std::string::npos) << scene;
+  EXPECT_EQ(run_tactum("devices").exit_code, 0);
+}
+
+}  // namespace
+}  // namespace tactum

@@ -1,0 +1,149 @@
+#include "tactum/collision/contact_finder.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <tuple>
+
+#include "tactum/base/random.h"
+#include "tactum/collision/piece_distance.h"
+#include "tactum/math/screw.h"
+
+namespace tactum {
+namespace {
+
+Vec3 random_vector(Random& random, double size) {
+  const double x = random.uniform(-size, size);
+  const double y = random.uniform(-size, size);
+  const double z = random.uniform(-size, size);
+  return {x, y, z};
+}
+
+/// A ring of boxes with a few extra ones inside.
+Part cluttered_part(Random& random) {
+  std::vector<std::vector<Vec3>> clouds;
+  for (int k = 0; k < 14; ++k) {
+    const Pose X{exp_rotation(random_vector(random, 2)), random_vector(random, 0.03)};
+    std::vector<Vec3> cloud;
+    for (int i = 0; i < 8; ++i)
+      cloud.push_back(X * Vec3(i & 1 ? 0.004 : -0.004, i & 2 ? 0.003 : -0.003, i & 4 ? 0.006 : -0.006));
+    clouds.push_back(cloud);
+  }
+  Result<Part> part = part_from_clouds(clouds);
+  EXPECT_TRUE(part);
+  return std::move(*part);
+}
+
+using Key = std::tuple<int, int, int, int>;
+
+TEST(ContactFinder, FindsEveryPatchThatTestingAllPairsFinds) {
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    Random random(seed);
+    const double speed = seed % 2 ? 1.0 : 0.05;  // a hasty and a careful hand
+    std::vector<Part> parts;
+    std::vector<CollisionBody> bodies;
+    std::vector<Pose> X;
+    std::vector<Twist> V;
+    for (int i = 0; i < 4; ++i) {
+      parts.push_back(cluttered_part(random));
+      X.push_back({exp_rotation(random_vector(random, 1)), random_vector(random, 0.025)});
+      V.emplace_back();
+    }
+    for (int i = 0; i < 4; ++i) bodies.push_back({&parts[std::size_t(i)], i != 2});
+    ContactFinder finder(bodies, X);
+    std::vector<double> reach(4, 0.0);
+    const double min_tolerance = 1e-4;
+    int patches = 0;
+    int runs = 0;
+    for (int frame = 0; frame < 300; ++frame) {
+      for (std::size_t i = 0; i < 4; ++i) {
+        if (frame % 50 == 0) {
+          V[i].v = speed * random_vector(random, 0.3);
+          V[i].w = speed * random_vector(random, 5.0);
+        }
+        V[i].v -= 0.005 * X[i].p;  // stay together
+        if (!bodies[i].moves) V[i] = {};
+        reach[i] = (V[i].v.norm() + V[i].w.norm() * finder.radius(static_cast<int>(i))) * 1e-3;
+      }
+      finder.find_near_pairs(X, reach, min_tolerance);
+      finder.find_patches(X, 1 << 20);
+      runs += finder.work().broad_phase_runs;
+      std::map<Key, double> found;
+      for (const ContactPatch& patch : finder.patches())
+        found[{patch.body_a, patch.body_b, patch.piece_a, patch.piece_b}] = patch.distance;
+      patches += static_cast<int>(found.size());
+      for (int a = 0; a < 4; ++a)
+        for (int b = a + 1; b < 4; ++b) {
+          const Pose X_AB = relative_pose(X[std::size_t(a)], X[std::size_t(b)]);
+          const double tolerance = std::max(min_tolerance, reach[std::size_t(a)] + reach[std::size_t(b)]);
+          for (int p = 0; p < 14; ++p)
+            for (int q = 0; q < 14; ++q) {
+              PairCache cold;
+              const PairDistance d =
+                  piece_distance(parts[std::size_t(a)], p, parts[std::size_t(b)], q, X_AB, cold);
+              const auto at = found.find({a, b, p, q});
+              if (std::abs(d.distance - tolerance) < 1e-9) continue;
+              ASSERT_EQ(at != found.end(), d.distance < tolerance)
+                  << "seed " << seed << " frame " << frame << " distance " << d.distance;
+              if (at != found.end() && d.distance > 0.0) {
+                ASSERT_NEAR(at->second, d.distance, 1e-9) << "seed " << seed;
+              }
+            }
+        }
+      for (std::size_t i = 0; i < 4; ++i) X[i] = renormalized(advanced(X[i], V[i], 1e-3));
+    }
+    EXPECT_GT(patches, 300) << "seed " << seed << ": the test must have something to find";
+    if (speed < 0.1) {
+      EXPECT_LT(runs, 150) << "a careful hand's lists must be kept for some frames";
+    }
+    EXPECT_EQ(finder.work().uncertified, 0);
+  }
+}
+
+TEST(ContactFinder, ABudgetLeavesTheLeastUrgentPairs) {
+  Random random(9);
+  std::vector<Part> parts;
+  parts.push_back(cluttered_part(random));
+  parts.push_back(cluttered_part(random));
+  const std::vector<Pose> X(2);
+  ContactFinder finder({{&parts[0], true}, {&parts[1], true}}, X);
+  const std::vector<double> reach(2, 0.001);
+  finder.find_near_pairs(X, reach, 1e-4);
+  finder.find_patches(X, 1 << 20);
+  const int all = finder.work().exact_tests;
+  ASSERT_GT(all, 20);
+  // With a budget, every due pair is reached after some frames.
+  ContactFinder thrifty({{&parts[0], true}, {&parts[1], true}}, X);
+  int tests = 0;
+  for (int frame = 0; frame < 30; ++frame) {
+    thrifty.find_near_pairs(X, reach, 1e-4);
+    thrifty.find_patches(X, 10);
+    EXPECT_LE(thrifty.work().exact_tests, 10);
+    tests += thrifty.work().exact_tests;
+    if (frame == 0) {
+      EXPECT_EQ(thrifty.work().unchecked, all - 10);
+    }
+  }
+  EXPECT_GT(tests, 200);
+}
+
+TEST(Schedule, PairsInContactComeFirstThenTheLongestUnchecked) {
+  std::vector<DuePair> due;
+  Random random(3);
+  for (int i = 0; i < 100; ++i) due.push_back({i, random.index(4) == 0, random.index(10)});
+  const std::vector<DuePair> all = due;
+  const int budget = 40;
+  ASSERT_EQ(prioritise(due, budget), budget);
+  const auto urgency = [](const DuePair& d) { return std::tuple(!d.was_in_contact, d.last_checked, d.pair); };
+  auto least_urgent_taken = urgency(due[0]);
+  for (int i = 0; i < budget; ++i)
+    least_urgent_taken = std::max(least_urgent_taken, urgency(due[std::size_t(i)]));
+  for (std::size_t i = budget; i < due.size(); ++i) EXPECT_GT(urgency(due[i]), least_urgent_taken);
+  for (int i = 1; i < budget; ++i) EXPECT_LT(due[std::size_t(i) - 1].pair, due[std::size_t(i)].pair);
+  EXPECT_EQ(prioritise(due, 1000), 100);
+  EXPECT_EQ(prioritise(due, 0), 0);
+}
+
+}  // namespace
+}  // namespace tactum

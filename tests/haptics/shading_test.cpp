@@ -1,0 +1,76 @@
+#include "tactum/haptics/shading.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tactum/geometry/primitives.h"
+
+namespace tactum {
+namespace {
+
+Part part_of(const Polytope& polytope) {
+  Result<Part> part = part_from_clouds({polytope.vertices});
+  EXPECT_TRUE(part);
+  return std::move(*part);
+}
+
+int face_towards(const Polytope& P, const Vec3& direction) {
+  int best = 0;
+  for (std::size_t f = 0; f < P.faces.size(); ++f)
+    if (P.faces[f].normal.dot(direction) > P.faces[std::size_t(best)].normal.dot(direction)) best = int(f);
+  return best;
+}
+
+TEST(Shading, AFacetedCylinderHasTheNormalsOfARoundOne) {
+  const int sides = 32;
+  const Part part = part_of(make_prism(sides, 0.01, 0.03));
+  const ShadingNormals shading(part, 0.6);
+  const Polytope& P = part.pieces[0];
+  double worst = 0.0;
+  double worst_flat = 0.0;
+  for (int k = 0; k < 2000; ++k) {
+    const double angle = 2 * kPi * k / 2000.0;
+    const double in_facet = std::fmod(angle, 2 * kPi / sides) - kPi / sides;
+    const Vec3 radial(std::cos(angle), std::sin(angle), 0);
+    const double radius = 0.01 * std::cos(kPi / sides) / std::cos(in_facet);  // on the flat side
+    const int f = face_towards(P, radial);
+    const Vec3 face = P.faces[std::size_t(f)].normal;
+    const Vec3 shaded =
+        face + shading.deviation(0, {FeatureKind::kFace, f}, radius * radial + Vec3(0, 0, 0.004));
+    worst = std::max(worst, (shaded - radial).norm());
+    worst_flat = std::max(worst_flat, (face - radial).norm());
+  }
+  EXPECT_LT(worst, 1e-3);  // of a normal that turns by 0.2 rad from facet to facet
+  EXPECT_GT(worst_flat, 0.09);
+}
+
+TEST(Shading, SharpEdgesAndOtherFeaturesAreLeftAlone) {
+  const Part part = part_of(make_box({0.01, 0.02, 0.03}));
+  const ShadingNormals shading(part, 0.6);
+  for (int f = 0; f < 6; ++f)
+    EXPECT_EQ(shading.deviation(0, {FeatureKind::kFace, f}, Vec3(0.001, 0.002, 0.003)).norm(), 0.0);
+  const Part round = part_of(make_prism(32, 0.01, 0.03));
+  const ShadingNormals round_shading(round, 0.6);
+  EXPECT_EQ(round_shading.deviation(0, {FeatureKind::kEdge, 3}, Vec3::Zero()).norm(), 0.0);
+}
+
+TEST(Shading, ContinuousAcrossTheEdgesOfASphere) {
+  const Part part = part_of(make_icosphere(2, 0.02));
+  const ShadingNormals shading(part, 0.6);
+  const Polytope& P = part.pieces[0];
+  for (const Polytope::Edge& edge : P.edges) {
+    for (double t : {0.0, 0.3, 0.5, 1.0}) {
+      const Vec3 p = (1 - t) * P.vertices[std::size_t(edge.tail)] + t * P.vertices[std::size_t(edge.head)];
+      const Vec3 left =
+          P.faces[std::size_t(edge.left)].normal + shading.deviation(0, {FeatureKind::kFace, edge.left}, p);
+      const Vec3 right =
+          P.faces[std::size_t(edge.right)].normal + shading.deviation(0, {FeatureKind::kFace, edge.right}, p);
+      ASSERT_LT((left - right).norm(), 1e-9);
+      ASSERT_LT((left - p.normalized()).norm(), 0.02);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace tactum

@@ -1,0 +1,177 @@
+#include "tactum/session/session.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <optional>
+#include <thread>
+
+#include "support/allocation_guard.h"
+#include "support/real_data.h"
+#include "tactum/scene/builtin_scenes.h"
+#include "tactum/scene/scene_file.h"
+
+namespace tactum {
+namespace {
+
+/// Counts what frames (and everything else the loop does) allocate.
+class AllocationWatch final : public LoopObserver {
+ public:
+  bool after_frame(const FrameRecord&) noexcept override {
+    if (!guard_) {
+      guard_.emplace();  // the first frame is over: from here on nothing may allocate
+      return true;
+    }
+    allocations = guard_->allocations();
+    return true;
+  }
+  std::size_t allocations = 0;
+
+ private:
+  std::optional<AllocationGuard> guard_;
+};
+
+/// Scenes look for meshes where TACTUM_DATA says.
+void use_real_data_for_scenes() {
+  if (!testing::real_data().empty()) setenv("TACTUM_DATA", testing::real_data().c_str(), 0);
+}
+
+/// Opens a built-in scene, or says why its data is not there.
+std::unique_ptr<Session> open_session(const std::string& name) {
+  Result<Scene> scene = open_scene(name);
+  if (!scene) {
+    std::printf("scene %s left out: %s\n", name.c_str(), scene.error().message().c_str());
+    return nullptr;
+  }
+  Result<std::unique_ptr<Session>> session = Session::open(std::move(*scene), {});
+  EXPECT_TRUE(session) << name;
+  return session ? std::move(*session) : nullptr;
+}
+
+class EveryScene : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(EveryScene, RunsWithoutAllocatingTwiceTheSameAndReachesItsGoals) {
+  use_real_data_for_scenes();
+  const std::unique_ptr<Session> first = open_session(GetParam());
+  if (!first) GTEST_SKIP() << "its meshes are not on this machine";
+  AllocationWatch watch;
+  const std::uint64_t frames =
+      std::max<std::uint64_t>(10000, static_cast<std::uint64_t>(frames_of_motion(first->scene())));
+  ASSERT_TRUE(first->run_virtual(frames, &watch));
+  EXPECT_EQ(watch.allocations, 0u);
+  EXPECT_EQ(first->record().frames, frames);
+  EXPECT_EQ(first->record().non_finite_frames, 0u);
+  EXPECT_EQ(first->record().uncertified, 0u);
+  EXPECT_EQ(first->record().unchecked, 0u);
+  EXPECT_EQ(first->record().flags, 0u);
+  EXPECT_GT(first->record().held_contact_frames, frames / 10) << "the hand must have something to feel";
+  for (std::size_t i = 0; i < first->scene().goals.size(); ++i)
+    EXPECT_TRUE(first->goals().met(i)) << first->goals().describe(first->scene().world, i);
+  EXPECT_LE(first->record().max_force_N, first->device().max_force_N);
+  EXPECT_LE(first->record().max_torque_Nm, first->device().max_torque_Nm);
+
+  const std::unique_ptr<Session> second = open_session(GetParam());
+  ASSERT_TRUE(second->run_virtual(frames, nullptr));
+  EXPECT_EQ(second->record().hash(), first->record().hash());
+}
+
+std::vector<std::string> scene_names() {
+  std::vector<std::string> names;
+  for (const SceneEntry& scene : list_scenes()) names.push_back(scene.name);
+  return names;
+}
+
+std::string test_name(const ::testing::TestParamInfo<std::string>& info) {
+  std::string name = info.param;
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Session, EveryScene, ::testing::ValuesIn(scene_names()), test_name);
+
+TEST(Session, TheDrivenGearPushesBackOnlyWhileTouching) {
+  const std::unique_ptr<Session> session = open_session("gears");
+  ASSERT_TRUE(session);
+  ASSERT_TRUE(session->run_virtual(12499, nullptr));
+  const RunRecord& record = session->record();
+  EXPECT_GT(record.colliding_frames, 10000u);
+  EXPECT_LT(record.colliding_frames, 12499u);  // backlash: not always
+  EXPECT_GT(record.max_torque_Nm, 0.005);      // the driven gear's friction is 10 mN m
+  EXPECT_LT(record.max_penetration_m, 5e-4);
+}
+
+/// A block held in the hand pushes on a lever, less than the friction of its hinge.
+const char* const kLever = R"(
+schema = 1
+description = "lever with friction pushed below its friction"
+[[body]]
+name = "lever"
+part = { box = { size_m = [0.1,0.02,0.01] } }
+joint = { kind = "hinge", axis = [0,1,0], anchor_m=[-0.05,0,0], friction_Nm = 0.5 }
+[[body]]
+name = "block"
+part = { box = { size_m = [0.01,0.01,0.01] } }
+pos_m = [0.045,0,0.0105]
+[tool]
+body = "block"
+[hand]
+grip = "firm"
+[[hand.step]]
+offset_m = [0,0,-0.004]
+duration_s = 0.5
+[[hand.step]]
+hold_s = 5
+[[goal]]
+kind = "turned"
+body = "lever"
+at_least_deg = 0.1
+[[goal]]
+kind = "moved"
+body = "block"
+direction = [0,0,-1]
+at_least_m = 0.001
+)";
+
+TEST(Session, APushBelowTheFrictionOfAHingeMovesNothing) {
+  Result<Scene> scene = parse_scene(kLever, "lever", "lever.toml", {});
+  ASSERT_TRUE(scene) << scene.error().message();
+  Result<std::unique_ptr<Session>> session = Session::open(std::move(*scene), {});
+  ASSERT_TRUE(session);
+  ASSERT_TRUE((*session)->run_virtual(4000, nullptr));
+  EXPECT_GT((*session)->record().max_force_N, 0.4);
+  EXPECT_GT((*session)->record().held_contact_frames, 3000u);
+  for (std::size_t i = 0; i < (*session)->scene().world.bodies.size(); ++i) {
+    EXPECT_LT(std::abs((*session)->goals().angle(i)), 1e-6) << (*session)->scene().world.bodies[i].name;
+  }
+}
+
+TEST(SessionThread, RunsOnItsOwnThreadAndStopsWithZeroWrench) {
+  const std::unique_ptr<Session> session = open_session("gears");
+  ASSERT_TRUE(session);
+  ASSERT_TRUE(session->start());
+  while (session->loop_status().running && session->loop_status().frames < 200) {
+    session->poll();
+    std::this_thread::yield();
+  }
+  session->stop();
+  session->poll();
+  EXPECT_GE(session->record().frames, 200u);
+  EXPECT_TRUE(is_zero(session->last_report().shown));
+  EXPECT_GE(session->frame_times().count(), 200u);
+  session->stop();  // twice is harmless
+}
+
+TEST(Session, AnUnknownDeviceIsToldBeforeAnythingRuns) {
+  Result<Scene> scene = open_scene("gears");
+  ASSERT_TRUE(scene);
+  const auto session =
+      Session::open(std::move(*scene), {.device = "phantom-of-the-opera", .grip = "", .rate_Hz = 0.0});
+  ASSERT_FALSE(session);
+  EXPECT_NE(session.error().message().find("simulated"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace tactum
