@@ -78,8 +78,8 @@ Facing facing_feature(const Polytope& P, const Feature& f, const Vec3& outward, 
   });
   Facing facing;
   facing.feature = {Kind::kFace, face};
-  if (f.kind ==
-      Kind::kFace) {  // square to the normal, or the answer is not one of the queries': then a point
+  if (f.kind == Kind::kFace) {
+    // Square to the normal; where it is not (an answer that is none of the queries'), a point.
     if (lean >= angle) facing.feature = {Kind::kVertex, vertex_of(P, f)};
     return facing;
   }
