@@ -104,10 +104,10 @@ Summary feel_virtually(Session& session, std::uint64_t frames) {
 
 /// Runs the loop's own thread until the frames are done, the device is gone or the user stops it.
 Summary feel_live(Session& session, std::uint64_t frames) {
-  if (const Result<void> started = session.start(); !started) fail(started.error());
+  if (const Result<void> started = session.start(frames); !started) fail(started.error());
   for (const std::string& sentence : session.privileges().sentences) fmt::print(stderr, "{}\n", sentence);
   StatusLine status;
-  while (session.loop_status().running && session.loop_status().frames < frames && !g_interrupted.load()) {
+  while (session.loop_status().running && !g_interrupted.load()) {
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
     status.show(session, session.poll());
   }

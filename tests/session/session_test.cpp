@@ -164,6 +164,16 @@ TEST(SessionThread, RunsOnItsOwnThreadAndStopsWithZeroWrench) {
   session->stop();  // twice is harmless
 }
 
+TEST(SessionThread, RunsAsManyFramesAsAskedForAndThenTheRamp) {
+  const std::unique_ptr<Session> session = open_session("block-on-plate");
+  ASSERT_TRUE(session);
+  ASSERT_TRUE(session->start(150));
+  while (session->loop_status().running) std::this_thread::yield();
+  session->stop();
+  EXPECT_EQ(session->record().frames, 150u);  // the ramp's frames are not the scene's
+  EXPECT_TRUE(is_zero(session->last_report().shown));
+}
+
 TEST(Session, AnUnknownDeviceIsToldBeforeAnythingRuns) {
   Result<Scene> scene = open_scene("gears");
   ASSERT_TRUE(scene);

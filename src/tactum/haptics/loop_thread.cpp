@@ -108,7 +108,8 @@ bool LoopThread::run_frame(Clock& clock, FrameTick& tick, DeviceSample& sample) 
   const std::int64_t begin_ns = monotonic_ns();
   tick.now_s = seconds(begin_ns - clock.start_ns);
   tick.late = begin_ns - clock.last_ns > clock.late_ns;
-  tick.stop = stop_requested_.load(std::memory_order_relaxed);
+  tick.stop = stop_requested_.load(std::memory_order_relaxed) ||
+              (settings_.frames > 0 && tick.index >= settings_.frames);
   clock.last_ns = begin_ns;
 
   if (!device_->read(tick.now_s, sample)) add(failed_reads_, 1);

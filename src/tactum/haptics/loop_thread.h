@@ -26,6 +26,7 @@ namespace tactum {
 
 struct LoopSettings {
   double rate_Hz = 1000.0;          ///< [Hz]
+  std::uint64_t frames = 0;         ///< asks for the stop by itself after so many; 0: never
   double late_limit_s = 0.010;      ///< beyond the period; a later frame sends zero [s]
   int writes_until_lost = 50;       ///< so many refused writes in a row: the device is unplugged
   std::size_t timing_room = 16384;  ///< frames the timing ring holds until somebody pops them

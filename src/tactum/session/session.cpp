@@ -55,9 +55,10 @@ Result<VirtualRun> Session::run_virtual(std::uint64_t frames, LoopObserver* obse
   return tactum::run_virtual(*device_, *this, rate_Hz(), frames, observer);
 }
 
-Result<void> Session::start() {
+Result<void> Session::start(std::uint64_t frames) {
   LoopSettings settings;
   settings.rate_Hz = rate_Hz();
+  settings.frames = frames;
   Result<void> started = loop_.start(*device_, *this, settings);
   threaded_ = static_cast<bool>(started);
   return started;

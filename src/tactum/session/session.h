@@ -47,8 +47,9 @@ class Session final : private HapticFrame {
   /// Runs `frames` frames on the virtual clock, in this thread. `observer` may be null.
   Result<VirtualRun> run_virtual(std::uint64_t frames, LoopObserver* observer);
 
-  /// Starts the loop's thread.
-  Result<void> start();
+  /// Starts the loop's thread. It stops by itself after `frames` frames and the ramp that follows; 0: when
+  /// told.
+  Result<void> start(std::uint64_t frames = 0);
   /// Ramps the wrench to zero, closes the device, ends the thread. Safe to call twice.
   void stop() noexcept { loop_.stop(); }
   LoopStatus loop_status() const noexcept { return loop_.status(); }
