@@ -14,7 +14,7 @@ namespace {
 using Index = std::size_t;
 
 /// Boxes and lists of near pairs are grown by this share of the smaller body's radius beyond the tolerance:
-/// more means they are renewed less often but hold more pairs. Flat around here for the gears (0.01 - 0.05).
+/// more means they are renewed less often but hold more pairs.
 constexpr double kSlack = 0.02;
 
 /// Below every odometer reading less a tolerance.

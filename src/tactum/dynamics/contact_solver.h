@@ -9,7 +9,8 @@
 ///     vn + lambda / (k h^2) = (delta - d) / h,     lambda >= 0,     vn = n . (v_A - v_B) after all impulses,
 ///
 /// which is a linear complementarity problem with a positive definite matrix. Up to 48 rows it is solved
-/// exactly by principal pivoting (14 rows of two gears: 3 us; Gauss-Seidel needed 50 sweeps, 15 us), beyond
+/// exactly by principal pivoting (two gears, 14 rows:
+/// Gauss-Seidel needed 54 sweeps, and the response stage went from 17 to 7 us), beyond
 /// that by projected Gauss-Seidel with a bounded number of sweeps. It is stable for every k, h and mass, and
 /// at rest its forces are the published ones exactly.
 

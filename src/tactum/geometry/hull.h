@@ -16,7 +16,7 @@ namespace tactum {
 
 /// The hull of `points` [m]. Points of one plane give a flat polytope (two faces). An error says when points
 /// are not finite, fewer than three, all on one line, or when the hull has more than 65 535 vertices. Cost: n
-/// log n, about 2 us a point.
+/// log n.
 Result<Polytope> convex_hull(const std::vector<Vec3>& points);
 
 /// A flat polytope from a convex polygon's corners in order; face 0 is seen counter-clockwise.

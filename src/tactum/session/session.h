@@ -67,7 +67,7 @@ class Session final : private HapticFrame {
   const GoalRecord& goals() const noexcept { return goals_; }
   const FrameReport& last_report() const noexcept { return report_; }
   const FrameState& state() const noexcept { return state_; }
-  /// Takes the times of the stages of every frame (about 0.2 us a frame); set before the run, null for none.
+  /// Takes the times of the stages of every frame; set before the run, null for none.
   void time_stages(StageClock* clock) noexcept {
     stage_clock_ = clock;
     state_.observer = clock;
