@@ -30,8 +30,8 @@ Vec3 edges_normal(const PairView& pair, const March& march, const Vec3& d, doubl
   if (sine < tolerances::kParallelSine) return Vec3::Zero();
   double side = c.dot(d);
   if (gap < tolerances::kTouching * pair.size) {
-    const Vec3 out_a = pair.A.side_normals[ea.left_slot] + pair.A.side_normals[ea.right_slot];
-    const Vec3 out_b = pair.B.side_normals[eb.left_slot] + pair.B.side_normals[eb.right_slot];
+    const Vec3 out_a = pair.A.sides[ea.left_slot].normal + pair.A.sides[ea.right_slot].normal;
+    const Vec3 out_b = pair.B.sides[eb.left_slot].normal + pair.B.sides[eb.right_slot].normal;
     side = c.dot(pair.X_AB.R * out_b - out_a);
   }
   return side < 0.0 ? Vec3(-c / sine) : Vec3(c / sine);
@@ -78,17 +78,14 @@ Judged judge(const PairView& pair, const March& march, const Vec3& normal) noexc
 Vec3 inside_cones(const PairView& pair, const Feature& fa, const Feature& fb, Vec3 n) noexcept {
   const auto project = [](const Polytope& P, const Feature& f, Vec3& outward) {
     if (f.kind == Kind::kVertex) {
-      for (int e : P.edges_at(f.index)) {
-        const Vec3& u = P.edges[e].direction;
-        const double up = u.dot(outward);
-        if ((P.edges[e].tail == f.index) == (up > 0.0)) outward -= u * up;
-      }
+      for (const Polytope::Ray& ray : P.rays_at(f.index))
+        if (const double up = ray.direction.dot(outward); up > 0.0) outward -= ray.direction * up;
     } else if (f.kind == Kind::kEdge) {
       const Polytope::Edge& edge = P.edges[f.index];
       outward -= edge.direction * edge.direction.dot(outward);
       for (int slot : {edge.left_slot, edge.right_slot})
-        if (const double in = P.side_normals[slot].dot(outward); in < 0.0)
-          outward -= P.side_normals[slot] * in;
+        if (const double in = P.sides[slot].normal.dot(outward); in < 0.0)
+          outward -= P.sides[slot].normal * in;
     }
   };
   for (int round = 0; round < 16; ++round) {

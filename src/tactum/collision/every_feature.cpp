@@ -33,7 +33,7 @@ Feature along_edge(const Polytope& P, int e, double s) noexcept {
 /// The vertex of P over the face of Q, when its foot is inside: the foot, in Q's frame.
 bool foot_on_face(const Polytope& Q, const Polytope::Face& face, const Vec3& p, Vec3& foot) noexcept {
   for (int slot = face.first; slot < face.first + face.count; ++slot)
-    if (Q.side_normals[slot].dot(p) > Q.side_offsets[slot]) return false;
+    if (Q.sides[slot].normal.dot(p) > Q.sides[slot].offset) return false;
   foot = p - face.normal * (face.normal.dot(p) - face.offset);
   return true;
 }

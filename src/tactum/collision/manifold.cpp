@@ -38,7 +38,10 @@ void for_faces_at(const Polytope& P, const Feature& f, const Visit& visit) noexc
     visit(P.edges[f.index].right);
     return;
   }
-  for (int e : P.edges_at(f.index)) visit(P.edges[e].tail == f.index ? P.edges[e].left : P.edges[e].right);
+  for (const Polytope::Ray& ray : P.rays_at(f.index)) {
+    const Polytope::Edge& edge = P.edges[ray.edge];
+    visit(edge.tail == f.index ? edge.left : edge.right);
+  }
 }
 
 /// Of the edges at feature `f`, that bound `face`, the one most square to `outward`; its slope in `slope`.
@@ -49,11 +52,11 @@ int level_edge(const Polytope& P, const Feature& f, int face, const Vec3& outwar
   }
   int best = -1;
   slope = 2.0;
-  for (int e : P.edges_at(f.index)) {
-    if (P.edges[e].left != face && P.edges[e].right != face) continue;
-    if (const double rise = std::abs(P.edges[e].direction.dot(outward)); rise < slope) {
+  for (const Polytope::Ray& ray : P.rays_at(f.index)) {
+    if (P.edges[ray.edge].left != face && P.edges[ray.edge].right != face) continue;
+    if (const double rise = std::abs(ray.direction.dot(outward)); rise < slope) {
       slope = rise;
-      best = e;
+      best = ray.edge;
     }
   }
   return best;

@@ -41,18 +41,15 @@ ArcEnd follow_arc(const Polytope& P, const Polytope& Q, const Mat3& R_QP, const 
   const Vec3 o0 = -(R_QP * arc.m0);  // Q's outward direction
   const Vec3 o_t = -(R_QP * arc.t0);
   ArcEnd meets;
-  for (int e : Q.edges_at(arc.vertex)) {
-    if (e == excluded) continue;
-    const Polytope::Edge& edge = Q.edges[e];
-    const double sign = edge.tail == arc.vertex ? 1.0 : -1.0;
-    const double below =
-        std::max(0.0, -sign * edge.direction.dot(o0));  // how much lower the far end is, per metre
-    const double rising = sign * edge.direction.dot(o_t);
+  for (const Polytope::Ray& ray : Q.rays_at(arc.vertex)) {
+    if (ray.edge == excluded) continue;
+    const double below = std::max(0.0, -ray.direction.dot(o0));  // how much lower the far end is, per metre
+    const double rising = ray.direction.dot(o_t);
     if (rising <= tolerances::kSameArc && below <= tolerances::kSameArc) continue;  // rolls on the edge
     const double at = cotangent(rising, below);
     if (at <= first) continue;
     first = at;
-    meets.edge = e;
+    meets.edge = ray.edge;
     meets.m = (rising * arc.m0 + below * arc.t0).normalized();
   }
   return meets;
@@ -113,7 +110,7 @@ Crossing worst_side(const Polytope& P, int face_index, const Vec3& point, double
   const Polytope::Face& face = P.faces[face_index];
   Worst worst{cap, {}};
   for (int slot = face.first; slot < face.first + face.count; ++slot)
-    worst.consider({P.side_normals[slot].dot(point) - P.side_offsets[slot], slot});
+    worst.consider({P.sides[slot].normal.dot(point) - P.sides[slot].offset, slot});
   return worst.crossing;
 }
 
@@ -167,7 +164,7 @@ MinkowskiFacet across_face_border(const PairView& pair, const MinkowskiFacet& fa
   arc.end = other_face(P.edges[arc.edge], face);
   arc.vertex = on_a ? facet.b.index : facet.a.index;
   arc.m0 = P.faces[face].normal;
-  arc.t0 = P.side_normals[slot];
+  arc.t0 = P.sides[slot].normal;
   return on_a ? facet_behind_a(pair, arc, -1) : facet_behind_b(pair, arc, -1);
 }
 
@@ -280,12 +277,12 @@ std::optional<MinkowskiFacet> facet_of_edges(const PairView& pair, int edge_a, i
   const Polytope::Edge& ea = pair.A.edges[edge_a];
   const Polytope::Edge& eb = pair.B.edges[edge_b];
   const Vec3 c = ea.direction.cross(pair.X_AB.R * eb.direction);
-  const double a_left = pair.A.side_normals[ea.left_slot].dot(c);
-  const double a_right = pair.A.side_normals[ea.right_slot].dot(c);
+  const double a_left = pair.A.sides[ea.left_slot].normal.dot(c);
+  const double a_right = pair.A.sides[ea.right_slot].normal.dot(c);
   if (a_left * a_right < 0.0) return std::nullopt;
   const Vec3 c_B = pair.X_BA.R * c;
-  const double b_left = pair.B.side_normals[eb.left_slot].dot(c_B);
-  const double b_right = pair.B.side_normals[eb.right_slot].dot(c_B);
+  const double b_left = pair.B.sides[eb.left_slot].normal.dot(c_B);
+  const double b_right = pair.B.sides[eb.right_slot].normal.dot(c_B);
   // The normal cone of an edge is outside both its side planes; A's and B's outward directions are opposite.
   if (b_left * b_right < 0.0 || (a_left + a_right) * (b_left + b_right) >= 0.0) return std::nullopt;
   if (c.squaredNorm() < tolerances::kParallelSine * tolerances::kParallelSine) return std::nullopt;
@@ -299,8 +296,8 @@ MinkowskiFacet facet_near(const PairView& pair, const Vec3& n) noexcept {
   const auto aligned_face = [](const Polytope& P, int vertex, const Vec3& d) {
     int best = -1;
     double most = -std::numeric_limits<double>::infinity();
-    for (int e : P.edges_at(vertex))
-      for (int f : {P.edges[e].left, P.edges[e].right})
+    for (const Polytope::Ray& ray : P.rays_at(vertex))
+      for (int f : {P.edges[ray.edge].left, P.edges[ray.edge].right})
         if (const double cosine = P.faces[f].normal.dot(d); cosine > most) {
           most = cosine;
           best = f;

@@ -98,10 +98,10 @@ Feature common_feature(const Polytope& P, std::array<int, 4> v, int count) noexc
     for (int k = 0; k < i; ++k) seen |= v[k] == v[i];
     kinds += !seen;
   }
-  for (int e : P.edges_at(v[0]))
-    if (kinds == 2 && among(P.across(e, v[0]))) return {Kind::kEdge, e};
-  for (int e : P.edges_at(v[0]))
-    for (int f : {P.edges[e].left, P.edges[e].right}) {
+  for (const Polytope::Ray& ray : P.rays_at(v[0]))
+    if (kinds == 2 && among(ray.far)) return {Kind::kEdge, ray.edge};
+  for (const Polytope::Ray& ray : P.rays_at(v[0]))
+    for (int f : {P.edges[ray.edge].left, P.edges[ray.edge].right}) {
       int held = 0;
       for (int slot = P.faces[f].first; slot < P.faces[f].first + P.faces[f].count; ++slot)
         held += among(P.face_vertices[slot]);

@@ -29,13 +29,11 @@ struct Points {
 /// The edge at `v` that goes most along `d`, by more than `least`; -1 when none does.
 int edge_along(const Polytope& P, int v, const Vec3& d, double least) noexcept {
   int best = -1;
-  for (int e : P.edges_at(v)) {
-    const Polytope::Edge& edge = P.edges[e];
-    const double along = edge.direction.dot(d);
-    const double away = edge.tail == v ? along : -along;
+  for (const Polytope::Ray& ray : P.rays_at(v)) {
+    const double away = ray.direction.dot(d);
     if (away > least) {
       least = away;
-      best = e;
+      best = ray.edge;
     }
   }
   return best;
@@ -67,8 +65,8 @@ Step vertex_edge(const Sides& S, Feature& fp, Feature& fq, Points& x) noexcept {
     fq = {FeatureKind::kVertex, along < 0.0 ? edge.tail : edge.head};
     return Step::kMoved;
   }
-  const double left = S.Q.side_normals[edge.left_slot].dot(p_Q) - S.Q.side_offsets[edge.left_slot];
-  const double right = S.Q.side_normals[edge.right_slot].dot(p_Q) - S.Q.side_offsets[edge.right_slot];
+  const double left = S.Q.sides[edge.left_slot].normal.dot(p_Q) - S.Q.sides[edge.left_slot].offset;
+  const double right = S.Q.sides[edge.right_slot].normal.dot(p_Q) - S.Q.sides[edge.right_slot].offset;
   if (std::min(left, right) < -S.slack) {
     fq = {FeatureKind::kFace, left < right ? edge.left : edge.right};
     return Step::kMoved;
@@ -84,7 +82,7 @@ Step vertex_edge(const Sides& S, Feature& fp, Feature& fq, Points& x) noexcept {
 int slot_outside(const Polytope& Q, const Polytope::Face& face, const Vec3& p, double slack) noexcept {
   int best = -1;
   for (int slot = face.first; slot < face.first + face.count; ++slot) {
-    const double out = Q.side_normals[slot].dot(p) - Q.side_offsets[slot];
+    const double out = Q.sides[slot].normal.dot(p) - Q.sides[slot].offset;
     if (out > slack) {
       slack = out;
       best = slot;
@@ -144,8 +142,8 @@ bool at_end(const Polytope::Edge& edge, double s, Feature& f) noexcept {
 
 /// The face at `edge` in whose column the unit direction `d` from the edge leads; -1 when in neither.
 int face_toward(const Polytope& P, const Polytope::Edge& edge, const Vec3& d, double slack) noexcept {
-  const double left = P.side_normals[edge.left_slot].dot(d);
-  const double right = P.side_normals[edge.right_slot].dot(d);
+  const double left = P.sides[edge.left_slot].normal.dot(d);
+  const double right = P.sides[edge.right_slot].normal.dot(d);
   if (std::min(left, right) >= -slack) return -1;
   return left < right ? edge.left : edge.right;
 }
@@ -219,8 +217,8 @@ Clip clip_to_column(const Polytope& Q, const Polytope::Face& face, const Vec3& p
   Clip clip;
   clip.high = length;
   for (int slot = face.first; slot < face.first + face.count; ++slot) {
-    const double along = Q.side_normals[slot].dot(u);
-    const double room = Q.side_offsets[slot] - Q.side_normals[slot].dot(p0);
+    const double along = Q.sides[slot].normal.dot(u);
+    const double room = Q.sides[slot].offset - Q.sides[slot].normal.dot(p0);
     if (std::abs(along) < tolerances::kVoronoiSlack) {
       clip.empty |= room < -slack;
     } else if (along > 0.0 && room < clip.high * along) {

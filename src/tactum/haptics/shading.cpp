@@ -63,10 +63,10 @@ void ShadingNormals::shade_polytope(const Polytope& piece, double cosine) {
   for (const Polytope::Face& face : piece.faces)
     for (int slot = face.first; slot < face.first + face.count; ++slot) {
       Vec3 sum = Vec3::Zero();
-      for (int e : piece.edges_at(piece.face_vertices[Index(slot)])) {
+      for (const Polytope::Ray& ray : piece.rays_at(piece.face_vertices[Index(slot)])) {
         // Every face around the corner is on the left or the right of two of its edges: counted twice, all
         // alike.
-        for (int f : {piece.edges[Index(e)].left, piece.edges[Index(e)].right}) {
+        for (int f : {piece.edges[Index(ray.edge)].left, piece.edges[Index(ray.edge)].right}) {
           const Vec3& normal = piece.faces[Index(f)].normal;
           if (normal.dot(face.normal) >= cosine) sum += normal;
         }
