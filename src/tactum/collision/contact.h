@@ -11,6 +11,7 @@
 ///
 /// Swapping A and B keeps the distance, turns the normal around and swaps the points. Tested for every query.
 
+#include <array>
 #include <cstdint>
 
 #include "tactum/base/static_vector.h"
@@ -27,11 +28,19 @@ struct Feature {
   bool operator==(const Feature&) const = default;
 };
 
+/// Four pairs of vertices of A and B. While their differences hold the origin between them the pieces share a
+/// point. Pieces have at most 65 535 vertices.
+struct OverlapProof {
+  std::array<std::uint16_t, 4> a{}, b{};
+  bool known = false;
+};
+
 /// The closest features of a pair in the last frame: the coherence the tracker lives on. Value-initialised
 /// means none.
 struct PairCache {
   Feature a, b;
   Vec3 normal_A = Vec3::Zero();  ///< last normal from B to A, unit, or zero when there was none [-]
+  OverlapProof overlap;          ///< known when the pieces overlapped in the last frame
 };
 
 /// Why a query stopped.

@@ -135,7 +135,8 @@ Crossing place(const PairView& pair, const MinkowskiFacet& facet, const Vec3& ta
   const Vec3 u_b = pair.X_AB.R * eb.direction;
   double s = 0.0;
   double t = 0.0;
-  if (!nearest_on_lines(a0, ea.direction, b0 - target, u_b, tolerances::kSameArc, s, t)) {
+  const Vec3 r = b0 - target - a0;
+  if (!nearest_on_lines(ea.direction, u_b, r, ea.direction.cross(u_b), tolerances::kSameArc, s, t)) {
     s = std::clamp(ea.direction.dot(b0 - target - a0), 0.0, ea.length);
     t = u_b.dot(a0 + ea.direction * s - b0 + target);
     walk.outside =

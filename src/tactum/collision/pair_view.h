@@ -28,7 +28,7 @@ struct PairView {
         X_AB(x),
         X_BA(x.inverse()),
         size(std::max(a.size, b.size)),
-        scale(size + x.p.lpNorm<1>() + a.center.lpNorm<1>() + b.center.lpNorm<1>()) {}
+        scale(x.p.lpNorm<1>() + a.magnitude + b.magnitude) {}
 
   const Vec3& vertex_a(int v) const noexcept { return A.vertices[v]; }
   /// Vertex of B, in A.
@@ -57,10 +57,7 @@ inline int vertex_of(const Polytope& P, const Feature& f) noexcept {
 
 /// Does the feature exist on `P`? A cache may come from another pair of pieces.
 inline bool valid_feature(const Polytope& P, const Feature& f) noexcept {
-  const std::size_t count = f.kind == FeatureKind::kVertex ? P.vertices.size()
-                            : f.kind == FeatureKind::kEdge ? P.edges.size()
-                                                           : P.faces.size();
-  return f.index >= 0 && static_cast<std::size_t>(f.index) < count;
+  return f.index >= 0 && f.index < P.counts[static_cast<std::size_t>(f.kind)];
 }
 
 }  // namespace tactum
