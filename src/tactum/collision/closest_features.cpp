@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "tactum/collision/every_feature.h"
+#include "tactum/collision/overlap.h"
 #include "tactum/collision/penetration.h"
 #include "tactum/collision/support_distance.h"
 #include "tactum/collision/voronoi_march.h"
@@ -167,6 +168,7 @@ class Query {
   bool overlapping() noexcept {
     result_ = penetration_depth(pair_.A, pair_.B, pair_.X_AB, cache_);
     result_.steps += steps_;
+    cache_.overlap.known = true;
     return true;
   }
 
@@ -224,13 +226,19 @@ class Query {
   int steps_ = 0;
 };
 
+/// Pieces that overlapped in the last frame: their depth, and a proof that it is one.
+bool still_inside(const PairView& pair, PairCache& cache, PairDistance& x) noexcept {
+  x = penetration_depth(pair.A, pair.B, pair.X_AB, cache);
+  return overlap_by_facet(pair, x) || overlap_by_vertices(pair, cache.overlap);
+}
+
 }  // namespace
 
 PairDistance closest_features(const Polytope& A, const Polytope& B, const Pose& X_AB,
                               PairCache& cache) noexcept {
   const PairView pair(A, B, X_AB);
-  if (cache.overlap.known && still_overlap(pair, cache.overlap)) return penetration_depth(A, B, X_AB, cache);
   PairDistance x;
+  if (cache.overlap.known && still_inside(pair, cache, x)) return x;
   const Seed seed = seed_of(pair, cache);
   const March march = voronoi_march(pair, seed.a, seed.b, tolerances::kVoronoiSlack * pair.scale, x);
   if (march.doubt > certificate(pair)) return Query(pair, cache).run(march, x);

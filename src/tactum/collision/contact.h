@@ -29,7 +29,7 @@ struct Feature {
 };
 
 /// Four pairs of vertices of A and B. While their differences hold the origin between them the pieces share a
-/// point. Pieces have at most 65 535 vertices.
+/// point; all zero when none were needed. Pieces have at most 65 535 vertices.
 struct OverlapProof {
   std::array<std::uint16_t, 4> a{}, b{};
   bool known = false;
@@ -40,7 +40,7 @@ struct OverlapProof {
 struct PairCache {
   Feature a, b;
   Vec3 normal_A = Vec3::Zero();  ///< last normal from B to A, unit, or zero when there was none [-]
-  OverlapProof overlap;          ///< known when the pieces overlapped in the last frame
+  OverlapProof overlap;          ///< known when they overlapped in the last frame
 };
 
 /// Why a query stopped.

@@ -149,18 +149,6 @@ OverlapProof proof_of(const Simplex& simplex) noexcept {
 
 }  // namespace
 
-bool still_overlap(const PairView& pair, const OverlapProof& proof) noexcept {
-  std::array<Corner, 4> corners;
-  std::array<const Corner*, 4> all{};
-  for (std::size_t i = 0; i < 4; ++i) {
-    if (proof.a[i] >= pair.A.vertices.size() || proof.b[i] >= pair.B.vertices.size()) return false;
-    corners[i].d = pair.vertex_a(proof.a[i]) - pair.vertex_b(proof.b[i]);
-    all[i] = &corners[i];
-  }
-  std::array<double, 4> share{};
-  return interior_shares(all, 4, share);
-}
-
 March closest_by_supports(const PairView& pair, OverlapProof& proof, PairDistance& x) noexcept {
   constexpr int kSteps = 100;
   Simplex simplex;

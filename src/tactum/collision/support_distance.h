@@ -13,7 +13,4 @@ namespace tactum {
 /// `proof` what shows it.
 March closest_by_supports(const PairView& pair, OverlapProof& proof, PairDistance& x) noexcept;
 
-/// Do the corners of `proof` still hold the origin between them? `proof` may be any pair's. Cost: 20 ns.
-bool still_overlap(const PairView& pair, const OverlapProof& proof) noexcept;
-
 }  // namespace tactum
