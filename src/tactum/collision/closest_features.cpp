@@ -14,10 +14,9 @@ namespace {
 
 using Kind = FeatureKind;
 
-/// Distance and normal as the features give them, and what the support planes say about it.
+/// Distance and normal as the features give them, with the doubt that the support planes leave.
 struct Judged {
   PairDistance answer;
-  double doubt = 0.0;  ///< distance minus the support planes' gap [m]
   int support_a = 0, support_b = 0;
 };
 
@@ -65,12 +64,12 @@ Judged judge(const PairView& pair, const PairDistance& at, const Vec3& normal) n
   x.distance = normal.dot(at.p_a - at.p_b);
   judged.support_a = vertex_of(pair.A, at.a);
   judged.support_b = vertex_of(pair.B, at.b);
-  judged.doubt = std::numeric_limits<double>::infinity();
+  x.doubt = std::numeric_limits<double>::infinity();
   if (normal.isZero()) return judged;
   const double gap = pair.separation(normal, judged.support_a, judged.support_b);
   // The points' whole distance counts, and that they lie on one normal.
   const Vec3 d = at.p_a - at.p_b;
-  judged.doubt = std::max(d.norm() - gap, (d - normal * x.distance).norm());
+  x.doubt = std::max(d.norm() - gap, (d - normal * x.distance).norm());
   return judged;
 }
 
@@ -150,16 +149,16 @@ class Query {
   /// Judges the points `at`, with their features' normal or that normal healed.
   bool certified(const PairDistance& at, Stop stop) noexcept {
     last_ = judge(pair_, at, features_normal(pair_, at));
-    if (last_.doubt > certificate(pair_) && std::isfinite(last_.doubt)) {
+    if (last_.answer.doubt > certificate(pair_) && std::isfinite(last_.answer.doubt)) {
       const Judged healed = judge(pair_, at, inside_cones(pair_, at.a, at.b, last_.answer.normal));
-      if (healed.doubt < last_.doubt) last_ = healed;
+      if (healed.answer.doubt < last_.answer.doubt) last_ = healed;
     }
     const double gap = (at.p_a - at.p_b).norm();
     if (gap < least_gap_) {
       least_gap_ = gap;
       best_ = last_;
     }
-    if (last_.doubt > certificate(pair_)) return false;
+    if (last_.answer.doubt > certificate(pair_)) return false;
     done(last_.answer, stop);
     return true;
   }
@@ -242,6 +241,7 @@ PairDistance closest_features(const Polytope& A, const Polytope& B, const Pose& 
   const Seed seed = seed_of(pair, cache);
   const March march = voronoi_march(pair, seed.a, seed.b, tolerances::kVoronoiSlack * pair.scale, x);
   if (march.doubt > certificate(pair)) return Query(pair, cache).run(march, x);
+  x.doubt = march.doubt;
   x.stop = Stop::kCertified;  // the walk proved it itself
   x.steps = march.steps;
   cache.a = x.a;
