@@ -1,0 +1,14 @@
+#pragma once
+/// The subcommands of `tactum bench`.
+
+#include "commands.h"
+
+namespace tactum {
+
+void add_bench_impact(CLI::App& bench);
+void add_bench_manifold(CLI::App& bench);
+void add_bench_pairs(CLI::App& bench);
+void add_bench_penetration(CLI::App& bench);
+void add_bench_table1(CLI::App& bench);
+
+}  // namespace tactum
