@@ -7,7 +7,9 @@ namespace tactum {
 void add_bench(CLI::App& app) {
   CLI::App* bench = app.add_subcommand("bench", "Measure");
   bench->require_subcommand(1);
-  for (auto* add : {add_bench_table1, add_bench_pairs}) add(*bench);
+  for (auto* add :
+       {add_bench_table1, add_bench_pairs, add_bench_penetration, add_bench_manifold, add_bench_impact})
+    add(*bench);
 }
 
 }  // namespace tactum

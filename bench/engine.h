@@ -6,8 +6,7 @@
 #include <span>
 #include <string>
 
-#include "bench/shapes.h"
-#include "tactum/math/pose.h"
+#include "bench/motion.h"
 
 namespace tactum::bench {
 
@@ -28,8 +27,8 @@ class Engine {
   virtual bool tells_depths() const { return true; }     ///< of pieces that overlap
   /// May refuse pairs that it cannot hold, or would take minutes for.
   virtual bool hold(const Shape& a, const Shape& b) = 0;
-  virtual void forget() = 0;  ///< what is known from earlier queries
-  virtual void place(const Pose& X_AB) = 0;
+  virtual void forget() = 0;                                          ///< what is known from earlier queries
+  virtual void place(const Recording& recording, std::size_t i) = 0;  ///< at its i-th pose
   virtual void query() = 0;
   virtual Answer answer() const = 0;
 };

@@ -19,7 +19,7 @@ class Tracked final : public Engine {
     return true;
   }
   void forget() override { cache_ = {}; }
-  void place(const Pose& X_AB) override { X_AB_ = X_AB; }
+  void place(const Recording& recording, std::size_t i) override { X_AB_ = recording.poses[i]; }
   void query() override { found_ = function_(*a_, *b_, X_AB_, cache_); }
   Answer answer() const override { return {found_.certified(), found_.distance, found_.steps}; }
 

@@ -14,7 +14,7 @@ class Nothing final : public Engine {
  public:
   bool hold(const Shape&, const Shape&) override { return true; }
   void forget() override {}
-  void place(const Pose&) override {}
+  void place(const Recording&, std::size_t) override {}
   void query() override { ++calls_; }
   Answer answer() const override { return {calls_ > 0, 0.0, 0}; }
 
@@ -35,6 +35,10 @@ void judge(const Answer& answer, const Truth& truth, Row& row) {
     ++row.missed;
   else
     row.max_error_m = std::max(row.max_error_m, truth.error_of(answer.distance));
+  if (truth.proved && truth.high < 0.0) {
+    ++row.depths_checked;
+    if (answer.answered && truth.error_of(answer.distance) > Row::kAccurate_m) ++row.depths_wrong;
+  }
   row.steps_mean += answer.steps;
   row.steps_max = std::max(row.steps_max, answer.steps);
 }
@@ -48,6 +52,10 @@ nlohmann::ordered_json to_json(const Row& row) {
       {"median_ns", row.median_ns}, {"p99_ns", row.p99_ns},         {"p999_ns", row.p999_ns},
       {"max_ns", row.max_ns},       {"batched_ns", row.batched_ns}, {"max_error_m", row.max_error_m},
       {"missed", row.missed}};
+  if (row.depths_checked > 0) {
+    json["depths_checked"] = row.depths_checked;
+    json["depths_wrong"] = row.depths_wrong;
+  }
   if (row.engine == kOurs) {
     json["steps_mean"] = row.steps_mean;
     json["steps_max"] = row.steps_max;
@@ -58,7 +66,7 @@ nlohmann::ordered_json to_json(const Row& row) {
 Meter::Meter(int replays) : replays_(replays) {
   constexpr std::size_t kCalls = 10000;
   Nothing nothing;
-  std::vector<double> empty = fastest_ns(nothing, std::vector<Pose>(kCalls), kCalls, false);
+  std::vector<double> empty = fastest_ns(nothing, {}, kCalls, false);
   std::sort(empty.begin(), empty.end());
   overhead_ns_ = quantile(empty, 0.5);
 }
@@ -70,16 +78,16 @@ std::string Meter::describe() const {
       replays_, clock_.describe(), overhead_ns_);
 }
 
-std::vector<double> Meter::fastest_ns(Engine& engine, const std::vector<Pose>& poses, std::size_t count,
+std::vector<double> Meter::fastest_ns(Engine& engine, const Recording& recording, std::size_t count,
                                       bool cold) const {
   std::vector<double> least(count, std::numeric_limits<double>::infinity());
   for (int replay = 0; replay < replays_; ++replay) {
     engine.forget();
-    engine.place(poses[0]);
+    engine.place(recording, 0);
     engine.query();  // the start from nothing is not one of the tracked queries
     for (std::size_t i = 0; i < count; ++i) {
       if (cold) engine.forget();
-      engine.place(poses[i]);
+      engine.place(recording, i);
       const std::uint64_t start = clock_.start();
       engine.query();
       const std::uint64_t stop = clock_.stop();
@@ -89,17 +97,17 @@ std::vector<double> Meter::fastest_ns(Engine& engine, const std::vector<Pose>& p
   return least;
 }
 
-double Meter::batched_ns(Engine& engine, const std::vector<Pose>& poses, std::size_t count, bool cold) const {
+double Meter::batched_ns(Engine& engine, const Recording& recording, std::size_t count, bool cold) const {
   const auto sweep_ns = [&](bool ask) {
     double least = std::numeric_limits<double>::infinity();
     for (int replay = 0; replay < replays_; ++replay) {
       engine.forget();
-      engine.place(poses[0]);
+      engine.place(recording, 0);
       engine.query();
       const std::uint64_t start = clock_.start();
       for (std::size_t i = 0; i < count; ++i) {
         if (cold) engine.forget();
-        engine.place(poses[i]);
+        engine.place(recording, i);
         if (ask) engine.query();
       }
       least = std::min(least, clock_.ns(clock_.stop() - start));
@@ -113,16 +121,15 @@ double Meter::batched_ns(Engine& engine, const std::vector<Pose>& poses, std::si
 Row Meter::measure(Engine& engine, const Recording& recording, const std::vector<Truth>& truth, bool cold,
                    double budget_s) const {
   Row row;
-  const std::vector<Pose>& poses = recording.poses;
   // Answers first, as many as half the budget allows: the replays of the batch and of each pose share the
   // rest.
   const double share_ns = budget_s * 1e9 / (2 * replays_ + 1);
   std::size_t count = 0;
   double spent_ns = 0.0;
   engine.forget();
-  for (; count < poses.size() && (spent_ns < share_ns || count < 10); ++count) {
+  for (; count < recording.poses.size() && (spent_ns < share_ns || count < 10); ++count) {
     if (cold) engine.forget();
-    engine.place(poses[count]);
+    engine.place(recording, count);
     const std::uint64_t start = clock_.start();
     engine.query();
     spent_ns += clock_.ns(clock_.stop() - start);
@@ -131,14 +138,14 @@ Row Meter::measure(Engine& engine, const Recording& recording, const std::vector
   row.frames = static_cast<int>(count);
   row.steps_mean /= static_cast<double>(count);
 
-  std::vector<double> ns = fastest_ns(engine, poses, count, cold);
+  std::vector<double> ns = fastest_ns(engine, recording, count, cold);
   for (double& value : ns) value = std::max(0.0, value - overhead_ns_);
   std::sort(ns.begin(), ns.end());
   row.median_ns = quantile(ns, 0.5);
   row.p99_ns = quantile(ns, 0.99);
   row.p999_ns = quantile(ns, 0.999);
   row.max_ns = ns.back();
-  row.batched_ns = batched_ns(engine, poses, count, cold);
+  row.batched_ns = batched_ns(engine, recording, count, cold);
   return row;
 }
 

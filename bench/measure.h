@@ -22,6 +22,8 @@ struct Row {
   double batched_ns = 0.0;   ///< mean over the whole recording between two looks at the clock [ns]
   double max_error_m = 0.0;  ///< against the referee, of the queries answered [m]
   int missed = 0;            ///< not answered, not certified (ours), or contact and no contact mistaken
+  int depths_checked = 0;    ///< overlapping poses of which the referee proved the depth
+  int depths_wrong = 0;      ///< ... where the answer is not the global minimum, to a micrometre
   double steps_mean = 0.0;   ///< ours only
   int steps_max = 0;         ///< ours only
   /// Every query answered, and right to a micrometre.
@@ -44,9 +46,9 @@ class Meter {
 
  private:
   /// Fastest of the replays of each pose, the clock's cost still in it [ns].
-  std::vector<double> fastest_ns(Engine& engine, const std::vector<Pose>& poses, std::size_t count,
+  std::vector<double> fastest_ns(Engine& engine, const Recording& recording, std::size_t count,
                                  bool cold) const;
-  double batched_ns(Engine& engine, const std::vector<Pose>& poses, std::size_t count, bool cold) const;
+  double batched_ns(Engine& engine, const Recording& recording, std::size_t count, bool cold) const;
 
   FineClock clock_;
   int replays_;

@@ -1,14 +1,71 @@
 #include "bench/pairs.h"
 
+#include <algorithm>
+
 namespace tactum::bench {
 namespace {
 
+using Progress = std::function<void(const std::string&)>;
+
 /// Our engine is asked about every pose; this only bounds a run where it has gone wrong.
 constexpr double kOurBudget_s = 20.0;
+constexpr double kEdgePairs_per_s = 1e8;
+constexpr int kQuickFrames = 200;
+constexpr std::uint64_t kSeed = 7;
 
-bool can_answer(const Engine& engine, const Regime& regime) {
-  return regime.overlapping() ? engine.tells_depths() : engine.tells_distances();
-}
+/// What the runs of both commands share: the meter and the report that grows.
+class Run {
+ public:
+  explicit Run(const PairsOptions& options) : options_(options), meter_(options.replays) {
+    report.how = meter_.describe();
+  }
+
+  bool skips(const Pair& pair) const {
+    const bool is_quick = pair.name() == "box/box" || pair.name() == "sphere162/sphere162";
+    return !wanted(options_.shapes, pair.name()) || (options_.quick && options_.shapes.empty() && !is_quick);
+  }
+
+  int frames() const { return options_.quick ? kQuickFrames : options_.frames; }
+
+  /// Everyone on one recording.
+  void measure_all(const Pair& pair, const Regime& regime, const Recording& recording,
+                   std::unique_ptr<Engine> (*make_ours)()) {
+    const Shape& a = shape(pair.a);
+    const Shape& b = shape(pair.b);
+    const double referee_s = options_.quick ? 0.1 : options_.referee_s;
+    const std::vector<Truth> truth = truths(a, b, recording, referee_s * kEdgePairs_per_s);
+    report.recorded += static_cast<long>(truth.size());
+    report.proved += std::count_if(truth.begin(), truth.end(), [](const Truth& one) { return one.proved; });
+
+    const auto measure = [&](Engine& engine, const std::string& name, double budget_s) {
+      Row row = meter_.measure(engine, recording, truth, regime.cold, budget_s);
+      row.shape_a = pair.a;
+      row.shape_b = pair.b;
+      row.vertices = std::max(a.vertices(), b.vertices());
+      row.regime = regime.name;
+      row.engine = name;
+      report.rows.push_back(row);
+    };
+    if (wanted(options_.engines, kOurs)) {
+      const std::unique_ptr<Engine> ours = make_ours();
+      ours->hold(a, b);
+      measure(*ours, kOurs, kOurBudget_s);
+    }
+    for (const EngineEntry& entry : peers()) {
+      if (!wanted(options_.engines, entry.name)) continue;
+      const std::unique_ptr<Engine> peer = entry.make();
+      const bool answers = regime.overlapping() ? peer->tells_depths() : peer->tells_distances();
+      if (answers && peer->hold(a, b))
+        measure(*peer, entry.name, options_.quick ? 0.01 : options_.peer_budget_s);
+    }
+  }
+
+  PairsReport report;
+
+ private:
+  const PairsOptions& options_;
+  Meter meter_;
+};
 
 }  // namespace
 
@@ -34,55 +91,44 @@ std::span<const Pair> distance_pairs() {
   return list;
 }
 
+std::span<const Pair> depth_pairs() {
+  static const std::vector<Pair> list = {
+      {"box", "box"},       {"prism16", "prism16"},     {"sphere42", "sphere42"}, {"prism64", "prism64"},
+      {"box", "hull200"},   {"sphere162", "sphere162"}, {"hull200", "hull200"},   {"hull500", "hull500"},
+      {"needle", "needle"}, {"plate", "plate"},         {"needle", "plate"},      {"needle", "box"},
+      {"plate", "box"},     {"spindle162", "sphere42"}};
+  return list;
+}
+
 std::vector<std::string> engine_names() {
   std::vector<std::string> names = {kOurs};
   for (const EngineEntry& peer : peers()) names.push_back(peer.name);
   return names;
 }
 
-PairsReport bench_pairs(const PairsOptions& options,
-                        const std::function<void(const std::string&)>& progress) {
-  const Meter meter(options.replays);
-  PairsReport report;
-  report.how = meter.describe();
-  const auto measure = [&](Engine& engine, const std::string& name, const Pair& pair, const Regime& regime,
-                           const Recording& recording, const std::vector<Truth>& truth, double budget_s) {
-    Row row = meter.measure(engine, recording, truth, regime.cold, budget_s);
-    row.shape_a = pair.a;
-    row.shape_b = pair.b;
-    row.vertices = std::max(shape(pair.a).vertices(), shape(pair.b).vertices());
-    row.regime = regime.name;
-    row.engine = name;
-    report.rows.push_back(row);
-  };
+PairsReport bench_pairs(const PairsOptions& options, const Progress& progress) {
+  Run run(options);
   for (const Pair& pair : distance_pairs()) {
-    const bool is_quick = pair.name() == "box/box" || pair.name() == "sphere162/sphere162";
-    if (!wanted(options.shapes, pair.name()) || (options.quick && options.shapes.empty() && !is_quick))
-      continue;
+    if (run.skips(pair)) continue;
     progress(pair.name());
-    const Shape& a = shape(pair.a);
-    const Shape& b = shape(pair.b);
     for (const Regime& regime : regimes()) {
       if (!wanted(options.regimes, regime.name)) continue;
-      const Recording recording = record(a, b, regime, options.quick ? 200 : options.frames, 7);
-      const std::vector<Truth> truth = truths(a, b, recording);
-      report.recorded += static_cast<long>(truth.size());
-      for (const Truth& one : truth) report.proved += one.proved ? 1 : 0;
-      if (wanted(options.engines, kOurs)) {
-        const std::unique_ptr<Engine> ours = make_closest_features();
-        ours->hold(a, b);
-        measure(*ours, kOurs, pair, regime, recording, truth, kOurBudget_s);
-      }
-      for (const EngineEntry& entry : peers()) {
-        if (!wanted(options.engines, entry.name)) continue;
-        const std::unique_ptr<Engine> peer = entry.make();
-        if (!can_answer(*peer, regime) || !peer->hold(a, b)) continue;
-        measure(*peer, entry.name, pair, regime, recording, truth,
-                options.quick ? 0.01 : options.peer_budget_s);
-      }
+      const Recording recording = record(shape(pair.a), shape(pair.b), regime, run.frames(), kSeed);
+      run.measure_all(pair, regime, recording, make_closest_features);
     }
   }
-  return report;
+  return run.report;
+}
+
+PairsReport bench_penetration(const PairsOptions& options, const Progress& progress) {
+  Run run(options);
+  for (const Pair& pair : depth_pairs()) {
+    if (run.skips(pair)) continue;
+    progress(pair.name());
+    const Recording recording = record_deep(shape(pair.a), shape(pair.b), run.frames(), kSeed);
+    run.measure_all(pair, {"deep", -1.0, 0.0, false}, recording, make_penetration);
+  }
+  return run.report;
 }
 
 }  // namespace tactum::bench

@@ -17,6 +17,7 @@ struct PairsOptions {
   int frames = 10000;
   int replays = 5;
   double peer_budget_s = 0.2;  ///< for each peer on each recording [s]
+  double referee_s = 1.0;      ///< for the search of all depths of each recording [s]
   bool quick = false;          ///< two pairs, few frames: does it work?
 };
 
@@ -28,9 +29,15 @@ struct PairsReport {
 };
 
 std::span<const Pair> distance_pairs();
+std::span<const Pair> depth_pairs();
 std::vector<std::string> engine_names();  ///< ours first
 
 /// `progress` is told each pair before it starts.
 PairsReport bench_pairs(const PairsOptions& options, const std::function<void(const std::string&)>& progress);
+
+/// The same for deep overlaps, with penetration_depth in place of closest_features; the referee looks for the
+/// global minimum on as many frames as it can. `regimes` is not looked at.
+PairsReport bench_penetration(const PairsOptions& options,
+                              const std::function<void(const std::string&)>& progress);
 
 }  // namespace tactum::bench

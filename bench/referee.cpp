@@ -14,8 +14,6 @@ namespace {
 constexpr double kRounding_m = 1e-13;
 /// Pairs of edges up to which the long-double referee looks at every frame.
 constexpr std::size_t kSmallPair = 400;
-/// ... and how many pairs of edges the exhaustive search may look at for one recording: some seconds.
-constexpr double kExhaustiveWork = 1e8;
 
 std::vector<Vec3> corners_of(const Polytope& P, const Feature& feature) {
   const auto vertex = [&](int v) { return P.vertices[static_cast<std::size_t>(v)]; };
@@ -104,12 +102,12 @@ double scanned_gap(const Polytope& A, const Polytope& B, const Pose& X_AB, const
   return low - (high + n_A.dot(X_AB.p));
 }
 
-std::vector<Truth> truths(const Shape& a, const Shape& b, const Recording& recording) {
+std::vector<Truth> truths(const Shape& a, const Shape& b, const Recording& recording, double edge_pairs) {
   const Polytope& A = a.polytope;
   const Polytope& B = b.polytope;
   const double work = static_cast<double>(A.edges.size()) * static_cast<double>(B.edges.size());
   const auto frames = recording.poses.size();
-  const auto looks = std::min(frames, static_cast<std::size_t>(kExhaustiveWork / work));
+  const auto looks = std::min(frames, static_cast<std::size_t>(edge_pairs / work));
   std::vector<Truth> result;
   for (std::size_t i = 0; i < frames; ++i) {
     const PairDistance& answer = recording.answers[i];

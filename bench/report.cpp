@@ -132,17 +132,34 @@ Table against_peers(const std::vector<Row>& rows) {
   return table;
 }
 
+Table depth_rows(const std::vector<Row>& rows) {
+  Table table;
+  table.left = 2;
+  table.rows.push_back({"pair", "engine", "vertices", "frames", "median", "p99", "p99.9", "max", "missed",
+                        "depths checked", "not the smallest", "off by"});
+  for (const Group& group : groups(rows))
+    for (const Row* row : group.rows)
+      table.rows.push_back(
+          {group.pair, row->engine, fmt::to_string(row->vertices), fmt::to_string(row->frames),
+           time_text(row->median_ns), time_text(row->p99_ns), time_text(row->p999_ns), time_text(row->max_ns),
+           fmt::to_string(row->missed), fmt::to_string(row->depths_checked),
+           row->depths_checked > 0 ? fmt::format("{:.2f} %", 100.0 * row->depths_wrong / row->depths_checked)
+                                   : "",
+           length_text(row->max_error_m)});
+  return table;
+}
+
 std::string length_text(double length_m) {
   constexpr double kNanometre_m = 1e-9;
   if (length_m < kNanometre_m / 1000.0) return "0";
   if (length_m < 1000.0 * kNanometre_m) return fmt::format("{:.3g} nm", length_m / kNanometre_m);
-  if (length_m < 1e-3) return fmt::format("{:.3g} um", length_m * 1e6);
+  if (length_m < 1e-3) return fmt::format("{:.3g} µm", length_m * 1e6);
   return fmt::format("{:.3g} mm", length_m * 1e3);
 }
 
 std::string time_text(double time_ns) {
   if (time_ns < 1e3) return fmt::format("{:.0f} ns", time_ns);
-  if (time_ns < 1e6) return fmt::format("{:.3g} us", time_ns * 1e-3);
+  if (time_ns < 1e6) return fmt::format("{:.3g} µs", time_ns * 1e-3);
   return fmt::format("{:.3g} ms", time_ns * 1e-6);
 }
 

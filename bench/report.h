@@ -22,9 +22,12 @@ Table every_row(const std::vector<Row>& rows);
 /// A line a pair and regime: ours, the fastest accurate peer, and how many times faster ours is.
 Table against_peers(const std::vector<Row>& rows);
 
-/// "0.12 um", "-": lengths from nanometres to millimetres.
+/// A line an engine and pair of overlapping pieces: times, and how often the depth is not the smallest.
+Table depth_rows(const std::vector<Row>& rows);
+
+/// "0.12 µm", "-": lengths from nanometres to millimetres.
 std::string length_text(double length_m);
-/// "47 ns", "1.25 us", "3.4 ms".
+/// "47 ns", "1.25 µs", "3.4 ms".
 std::string time_text(double time_ns);
 
 /// Puts `text` between the lines `<!-- NAME -->` and `<!-- end NAME -->` of the file; a file without them

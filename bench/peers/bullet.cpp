@@ -43,8 +43,8 @@ class Bullet : public Engine {
     return true;
   }
   void forget() override { guess_ = {1.0, 0.0, 0.0}; }
-  void place(const Pose& X_AB) override {
-    X_AB_ = transform(X_AB);
+  void place(const Recording& recording, std::size_t i) override {
+    X_AB_ = transform(recording.poses[i]);
     if (guess_.fuzzyZero()) guess_ = {1.0, 0.0, 0.0};
   }
   Answer answer() const override { return found_; }

@@ -59,7 +59,7 @@ class Fcl final : public Engine {
     return true;
   }
   void forget() override { reset(solver_); }
-  void place(const Pose& X_AB) override { X_AB_ = transform(X_AB); }
+  void place(const Recording& recording, std::size_t i) override { X_AB_ = transform(recording.poses[i]); }
   void query() override {
     try {
       if (boxes_)

@@ -45,7 +45,7 @@ class Libccd final : public Engine {
     return true;
   }
   void forget() override { a_.last = b_.last = 0; }
-  void place(const Pose& X_AB) override { b_.X = X_AB; }
+  void place(const Recording& recording, std::size_t i) override { b_.X = recording.poses[i]; }
   void query() override {
     ccd_vec3_t direction;
     ccd_vec3_t position;

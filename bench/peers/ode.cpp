@@ -57,7 +57,8 @@ class Ode final : public Engine {
     return true;
   }
   void forget() override {}
-  void place(const Pose& X) override {
+  void place(const Recording& recording, std::size_t i) override {
+    const Pose& X = recording.poses[i];
     const Mat3& R = X.R;
     const dMatrix3 rotation = {R(0, 0), R(0, 1), R(0, 2), 0,       R(1, 0), R(1, 1),
                                R(1, 2), 0,       R(2, 0), R(2, 1), R(2, 2), 0};
