@@ -54,8 +54,10 @@ void run_penetration(const Job& job) {
   const std::string how =
       fmt::format("{}\nDepths proved to be the smallest by the referee: {} of {} poses.\n", report.how,
                   report.proved, report.recorded);
-  const bench::Table table = depth_rows(report.rows);
-  put_out(job, "penetration", report.rows, table.text() + "\n" + how, table.markdown() + "\n" + how);
+  const bench::Table summary = depths_against_peers(report.rows);
+  put_out(job, "penetration", report.rows,
+          fmt::format("{}\n{}\n{}", depth_rows(report.rows).text(), summary.text(), how),
+          summary.markdown() + "\n" + how);
 }
 
 void run_manifold(const Job& job) {

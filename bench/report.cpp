@@ -30,6 +30,16 @@ struct Group {
       if (row->engine != kOurs && row->accurate() && (!best || row->median_ns < best->median_ns)) best = row;
     return best;
   }
+  const Row* peer_least_wrong() const {
+    const auto rank = [](const Row& row) {
+      return std::pair(static_cast<double>(row.depths_wrong + row.missed) / std::max(1, row.depths_checked),
+                       row.median_ns);
+    };
+    const Row* best = nullptr;
+    for (const Row* row : rows)
+      if (row->engine != kOurs && (!best || rank(*row) < rank(*best))) best = row;
+    return best;
+  }
 };
 
 std::vector<Group> groups(const std::vector<Row>& rows) {
@@ -44,6 +54,11 @@ std::vector<Group> groups(const std::vector<Row>& rows) {
     result[at->second].rows.push_back(&row);
   }
   return result;
+}
+
+std::string wrong_text(const Row& row) {
+  if (row.depths_checked == 0) return "";
+  return fmt::format("{:.2f} %", 100.0 * row.depths_wrong / row.depths_checked);
 }
 
 std::string ratio_text(double ratio) {
@@ -139,13 +154,38 @@ Table depth_rows(const std::vector<Row>& rows) {
                         "depths checked", "not the smallest", "off by"});
   for (const Group& group : groups(rows))
     for (const Row* row : group.rows)
-      table.rows.push_back(
-          {group.pair, row->engine, fmt::to_string(row->vertices), fmt::to_string(row->frames),
-           time_text(row->median_ns), time_text(row->p99_ns), time_text(row->p999_ns), time_text(row->max_ns),
-           fmt::to_string(row->missed), fmt::to_string(row->depths_checked),
-           row->depths_checked > 0 ? fmt::format("{:.2f} %", 100.0 * row->depths_wrong / row->depths_checked)
-                                   : "",
-           length_text(row->max_error_m)});
+      table.rows.push_back({group.pair, row->engine, fmt::to_string(row->vertices),
+                            fmt::to_string(row->frames), time_text(row->median_ns), time_text(row->p99_ns),
+                            time_text(row->p999_ns), time_text(row->max_ns), fmt::to_string(row->missed),
+                            fmt::to_string(row->depths_checked), wrong_text(*row),
+                            length_text(row->max_error_m)});
+  return table;
+}
+
+Table depths_against_peers(const std::vector<Row>& rows) {
+  Table table;
+  table.rows.push_back({"pair", "vertices", "median", "p99", "p99.9", "missed", "depths checked",
+                        "not the smallest", "off by", "best peer", "its median", "its p99", "missed",
+                        "not the smallest"});
+  for (const Group& group : groups(rows)) {
+    const Row* ours = group.ours();
+    if (!ours) continue;
+    std::vector<std::string> cells = {group.pair,
+                                      fmt::to_string(group.vertices),
+                                      time_text(ours->median_ns),
+                                      time_text(ours->p99_ns),
+                                      time_text(ours->p999_ns),
+                                      fmt::to_string(ours->missed),
+                                      fmt::to_string(ours->depths_checked),
+                                      wrong_text(*ours),
+                                      length_text(ours->max_error_m)};
+    if (const Row* best = group.peer_least_wrong())
+      cells.insert(cells.end(), {best->engine, time_text(best->median_ns), time_text(best->p99_ns),
+                                 fmt::to_string(best->missed), wrong_text(*best)});
+    else
+      cells.insert(cells.end(), {"none", "", "", "", ""});
+    table.rows.push_back(std::move(cells));
+  }
   return table;
 }
 

@@ -25,6 +25,9 @@ Table against_peers(const std::vector<Row>& rows);
 /// A line an engine and pair of overlapping pieces: times, and how often the depth is not the smallest.
 Table depth_rows(const std::vector<Row>& rows);
 
+/// A line a pair: ours, and the peer whose depth is least often not the smallest (of equals, the fastest).
+Table depths_against_peers(const std::vector<Row>& rows);
+
 /// "0.12 µm", "-": lengths from nanometres to millimetres.
 std::string length_text(double length_m);
 /// "47 ns", "1.25 µs", "3.4 ms".

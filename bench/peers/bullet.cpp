@@ -85,7 +85,7 @@ class EpaSolver final : public Bullet {
     btGjkEpaSolver2::sResults results;
     found_ = {};
     if (btGjkEpaSolver2::Distance(a_.get(), X_WA_, b_.get(), X_AB_, guess_, results)) {
-      guess_ = results.witnesses[1] - results.witnesses[0];
+      guess_ = results.witnesses[0] - results.witnesses[1];
       found_ = {true, results.distance, 0};
     } else if (btGjkEpaSolver2::Penetration(a_.get(), X_WA_, b_.get(), X_AB_, guess_, results, false)) {
       found_ = {true, results.distance, 0};
