@@ -5,10 +5,10 @@
 
 namespace tactum {
 
-void add_bench_impact(CLI::App& bench);
-void add_bench_manifold(CLI::App& bench);
-void add_bench_pairs(CLI::App& bench);
-void add_bench_penetration(CLI::App& bench);
-void add_bench_table1(CLI::App& bench);
+void add_bench_impact(CLI::App& parent);
+void add_bench_manifold(CLI::App& parent);
+void add_bench_pairs(CLI::App& parent);
+void add_bench_penetration(CLI::App& parent);
+void add_bench_table1(CLI::App& parent);
 
 }  // namespace tactum

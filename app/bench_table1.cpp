@@ -182,10 +182,10 @@ void bench_table1(const Table1Options& options) {
 
 }  // namespace
 
-void add_bench_table1(CLI::App& bench) {
+void add_bench_table1(CLI::App& parent) {
   auto options = std::make_shared<Table1Options>();
   CLI::App* table1 =
-      bench.add_subcommand("table1", "The timing table of the paper, beside the published values");
+      parent.add_subcommand("table1", "The timing table of the paper, beside the published values");
   table1->add_option("--scene", options->scene, "another scene than the gears")->capture_default_str();
   table1->add_option("--updates", options->updates, "how many frames")
       ->check(CLI::Range(1, 100000000))

@@ -44,15 +44,15 @@ class Bullet : public Engine {
   }
   void forget() override { guess_ = {1.0, 0.0, 0.0}; }
   void place(const Recording& recording, std::size_t i) override {
-    X_AB_ = transform(recording.poses[i]);
+    pose_b_ = transform(recording.poses[i]);
     if (guess_.fuzzyZero()) guess_ = {1.0, 0.0, 0.0};
   }
   Answer answer() const override { return found_; }
 
  protected:
   std::unique_ptr<btConvexShape> a_, b_;
-  btTransform X_WA_ = btTransform::getIdentity();
-  btTransform X_AB_ = btTransform::getIdentity();
+  btTransform pose_a_ = btTransform::getIdentity();
+  btTransform pose_b_ = btTransform::getIdentity();
   btVector3 guess_{1.0, 0.0, 0.0};
   Answer found_;
 };
@@ -66,8 +66,8 @@ class PairDetector final : public Bullet {
   }
   void query() override {
     btGjkPairDetector::ClosestPointInput input;
-    input.m_transformA = X_WA_;
-    input.m_transformB = X_AB_;
+    input.m_transformA = pose_a_;
+    input.m_transformB = pose_b_;
     btPointCollector collected;
     detector_->getClosestPoints(input, collected, nullptr);
     found_ = {collected.m_hasResult, collected.m_distance, 0};
@@ -84,10 +84,10 @@ class EpaSolver final : public Bullet {
   void query() override {
     btGjkEpaSolver2::sResults results;
     found_ = {};
-    if (btGjkEpaSolver2::Distance(a_.get(), X_WA_, b_.get(), X_AB_, guess_, results)) {
+    if (btGjkEpaSolver2::Distance(a_.get(), pose_a_, b_.get(), pose_b_, guess_, results)) {
       guess_ = results.witnesses[0] - results.witnesses[1];
       found_ = {true, results.distance, 0};
-    } else if (btGjkEpaSolver2::Penetration(a_.get(), X_WA_, b_.get(), X_AB_, guess_, results, false)) {
+    } else if (btGjkEpaSolver2::Penetration(a_.get(), pose_a_, b_.get(), pose_b_, guess_, results, false)) {
       found_ = {true, results.distance, 0};
     }
   }
