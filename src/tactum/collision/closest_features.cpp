@@ -104,19 +104,19 @@ struct Seed {
 
 /// The vertices farthest along the line of centres: near the closest features of pieces met for the first
 /// time. A climb goes there faster than a walk, whose every step is a pair.
-Seed first_seed(const PairView& pair) noexcept {
+Seed first_seed(const PiecePair& pair) noexcept {
   Vec3 toward_b = pair.X_AB * pair.B.center - pair.A.center;
   if (toward_b.isZero()) toward_b = Vec3::UnitX();
   return {{Kind::kVertex, support_vertex(pair.A, toward_b)},
-          {Kind::kVertex, support_vertex(pair.B, -(pair.X_BA.R * toward_b))}};
+          {Kind::kVertex, support_vertex(pair.B, -rotated_back(pair.X_AB.R, toward_b))}};
 }
 
-Seed seed_of(const PairView& pair, const PairCache& cache) noexcept {
+Seed seed_of(const PiecePair& pair, const PairCache& cache) noexcept {
   if (valid_feature(pair.A, cache.a) && valid_feature(pair.B, cache.b)) return {cache.a, cache.b};
   return first_seed(pair);
 }
 
-double certificate(const PairView& pair) noexcept { return tolerances::kCertificate * pair.size; }
+double certificate(const PiecePair& pair) noexcept { return tolerances::kCertificate * pair.size; }
 
 /// The query while it climbs down its ladder.
 class Query {
@@ -235,12 +235,15 @@ bool still_inside(const PairView& pair, PairCache& cache, PairDistance& x) noexc
 
 PairDistance closest_features(const Polytope& A, const Polytope& B, const Pose& X_AB,
                               PairCache& cache) noexcept {
-  const PairView pair(A, B, X_AB);
+  const PiecePair pair(A, B, X_AB);
   PairDistance x;
-  if (cache.overlap.known && still_inside(pair, cache, x)) return x;
+  if (cache.overlap.known && still_inside(PairView(pair), cache, x)) return x;
   const Seed seed = seed_of(pair, cache);
   const March march = voronoi_march(pair, seed.a, seed.b, tolerances::kVoronoiSlack * pair.scale, x);
-  if (march.doubt > certificate(pair)) return Query(pair, cache).run(march, x);
+  if (march.doubt > certificate(pair)) {
+    const PairView view(pair);
+    return Query(view, cache).run(march, x);
+  }
   x.doubt = march.doubt;
   x.stop = Stop::kCertified;  // the walk proved it itself
   x.steps = march.steps;

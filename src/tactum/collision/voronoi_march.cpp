@@ -9,13 +9,28 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// One step as seen from the piece P that owns the feature of lower dimension; Q is the other.
+/// One step as seen from the piece P that owns the feature of lower dimension; Q is the other. `swapped`: P
+/// is B.
+template <bool swapped>
 struct Sides {
   const Polytope& P;
   const Polytope& Q;
-  const Pose& X_PQ;
-  const Pose& X_QP;
+  const Pose& X_AB;
   double slack;
+
+  explicit Sides(const PiecePair& pair, double crossing_slack) noexcept
+      : P(swapped ? pair.B : pair.A), Q(swapped ? pair.A : pair.B), X_AB(pair.X_AB), slack(crossing_slack) {}
+
+  /// A point of P, in Q's frame.
+  Vec3 in_Q(const Vec3& p) const noexcept { return swapped ? X_AB * p : rotated_back(X_AB.R, p - X_AB.p); }
+  /// A point of Q, in P's frame.
+  Vec3 in_P(const Vec3& q) const noexcept { return swapped ? rotated_back(X_AB.R, q - X_AB.p) : X_AB * q; }
+  Vec3 turned_to_Q(const Vec3& d) const noexcept {
+    return swapped ? rotated(X_AB.R, d) : rotated_back(X_AB.R, d);
+  }
+  Vec3 turned_to_P(const Vec3& d) const noexcept {
+    return swapped ? rotated_back(X_AB.R, d) : rotated(X_AB.R, d);
+  }
 };
 
 enum class Step : std::uint8_t { kClosest, kMoved, kOverlap, kBehind };
@@ -73,34 +88,36 @@ Step to_face(Feature& f, int face) noexcept {
 }
 
 /// The unit vector of the points' difference `d_Q` (from p to q); no doubt is told where it has no direction.
-bool set_normal(const Sides& S, const Vec3& d_Q, const Vec3& d_P, Place& x) noexcept {
-  if (x.gap <= tolerances::kTouching * S.P.size) return false;
+bool set_normal(double size, const Vec3& d_Q, const Vec3& d_P, Place& x) noexcept {
+  if (x.gap <= tolerances::kTouching * size) return false;
   x.outward_Q = d_Q / x.gap;
   x.outward_P = d_P / x.gap;
   return true;
 }
 
-Step vertex_vertex(const Sides& S, Feature& fp, Feature& fq, Place& x) noexcept {
+template <bool swapped>
+Step vertex_vertex(const Sides<swapped>& S, Feature& fp, Feature& fq, Place& x) noexcept {
   x.p = S.P.vertices[fp.index];
   x.q = S.Q.vertices[fq.index];
-  const Vec3 d_Q = x.q - S.X_QP * x.p;
-  const Vec3 d_P = rotated(S.X_PQ.R, d_Q);
+  const Vec3 d_Q = x.q - S.in_Q(x.p);
+  const Vec3 d_P = S.turned_to_P(d_Q);
   x.gap = d_Q.norm();
   const Steepest at_p = steepest_edge(S.P, fp.index, d_P);
   if (at_p.slope > S.slack) return to_edge(fp, at_p.edge);
   const Steepest at_q = steepest_edge(S.Q, fq.index, -d_Q);
   if (at_q.slope > S.slack) return to_edge(fq, at_q.edge);
-  if (set_normal(S, d_Q, d_P, x))
+  if (set_normal(S.P.size, d_Q, d_P, x))
     x.doubt =
         reach_beyond(S.P, fp.index, at_p.slope / x.gap) + reach_beyond(S.Q, fq.index, at_q.slope / x.gap);
   return Step::kClosest;
 }
 
-Step vertex_edge(const Sides& S, Feature& fp, Feature& fq, Place& x) noexcept {
+template <bool swapped>
+Step vertex_edge(const Sides<swapped>& S, Feature& fp, Feature& fq, Place& x) noexcept {
   x.p = S.P.vertices[fp.index];
   const Polytope::Edge& edge = S.Q.edges[fq.index];
   const Vec3& tail = S.Q.vertices[edge.tail];
-  const Vec3 p_Q = S.X_QP * x.p;
+  const Vec3 p_Q = S.in_Q(x.p);
   const double along = edge.direction.dot(p_Q - tail);
   x.q = tail + edge.direction * std::clamp(along, 0.0, edge.length);
   const Vec3 d_Q = x.q - p_Q;
@@ -115,12 +132,12 @@ Step vertex_edge(const Sides& S, Feature& fp, Feature& fq, Place& x) noexcept {
   const double above_right = right.normal.dot(p_Q) - right.offset;
   if (std::min(above_left, above_right) < -S.slack)
     return to_face(fq, above_left < above_right ? edge.left : edge.right);
-  const Vec3 d_P = rotated(S.X_PQ.R, d_Q);
+  const Vec3 d_P = S.turned_to_P(d_Q);
   const Steepest at_p = steepest_edge(S.P, fp.index, d_P);
   if (at_p.slope > S.slack) return to_edge(fp, at_p.edge);
   // The normal itself is judged: over a small gap it is off by more than the point is.
   const double rise = std::max(left.normal.dot(d_Q), right.normal.dot(d_Q));
-  if (set_normal(S, d_Q, d_P, x))
+  if (set_normal(S.P.size, d_Q, d_P, x))
     x.doubt = reach_beyond(S.P, fp.index, at_p.slope / x.gap) + reach_beyond(S.Q, edge, rise / x.gap) +
               std::abs(edge.direction.dot(x.outward_Q)) * edge.length;
   return Step::kClosest;
@@ -139,10 +156,11 @@ int slot_outside(const Polytope& Q, const Polytope::Face& face, const Vec3& p, d
   return best;
 }
 
-Step vertex_face(const Sides& S, Feature& fp, Feature& fq, Place& x) noexcept {
+template <bool swapped>
+Step vertex_face(const Sides<swapped>& S, Feature& fp, Feature& fq, Place& x) noexcept {
   x.p = S.P.vertices[fp.index];
   const Polytope::Face& face = S.Q.faces[fq.index];
-  const Vec3 p_Q = S.X_QP * x.p;
+  const Vec3 p_Q = S.in_Q(x.p);
   if (const int slot = slot_outside(S.Q, face, p_Q, S.slack); slot >= 0)
     return to_edge(fq, S.Q.face_edges[slot]);
   const double height = face.normal.dot(p_Q) - face.offset;
@@ -153,7 +171,7 @@ Step vertex_face(const Sides& S, Feature& fp, Feature& fq, Place& x) noexcept {
   x.q = p_Q - face.normal * height;
   x.gap = std::abs(height);
   x.outward_Q = -face.normal;
-  x.outward_P = rotated(S.X_PQ.R, x.outward_Q);
+  x.outward_P = S.turned_to_P(x.outward_Q);
   const Steepest at_p = steepest_edge(S.P, fp.index, x.outward_P);
   if (at_p.slope > tolerances::kVoronoiSlack) return to_edge(fp, at_p.edge);
   x.doubt = reach_beyond(S.P, fp.index, at_p.slope);
@@ -188,24 +206,24 @@ struct Across {
   double aside;  // of the points, from the direction [m]
 };
 
-Across across_edges(const Sides& S, const Vec3& c, const Vec3& d, double gap) noexcept {
+Across across_edges(double size, double slack, const Vec3& c, const Vec3& d, double gap) noexcept {
   const double sine_sq = c.squaredNorm();
-  if (gap * gap >= sine_sq * S.P.size * S.P.size)
-    return gap > 0.0 ? Across{d / gap, S.slack / gap, 0.0} : Across{d, 0.0, 0.0};
+  if (gap * gap >= sine_sq * size * size)
+    return gap > 0.0 ? Across{d / gap, slack / gap, 0.0} : Across{d, 0.0, 0.0};
   const double sine = std::sqrt(sine_sq);
   const Vec3 direction = c.dot(d) < 0.0 ? Vec3(-c / sine) : Vec3(c / sine);
-  return {direction, std::max(S.slack / S.P.size, tolerances::kVoronoiSlack) / sine,
-          (d - direction * gap).norm()};
+  return {direction, std::max(slack / size, tolerances::kVoronoiSlack) / sine, (d - direction * gap).norm()};
 }
 
-Step edge_edge(const Sides& S, Feature& fp, Feature& fq, Place& x) noexcept {
+template <bool swapped>
+Step edge_edge(const Sides<swapped>& S, Feature& fp, Feature& fq, Place& x) noexcept {
   const Polytope::Edge& e = S.P.edges[fp.index];
   const Polytope::Edge& g = S.Q.edges[fq.index];
   const Vec3& p0 = S.P.vertices[e.tail];
   const Vec3& g_tail = S.Q.vertices[g.tail];
-  const Vec3 w = rotated(S.X_PQ.R, g.direction);
+  const Vec3 w = S.turned_to_P(g.direction);
   const Vec3 c = e.direction.cross(w);
-  const Vec3 r = S.X_PQ * g_tail - p0;
+  const Vec3 r = S.in_P(g_tail) - p0;
   const SegmentPair at = nearest_on_segments(e.direction, e.length, w, g.length, r, c);
   x.p = p0 + e.direction * at.s;
   x.q = g_tail + g.direction * at.t;
@@ -214,11 +232,11 @@ Step edge_edge(const Sides& S, Feature& fp, Feature& fq, Place& x) noexcept {
   const bool p_end = at_end(e, at.s, fp);
   const bool q_end = at_end(g, at.t, fq);
   if (p_end || q_end) return Step::kMoved;
-  const Across across = across_edges(S, c, d, x.gap);
+  const Across across = across_edges(S.P.size, S.slack, c, d, x.gap);
   const Toward of_p = face_toward(S.P, e, across.direction);
   if (of_p.slope > across.slack) return to_face(fp, of_p.face);
   x.outward_P = across.direction;
-  x.outward_Q = rotated(S.X_QP.R, across.direction);
+  x.outward_Q = S.turned_to_Q(across.direction);
   const Toward of_q = face_toward(S.Q, g, -x.outward_Q);
   if (of_q.slope > across.slack) return to_face(fq, of_q.face);
   x.doubt = reach_beyond(S.P, e, of_p.slope) + reach_beyond(S.Q, g, of_q.slope) +
@@ -276,11 +294,12 @@ Clip clip_to_column(const Polytope& Q, const Polytope::Face& face, const Vec3& p
 
 /// P has the edge, Q the face. Never the end of the walk: the nearer end of the clipped edge is a vertex or
 /// on an edge.
-Step edge_face(const Sides& S, Feature& fp, Feature& fq, Place& x) noexcept {
+template <bool swapped>
+Step edge_face(const Sides<swapped>& S, Feature& fp, Feature& fq, Place& x) noexcept {
   const Polytope::Edge& e = S.P.edges[fp.index];
   const Polytope::Face& face = S.Q.faces[fq.index];
-  const Vec3 p0 = S.X_QP * S.P.vertices[e.tail];
-  const Vec3 u = rotated(S.X_QP.R, e.direction);
+  const Vec3 p0 = S.in_Q(S.P.vertices[e.tail]);
+  const Vec3 u = S.turned_to_Q(e.direction);
   const Clip clip = clip_to_column(S.Q, face, p0, u, e.length, S.slack);
   if (clip.empty) return to_edge(fq, nearest_edge(S.Q, face, p0, u, e.length));
   const double low = face.normal.dot(p0 + u * clip.low) - face.offset;
@@ -300,7 +319,8 @@ Step edge_face(const Sides& S, Feature& fp, Feature& fq, Place& x) noexcept {
 }
 
 /// Dispatch on the kinds, P owning the lower one.
-Step step(const Sides& S, Feature& fp, Feature& fq, Place& x) noexcept {
+template <bool swapped>
+Step step(const Sides<swapped>& S, Feature& fp, Feature& fq, Place& x) noexcept {
   if (fp.kind == FeatureKind::kVertex) {
     if (fq.kind == FeatureKind::kFace) return vertex_face(S, fp, fq, x);
     return fq.kind == FeatureKind::kEdge ? vertex_edge(S, fp, fq, x) : vertex_vertex(S, fp, fq, x);
@@ -314,7 +334,7 @@ MarchEnd end_of(Step outcome) noexcept {
 }
 
 /// The place in A's frame. `swapped`: P is B.
-void tell(const PairView& pair, const Place& at, bool swapped, PairDistance& x) noexcept {
+void tell(const PiecePair& pair, const Place& at, bool swapped, PairDistance& x) noexcept {
   x.p_a = swapped ? at.q : at.p;
   if (at.doubt < kInfinity) {
     x.normal = swapped ? at.outward_Q : Vec3(-at.outward_P);
@@ -326,61 +346,47 @@ void tell(const PairView& pair, const Place& at, bool swapped, PairDistance& x) 
   x.distance = at.gap;
 }
 
-/// The walk, one step at a time.
-struct Walker {
-  const PairView& pair;
-  Sides forward, backward;
-  Feature a, b;
-  bool swapped = false;  // of the last step: P was B
+/// One step from the features `a`, `b`, which it changes. True in `swapped` when P was B.
+Step walk_on(const PiecePair& pair, double slack, Feature& a, Feature& b, bool& swapped, Place& at) noexcept {
+  swapped = a.kind > b.kind;
+  return swapped ? step(Sides<true>(pair, slack), b, a, at) : step(Sides<false>(pair, slack), a, b, at);
+}
 
-  Step step(Place& at) noexcept {
-    swapped = a.kind > b.kind;
-    return swapped ? tactum::step(backward, b, a, at) : tactum::step(forward, a, b, at);
-  }
-};
-
-/// What follows a first step that moved on. Keeps the nearest place, in case the walk does not end well, and
-/// a state to be met again if it goes in circles [Brent 1980].
-March wander(Walker& walker, const Place& first, const Feature& first_a, const Feature& first_b,
+/// What follows a first step that moved on from points `least` apart, told in `x`. Keeps the nearest place,
+/// in case the walk does not end well, and a state to be met again if it goes in circles [Brent 1980].
+March wander(const PiecePair& pair, double slack, Feature a, Feature b, double least,
              PairDistance& x) noexcept {
-  const PairView& pair = walker.pair;
   const int bound = 64 + static_cast<int>(pair.A.edges.size() + pair.B.edges.size()) / 4;
-  double least = kInfinity;
   Feature mark_a;
   Feature mark_b;
   int next_mark = 8;
   March march;
   march.steps = 1;
-  x.a = first_a;
-  x.b = first_b;
-  if (first.gap < kInfinity) {
-    least = first.gap;
-    tell(pair, first, walker.swapped, x);
-  }
   while (march.steps < bound) {
-    const Feature a = walker.a;
-    const Feature b = walker.b;
+    const Feature was_a = a;
+    const Feature was_b = b;
+    bool swapped = false;
     Place at;
-    const Step outcome = walker.step(at);
+    const Step outcome = walk_on(pair, slack, a, b, swapped, at);
     ++march.steps;
     if (at.gap < least || outcome != Step::kMoved) {
       least = at.gap;
-      x.a = a;
-      x.b = b;
-      if (at.gap < kInfinity) tell(pair, at, walker.swapped, x);
+      x.a = was_a;
+      x.b = was_b;
+      if (at.gap < kInfinity) tell(pair, at, swapped, x);
     }
     if (outcome != Step::kMoved) {
       march.end = end_of(outcome);
       march.doubt = at.doubt;
       return march;
     }
-    if (walker.a == mark_a && walker.b == mark_b) {
+    if (a == mark_a && b == mark_b) {
       march.end = MarchEnd::kCircle;
       return march;
     }
     if (march.steps == next_mark) {
-      mark_a = walker.a;
-      mark_b = walker.b;
+      mark_a = a;
+      mark_b = b;
       next_mark *= 2;
     }
   }
@@ -389,20 +395,16 @@ March wander(Walker& walker, const Place& first, const Feature& first_a, const F
 
 }  // namespace
 
-March voronoi_march(const PairView& pair, Feature a, Feature b, double slack, PairDistance& x) noexcept {
+March voronoi_march(const PiecePair& pair, Feature a, Feature b, double slack, PairDistance& x) noexcept {
   if (a.kind == FeatureKind::kFace && b.kind == FeatureKind::kFace)
     b = {FeatureKind::kVertex, vertex_of(pair.B, b)};
-  Walker walker{pair,
-                {pair.A, pair.B, pair.X_AB, pair.X_BA, slack},
-                {pair.B, pair.A, pair.X_BA, pair.X_AB, slack},
-                a,
-                b};
-  Place at;
-  const Step outcome = walker.step(at);
-  if (outcome == Step::kMoved) return wander(walker, at, a, b, x);
   x.a = a;
   x.b = b;
-  if (at.gap < kInfinity) tell(pair, at, walker.swapped, x);
+  bool swapped = false;
+  Place at;
+  const Step outcome = walk_on(pair, slack, a, b, swapped, at);
+  if (at.gap < kInfinity) tell(pair, at, swapped, x);
+  if (outcome == Step::kMoved) return wander(pair, slack, a, b, at.gap, x);
   return {at.doubt, end_of(outcome), 1};
 }
 

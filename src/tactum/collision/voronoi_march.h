@@ -45,6 +45,6 @@ struct March {
 /// Walks from the features `a`, `b` (which must exist) and tells in `x` features, points, normal and distance
 /// where it ended; the stop and the steps of `x` are the caller's. `slack` [m] is how far a point must be
 /// outside a plane to cross it.
-March voronoi_march(const PairView& pair, Feature a, Feature b, double slack, PairDistance& x) noexcept;
+March voronoi_march(const PiecePair& pair, Feature a, Feature b, double slack, PairDistance& x) noexcept;
 
 }  // namespace tactum
