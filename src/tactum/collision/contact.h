@@ -27,11 +27,21 @@ struct Feature {
   bool operator==(const Feature&) const = default;
 };
 
+/// A feature of A and one of B.
+struct FeaturePair {
+  Feature a, b;
+  bool empty() const noexcept { return a.index < 0 || b.index < 0; }
+};
+
 /// The closest features of a pair in the last frame: the coherence the tracker lives on. Value-initialised
 /// means none.
 struct PairCache {
   Feature a, b;
   Vec3 normal_A = Vec3::Zero();  ///< last normal from B to A, unit, or zero when there was none [-]
+  // Of an overlapping pair: the way out next in depth, and the walk that looks for others (penetration.h).
+  FeaturePair rival{};
+  FeaturePair scout{};
+  std::uint32_t turn = 0;  ///< frames tracked inside
 };
 
 /// Why a query stopped.

@@ -55,6 +55,19 @@ inline int vertex_of(const Polytope& P, const Feature& f) noexcept {
   return 0;
 }
 
+/// Some face at a feature.
+inline int face_of(const Polytope& P, const Feature& f) noexcept {
+  switch (f.kind) {
+    case FeatureKind::kVertex:
+      return P.edges[P.rays_at(f.index)[0].edge].left;
+    case FeatureKind::kEdge:
+      return P.edges[f.index].left;
+    case FeatureKind::kFace:
+      return f.index;
+  }
+  return 0;
+}
+
 /// Does the feature exist on `P`? A cache may come from another pair of pieces.
 inline bool valid_feature(const Polytope& P, const Feature& f) noexcept {
   const std::size_t count = f.kind == FeatureKind::kVertex ? P.vertices.size()
