@@ -200,8 +200,8 @@ class Tracker {
   }
 
  private:
-  static inline const std::uint32_t kRound = getenv("ROUND") ? atoi(getenv("ROUND")) : 4;  ///< frames from one look around to the next
-  static inline const int kSteps = getenv("STEPS") ? atoi(getenv("STEPS")) : 4;            ///< facets walked beside the tracked minimum in a frame
+  static constexpr std::uint32_t kRound = 4;  ///< frames from one look around to the next
+  static constexpr int kSteps = 6;            ///< facets walked beside the tracked minimum in a frame
 
   static bool same(const MinkowskiFacet& f, const MinkowskiFacet& g) noexcept {
     return f.a == g.a && f.b == g.b;
@@ -211,8 +211,13 @@ class Tracker {
     return facet ? facet->height : std::numeric_limits<double>::infinity();
   }
 
-  /// The scout arrives, or waits for the next frame.
+  /// The scout sets out, or walks on and arrives, or waits for its next turn.
   void scout() noexcept {
+    if (cache_.scout.empty()) {
+      const MinkowskiFacet start = seed();
+      cache_.scout = {start.a, start.b};
+      return;
+    }
     const MinkowskiWalk walk = go_on(cache_.scout);
     if (!walk.arrived(pair_)) {
       cache_.scout = {walk.facet.a, walk.facet.b};
@@ -241,7 +246,7 @@ class Tracker {
   }
 
   MinkowskiWalk go_on(const FeaturePair& from) noexcept {
-    const MinkowskiWalk walk = walk_to_foot(pair_, from.empty() ? seed() : facet_again(from), kSteps);
+    const MinkowskiWalk walk = walk_to_foot(pair_, facet_again(from), kSteps);
     steps_ += walk.steps;
     return walk;
   }
