@@ -270,7 +270,8 @@ class Tracker {
     offset[corner % 3] = 0.0;
     offset[(corner + 1) % 3] = (corner / 3) % 2 ? kShort : -kShort;
     offset[(corner + 2) % 3] = corner / 6 ? kLong : -kLong;
-    const double reach = round / 2 % 2 ? 0.3 : 0.15;
+    constexpr std::array<double, 3> kReach = {0.15, 0.6, 1.2};
+    const double reach = kReach[round / 2 % kReach.size()];
     return facet_near(pair_, current_.facet.n + offset * reach, vertex_of(pair_.A, current_.facet.a),
                       vertex_of(pair_.B, current_.facet.b));
   }
