@@ -12,14 +12,37 @@ namespace {
 
 double cross(const Vec2& a, const Vec2& b) noexcept { return a.x() * b.y() - a.y() * b.x(); }
 
-/// A polygon as a ring of corners, for cutting pieces off without moving the rest. A corner within `snap_` of
-/// a cut lies on it: so no two corners get so near each other that rounding turns the side between them.
+/// A corner within this of a cut lies on it: so no two corners get so near each other that rounding turns the
+/// side between them [m].
+double snap_of(const PatchPolygon& polygon) noexcept {
+  double most = 0.0;
+  for (const Vec2& x : polygon) most = std::max(most, std::abs(x.x()) + std::abs(x.y()));
+  return tolerances::kCoplanar * most;
+}
+
+/// A side of the window as a cut: heights over it are in metres times the side's length, `scale` to within a
+/// factor of 1.5, so that no root is drawn.
+struct Cut {
+  Vec2 outward;
+  double offset;
+  double scale;
+
+  Cut(const Vec2& from, const Vec2& to) noexcept
+      : outward(to.y() - from.y(), from.x() - to.x()),
+        offset(outward.x() * from.x() + outward.y() * from.y()),
+        scale(std::abs(outward.x()) + std::abs(outward.y())) {}
+  double height(const Vec2& x) const noexcept {
+    return outward.x() * x.x() + outward.y() * x.y() - offset;
+  }
+};
+
+/// A polygon as a ring of corners, for cutting pieces off without moving the rest.
 class Ring {
  public:
-  explicit Ring(const PatchPolygon& polygon) noexcept : count_(static_cast<int>(polygon.size())) {
+  Ring(const PatchPolygon& polygon, double snap) noexcept
+      : count_(static_cast<int>(polygon.size())), snap_(snap) {
     for (int i = 0; i < count_; ++i)
       corners_[Index(i)] = {polygon[Index(i)], i + 1 == count_ ? 0 : i + 1, i == 0 ? count_ - 1 : i - 1};
-    for (const Vec2& x : polygon) snap_ = std::max(snap_, tolerances::kCoplanar * x.lpNorm<1>());
   }
 
   /// The corner farthest along `d`, looked for from the last one on, counter-clockwise.
@@ -35,19 +58,20 @@ class Ring {
       if (d.dot(at(i)) > d.dot(at(top_))) top_ = i;
   }
 
-  /// Cuts off what is beyond normal . x = offset (`normal` unit); false when nothing is left.
-  bool cut(const Vec2& normal, double offset) noexcept {
-    const auto height = [&](int i) { return normal.dot(at(i)) - offset; };
-    if (height(top_) <= snap_) return true;
+  /// Cuts off what is beyond; false when nothing is left.
+  bool cut(const Cut& side) noexcept {
+    const double snap = snap_ * side.scale;
+    const auto height = [&](int i) { return side.height(at(i)); };
+    if (height(top_) <= snap) return true;
     int ahead = corners_[Index(top_)].next;
-    while (height(ahead) > snap_) {
+    while (height(ahead) > snap) {
       if (ahead == top_) return false;
       ahead = corners_[Index(ahead)].next;
     }
     int behind = corners_[Index(top_)].previous;
-    while (height(behind) > snap_) behind = corners_[Index(behind)].previous;
-    const int first = crossing(behind, corners_[Index(behind)].next, height);
-    const int second = crossing(ahead, corners_[Index(ahead)].previous, height);
+    while (height(behind) > snap) behind = corners_[Index(behind)].previous;
+    const int first = crossing(behind, corners_[Index(behind)].next, height, snap);
+    const int second = crossing(ahead, corners_[Index(ahead)].previous, height, snap);
     if (first != behind) link(behind, first);
     link(first, second);
     if (second != ahead) link(second, ahead);
@@ -76,9 +100,9 @@ class Ring {
     corners_[Index(b)].previous = a;
   }
   template <class Height>
-  int crossing(int inside, int outside, const Height& height) noexcept {
+  int crossing(int inside, int outside, const Height& height, double snap) noexcept {
     const double low = height(inside);
-    if (low >= -snap_) return inside;
+    if (low >= -snap) return inside;
     corners_[Index(count_)].x = at(inside) + (at(outside) - at(inside)) * (low / (low - height(outside)));
     return count_++;
   }
@@ -86,39 +110,59 @@ class Ring {
   std::array<Corner, PatchPolygon::capacity() + 2 * PatchPolygon::capacity()> corners_;
   int count_;
   int top_ = 0;
-  double snap_ = 0.0;  // [m]
+  double snap_;  // [m]
 };
+
+/// What is below the line of `height`, by the heights of all corners [Sutherland and Hodgman 1974]. A polygon
+/// with no corner more than `snap` above it stays as it is.
+template <class Height>
+void cut_polygon(PatchPolygon& polygon, const Height& height, double snap) noexcept {
+  std::array<double, PatchPolygon::capacity()> heights;
+  const std::size_t n = polygon.size();
+  bool cut = false;
+  for (std::size_t i = 0; i < n; ++i) {
+    heights[i] = height(polygon[i]);
+    cut |= heights[i] > snap;
+  }
+  if (!cut) return;
+  std::array<Vec2, PatchPolygon::capacity()> corners;
+  std::copy(polygon.begin(), polygon.end(), corners.begin());
+  polygon.clear();
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t next = i + 1 == n ? 0 : i + 1;
+    const double h = heights[i];
+    const double h_next = heights[next];
+    if (h <= snap) polygon.push_back(corners[i]);
+    if ((h < -snap && h_next > snap) || (h > snap && h_next < -snap))
+      polygon.push_back(corners[i] + (corners[next] - corners[i]) * (h / (h - h_next)));
+  }
+}
 
 }  // namespace
 
 void clip_polygon(PatchPolygon& polygon, const Vec2& normal, double offset) noexcept {
-  bool cut = false;
-  for (const Vec2& x : polygon) cut |= normal.dot(x) > offset;
-  if (!cut) return;
-  const PatchPolygon whole = polygon;
-  polygon.clear();
-  const std::size_t n = whole.size();
-  for (std::size_t i = 0; i < n; ++i) {
-    const Vec2& a = whole[i];
-    const Vec2& b = whole[i + 1 == n ? 0 : i + 1];
-    const double ha = normal.dot(a) - offset;
-    const double hb = normal.dot(b) - offset;
-    if (ha <= 0.0) polygon.push_back(a);
-    if ((ha < 0.0 && hb > 0.0) || (ha > 0.0 && hb < 0.0)) polygon.push_back(a + (b - a) * (ha / (ha - hb)));
-  }
+  cut_polygon(polygon, [&](const Vec2& x) { return normal.dot(x) - offset; }, 0.0);
 }
 
 void clip_polygon(PatchPolygon& polygon, const PatchPolygon& window) noexcept {
+  constexpr std::size_t kFew = 36;  // pairs of corners up to which going around costs more than it saves
   if (polygon.empty()) return;
-  Ring ring(polygon);
   const std::size_t n = window.size();
+  const double snap = snap_of(polygon);
+  const auto side = [&](std::size_t i) { return Cut(window[i], window[i + 1 == n ? 0 : i + 1]); };
+  if (n * polygon.size() <= kFew) {
+    for (std::size_t i = 0; i < n; ++i) {
+      const Cut cut = side(i);
+      cut_polygon(polygon, [&](const Vec2& x) { return cut.height(x); }, snap * cut.scale);
+    }
+    return;
+  }
+  Ring ring(polygon, snap);
   for (std::size_t i = 0; i < n; ++i) {
-    const Vec2& a = window[i];
-    const Vec2 side = window[i + 1 == n ? 0 : i + 1] - a;
-    const Vec2 outward = Vec2(side.y(), -side.x()).normalized();
-    if (i == 0) ring.start(outward);
-    ring.advance(outward);
-    if (!ring.cut(outward, outward.dot(a))) return polygon.clear();
+    const Cut cut = side(i);
+    if (i == 0) ring.start(cut.outward);
+    ring.advance(cut.outward);
+    if (!ring.cut(cut)) return polygon.clear();
   }
   ring.copy_to(polygon);
 }
@@ -132,31 +176,50 @@ double twice_area(const PatchPolygon& polygon) noexcept {
 
 PatchMoments moments_of(const PatchPolygon& polygon) noexcept {
   PatchMoments m;
-  Vec2 first = Vec2::Zero();  // sums over the triangles of a fan at corner 0, about corner 0
-  Eigen::Matrix2d second = Eigen::Matrix2d::Zero();
+  const std::size_t n = polygon.size();
+  if (n < 3) return m;
+  // Sums over the triangles of a fan at corner 0, about corner 0.
+  const Vec2 origin = polygon[0];
   double twice = 0.0;
-  for (std::size_t i = 2; i < polygon.size(); ++i) {
-    const Vec2 a = polygon[i - 1] - polygon[0];
-    const Vec2 b = polygon[i] - polygon[0];
-    const double weight = cross(a, b);
-    const Vec2 sum = a + b;
+  double fx = 0.0;
+  double fy = 0.0;
+  double xx = 0.0;
+  double xy = 0.0;
+  double yy = 0.0;
+  double ax = polygon[1].x() - origin.x();
+  double ay = polygon[1].y() - origin.y();
+  for (std::size_t i = 2; i < n; ++i) {
+    const double bx = polygon[i].x() - origin.x();
+    const double by = polygon[i].y() - origin.y();
+    const double weight = ax * by - ay * bx;
+    const double sx = ax + bx;
+    const double sy = ay + by;
     twice += weight;
-    first += weight / 3.0 * sum;
-    second += weight / 12.0 * (a * a.transpose() + b * b.transpose() + sum * sum.transpose());
+    fx += weight * sx;
+    fy += weight * sy;
+    xx += weight * (ax * ax + bx * bx + sx * sx);
+    xy += weight * (ax * ay + bx * by + sx * sy);
+    yy += weight * (ay * ay + by * by + sy * sy);
+    ax = bx;
+    ay = by;
   }
   m.area = 0.5 * twice;
   if (!(m.area > 0.0)) return m;
-  const Vec2 c = first / twice;
-  const Eigen::Matrix2d central = second / twice - c * c.transpose();
-  m.centroid = polygon[0] + c;
-  const double half_trace = 0.5 * (central(0, 0) + central(1, 1));
-  const double half_difference = 0.5 * (central(0, 0) - central(1, 1));
-  const double spread = std::hypot(half_difference, central(0, 1));
-  const double angle = 0.5 * std::atan2(central(0, 1), half_difference);
-  m.axis = {std::cos(angle), std::sin(angle)};
-  m.major = std::max(0.0, half_trace + spread);
-  m.minor = std::max(0.0, half_trace - spread);
+  const double share = 1.0 / twice;
+  const Vec2 c(fx * share / 3.0, fy * share / 3.0);
+  m.centroid = origin + c;
+  m.xx = std::max(0.0, xx * share / 12.0 - c.x() * c.x());
+  m.xy = xy * share / 12.0 - c.x() * c.y();
+  m.yy = std::max(0.0, yy * share / 12.0 - c.y() * c.y());
   return m;
+}
+
+PatchSpread spread_of(const PatchMoments& m) noexcept {
+  const double root = std::sqrt(std::max(0.0, m.xx * m.yy - m.xy * m.xy));
+  const double trace = m.xx + m.yy + 2.0 * root;
+  if (!(trace > 0.0)) return {};
+  const double scale = std::sqrt(2.0 / trace);
+  return {{(m.xx + root) * scale, m.xy * scale}, {m.xy * scale, (m.yy + root) * scale}};
 }
 
 void PatchInterval::keep_below(double at0, double at1, double limit) noexcept {
