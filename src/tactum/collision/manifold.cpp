@@ -114,7 +114,7 @@ struct Plan {
 
   static Plan of_a(const Tangent& t) noexcept { return {t.origin, t.e1, t.e2, t.n}; }
   static Plan of_b(const Tangent& t, const Pose& X_BA) noexcept {
-    return {X_BA * t.origin, X_BA.R * t.e1, X_BA.R * t.e2, X_BA.R * t.n};
+    return {turned(X_BA.R, t.origin) + X_BA.p, turned(X_BA.R, t.e1), turned(X_BA.R, t.e2), turned(X_BA.R, t.n)};
   }
   Vec2 flat(const Vec3& p) const noexcept {
     const Vec3 r = p - origin;
@@ -180,14 +180,10 @@ Rise rise_from_edge(const Tangent& tangent, const Polytope& P, int edge, const P
   return {across, across.dot(on_line)};
 }
 
-void add_point(const Work& w, const Vec2& x, double za, double zb, double weight) noexcept {
-  w.out.points.push_back({w.tangent.point(x, za), w.tangent.point(x, zb), za - zb, weight});
-}
-
 void point_contact(const Work& w) noexcept {
   w.out.points.clear();
   w.out.area = 0.0;
-  w.out.points.push_back({w.closest.p_a, w.closest.p_b, w.closest.distance, 1.0});
+  w.out.points.push_back({w.closest.p_a, w.closest.p_b, w.closest.distance, 1.0, 0});
 }
 
 /// Points of A and of B over each other at both ends of a segment; linear between.
@@ -221,7 +217,7 @@ void interval_contact(const Work& w, const Strip& strip, PatchInterval kept,
   const double reach = 0.5 * (kept.high - kept.low) / std::sqrt(3.0);
   for (double s : {middle - reach, middle + reach})
     w.out.points.push_back(
-        {strip.a0 + (strip.a1 - strip.a0) * s, strip.b0 + (strip.b1 - strip.b0) * s, gap(s), 0.5});
+        {strip.a0 + (strip.a1 - strip.a0) * s, strip.b0 + (strip.b1 - strip.b0) * s, gap(s), 0.5, 0});
 }
 
 /// Keeps the part of x0..x1 inside a convex, counter-clockwise window.
@@ -319,6 +315,7 @@ void sliver_contact(const Work& w, const PatchPolygon& polygon, const Height& za
     if ((x - x0).squaredNorm() > (x1 - x0).squaredNorm()) x1 = x;
   for (const Vec2& x : polygon)
     if ((x - x1).squaredNorm() > (x0 - x1).squaredNorm()) x0 = x;
+  if (x1.x() < x0.x()) std::swap(x0, x1);  // along A's feature, so that the ends keep their places
   interval_contact(w,
                    {w.tangent.point(x0, za(x0)), w.tangent.point(x1, za(x1)), w.tangent.point(x0, zb(x0)),
                     w.tangent.point(x1, zb(x1))},
@@ -338,13 +335,17 @@ void face_face_contact(const Work& w) noexcept {
   clip_polygon(polygon, window);
   if (polygon.empty()) return point_contact(w);
   double least = std::numeric_limits<double>::infinity();
-  for (const Vec2& x : polygon) least = std::min(least, gap(x));
+  double most = -least;
+  for (const Vec2& x : polygon) {
+    least = std::min(least, gap(x));
+    most = std::max(most, gap(x));
+  }
   if (least >= w.tolerance) return point_contact(w);
-  clip_polygon(polygon, gap.slope, cut_level(w, least) - gap.at_origin);
+  if (const double level = cut_level(w, least); most > level) clip_polygon(polygon, gap.slope, level - gap.at_origin);
   const auto cut_toward_edge = [&](const Rise& rise, double share) {
-    double most = 0.0;
-    for (const Vec2& x : polygon) most = std::max(most, rise(x));
-    clip_polygon(polygon, rise.slope, rise.offset + most * share);
+    double highest = 0.0;
+    for (const Vec2& x : polygon) highest = std::max(highest, rise(x));
+    clip_polygon(polygon, rise.slope, rise.offset + highest * share);
   };
   if (w.a.face_share < 1.0)
     cut_toward_edge(rise_from_edge(w.tangent, w.pair.A, w.a.edge, {}, za.slope), w.a.face_share);
@@ -355,9 +356,17 @@ void face_face_contact(const Work& w) noexcept {
   if (m.area <= tolerances::kPatchArea * w.pair.size * w.pair.size) return sliver_contact(w, polygon, za, zb);
   w.out.area = m.area;
   const PatchSpread arms = spread_of(m);
-  for (const Vec2& x :
-       {Vec2(m.centroid + arms.u), Vec2(m.centroid - arms.u), Vec2(m.centroid + arms.v), Vec2(m.centroid - arms.v)})
-    add_point(w, x, za(x), zb(x), 0.25);
+  const Vec3 center_a = w.tangent.point(m.centroid, za(m.centroid));
+  const Vec3 center_b = w.tangent.point(m.centroid, zb(m.centroid));
+  const double center_gap = gap(m.centroid);
+  for (const Vec2* arm : {&arms.u, &arms.v}) {
+    const Vec3 flat = w.tangent.e1 * arm->x() + w.tangent.e2 * arm->y();
+    const Vec3 to_a = flat + w.tangent.n * za.slope.dot(*arm);
+    const Vec3 to_b = flat + w.tangent.n * zb.slope.dot(*arm);
+    const double opens = gap.slope.dot(*arm);
+    w.out.points.push_back({center_a + to_a, center_b + to_b, center_gap + opens, 0.25, 0});
+    w.out.points.push_back({center_a - to_a, center_b - to_b, center_gap - opens, 0.25, 0});
+  }
 }
 
 using Handler = void (*)(const Work&) noexcept;
@@ -370,6 +379,18 @@ constexpr std::array<std::array<Handler, 3>, 3> kHandlers = {{
     {point_contact, face_a_edge_b, face_face_contact},  // A: face
 }};
 
+/// Identities: the two features, and the place among the four points of an area, two of a line, or the one.
+/// Arms and ends go with the features, so the places do.
+void name_points(Manifold& patch) noexcept {
+  const auto name = [](const Feature& f) {
+    return static_cast<std::uint64_t>(f.kind) | static_cast<std::uint64_t>(f.index) << 2;
+  };
+  const std::size_t points = patch.points.size();
+  const std::uint64_t first = points == 4 ? 0 : points == 2 ? 4 : 6;
+  const std::uint64_t features = name(patch.a) << 33 | name(patch.b) << 3;
+  for (std::size_t i = 0; i < points; ++i) patch.points[i].id = features | (first + i);
+}
+
 /// The contact plane's first axis goes with A's feature, so that points keep their places while it stays.
 Tangent contact_plane(const Polytope& A, const Feature& a, const Vec3& origin, const Vec3& n) noexcept {
   Tangent tangent{origin, Vec3::Zero(), Vec3::Zero(), n};
@@ -378,7 +399,10 @@ Tangent contact_plane(const Polytope& A, const Feature& a, const Vec3& origin, c
   } else {
     const int edge = a.kind == Kind::kEdge ? a.index : A.face_edges[A.faces[a.index].first];
     const Vec3& u = A.edges[edge].direction;
-    tangent.e1 = (u - n * n.dot(u)).normalized();  // nearly square to n already
+    tangent.e1 = u - n * n.dot(u);
+    const double length_sq = tangent.e1.squaredNorm();
+    // Nearly square to n already, in the answers of the queries.
+    tangent.e1 = length_sq > 0.25 ? Vec3(tangent.e1 / std::sqrt(length_sq)) : any_orthogonal(n);
   }
   tangent.e2 = n.cross(tangent.e1);
   return tangent;
@@ -400,11 +424,12 @@ void contact_manifold_within(const Polytope& A, const Polytope& B, const Pose& X
   const PairView pair(A, B, X_AB);
   const Vec3& n = closest.normal;
   const Facing a = facing_feature(A, closest.a, -n, angle);
-  const Facing b = facing_feature(B, closest.b, pair.X_BA.R * n, angle);
+  const Facing b = facing_feature(B, closest.b, turned(pair.X_BA.R, n), angle);
   const Work work{pair, closest, tolerance, angle, contact_plane(A, a.feature, closest.p_b, n), a, b, out};
   out.a = work.a.feature;
   out.b = work.b.feature;
   kHandlers[static_cast<std::size_t>(out.a.kind)][static_cast<std::size_t>(out.b.kind)](work);
+  name_points(out);
 }
 
 void contact_manifold(const Polytope& A, const Polytope& B, const Pose& X_AB, const PairDistance& closest,

@@ -10,13 +10,6 @@ namespace {
 
 using Kind = FeatureKind;
 
-/// R v written out: the walk does little else, and the library's product is a call.
-inline Vec3 turned(const Mat3& R, const Vec3& v) noexcept {
-  return {R(0, 0) * v.x() + R(0, 1) * v.y() + R(0, 2) * v.z(),
-          R(1, 0) * v.x() + R(1, 1) * v.y() + R(1, 2) * v.z(),
-          R(2, 0) * v.x() + R(2, 1) * v.y() + R(2, 2) * v.z()};
-}
-
 inline Vec3 point_b(const PairView& pair, int v) noexcept {
   return turned(pair.X_AB.R, pair.B.vertices[v]) + pair.X_AB.p;
 }

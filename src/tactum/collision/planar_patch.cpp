@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
 #include "tactum/base/tolerances.h"
 
@@ -11,14 +12,6 @@ namespace tactum {
 namespace {
 
 double cross(const Vec2& a, const Vec2& b) noexcept { return a.x() * b.y() - a.y() * b.x(); }
-
-/// A corner within this of a cut lies on it: so no two corners get so near each other that rounding turns the
-/// side between them [m].
-double snap_of(const PatchPolygon& polygon) noexcept {
-  double most = 0.0;
-  for (const Vec2& x : polygon) most = std::max(most, std::abs(x.x()) + std::abs(x.y()));
-  return tolerances::kCoplanar * most;
-}
 
 /// A side of the window as a cut: heights over it are in metres times the side's length, `scale` to within a
 /// factor of 1.5, so that no root is drawn.
@@ -36,42 +29,72 @@ struct Cut {
   }
 };
 
+/// A corner within this share of the polygon's extent of a cut lies on it: so no two corners get so near each
+/// other that rounding turns the side between them.
+constexpr double kSnap = tolerances::kCoplanar;
+
+double extent(double most, const Vec2& x) noexcept {
+  return std::max(most, std::abs(x.x()) + std::abs(x.y()));
+}
+
 /// A polygon as a ring of corners, for cutting pieces off without moving the rest.
 class Ring {
  public:
-  Ring(const PatchPolygon& polygon, double snap) noexcept
-      : count_(static_cast<int>(polygon.size())), snap_(snap) {
-    for (int i = 0; i < count_; ++i)
-      corners_[Index(i)] = {polygon[Index(i)], i + 1 == count_ ? 0 : i + 1, i == 0 ? count_ - 1 : i - 1};
-  }
-
-  /// The corner farthest along `d`, looked for from the last one on, counter-clockwise.
-  void advance(const Vec2& d) noexcept {
-    for (int turns = 0; turns < count_; ++turns) {
-      const int next = corners_[Index(top_)].next;
-      if (d.dot(at(next)) < d.dot(at(top_))) return;
-      top_ = next;
+  /// `first` is the first side that will cut: the farthest corner for it is found on the way.
+  Ring(const PatchPolygon& polygon, const Cut& first) noexcept : count_(static_cast<int>(polygon.size())) {
+    double most = 0.0;
+    double top_height = -std::numeric_limits<double>::infinity();
+    for (int i = 0; i < count_; ++i) {
+      const Vec2& x = polygon[Index(i)];
+      Corner& corner = corners_[Index(i)];
+      corner.x = x;
+      corner.next = i + 1;
+      corner.previous = i - 1;
+      most = extent(most, x);
+      if (const double height = first.height(x); height > top_height) {
+        top_height = height;
+        top_ = i;
+      }
     }
-  }
-  void start(const Vec2& d) noexcept {
-    for (int i = 1; i < count_; ++i)
-      if (d.dot(at(i)) > d.dot(at(top_))) top_ = i;
+    link(count_ - 1, 0);
+    snap_ = kSnap * most;
   }
 
-  /// Cuts off what is beyond; false when nothing is left.
+  /// Cuts off what is beyond; false when nothing is left. The farthest corner is looked for from the last one
+  /// on, counter-clockwise, and every height is taken once.
   bool cut(const Cut& side) noexcept {
     const double snap = snap_ * side.scale;
-    const auto height = [&](int i) { return side.height(at(i)); };
-    if (height(top_) <= snap) return true;
-    int ahead = corners_[Index(top_)].next;
-    while (height(ahead) > snap) {
-      if (ahead == top_) return false;
-      ahead = corners_[Index(ahead)].next;
+    double top_height = side.height(at(top_));
+    int ahead = next(top_);
+    double ahead_height = side.height(at(ahead));
+    for (int turns = 0; turns < count_ && ahead_height >= top_height; ++turns) {
+      top_ = ahead;
+      top_height = ahead_height;
+      ahead = next(top_);
+      ahead_height = side.height(at(ahead));
     }
-    int behind = corners_[Index(top_)].previous;
-    while (height(behind) > snap) behind = corners_[Index(behind)].previous;
-    const int first = crossing(behind, corners_[Index(behind)].next, height, snap);
-    const int second = crossing(ahead, corners_[Index(ahead)].previous, height, snap);
+    if (top_height <= snap) return true;
+    int outside = top_;
+    double height = top_height;
+    while (ahead_height > snap) {
+      if (ahead == top_) return false;
+      outside = ahead;
+      height = ahead_height;
+      ahead = next(ahead);
+      ahead_height = side.height(at(ahead));
+    }
+    const int second = crossing(ahead, ahead_height, outside, height, snap);
+    outside = top_;
+    height = top_height;
+    int behind = previous(top_);
+    double behind_height = side.height(at(behind));
+    while (behind_height > snap) {
+      outside = behind;
+      height = behind_height;
+      behind = previous(behind);
+      behind_height = side.height(at(behind));
+    }
+    const int first = crossing(behind, behind_height, outside, height, snap);
     if (first != behind) link(behind, first);
     link(first, second);
     if (second != ahead) link(second, ahead);
@@ -95,75 +118,107 @@ class Ring {
     int next, previous;
   };
   const Vec2& at(int i) const noexcept { return corners_[Index(i)].x; }
+  int next(int i) const noexcept { return corners_[Index(i)].next; }
+  int previous(int i) const noexcept { return corners_[Index(i)].previous; }
   void link(int a, int b) noexcept {
     corners_[Index(a)].next = b;
     corners_[Index(b)].previous = a;
   }
-  template <class Height>
-  int crossing(int inside, int outside, const Height& height, double snap) noexcept {
-    const double low = height(inside);
+  int crossing(int inside, double low, int outside, double high, double snap) noexcept {
     if (low >= -snap) return inside;
-    corners_[Index(count_)].x = at(inside) + (at(outside) - at(inside)) * (low / (low - height(outside)));
+    corners_[Index(count_)].x = at(inside) + (at(outside) - at(inside)) * (low / (low - high));
     return count_++;
   }
 
   std::array<Corner, PatchPolygon::capacity() + 2 * PatchPolygon::capacity()> corners_;
   int count_;
   int top_ = 0;
-  double snap_;  // [m]
+  double snap_ = 0.0;  // [m]
 };
 
-/// What is below the line of `height`, by the heights of all corners [Sutherland and Hodgman 1974]. A polygon
-/// with no corner more than `snap` above it stays as it is.
-template <class Height>
-void cut_polygon(PatchPolygon& polygon, const Height& height, double snap) noexcept {
-  std::array<double, PatchPolygon::capacity()> heights;
-  const std::size_t n = polygon.size();
-  bool cut = false;
-  for (std::size_t i = 0; i < n; ++i) {
-    heights[i] = height(polygon[i]);
-    cut |= heights[i] > snap;
+/// A polygon's coordinates apart, as cutting side by side likes them.
+template <std::size_t N>
+struct Corners {
+  std::array<double, N> x, y;
+  std::size_t count = 0;
+
+  explicit Corners(const PatchPolygon& polygon) noexcept : count(polygon.size()) {
+    for (std::size_t i = 0; i < count; ++i) {
+      x[i] = polygon[i].x();
+      y[i] = polygon[i].y();
+    }
   }
-  if (!cut) return;
-  std::array<Vec2, PatchPolygon::capacity()> corners;
-  std::copy(polygon.begin(), polygon.end(), corners.begin());
-  polygon.clear();
-  for (std::size_t i = 0; i < n; ++i) {
-    const std::size_t next = i + 1 == n ? 0 : i + 1;
-    const double h = heights[i];
-    const double h_next = heights[next];
-    if (h <= snap) polygon.push_back(corners[i]);
-    if ((h < -snap && h_next > snap) || (h > snap && h_next < -snap))
-      polygon.push_back(corners[i] + (corners[next] - corners[i]) * (h / (h - h_next)));
+  void copy_to(PatchPolygon& polygon) const noexcept {
+    polygon.clear();
+    for (std::size_t i = 0; i < count; ++i) polygon.push_back({x[i], y[i]});
   }
+
+  /// Keeps what is below normal . x = offset [Sutherland and Hodgman 1974]. Where no corner is more than `snap`
+  /// above, all stay: false.
+  bool cut(double nx, double ny, double offset, double snap) noexcept {
+    std::array<double, N> height;
+    bool any = false;
+    for (std::size_t i = 0; i < count; ++i) {
+      height[i] = nx * x[i] + ny * y[i] - offset;
+      any |= height[i] > snap;
+    }
+    if (!any) return false;
+    const Corners whole = *this;
+    const std::size_t n = count;
+    count = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      const std::size_t next = i + 1 == n ? 0 : i + 1;
+      if (height[i] <= snap) add(whole.x[i], whole.y[i]);
+      if ((height[i] < -snap && height[next] > snap) || (height[i] > snap && height[next] < -snap)) {
+        const double s = height[i] / (height[i] - height[next]);
+        add(whole.x[i] + (whole.x[next] - whole.x[i]) * s, whole.y[i] + (whole.y[next] - whole.y[i]) * s);
+      }
+    }
+    return true;
+  }
+
+ private:
+  Corners(const Corners& other) noexcept : count(other.count) {
+    std::copy_n(other.x.begin(), count, x.begin());
+    std::copy_n(other.y.begin(), count, y.begin());
+  }
+  void add(double px, double py) noexcept {
+    if (count == N) return;
+    x[count] = px;
+    y[count++] = py;
+  }
+};
+
+Cut side_of(const PatchPolygon& window, std::size_t i) noexcept {
+  return {window[i], window[i + 1 == window.size() ? 0 : i + 1]};
 }
 
 }  // namespace
 
 void clip_polygon(PatchPolygon& polygon, const Vec2& normal, double offset) noexcept {
-  cut_polygon(polygon, [&](const Vec2& x) { return normal.dot(x) - offset; }, 0.0);
+  Corners<PatchPolygon::capacity()> corners(polygon);
+  if (corners.cut(normal.x(), normal.y(), offset, 0.0)) corners.copy_to(polygon);
 }
 
 void clip_polygon(PatchPolygon& polygon, const PatchPolygon& window) noexcept {
-  constexpr std::size_t kFew = 36;  // pairs of corners up to which going around costs more than it saves
+  constexpr std::size_t kFew = 6;  // corners of both up to which going around costs more than it saves
   if (polygon.empty()) return;
   const std::size_t n = window.size();
-  const double snap = snap_of(polygon);
-  const auto side = [&](std::size_t i) { return Cut(window[i], window[i + 1 == n ? 0 : i + 1]); };
-  if (n * polygon.size() <= kFew) {
+  if (n <= kFew && polygon.size() <= kFew) {
+    Corners<2 * kFew> corners(polygon);
+    double most = 0.0;
+    for (const Vec2& x : polygon) most = extent(most, x);
+    bool any = false;
     for (std::size_t i = 0; i < n; ++i) {
-      const Cut cut = side(i);
-      cut_polygon(polygon, [&](const Vec2& x) { return cut.height(x); }, snap * cut.scale);
+      const Cut cut = side_of(window, i);
+      any |= corners.cut(cut.outward.x(), cut.outward.y(), cut.offset, kSnap * most * cut.scale);
     }
+    if (any) corners.copy_to(polygon);
     return;
   }
-  Ring ring(polygon, snap);
-  for (std::size_t i = 0; i < n; ++i) {
-    const Cut cut = side(i);
-    if (i == 0) ring.start(cut.outward);
-    ring.advance(cut.outward);
-    if (!ring.cut(cut)) return polygon.clear();
-  }
+  Ring ring(polygon, side_of(window, 0));
+  for (std::size_t i = 0; i < n; ++i)
+    if (!ring.cut(side_of(window, i))) return polygon.clear();
   ring.copy_to(polygon);
 }
 
