@@ -70,7 +70,7 @@ struct ContactPoint {
   Vec3 p_b = Vec3::Zero();  ///< on B, A's frame [m]
   double distance = 0.0;    ///< normal . (p_a - p_b) [m]
   double weight = 0.0;      ///< share of the patch's stiffness [-]
-  std::uint64_t id = 0;     ///< the same from frame to frame while the features of the patch and its kind stay
+  std::uint64_t id = 0;  ///< the same from frame to frame while the features of the patch and its kind stay
 };
 
 /// Where two convex pieces touch or nearly touch: one normal and up to four points (quadrature of the clipped

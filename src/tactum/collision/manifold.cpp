@@ -114,7 +114,8 @@ struct Plan {
 
   static Plan of_a(const Tangent& t) noexcept { return {t.origin, t.e1, t.e2, t.n}; }
   static Plan of_b(const Tangent& t, const Pose& X_BA) noexcept {
-    return {turned(X_BA.R, t.origin) + X_BA.p, turned(X_BA.R, t.e1), turned(X_BA.R, t.e2), turned(X_BA.R, t.n)};
+    return {turned(X_BA.R, t.origin) + X_BA.p, turned(X_BA.R, t.e1), turned(X_BA.R, t.e2),
+            turned(X_BA.R, t.n)};
   }
   Vec2 flat(const Vec3& p) const noexcept {
     const Vec3 r = p - origin;
@@ -140,7 +141,8 @@ struct Work {
 };
 
 /// The outline of a face, counter-clockwise in the contact plane: B's faces look along n, A's against it.
-void face_outline(const Plan& plan, const Polytope& P, int face_index, bool on_a, PatchPolygon& loop) noexcept {
+void face_outline(const Plan& plan, const Polytope& P, int face_index, bool on_a,
+                  PatchPolygon& loop) noexcept {
   const Polytope::Face& face = P.faces[face_index];
   const int stride = (face.count + kPatchCorners - 1) / kPatchCorners;
   loop.clear();
@@ -341,7 +343,8 @@ void face_face_contact(const Work& w) noexcept {
     most = std::max(most, gap(x));
   }
   if (least >= w.tolerance) return point_contact(w);
-  if (const double level = cut_level(w, least); most > level) clip_polygon(polygon, gap.slope, level - gap.at_origin);
+  if (const double level = cut_level(w, least); most > level)
+    clip_polygon(polygon, gap.slope, level - gap.at_origin);
   const auto cut_toward_edge = [&](const Rise& rise, double share) {
     double highest = 0.0;
     for (const Vec2& x : polygon) highest = std::max(highest, rise(x));

@@ -224,7 +224,8 @@ bool maybe_lower_behind(const PairView& pair, const MinkowskiFacet& facet, const
   const double cosine = passage.arc.m0.dot(P.faces[passage.arc.end].normal);
   double inside_sq = inside * inside;
   if (facet.a.kind == Kind::kEdge && facet.b.kind == Kind::kEdge) {  // told along an edge, not square to it
-    const double along = pair.A.edges[facet.a.index].direction.dot(turned(pair.X_AB.R, pair.B.edges[facet.b.index].direction));
+    const double along =
+        pair.A.edges[facet.a.index].direction.dot(turned(pair.X_AB.R, pair.B.edges[facet.b.index].direction));
     inside_sq *= 1.0 - along * along;
   }
   return inside_sq * (1.0 + cosine) < d * d * (1.0 - cosine);
@@ -243,8 +244,8 @@ struct Measure {
 };
 
 /// Across the worst border, or where rounding has bent the facets the next worst, whose plane is not farther.
-bool moved_outside(const PairView& pair, const Measure& measure, Crossing crossing, double limit, double slack,
-                   MinkowskiWalk& here) noexcept {
+bool moved_outside(const PairView& pair, const Measure& measure, Crossing crossing, double limit,
+                   double slack, MinkowskiWalk& here) noexcept {
   const Vec3 target = measure.target(here.facet);
   while (crossing.outside > slack) {
     const MinkowskiFacet next = facet_behind(pair, across(pair, here.facet, crossing));
@@ -300,8 +301,9 @@ MinkowskiWalk walk(const PairView& pair, const MinkowskiFacet& start, const Vec3
     }
     best.steps = step;
     const bool inside = here.outside <= slack;
-    const bool moved = inside ? !ray && moved_inside(pair, crossing, length - level, here)
-                              : moved_outside(pair, measure, crossing, measure(best.facet) + level, slack, here);
+    const bool moved = inside
+                           ? !ray && moved_inside(pair, crossing, length - level, here)
+                           : moved_outside(pair, measure, crossing, measure(best.facet) + level, slack, here);
     if (!moved) break;
   }
   return best;

@@ -30,9 +30,9 @@ struct MinkowskiFacet {
   double height = 0.0;    ///< n . (b - a): what A must move along n to be clear [m]
 };
 
-/// Do the features of the facet lie in the support planes across its normal? Sure for a facet of a face, whose
-/// vertex was climbed to. Edges are local peaks where the normal is in both their cones, and a convex polytope
-/// has no other peaks than its supports.
+/// Do the features of the facet lie in the support planes across its normal? Sure for a facet of a face,
+/// whose vertex was climbed to. Edges are local peaks where the normal is in both their cones, and a convex
+/// polytope has no other peaks than its supports.
 bool is_real(const PairView& pair, const MinkowskiFacet& facet) noexcept;
 
 /// Where a walk ended.

@@ -182,9 +182,9 @@ void remember(const PairDistance& result, PairCache& cache) noexcept {
   cache.normal_A = result.normal;
 }
 
-/// The warm query: the last frame's minimum followed, and beside it a search for a better one that costs a few
-/// facets a frame. Two walks wait in the cache: the rival, the best other minimum known, and the scout, on its
-/// way from a direction that turns from one to the next.
+/// The warm query: the last frame's minimum followed, and beside it a search for a better one that costs a
+/// few facets a frame. Two walks wait in the cache: the rival, the best other minimum known, and the scout,
+/// on its way from a direction that turns from one to the next.
 class Tracker {
  public:
   Tracker(const PairView& pair, PairCache& cache) noexcept : pair_(pair), cache_(cache) {}

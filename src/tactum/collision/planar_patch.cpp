@@ -24,9 +24,7 @@ struct Cut {
       : outward(to.y() - from.y(), from.x() - to.x()),
         offset(outward.x() * from.x() + outward.y() * from.y()),
         scale(std::abs(outward.x()) + std::abs(outward.y())) {}
-  double height(const Vec2& x) const noexcept {
-    return outward.x() * x.x() + outward.y() * x.y() - offset;
-  }
+  double height(const Vec2& x) const noexcept { return outward.x() * x.x() + outward.y() * x.y() - offset; }
 };
 
 /// A corner within this share of the polygon's extent of a cut lies on it: so no two corners get so near each
@@ -153,8 +151,8 @@ struct Corners {
     for (std::size_t i = 0; i < count; ++i) polygon.push_back({x[i], y[i]});
   }
 
-  /// Keeps what is below normal . x = offset [Sutherland and Hodgman 1974]. Where no corner is more than `snap`
-  /// above, all stay: false.
+  /// Keeps what is below normal . x = offset [Sutherland and Hodgman 1974]. Where no corner is more than
+  /// `snap` above, all stay: false.
   bool cut(double nx, double ny, double offset, double snap) noexcept {
     std::array<double, N> height;
     bool any = false;

@@ -6,8 +6,8 @@
 /// the answer of the last frame is kept and moves over to the new one at a bounded rate:
 ///
 ///     normal     turns by at most kNormalTurn a frame, on the great circle, so it arrives within
-///                pi / kNormalTurn = 63 frames; the depth along it is that of true support planes, so moving A
-///                by it separates at every frame on the way
+///                pi / kNormalTurn = 63 frames; the depth along it is that of true support planes, so moving
+///                A by it separates at every frame on the way
 ///     centroid   stays where both bodies carry it, and moves from there by at most kCentroidStep a frame
 ///
 /// A thin piece pushed right through another has no way round: every normal between is far deeper than both.
@@ -18,9 +18,9 @@
 
 namespace tactum {
 
-inline constexpr double kNormalTurn = 0.05;     ///< [rad] a frame
-inline constexpr double kCentroidStep = 5e-5;   ///< [m] a frame
-inline constexpr double kDeepestDetour = 2.0;   ///< a normal on the way may be this many times as deep [-]
+inline constexpr double kNormalTurn = 0.05;    ///< [rad] a frame
+inline constexpr double kCentroidStep = 5e-5;  ///< [m] a frame
+inline constexpr double kDeepestDetour = 2.0;  ///< a normal on the way may be this many times as deep [-]
 
 /// What was shown in the last frame. Value-initialised means nothing.
 struct SteadyContact {
