@@ -127,7 +127,8 @@ TEST(TimeOfImpact, AgreesWithADenseRefereeForEveryPairOfShapes) {
       ++hits;
       ASSERT_NEAR(at(impact.time), target, 1.01 * tolerances::kImpactGap * size);
     }
-  std::printf("  seed %llu: %d hits, at most %d steps\n", static_cast<unsigned long long>(seed), hits, most_steps);
+  std::printf("  seed %llu: %d hits, at most %d steps\n", static_cast<unsigned long long>(seed), hits,
+              most_steps);
   EXPECT_GT(hits, 50);
 }
 

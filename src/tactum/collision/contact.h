@@ -11,6 +11,7 @@
 ///
 /// Swapping A and B keeps the distance, turns the normal around and swaps the points. Tested for every query.
 
+#include <array>
 #include <cstdint>
 
 #include "tactum/base/static_vector.h"
@@ -33,14 +34,21 @@ struct FeaturePair {
   bool empty() const noexcept { return a.index < 0 || b.index < 0; }
 };
 
+/// Four pairs of vertices of A and B. While their differences hold the origin between them the pieces share a
+/// point; all zero when none were needed. Pieces have at most 65 535 vertices.
+struct OverlapProof {
+  std::array<std::uint16_t, 4> a{}, b{};
+  bool known = false;
+};
+
 /// The closest features of a pair in the last frame: the coherence the tracker lives on. Value-initialised
 /// means none.
 struct PairCache {
   Feature a, b;
   Vec3 normal_A = Vec3::Zero();  ///< last normal from B to A, unit, or zero when there was none [-]
-  // Of an overlapping pair: the way out next in depth, and the walk that looks for others (penetration.h).
-  FeaturePair rival{};
-  FeaturePair scout{};
+  OverlapProof overlap;          ///< known when they overlapped in the last frame
+  // Of an overlapping pair: the next best way out, and the walk that looks for others (penetration.h).
+  FeaturePair rival, scout;
   std::uint32_t turn = 0;  ///< frames tracked inside
 };
 

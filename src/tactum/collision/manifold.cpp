@@ -114,8 +114,7 @@ struct Plan {
 
   static Plan of_a(const Tangent& t) noexcept { return {t.origin, t.e1, t.e2, t.n}; }
   static Plan of_b(const Tangent& t, const Pose& X_BA) noexcept {
-    return {turned(X_BA.R, t.origin) + X_BA.p, turned(X_BA.R, t.e1), turned(X_BA.R, t.e2),
-            turned(X_BA.R, t.n)};
+    return {X_BA * t.origin, rotated(X_BA.R, t.e1), rotated(X_BA.R, t.e2), rotated(X_BA.R, t.n)};
   }
   Vec2 flat(const Vec3& p) const noexcept {
     const Vec3 r = p - origin;
@@ -427,7 +426,7 @@ void contact_manifold_within(const Polytope& A, const Polytope& B, const Pose& X
   const PairView pair(A, B, X_AB);
   const Vec3& n = closest.normal;
   const Facing a = facing_feature(A, closest.a, -n, angle);
-  const Facing b = facing_feature(B, closest.b, turned(pair.X_BA.R, n), angle);
+  const Facing b = facing_feature(B, closest.b, rotated(pair.X_BA.R, n), angle);
   const Work work{pair, closest, tolerance, angle, contact_plane(A, a.feature, closest.p_b, n), a, b, out};
   out.a = work.a.feature;
   out.b = work.b.feature;

@@ -10,14 +10,6 @@ namespace {
 
 using Kind = FeatureKind;
 
-inline Vec3 point_b(const PairView& pair, int v) noexcept {
-  return turned(pair.X_AB.R, pair.B.vertices[v]) + pair.X_AB.p;
-}
-
-inline Vec3 point_BA(const PairView& pair, const Vec3& p_A) noexcept {
-  return turned(pair.X_BA.R, p_A) + pair.X_BA.p;
-}
-
 /// The arc of an edge of P in the Gauss maps' overlay: P's outward direction turns from `m0` with tangent
 /// `t0` toward the normal of `end`, while `vertex` of the other piece Q stays its support.
 struct Arc {
@@ -46,8 +38,8 @@ ArcEnd follow_arc(const Polytope& P, const Polytope& Q, const Mat3& R_QP, const 
                   int excluded) noexcept {
   const Vec3& m1 = P.faces[arc.end].normal;
   double first = cotangent(arc.m0.dot(m1), arc.t0.dot(m1));
-  const Vec3 o0 = -turned(R_QP, arc.m0);  // Q's outward direction
-  const Vec3 o_t = -turned(R_QP, arc.t0);
+  const Vec3 o0 = -rotated(R_QP, arc.m0);  // Q's outward direction
+  const Vec3 o_t = -rotated(R_QP, arc.t0);
   ArcEnd meets;
   for (const Polytope::Ray& ray : Q.rays_at(arc.vertex)) {
     if (ray.edge == excluded) continue;
@@ -78,8 +70,8 @@ MinkowskiFacet edge_facet(const PairView& pair, int edge_a, int edge_b, const Ve
   MinkowskiFacet facet;
   facet.a = {Kind::kEdge, edge_a};
   facet.b = {Kind::kEdge, edge_b};
-  facet.n = crossing_normal(ea.direction, turned(pair.X_AB.R, eb.direction), near);
-  facet.height = facet.n.dot(point_b(pair, eb.tail) - pair.vertex_a(ea.tail));
+  facet.n = crossing_normal(ea.direction, rotated(pair.X_AB.R, eb.direction), near);
+  facet.height = facet.n.dot(pair.vertex_b(eb.tail) - pair.vertex_a(ea.tail));
   return facet;
 }
 
@@ -98,7 +90,7 @@ MinkowskiFacet facet_behind(const PairView& pair, const Passage& passage) noexce
                                   : follow_arc(pair.B, pair.A, pair.X_AB.R, arc, passage.excluded);
   if (end.edge < 0) return facet_of_face(pair, passage.on_a, arc.end, arc.vertex);
   return passage.on_a ? edge_facet(pair, arc.edge, end.edge, -end.m)
-                      : edge_facet(pair, end.edge, arc.edge, turned(pair.X_AB.R, end.m));
+                      : edge_facet(pair, end.edge, arc.edge, rotated(pair.X_AB.R, end.m));
 }
 
 /// A border of a facet that the target point lies beyond, and by how much.
@@ -132,23 +124,24 @@ Crossing worst_side(const Polytope& P, int face_index, const Vec3& point, double
 Crossing place(const PairView& pair, const MinkowskiFacet& facet, const Vec3& target, double cap,
                MinkowskiWalk& walk) noexcept {
   if (facet.a.kind == Kind::kFace) {
-    walk.p_b = point_b(pair, facet.b.index);
+    walk.p_b = pair.vertex_b(facet.b.index);
     walk.p_a = walk.p_b - target;
     return worst_side(pair.A, facet.a.index, walk.p_a, cap);
   }
   if (facet.b.kind == Kind::kFace) {
     walk.p_a = pair.vertex_a(facet.a.index);
     walk.p_b = walk.p_a + target;
-    return worst_side(pair.B, facet.b.index, point_BA(pair, walk.p_b), cap);
+    return worst_side(pair.B, facet.b.index, pair.X_BA * walk.p_b, cap);
   }
   const Polytope::Edge& ea = pair.A.edges[facet.a.index];
   const Polytope::Edge& eb = pair.B.edges[facet.b.index];
   const Vec3& a0 = pair.vertex_a(ea.tail);
-  const Vec3 b0 = point_b(pair, eb.tail);
-  const Vec3 u_b = turned(pair.X_AB.R, eb.direction);
+  const Vec3 b0 = pair.vertex_b(eb.tail);
+  const Vec3 u_b = rotated(pair.X_AB.R, eb.direction);
   double s = 0.0;
   double t = 0.0;
-  if (!nearest_on_lines(a0, ea.direction, b0 - target, u_b, tolerances::kSameArc, s, t)) {
+  const Vec3 r = b0 - target - a0;
+  if (!nearest_on_lines(ea.direction, u_b, r, ea.direction.cross(u_b), tolerances::kSameArc, s, t)) {
     s = std::clamp(ea.direction.dot(b0 - target - a0), 0.0, ea.length);
     t = u_b.dot(a0 + ea.direction * s - b0 + target);
     walk.outside =
@@ -198,10 +191,10 @@ Passage across_edge_border(const PairView& pair, const MinkowskiFacet& facet,
   Arc& arc = passage.arc;
   arc.edge = followed;
   arc.vertex = crossing.at_tail ? other.tail : other.head;
-  arc.m0 = crossing.on_a ? Vec3(turned(pair.X_BA.R, facet.n)) : Vec3(-facet.n);
+  arc.m0 = crossing.on_a ? Vec3(rotated(pair.X_BA.R, facet.n)) : Vec3(-facet.n);
   arc.t0 = edge.direction.cross(arc.m0);
   // Q's outward direction turns by -t0; the end must rise over the other end.
-  const Vec3 u_P = turned(crossing.on_a ? pair.X_BA.R : pair.X_AB.R, other.direction);
+  const Vec3 u_P = rotated(crossing.on_a ? pair.X_BA.R : pair.X_AB.R, other.direction);
   const double toward_head = -arc.t0.dot(u_P);
   const bool backward = (toward_head > 0.0) == crossing.at_tail;
   if (backward) arc.t0 = -arc.t0;
@@ -224,8 +217,8 @@ bool maybe_lower_behind(const PairView& pair, const MinkowskiFacet& facet, const
   const double cosine = passage.arc.m0.dot(P.faces[passage.arc.end].normal);
   double inside_sq = inside * inside;
   if (facet.a.kind == Kind::kEdge && facet.b.kind == Kind::kEdge) {  // told along an edge, not square to it
-    const double along =
-        pair.A.edges[facet.a.index].direction.dot(turned(pair.X_AB.R, pair.B.edges[facet.b.index].direction));
+    const double along = pair.A.edges[facet.a.index].direction.dot(
+        rotated(pair.X_AB.R, pair.B.edges[facet.b.index].direction));
     inside_sq *= 1.0 - along * along;
   }
   return inside_sq * (1.0 + cosine) < d * d * (1.0 - cosine);
@@ -330,18 +323,18 @@ MinkowskiFacet facet_of_face(const PairView& pair, bool on_a, int face, int vert
   MinkowskiFacet facet;
   if (on_a) {
     const Polytope::Face& f = pair.A.faces[face];
-    vertex = support_vertex(pair.B, -(turned(pair.X_BA.R, f.normal)), vertex);
+    vertex = support_vertex(pair.B, -(rotated(pair.X_BA.R, f.normal)), vertex);
     facet.a = {Kind::kFace, face};
     facet.b = {Kind::kVertex, vertex};
     facet.n = -f.normal;
-    facet.height = f.offset - f.normal.dot(point_b(pair, vertex));
+    facet.height = f.offset - f.normal.dot(pair.vertex_b(vertex));
   } else {
     const Polytope::Face& f = pair.B.faces[face];
-    facet.n = turned(pair.X_AB.R, f.normal);
+    facet.n = rotated(pair.X_AB.R, f.normal);
     vertex = support_vertex(pair.A, -facet.n, vertex);
     facet.a = {Kind::kVertex, vertex};
     facet.b = {Kind::kFace, face};
-    facet.height = f.offset - f.normal.dot(point_BA(pair, pair.vertex_a(vertex)));
+    facet.height = f.offset - f.normal.dot(pair.X_BA * pair.vertex_a(vertex));
   }
   return facet;
 }
@@ -349,11 +342,11 @@ MinkowskiFacet facet_of_face(const PairView& pair, bool on_a, int face, int vert
 std::optional<MinkowskiFacet> facet_of_edges(const PairView& pair, int edge_a, int edge_b) noexcept {
   const Polytope::Edge& ea = pair.A.edges[edge_a];
   const Polytope::Edge& eb = pair.B.edges[edge_b];
-  const Vec3 c = ea.direction.cross(turned(pair.X_AB.R, eb.direction));
+  const Vec3 c = ea.direction.cross(rotated(pair.X_AB.R, eb.direction));
   const double a_left = pair.A.sides[ea.left_slot].normal.dot(c);
   const double a_right = pair.A.sides[ea.right_slot].normal.dot(c);
   if (a_left * a_right < 0.0) return std::nullopt;
-  const Vec3 c_B = turned(pair.X_BA.R, c);
+  const Vec3 c_B = rotated(pair.X_BA.R, c);
   const double b_left = pair.B.sides[eb.left_slot].normal.dot(c_B);
   const double b_right = pair.B.sides[eb.right_slot].normal.dot(c_B);
   // The normal cone of an edge is outside both its side planes; A's and B's outward directions are opposite.
@@ -363,7 +356,7 @@ std::optional<MinkowskiFacet> facet_of_edges(const PairView& pair, int edge_a, i
 }
 
 MinkowskiFacet facet_near(const PairView& pair, const Vec3& n, int from_a, int from_b) noexcept {
-  const Vec3 n_B = turned(pair.X_BA.R, n);
+  const Vec3 n_B = rotated(pair.X_BA.R, n);
   const int a = support_vertex(pair.A, -n, from_a);
   const int b = support_vertex(pair.B, n_B, from_b);
   double along_a = 0.0;
@@ -374,14 +367,14 @@ MinkowskiFacet facet_near(const PairView& pair, const Vec3& n, int from_a, int f
 }
 
 MinkowskiFacet facet_near(const PairView& pair, const Vec3& n) noexcept {
-  return facet_near(pair, n, table_vertex(pair.A, -n), table_vertex(pair.B, turned(pair.X_BA.R, n)));
+  return facet_near(pair, n, table_vertex(pair.A, -n), table_vertex(pair.B, rotated(pair.X_BA.R, n)));
 }
 
 bool is_real(const PairView& pair, const MinkowskiFacet& facet) noexcept {
   if (facet.a.kind != Kind::kEdge || facet.b.kind != Kind::kEdge) return true;
   const Polytope::Edge& ea = pair.A.edges[facet.a.index];
   const Polytope::Edge& eb = pair.B.edges[facet.b.index];
-  const Vec3 n_B = turned(pair.X_BA.R, facet.n);
+  const Vec3 n_B = rotated(pair.X_BA.R, facet.n);
   return pair.A.sides[ea.left_slot].normal.dot(facet.n) <= 0.0 &&
          pair.A.sides[ea.right_slot].normal.dot(facet.n) <= 0.0 &&
          pair.B.sides[eb.left_slot].normal.dot(n_B) >= 0.0 &&

@@ -14,13 +14,6 @@
 
 namespace tactum {
 
-/// R v written out: the queries do little else, and the library's product is a call.
-inline Vec3 turned(const Mat3& R, const Vec3& v) noexcept {
-  return {R(0, 0) * v.x() + R(0, 1) * v.y() + R(0, 2) * v.z(),
-          R(1, 0) * v.x() + R(1, 1) * v.y() + R(1, 2) * v.z(),
-          R(2, 0) * v.x() + R(2, 1) * v.y() + R(2, 2) * v.z()};
-}
-
 struct PairView {
   const Polytope& A;
   const Polytope& B;
@@ -35,7 +28,7 @@ struct PairView {
         X_AB(x),
         X_BA(x.inverse()),
         size(std::max(a.size, b.size)),
-        scale(size + x.p.lpNorm<1>() + a.center.lpNorm<1>() + b.center.lpNorm<1>()) {}
+        scale(x.p.lpNorm<1>() + a.magnitude + b.magnitude) {}
 
   const Vec3& vertex_a(int v) const noexcept { return A.vertices[v]; }
   /// Vertex of B, in A.
@@ -77,10 +70,7 @@ inline int face_of(const Polytope& P, const Feature& f) noexcept {
 
 /// Does the feature exist on `P`? A cache may come from another pair of pieces.
 inline bool valid_feature(const Polytope& P, const Feature& f) noexcept {
-  const std::size_t count = f.kind == FeatureKind::kVertex ? P.vertices.size()
-                            : f.kind == FeatureKind::kEdge ? P.edges.size()
-                                                           : P.faces.size();
-  return f.index >= 0 && static_cast<std::size_t>(f.index) < count;
+  return f.index >= 0 && f.index < P.counts[static_cast<std::size_t>(f.kind)];
 }
 
 }  // namespace tactum

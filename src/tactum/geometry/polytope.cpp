@@ -167,7 +167,10 @@ bool complete_polytope(Polytope& P, const char** why) {
   P.radius = 0.0;
   for (const Vec3& vertex : P.vertices) P.radius = std::max(P.radius, (vertex - P.center).norm());
   P.size = bounds(P.vertices).diagonal();
+  P.magnitude = P.size + P.center.lpNorm<1>();
   P.flat = P.faces.size() == 2;
+  P.counts = {static_cast<int>(P.vertices.size()), static_cast<int>(P.edges.size()),
+              static_cast<int>(P.faces.size())};
   build_direction_table(P);
   return true;
 }

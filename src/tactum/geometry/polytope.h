@@ -62,10 +62,12 @@ struct Polytope {
   std::vector<int> ray_first;
   std::vector<Ray> rays;
 
-  Vec3 center = Vec3::Zero();  ///< mean of the vertices: inside
-  double radius = 0.0;         ///< largest distance of a vertex from center [m]
-  double size = 0.0;           ///< diagonal of the bounding box [m]
-  bool flat = false;           ///< a polygon with two faces, no inside
+  Vec3 center = Vec3::Zero();   ///< mean of the vertices: inside
+  double radius = 0.0;          ///< largest distance of a vertex from center [m]
+  double size = 0.0;            ///< diagonal of the bounding box [m]
+  double magnitude = 0.0;       ///< size + |center|: of the numbers that are added up about it [m]
+  bool flat = false;            ///< a polygon with two faces, no inside
+  std::array<int, 3> counts{};  ///< of vertices, edges and faces
 
   /// Direction lookup table [Ehmann and Lin 2000]: for directions on a cube around the center, the vertex
   /// farthest along each. 6 x 8 x 8 entries of two bytes: 768 bytes.
