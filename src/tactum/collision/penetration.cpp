@@ -201,7 +201,7 @@ class Tracker {
 
  private:
   static constexpr std::uint32_t kRound = 4;  ///< frames from one look around to the next
-  static constexpr int kSteps = 6;            ///< facets walked beside the tracked minimum in a frame
+  static constexpr int kSteps = 4;            ///< facets walked beside the tracked minimum in a frame
 
   static bool same(const MinkowskiFacet& f, const MinkowskiFacet& g) noexcept {
     return f.a == g.a && f.b == g.b;
