@@ -209,7 +209,10 @@ class Query {
     result_ = answer;
     result_.stop = stop;
     result_.steps = steps_;
-    cache_ = {result_.a, result_.b, result_.normal, {}};
+    cache_.a = result_.a;
+    cache_.b = result_.b;
+    cache_.normal_A = result_.normal;
+    cache_.overlap = {};
     return result_;
   }
 

@@ -28,6 +28,12 @@ struct Feature {
   bool operator==(const Feature&) const = default;
 };
 
+/// A feature of A and one of B.
+struct FeaturePair {
+  Feature a, b;
+  bool empty() const noexcept { return a.index < 0 || b.index < 0; }
+};
+
 /// Four pairs of vertices of A and B. While their differences hold the origin between them the pieces share a
 /// point; all zero when none were needed. Pieces have at most 65 535 vertices.
 struct OverlapProof {
@@ -41,6 +47,9 @@ struct PairCache {
   Feature a, b;
   Vec3 normal_A = Vec3::Zero();  ///< last normal from B to A, unit, or zero when there was none [-]
   OverlapProof overlap;          ///< known when they overlapped in the last frame
+  // Of an overlapping pair: the next best way out, and the walk that looks for others (penetration.h).
+  FeaturePair rival, scout;
+  std::uint32_t turn = 0;  ///< frames tracked inside
 };
 
 /// Why a query stopped.
@@ -72,6 +81,7 @@ struct ContactPoint {
   Vec3 p_b = Vec3::Zero();  ///< on B, A's frame [m]
   double distance = 0.0;    ///< normal . (p_a - p_b) [m]
   double weight = 0.0;      ///< share of the patch's stiffness [-]
+  std::uint64_t id = 0;  ///< the same from frame to frame while the features of the patch and its kind stay
 };
 
 /// Where two convex pieces touch or nearly touch: one normal and up to four points (quadrature of the clipped

@@ -62,6 +62,19 @@ inline int vertex_of(const Polytope& P, const Feature& f) noexcept {
   return 0;
 }
 
+/// Some face at a feature.
+inline int face_of(const Polytope& P, const Feature& f) noexcept {
+  switch (f.kind) {
+    case FeatureKind::kVertex:
+      return P.edges[P.rays_at(f.index)[0].edge].left;
+    case FeatureKind::kEdge:
+      return P.edges[f.index].left;
+    case FeatureKind::kFace:
+      return f.index;
+  }
+  return 0;
+}
+
 /// Does the feature exist on `P`? A cache may come from another pair of pieces.
 inline bool valid_feature(const Polytope& P, const Feature& f) noexcept {
   return f.index >= 0 && f.index < P.counts[static_cast<std::size_t>(f.kind)];
