@@ -202,7 +202,10 @@ void ContactFinder::test(Pair& pair, std::span<const Pose> X_WB) noexcept {
   const double reach = tolerance(pair.body_a, pair.body_b);
   pair.in_contact =
       found.distance < reach && faces_outward(part_a, pair.piece_a, part_b, pair.piece_b, X_AB, found);
-  if (!pair.in_contact) return;
+  if (!pair.in_contact) {
+    pair.shown = {};
+    return;
+  }
   if (patches_.size() == patches_.capacity()) {
     work_.rooms_full = true;
     return;
@@ -212,10 +215,15 @@ void ContactFinder::test(Pair& pair, std::span<const Pose> X_WB) noexcept {
   patch.body_b = pair.body_b;
   patch.piece_a = pair.piece_a;
   patch.piece_b = pair.piece_b;
-  patch.distance = found.distance;
   patch.tolerance = reach;
-  contact_manifold(part_a.pieces[Index(pair.piece_a)], part_b.pieces[Index(pair.piece_b)], X_AB, found, reach,
-                   patch.manifold);
+  const Polytope& A = part_a.pieces[Index(pair.piece_a)];
+  const Polytope& B = part_b.pieces[Index(pair.piece_b)];
+  // A surface may only push outward: its normal is not led over the ways between.
+  const bool solids = !part_a.one_sided && !part_b.one_sided;
+  const PairDistance shown = solids ? steady_depth(A, B, X_AB, found, pair.shown) : found;
+  patch.distance = shown.distance;
+  contact_manifold(A, B, X_AB, shown, reach, patch.manifold);
+  steady_centroid(X_AB, patch.manifold, pair.shown);
 }
 
 }  // namespace tactum

@@ -10,6 +10,9 @@
 /// within `tolerance` while  (S - S0) + tolerance <= R;  a pair found d apart at S0 needs no test while  d -
 /// (S - S0) > tolerance. Both are proofs, not guesses; they are what makes a frame with coherent motion
 /// cheap.
+///
+/// What is handed on moves from frame to frame without a step (steady_contact.h): the normal of an overlap
+/// and the centroid of a patch follow the exact ones at a bounded rate.
 
 #include <cstdint>
 #include <span>
@@ -17,6 +20,7 @@
 
 #include "tactum/collision/contact.h"
 #include "tactum/collision/schedule.h"
+#include "tactum/collision/steady_contact.h"
 #include "tactum/collision/sweep_and_prune.h"
 #include "tactum/geometry/part.h"
 
@@ -79,6 +83,7 @@ class ContactFinder {
   struct Pair {
     std::int32_t body_a = -1, body_b = -1, piece_a = -1, piece_b = -1;
     PairCache cache;
+    SteadyContact shown;
     double free_until = -1e300;      ///< odometer sum at which the distance may have shrunk to zero
     std::int64_t last_checked = -1;  ///< frame
     bool in_contact = false;

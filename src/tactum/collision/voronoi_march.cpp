@@ -58,6 +58,8 @@ double reach_beyond(const Polytope& P, int v, double slope) noexcept {
 }
 
 /// The same at an edge whose steeper face rises by `slope`: the piece lies in the wedge of its two faces.
+/// What the edge's own line rises by comes on top, over the whole size: the wedge goes on beyond the edge's
+/// ends.
 double reach_beyond(const Polytope& P, const Polytope::Edge& edge, double slope) noexcept {
   if (slope <= 0.0) return 0.0;
   const double cosine = P.sides[edge.left_slot].normal.dot(P.sides[edge.right_slot].normal);
@@ -139,7 +141,7 @@ Step vertex_edge(const Sides<swapped>& S, Feature& fp, Feature& fq, Place& x) no
   const double rise = std::max(left.normal.dot(d_Q), right.normal.dot(d_Q));
   if (set_normal(S.P.size, d_Q, d_P, x))
     x.doubt = reach_beyond(S.P, fp.index, at_p.slope / x.gap) + reach_beyond(S.Q, edge, rise / x.gap) +
-              std::abs(edge.direction.dot(x.outward_Q)) * edge.length;
+              std::abs(edge.direction.dot(x.outward_Q)) * S.Q.size;
   return Step::kClosest;
 }
 
@@ -240,8 +242,8 @@ Step edge_edge(const Sides<swapped>& S, Feature& fp, Feature& fq, Place& x) noex
   const Toward of_q = face_toward(S.Q, g, -x.outward_Q);
   if (of_q.slope > across.slack) return to_face(fq, of_q.face);
   x.doubt = reach_beyond(S.P, e, of_p.slope) + reach_beyond(S.Q, g, of_q.slope) +
-            std::abs(e.direction.dot(across.direction)) * e.length +
-            std::abs(w.dot(across.direction)) * g.length + across.aside;
+            std::abs(e.direction.dot(across.direction)) * S.P.size +
+            std::abs(w.dot(across.direction)) * S.Q.size + across.aside;
   return Step::kClosest;
 }
 
