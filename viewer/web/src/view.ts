@@ -1,0 +1,282 @@
+// The scene view: camera, light, ground, and what is drawn in it. View units: the scene's radius is one.
+import * as THREE from "three";
+import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import { Bodies } from "./bodies";
+import { dark, light, type Look } from "./look";
+import { Overlay } from "./overlay";
+import type { Picture, Pose, Run, Shape, Vec } from "./protocol";
+import { withUnit } from "./units";
+
+export type ViewName = "iso" | "front" | "side" | "top";
+const directions: Record<ViewName, Vec> = { iso: [0.75, -1.25, 0.95], front: [0.02, -1, 0.12], side: [1, -0.02, 0.12], top: [0, -0.001, 1] };
+
+function matrixOf(pose: Pose): THREE.Matrix4 {
+  const [w, x, y, z] = pose.q;
+  return new THREE.Matrix4().compose(new THREE.Vector3(...pose.p), new THREE.Quaternion(x, y, z, w), new THREE.Vector3(1, 1, 1));
+}
+function matrixAt(poses: Float32Array, i: number): THREE.Matrix4 {
+  const v = poses.subarray(7 * i, 7 * i + 7);
+  return matrixOf({ p: [v[0], v[1], v[2]], q: [v[3], v[4], v[5], v[6]] });
+}
+
+/** A round number just below: 1, 2 or 5 times a power of ten. */
+function round125(value: number): number {
+  const power = 10 ** Math.floor(Math.log10(value));
+  const digit = value / power;
+  return power * (digit >= 5 ? 5 : digit >= 2 ? 2 : 1);
+}
+
+/** Room light for reflections: a bright ceiling, softer walls, a dark floor. No picture is loaded for it. */
+function roomLight(): THREE.Scene {
+  const room = new THREE.Scene();
+  const add = (w: number, h: number, colour: number, strength: number, at: Vec) => {
+    const material = new THREE.MeshBasicMaterial({ color: new THREE.Color(colour).multiplyScalar(strength), side: THREE.DoubleSide });
+    const panel = new THREE.Mesh(new THREE.PlaneGeometry(w, h), material);
+    panel.position.set(...at);
+    panel.lookAt(0, 0, 0);
+    room.add(panel);
+  };
+  const walls = new THREE.Mesh(new THREE.BoxGeometry(20, 20, 14), new THREE.MeshBasicMaterial({ color: 0x46525e, side: THREE.BackSide }));
+  room.add(walls);
+  add(9, 5, 0xfff4e6, 7, [-2, -3, 6.5]);
+  add(3, 6, 0xdcecff, 5, [9, -2, 2]);
+  add(3, 6, 0xffffff, 3, [-9, 3, 2]);
+  add(8, 2, 0xcfe4ff, 3, [0, 9, 4]);
+  return room;
+}
+
+export class View {
+  readonly camera = new THREE.PerspectiveCamera(32, 1, 0.02, 60);
+  readonly controls: OrbitControls;
+  readonly overlay: Overlay;
+  bodies: Bodies | null = null;
+  /** World to view, and back. */
+  readonly toView = new THREE.Matrix4();
+  readonly toWorld = new THREE.Matrix4();
+  scale = 1; // view units a metre
+  picture: Picture | null = null;
+  private readonly renderer: THREE.WebGLRenderer;
+  private readonly scene = new THREE.Scene();
+  private readonly world = new THREE.Group();
+  private readonly sun = new THREE.DirectionalLight(0xfff3e2, 2.1);
+  private readonly fill = new THREE.HemisphereLight(0xdfeaf5, 0x3a4048, 0.35);
+  private readonly floor: THREE.Mesh<THREE.CircleGeometry, THREE.MeshStandardMaterial>;
+  private grid: THREE.GridHelper | null = null;
+  private look: Look = dark;
+  private run: Run | null = null;
+  private readonly X_HB = new THREE.Matrix4(); // held body from the handle
+  private arrowForce = 0; // view units a newton
+  private arrowTorque = 0; // radians a newton metre
+  private recentForce = 0;
+  private recentTorque = 0;
+  private readonly forceLabel = document.createElement("span");
+  private readonly torqueLabel = document.createElement("span");
+  private floorZ = 0;
+  onDraw: (() => void) | null = null;
+
+  constructor(private readonly canvas: HTMLCanvasElement, labels: HTMLElement, private readonly scaleNote: HTMLElement) {
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: false });
+    this.renderer.setPixelRatio(Math.min(2, devicePixelRatio));
+    this.renderer.shadowMap.enabled = true;
+    this.renderer.shadowMap.type = THREE.PCFSoftShadowMap;
+    this.renderer.toneMapping = THREE.ACESFilmicToneMapping;
+    this.renderer.toneMappingExposure = 1.05;
+    const room = new THREE.PMREMGenerator(this.renderer);
+    this.scene.environment = room.fromScene(roomLight(), 0.02).texture;
+    this.scene.environmentRotation.set(Math.PI / 2, 0, 0); // the room's z is up
+    this.scene.environmentIntensity = 0.75;
+    room.dispose();
+    this.camera.up.set(0, 0, 1);
+    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.enableDamping = true;
+    this.controls.dampingFactor = 0.12;
+    this.controls.minDistance = 0.4;
+    this.controls.maxDistance = 20;
+    this.sun.castShadow = true;
+    this.sun.shadow.mapSize.set(2048, 2048);
+    this.sun.shadow.camera.left = this.sun.shadow.camera.bottom = -1.7;
+    this.sun.shadow.camera.right = this.sun.shadow.camera.top = 1.7;
+    this.sun.shadow.camera.near = 0.5;
+    this.sun.shadow.camera.far = 9;
+    this.sun.shadow.bias = -0.0006;
+    this.sun.shadow.normalBias = 0.006;
+    this.sun.shadow.radius = 5;
+    this.sun.position.set(-1.6, -2.1, 3.6);
+    this.floor = new THREE.Mesh(new THREE.CircleGeometry(14, 64), new THREE.MeshStandardMaterial({ roughness: 0.95, metalness: 0 }));
+    this.floor.receiveShadow = true;
+    this.overlay = new Overlay(dark);
+    this.scene.add(this.sun, this.fill, this.floor, this.world, this.overlay.root);
+    this.world.matrixAutoUpdate = false;
+    for (const label of [this.forceLabel, this.torqueLabel]) labels.append(label);
+    this.forceLabel.className = "force";
+    this.torqueLabel.className = "torque";
+    new ResizeObserver(() => this.resize()).observe(canvas);
+    this.resize();
+  }
+
+  private resize() {
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    if (width === 0 || height === 0) return;
+    this.renderer.setSize(width, height, false);
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+  }
+
+  begin(run: Run, shapes: Shape[]) {
+    const again = this.run?.scene === run.scene;
+    this.run = run;
+    if (this.bodies) {
+      this.world.remove(this.bodies.root);
+      this.bodies.dispose();
+    }
+    this.bodies = new Bodies(run, shapes, this.look);
+    this.world.add(this.bodies.root);
+    this.X_HB.copy(matrixOf(run.X_BH)).invert();
+    this.fit(run, shapes);
+    this.overlay.clearTrail();
+    this.overlay.setGhost(null);
+    if (run.held >= 0) {
+      const ghost = this.bodies.copyOf(run.held, this.overlay.ghostMaterial);
+      this.bodies.root.add(ghost);
+      this.overlay.setGhost(ghost);
+    }
+    this.picture = null;
+    this.arrowForce = this.arrowTorque = this.recentForce = this.recentTorque = 0;
+    if (!again) this.look_from("iso");
+  }
+
+  private fit(run: Run, shapes: Shape[]) {
+    const box = new THREE.Box3();
+    const point = new THREE.Vector3();
+    run.bodies.forEach((body) => {
+      const X_WB = matrixOf(body.X_WB);
+      const { vertices } = shapes[body.shape];
+      const step = 3 * Math.max(1, Math.floor(vertices.length / 3 / 20000));
+      for (let i = 0; i + 2 < vertices.length; i += step) box.expandByPoint(point.fromArray(vertices, i).applyMatrix4(X_WB));
+    });
+    const centre = box.getCenter(new THREE.Vector3());
+    const radius = Math.max(1e-4, 0.5 * box.getSize(point).length());
+    this.scale = 1 / radius;
+    this.toView.makeScale(this.scale, this.scale, this.scale).multiply(new THREE.Matrix4().makeTranslation(centre.clone().negate()));
+    this.toWorld.copy(this.toView).invert();
+    this.world.matrix.copy(this.toView);
+    this.world.matrixWorldNeedsUpdate = true;
+    this.floorZ = (box.min.z - centre.z) * this.scale - 0.004;
+    this.floor.position.z = this.floorZ - 0.002;
+    this.drawGrid(radius);
+  }
+
+  /** Lines a round length apart. */
+  private drawGrid(radius: number) {
+    if (this.grid) this.scene.remove(this.grid);
+    const spacing = round125(radius / 3);
+    const lines = 2 * Math.ceil((6 * radius) / spacing);
+    this.grid = new THREE.GridHelper(lines * spacing * this.scale, lines, this.look.grid, this.look.grid);
+    this.grid.rotation.x = Math.PI / 2;
+    this.grid.position.z = this.floorZ;
+    const material = this.grid.material as THREE.LineBasicMaterial;
+    material.transparent = true;
+    material.opacity = 0.5;
+    this.scene.add(this.grid);
+    this.grid.userData.spacing = spacing;
+  }
+
+  setTheme(isDark: boolean) {
+    this.look = isDark ? dark : light;
+    this.scene.background = new THREE.Color(this.look.sky);
+    this.scene.fog = new THREE.Fog(this.look.sky, 5, 13);
+    this.floor.material.color.set(this.look.ground);
+    this.scene.environmentIntensity = isDark ? 0.75 : 0.95;
+    this.overlay.setLook(this.look);
+    this.bodies?.setLook(this.look);
+    if (this.grid && this.run) this.drawGrid(1 / this.scale);
+  }
+
+  look_from(name: ViewName) {
+    const direction = new THREE.Vector3(...directions[name]).normalize();
+    const narrow = Math.min(1, this.camera.aspect);
+    const distance = 0.93 / Math.sin((this.camera.fov * Math.PI) / 360) / Math.max(0.45, narrow);
+    this.controls.target.set(0, 0, name === "top" ? 0 : -0.06);
+    this.camera.position.copy(this.controls.target).addScaledVector(direction, distance);
+    this.controls.update();
+  }
+
+  show(picture: Picture, live: boolean) {
+    this.picture = picture;
+    if (!this.bodies || !this.run) return;
+    this.bodies.place(picture.bodies, this.camera, this.canvas.clientHeight, this.toView);
+    this.bodies.followMark();
+    const hand = this.pointOf(picture.hand);
+    const proxy = this.pointOf(picture.proxy);
+    const X_WH = matrixAt(picture.hand, 0);
+    const turned = new THREE.Quaternion(picture.hand[4], picture.hand[5], picture.hand[6], picture.hand[3]).angleTo(
+      new THREE.Quaternion(picture.proxy[4], picture.proxy[5], picture.proxy[6], picture.proxy[3]));
+    const holds = this.run.held >= 0 && picture.held;
+    this.overlay.setHand(hand, holds ? proxy : hand, holds ? X_WH.multiply(this.heldFromHandle(picture)) : null, turned, live);
+  }
+
+  /** Where the held body sits in the handle's frame, as grasped now. */
+  private heldFromHandle(picture: Picture): THREE.Matrix4 {
+    const held = this.run?.held ?? -1;
+    return matrixAt(picture.proxy, 0).invert().multiply(matrixAt(picture.bodies, held));
+  }
+
+  /** The wrench at the hand, and the contacts' share; arrows grow until the largest of late fills half the view. */
+  showWrench(wrench: number[]) {
+    if (!this.picture || !this.run) return;
+    const force = Math.hypot(wrench[0], wrench[1], wrench[2]);
+    const torque = Math.hypot(wrench[3], wrench[4], wrench[5]);
+    this.recentForce = Math.max(force, 0.995 * this.recentForce);
+    this.recentTorque = Math.max(torque, 0.995 * this.recentTorque);
+    const fullForce = Math.max(0.02, this.recentForce);
+    const fullTorque = Math.max(0.001, this.recentTorque);
+    const wantedForce = round125(0.8 / fullForce);
+    const wantedTorque = 4.2 / round125(2 * fullTorque);
+    if (this.arrowForce === 0 || force * this.arrowForce > 0.85 || wantedForce > 2.4 * this.arrowForce) this.arrowForce = wantedForce;
+    if (this.arrowTorque === 0 || torque * this.arrowTorque > 5.2 || wantedTorque > 2.4 * this.arrowTorque) this.arrowTorque = wantedTorque;
+    const hand = this.pointOf(this.picture.proxy);
+    const tips = this.overlay.setWrench(hand, wrench, { force: this.arrowForce, torque: this.arrowTorque });
+    this.overlay.setContacts(this.picture.contacts, this.run.held, this.toView, this.arrowForce);
+    this.label(this.forceLabel, tips.force, force, "N", force * this.arrowForce > 0.03);
+    this.label(this.torqueLabel, tips.torque, torque, "N m", tips.torque !== null);
+    const spacing = (this.grid?.userData.spacing as number | undefined) ?? 0;
+    const newton = 1 / (this.arrowForce / this.scale);
+    this.scaleNote.textContent =
+      `grid ${withUnit(spacing, "m")} · arrow ${withUnit(newton * 0.01, "N")} per cm · arc ${withUnit(1 / this.arrowTorque * Math.PI, "N m")} per half turn`;
+  }
+
+  private label(element: HTMLElement, at: THREE.Vector3 | null, value: number, unit: string, visible: boolean) {
+    element.hidden = !visible || !at;
+    if (!visible || !at) return;
+    element.textContent = withUnit(value, unit);
+    const p = at.clone().project(this.camera);
+    const x = (0.5 + 0.5 * p.x) * this.canvas.clientWidth;
+    const y = (0.5 - 0.5 * p.y) * this.canvas.clientHeight;
+    element.style.transform = `translate(${Math.round(x + 10)}px, ${Math.round(y - 10)}px)`;
+  }
+
+  /** The place of a pose, in view units. */
+  pointOf(pose: Float32Array): THREE.Vector3 {
+    return new THREE.Vector3(pose[0], pose[1], pose[2]).applyMatrix4(this.toView);
+  }
+
+  rayAt(x: number, y: number): THREE.Raycaster {
+    const rect = this.canvas.getBoundingClientRect();
+    const ray = new THREE.Raycaster();
+    ray.setFromCamera(new THREE.Vector2((2 * (x - rect.left)) / rect.width - 1, 1 - (2 * (y - rect.top)) / rect.height), this.camera);
+    return ray;
+  }
+
+  draw() {
+    this.controls.update();
+    this.onDraw?.();
+    this.renderer.render(this.scene, this.camera);
+  }
+
+  /** The view as a picture. */
+  async png(): Promise<Blob> {
+    this.draw();
+    return await new Promise((resolve, reject) =>
+      this.canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("no picture"))), "image/png"));
+  }
+}
