@@ -231,17 +231,17 @@ export class Charts {
       plot.setData([times, ...data] as unknown as uPlot.AlignedData);
       const last = data[data.length - 1][count - 1];
       note.textContent = strip.tail ? ` ${unit} · p99.9 ${withUnit(quantile(data[0], 0.999), strip.unit)}`
-        : ` ${unit}${strip.lines.length > 0 ? ` · now ${withUnit(last, strip.unit)}` : ""}`;
+        : ` ${unit} · ${withUnit(last, strip.unit)}`;
     }
   }
 
   private resize() {
     const wide = this.root.clientWidth;
     const count = Math.max(1, this.strips.length);
-    const columns = Math.max(1, Math.min(count, Math.floor(wide / 215)));
+    const columns = Math.max(1, Math.min(count, Math.floor(wide / 168)));
     const rows = Math.ceil(count / columns);
     this.root.style.setProperty("--columns", String(columns));
-    const height = Math.max(96, Math.floor(this.root.clientHeight / rows) - 22);
+    const height = Math.max(118, Math.floor(this.root.clientHeight / rows) - 20);
     for (const { plot, box } of this.strips) plot.setSize({ width: Math.max(120, box.clientWidth), height });
   }
 

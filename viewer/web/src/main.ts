@@ -144,6 +144,8 @@ function showSummary(sample: number) {
   body.dataset.peakForce = String(samples.peakForce);
   body.dataset.samples = String(samples.count);
   body.dataset.gaps = String(samples.gaps);
+  body.dataset.newest = String(samples.frameOf(samples.count - 1));
+  if (run.held >= 0) body.dataset.heldAt = view.onScreen(run.held).map(Math.round).join(",");
   const now = performance.now();
   if (now - lastSpoken > 3000 && document.activeElement === canvas) {
     lastSpoken = now;

@@ -3,6 +3,7 @@
 import * as THREE from "three";
 import type { Look } from "./look";
 import type { Contact } from "./protocol";
+import type { Push } from "./pushes";
 
 const mostContacts = 256;
 const trailLength = 240;
@@ -207,7 +208,7 @@ export class Overlay {
     if (from && to) this.pull.set(from, to);
   }
 
-  setContacts(contacts: Contact[], held: number, toView: THREE.Matrix4, forceScale: number) {
+  setContacts(contacts: Contact[], pushes: Push[], held: number, toView: THREE.Matrix4, forceScale: number) {
     const count = Math.min(contacts.length, mostContacts);
     const at = new THREE.Vector3();
     const along = new THREE.Vector3();
@@ -215,25 +216,31 @@ export class Overlay {
     const size = new THREE.Vector3();
     const matrix = new THREE.Matrix4();
     const corners = new Map<string, THREE.Vector3[]>();
-    let arrows = 0;
     for (let i = 0; i < count; ++i) {
       const contact = contacts[i];
       at.fromArray(contact.p).applyMatrix4(toView);
       along.fromArray(contact.n);
       if (contact.bodies[1] === held) along.negate(); // what acts on the held part
       turn.setFromUnitVectors(up, along);
-      const pushes = contact.force > 0;
-      const disc = contact.patch === this.chosen ? 0.022 : pushes ? 0.014 : 0.009;
+      const disc = contact.patch === this.chosen ? 0.02 : contact.force > 0 ? 0.012 : 0.007;
       this.discs.setMatrixAt(i, matrix.compose(at, turn, size.setScalar(disc)));
-      const length = contact.force * forceScale;
-      if (length > 0.01) {
-        const head = Math.min(0.02, length / 4);
-        this.shafts.setMatrixAt(arrows, matrix.compose(at, turn, size.set(0.006, length - head, 0.006)));
-        at.addScaledVector(along, length - 2.4 * head);
-        this.heads.setMatrixAt(arrows++, matrix.compose(at, turn, size.setScalar(head)));
-      }
       const key = `${contact.patch}`;
       corners.set(key, [...(corners.get(key) ?? []), new THREE.Vector3().fromArray(contact.p).applyMatrix4(toView)]);
+    }
+    let arrows = 0;
+    for (const push of pushes) {
+      along.fromArray(push.force);
+      const force = along.length();
+      const length = force * forceScale;
+      if (length < 0.01 || arrows === mostContacts) continue;
+      along.divideScalar(force);
+      turn.setFromUnitVectors(up, along);
+      at.fromArray(push.at).applyMatrix4(toView);
+      const thick = push.patch === this.chosen ? 0.011 : 0.0075;
+      const head = Math.min(0.024, length / 4);
+      this.shafts.setMatrixAt(arrows, matrix.compose(at, turn, size.set(thick, length - 2.3 * head, thick)));
+      at.addScaledVector(along, length - 2.4 * head);
+      this.heads.setMatrixAt(arrows++, matrix.compose(at, turn, size.setScalar(head)));
     }
     this.discs.count = count;
     this.shafts.count = this.heads.count = arrows;

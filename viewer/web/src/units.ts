@@ -9,7 +9,8 @@ export function withUnit(value: number, unit: string, digits = 3): string {
   const usable = unit.includes("/") || unit === "deg" ? prefixes.slice(0, 1) : prefixes;
   const [scale, prefix] = usable.find(([s]) => size >= s * 0.9995) ?? (size === 0 ? usable[0] : usable[usable.length - 1]);
   const shown = value / scale;
-  return `${Math.abs(shown) >= 1000 ? Math.round(shown) : Number(shown.toPrecision(digits)).toString()} ${prefix}${unit}`;
+  const text = Math.abs(shown) >= 1000 ? String(Math.round(shown)) : Number(shown.toPrecision(digits)).toString();
+  return `${text.replace("-", "−")} ${prefix}${unit}`;
 }
 
 /** Which prefix suits a whole axis, as a factor and the unit to write. */

@@ -5,6 +5,7 @@ import { Bodies } from "./bodies";
 import { dark, light, type Look } from "./look";
 import { Overlay } from "./overlay";
 import type { Picture, Pose, Run, Shape, Vec } from "./protocol";
+import { pushesOf } from "./pushes";
 import { withUnit } from "./units";
 
 export type ViewName = "iso" | "front" | "side" | "top";
@@ -58,10 +59,12 @@ export class View {
   private readonly renderer: THREE.WebGLRenderer;
   private readonly scene = new THREE.Scene();
   private readonly world = new THREE.Group();
-  private readonly sun = new THREE.DirectionalLight(0xfff3e2, 2.1);
-  private readonly fill = new THREE.HemisphereLight(0xdfeaf5, 0x3a4048, 0.35);
-  private readonly floor: THREE.Mesh<THREE.CircleGeometry, THREE.MeshStandardMaterial>;
-  private grid: THREE.GridHelper | null = null;
+  private readonly sun = new THREE.DirectionalLight(0xfff1de, 2.6);
+  private readonly fill = new THREE.HemisphereLight(0xe6eff8, 0x59636d, 0.55);
+  /** Takes shadows only: what lies behind the scene is the page's own background. */
+  private readonly floor = new THREE.Mesh(new THREE.CircleGeometry(6, 48), new THREE.ShadowMaterial({ color: 0x000000 }));
+  private grid: THREE.LineSegments | null = null;
+  private spacing = 0; // of the grid [m]
   private look: Look = dark;
   private run: Run | null = null;
   private readonly X_HB = new THREE.Matrix4(); // held body from the handle
@@ -75,15 +78,14 @@ export class View {
   onDraw: (() => void) | null = null;
 
   constructor(private readonly canvas: HTMLCanvasElement, labels: HTMLElement, private readonly scaleNote: HTMLElement) {
-    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: false });
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true });
     this.renderer.setPixelRatio(Math.min(2, devicePixelRatio));
     this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.type = THREE.PCFSoftShadowMap;
-    this.renderer.toneMapping = THREE.ACESFilmicToneMapping;
-    this.renderer.toneMappingExposure = 1.05;
+    this.renderer.toneMapping = THREE.NeutralToneMapping;
+    this.renderer.toneMappingExposure = 1.1;
     const room = new THREE.PMREMGenerator(this.renderer);
     this.scene.environment = room.fromScene(roomLight(), 0.02).texture;
-    this.scene.environmentRotation.set(Math.PI / 2, 0, 0); // the room's z is up
     this.scene.environmentIntensity = 0.75;
     room.dispose();
     this.camera.up.set(0, 0, 1);
@@ -102,7 +104,6 @@ export class View {
     this.sun.shadow.normalBias = 0.006;
     this.sun.shadow.radius = 5;
     this.sun.position.set(-1.6, -2.1, 3.6);
-    this.floor = new THREE.Mesh(new THREE.CircleGeometry(14, 64), new THREE.MeshStandardMaterial({ roughness: 0.95, metalness: 0 }));
     this.floor.receiveShadow = true;
     this.overlay = new Overlay(dark);
     this.scene.add(this.sun, this.fill, this.floor, this.world, this.overlay.root);
@@ -166,27 +167,41 @@ export class View {
     this.drawGrid(radius);
   }
 
-  /** Lines a round length apart. */
+  /** Lines a round length apart, fading outward. */
   private drawGrid(radius: number) {
-    if (this.grid) this.scene.remove(this.grid);
-    const spacing = round125(radius / 3);
-    const lines = 2 * Math.ceil((6 * radius) / spacing);
-    this.grid = new THREE.GridHelper(lines * spacing * this.scale, lines, this.look.grid, this.look.grid);
-    this.grid.rotation.x = Math.PI / 2;
-    this.grid.position.z = this.floorZ;
-    const material = this.grid.material as THREE.LineBasicMaterial;
-    material.transparent = true;
-    material.opacity = 0.5;
+    if (this.grid) {
+      this.scene.remove(this.grid);
+      this.grid.geometry.dispose();
+    }
+    this.spacing = round125(radius / 3);
+    const step = this.spacing * this.scale;
+    const lines = Math.ceil(3.4 / step);
+    const reach = lines * step;
+    const points: number[] = [];
+    const colours: number[] = [];
+    const { r, g, b } = new THREE.Color(this.look.grid);
+    const put = (x: number, y: number) => {
+      points.push(x, y, this.floorZ);
+      colours.push(r, g, b, 0.75 * Math.max(0, 1 - (x * x + y * y) / (reach * reach)));
+    };
+    for (let i = -lines; i <= lines; ++i)
+      for (let k = -lines; k < lines; ++k) {
+        put(i * step, k * step);
+        put(i * step, (k + 1) * step);
+        put(k * step, i * step);
+        put((k + 1) * step, i * step);
+      }
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute("position", new THREE.Float32BufferAttribute(points, 3));
+    geometry.setAttribute("color", new THREE.Float32BufferAttribute(colours, 4));
+    this.grid = new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({ vertexColors: true, transparent: true, depthWrite: false, toneMapped: false }));
     this.scene.add(this.grid);
-    this.grid.userData.spacing = spacing;
   }
 
   setTheme(isDark: boolean) {
     this.look = isDark ? dark : light;
-    this.scene.background = new THREE.Color(this.look.sky);
-    this.scene.fog = new THREE.Fog(this.look.sky, 5, 13);
-    this.floor.material.color.set(this.look.ground);
-    this.scene.environmentIntensity = isDark ? 0.75 : 0.95;
+    this.floor.material.opacity = isDark ? 0.55 : 0.28;
+    this.scene.environmentIntensity = isDark ? 0.9 : 1.1;
     this.overlay.setLook(this.look);
     this.bodies?.setLook(this.look);
     if (this.grid && this.run) this.drawGrid(1 / this.scale);
@@ -195,8 +210,8 @@ export class View {
   look_from(name: ViewName) {
     const direction = new THREE.Vector3(...directions[name]).normalize();
     const narrow = Math.min(1, this.camera.aspect);
-    const distance = 0.93 / Math.sin((this.camera.fov * Math.PI) / 360) / Math.max(0.45, narrow);
-    this.controls.target.set(0, 0, name === "top" ? 0 : -0.06);
+    const distance = 0.74 / Math.sin((this.camera.fov * Math.PI) / 360) / Math.max(0.45, narrow);
+    this.controls.target.set(0, 0, name === "top" ? 0 : -0.04);
     this.camera.position.copy(this.controls.target).addScaledVector(direction, distance);
     this.controls.update();
   }
@@ -226,23 +241,24 @@ export class View {
     if (!this.picture || !this.run) return;
     const force = Math.hypot(wrench[0], wrench[1], wrench[2]);
     const torque = Math.hypot(wrench[3], wrench[4], wrench[5]);
-    this.recentForce = Math.max(force, 0.995 * this.recentForce);
-    this.recentTorque = Math.max(torque, 0.995 * this.recentTorque);
+    const pushes = pushesOf(this.picture, this.run.held);
+    const largest = pushes.reduce((most, push) => Math.max(most, Math.hypot(...push.force)), force); // one scale for all arrows
+    this.recentForce = Math.max(largest, 0.985 * this.recentForce);
+    this.recentTorque = Math.max(torque, 0.985 * this.recentTorque);
     const fullForce = Math.max(0.02, this.recentForce);
     const fullTorque = Math.max(0.001, this.recentTorque);
-    const wantedForce = round125(0.8 / fullForce);
+    const wantedForce = round125(0.6 / fullForce);
     const wantedTorque = 4.2 / round125(2 * fullTorque);
-    if (this.arrowForce === 0 || force * this.arrowForce > 0.85 || wantedForce > 2.4 * this.arrowForce) this.arrowForce = wantedForce;
+    if (this.arrowForce === 0 || largest * this.arrowForce > 0.65 || wantedForce > 2.4 * this.arrowForce) this.arrowForce = wantedForce;
     if (this.arrowTorque === 0 || torque * this.arrowTorque > 5.2 || wantedTorque > 2.4 * this.arrowTorque) this.arrowTorque = wantedTorque;
     const hand = this.pointOf(this.picture.proxy);
     const tips = this.overlay.setWrench(hand, wrench, { force: this.arrowForce, torque: this.arrowTorque });
-    this.overlay.setContacts(this.picture.contacts, this.run.held, this.toView, this.arrowForce);
+    this.overlay.setContacts(this.picture.contacts, pushes, this.run.held, this.toView, this.arrowForce);
     this.label(this.forceLabel, tips.force, force, "N", force * this.arrowForce > 0.03);
     this.label(this.torqueLabel, tips.torque, torque, "N m", tips.torque !== null);
-    const spacing = (this.grid?.userData.spacing as number | undefined) ?? 0;
     const newton = 1 / (this.arrowForce / this.scale);
     this.scaleNote.textContent =
-      `grid ${withUnit(spacing, "m")} · arrow ${withUnit(newton * 0.01, "N")} per cm · arc ${withUnit(1 / this.arrowTorque * Math.PI, "N m")} per half turn`;
+      `grid ${withUnit(this.spacing, "m")} · arrow ${withUnit(newton * 0.01, "N")} per cm · arc ${withUnit(1 / this.arrowTorque * Math.PI, "N m")} per half turn`;
   }
 
   private label(element: HTMLElement, at: THREE.Vector3 | null, value: number, unit: string, visible: boolean) {
@@ -258,6 +274,14 @@ export class View {
   /** The place of a pose, in view units. */
   pointOf(pose: Float32Array): THREE.Vector3 {
     return new THREE.Vector3(pose[0], pose[1], pose[2]).applyMatrix4(this.toView);
+  }
+
+  /** Where the middle of a body is on the screen, in the window's pixels. */
+  onScreen(body: number): [number, number] {
+    const matrix = this.bodies?.matrices[body] ?? new THREE.Matrix4();
+    const p = new THREE.Vector3().setFromMatrixPosition(matrix).applyMatrix4(this.toView).project(this.camera);
+    const rect = this.canvas.getBoundingClientRect();
+    return [rect.left + (0.5 + 0.5 * p.x) * rect.width, rect.top + (0.5 - 0.5 * p.y) * rect.height];
   }
 
   rayAt(x: number, y: number): THREE.Raycaster {
@@ -276,7 +300,14 @@ export class View {
   /** The view as a picture. */
   async png(): Promise<Blob> {
     this.draw();
+    const sheet = document.createElement("canvas");
+    sheet.width = this.canvas.width;
+    sheet.height = this.canvas.height;
+    const ctx = sheet.getContext("2d") as CanvasRenderingContext2D;
+    ctx.fillStyle = `#${this.look.sky.toString(16).padStart(6, "0")}`;
+    ctx.fillRect(0, 0, sheet.width, sheet.height);
+    ctx.drawImage(this.canvas, 0, 0);
     return await new Promise((resolve, reject) =>
-      this.canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("no picture"))), "image/png"));
+      sheet.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("no picture"))), "image/png"));
   }
 }

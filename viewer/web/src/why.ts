@@ -2,38 +2,18 @@
 // what every later stage made of it. Stages, channels and flags are those of the run's tables: a new one appears by itself.
 import { make } from "./dom";
 import type { Contact, Picture, Run } from "./protocol";
+import { pushesOf, type Push } from "./pushes";
 import type { Samples } from "./samples";
 import { withUnit } from "./units";
 
 const kinds = ["vertex", "edge", "face"];
 
-/** The points of one patch, as one push. */
-interface Push {
-  patch: number; contact: Contact; force: number[]; distance: number; points: number; onHeld: boolean;
-}
-
-function pushesOf(picture: Picture, held: number): Push[] {
-  const pushes = new Map<number, Push>();
-  picture.contacts.forEach((contact, i) => {
-    const key = contact.patch >= 0 ? contact.patch : -1 - i;
-    const sign = contact.bodies[1] === held ? -1 : 1;
-    const push = pushes.get(key) ?? {
-      patch: contact.patch, contact, force: [0, 0, 0], distance: Infinity, points: 0, onHeld: contact.bodies.includes(held),
-    };
-    for (let k = 0; k < 3; ++k) push.force[k] += sign * contact.force * contact.n[k];
-    push.distance = Math.min(push.distance, contact.distance);
-    ++push.points;
-    pushes.set(key, push);
-  });
-  return [...pushes.values()];
-}
-
 const size = (v: number[]) => Math.hypot(v[0], v[1], v[2]);
 const dot = (a: number[], b: number[]) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 
 function direction(v: number[]): string {
-  const axes = ["right (x)", "back (y)", "up (z)"];
-  const opposite = ["left (−x)", "front (−y)", "down (−z)"];
+  const axes = ["along x", "along y", "upward (z)"];
+  const opposite = ["along −x", "along −y", "downward (−z)"];
   const main = [0, 1, 2].sort((a, b) => Math.abs(v[b]) - Math.abs(v[a]))[0];
   return v[main] > 0 ? axes[main] : opposite[main];
 }
@@ -78,6 +58,9 @@ export class Why {
   private name(body: number) {
     return this.run?.bodies[body]?.name ?? "?";
   }
+  private called(body: number) {
+    return `“${this.name(body)}”`;
+  }
 
   private showSentence(samples: Samples, sample: number, felt: Push[], sum: number[]) {
     const run = this.run as Run;
@@ -87,11 +70,11 @@ export class Why {
     const active = felt.filter((push) => size(push.force) > 0);
     let text: string;
     if (run.held < 0) text = "Nothing is held, so nothing is felt.";
-    else if (active.length === 0) text = `You feel ${wrench}. Nothing touches the ${this.name(run.held)}: this is its own joint, inertia and damping.`;
+    else if (active.length === 0) text = `You feel ${wrench}. Nothing touches ${this.called(run.held)}: this is its own joint, inertia and damping.`;
     else {
-      const others = [...new Set(active.map((push) => this.name(push.contact.bodies.find((b) => b !== run.held) ?? run.held)))];
-      text = `You feel ${wrench}: the ${this.name(run.held)} touches ${others.map((o) => `the ${o}`).join(" and ")} in ` +
-        `${active.length} ${active.length === 1 ? "place" : "places"}, pushed ${withUnit(size(sum), "N")} to the ${direction(sum)}.`;
+      const others = [...new Set(active.map((push) => this.called(push.contact.bodies.find((b) => b !== run.held) ?? run.held)))];
+      text = `You feel ${wrench}: ${this.called(run.held)} touches ${others.join(" and ")} in ` +
+        `${active.length} ${active.length === 1 ? "place" : "places"}, together they push ${withUnit(size(sum), "N")} ${direction(sum)}.`;
     }
     this.sentence.textContent = `${samples.timeOf(sample).toFixed(3)} s. ${text}`;
   }
@@ -118,9 +101,8 @@ export class Why {
       bar.style.width = `${Math.round(100 * Math.min(1, Math.max(0, share || 0)))}%`;
       row.append(
         make("td", {}, choose),
-        make("td", { class: "number" }, withUnit(size(push.force), "N"), make("br"), Number.isNaN(share) ? "between others" : `${Math.round(100 * share)} %`),
-        make("td", { class: "number" }, withUnit(push.distance, "m"), make("br"), push.contact.n.map((c) => c.toFixed(2).replace("-", "−")).join(" ")),
-        make("td", { class: "bars" }, bar));
+        make("td", { class: "number" }, withUnit(size(push.force), "N"), make("br"), Number.isNaN(share) ? "to others" : `${Math.round(100 * share)} %`.replace("-", "−"), bar),
+        make("td", { class: "number" }, withUnit(push.distance, "m"), make("br"), push.contact.n.map((c) => c.toFixed(2).replace("-", "−")).join(" ")));
       return row;
     });
     // A row under the pointer or the focus stays: what is pressed must not be replaced under the press.
@@ -128,11 +110,11 @@ export class Why {
       if (this.table.rows.length > 1 && rows.length > 0 && !this.table.dataset.stale) return;
     }
     const head = make("tr", {}, make("th", { scope: "col" }, "pieces and features"), make("th", { scope: "col" }, "force, share"),
-      make("th", { scope: "col" }, "distance, normal"), make("th", { "aria-label": "share" }));
+      make("th", { scope: "col" }, "distance, normal"));
     const hidden = pushes.length - rows.length + picture.leftOut;
     this.table.replaceChildren(head, ...rows);
-    if (rows.length === 0) this.table.append(make("tr", {}, make("td", { colspan: "4", class: "quiet" }, "no contact")));
-    if (hidden > 0) this.table.append(make("tr", {}, make("td", { colspan: "4", class: "quiet" }, `and ${hidden} more`)));
+    if (rows.length === 0) this.table.append(make("tr", {}, make("td", { colspan: "3", class: "quiet" }, "no contact")));
+    if (hidden > 0) this.table.append(make("tr", {}, make("td", { colspan: "3", class: "quiet" }, `and ${hidden} more`)));
   }
 
   private showLadder(samples: Samples, sample: number) {
