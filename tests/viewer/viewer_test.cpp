@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <functional>
@@ -263,6 +264,9 @@ TEST(ShapeEdges, SeamsBetweenPiecesAreNotDrawn) {
   EXPECT_EQ(edges.size(), 16u);  // 4 + 4 at the ends, 4 + 4 halves along
   for (const DrawnEdge& edge : edges)
     EXPECT_FALSE(std::abs(edge.tail.x() - 1.0) < 1e-9 && std::abs(edge.head.x() - 1.0) < 1e-9);
+  const std::vector<bool> covered = covered_triangles(*bar);
+  EXPECT_EQ(covered.size(), 24u);
+  EXPECT_EQ(std::count(covered.begin(), covered.end(), true), 4);  // two a face, on either side
 }
 
 }  // namespace

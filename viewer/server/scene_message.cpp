@@ -165,7 +165,9 @@ void put(std::string& out, const Pose& X) {
 }
 
 void write_shape(const Part& part, std::string& out) {
+  constexpr std::uint32_t kCovered = 1u << 31;  // of a face's number: another piece lies on it
   const std::vector<DrawnEdge> edges = edges_to_draw(part);
+  const std::vector<bool> covered = covered_triangles(part);
   wire::put(out, static_cast<std::uint32_t>(part.surface.vertices.size()));
   wire::put(out, static_cast<std::uint32_t>(part.surface.triangles.size()));
   wire::put(out, static_cast<std::uint32_t>(edges.size()));
@@ -174,14 +176,15 @@ void write_shape(const Part& part, std::string& out) {
   for (const Triangle& triangle : part.surface.triangles)
     for (int corner : triangle) wire::put(out, static_cast<std::uint32_t>(corner));
   // Whose triangles: the surface of solid pieces is their faces in order, each a fan (geometry/part.h).
+  std::size_t triangle = 0;
   for (std::size_t i = 0; i < part.pieces.size(); ++i) {
     const Polytope& piece = part.pieces[i];
     const std::size_t faces = part.one_sided ? 1 : piece.faces.size();
     for (std::size_t face = 0; face < faces; ++face) {
       const int triangles = part.one_sided ? 1 : piece.faces[face].count - 2;
-      for (int t = 0; t < triangles; ++t) {
+      for (int t = 0; t < triangles; ++t, ++triangle) {
         wire::put(out, static_cast<std::uint32_t>(i));
-        wire::put(out, static_cast<std::uint32_t>(face));
+        wire::put(out, static_cast<std::uint32_t>(face) | (covered[triangle] ? kCovered : 0u));
       }
     }
   }

@@ -26,9 +26,14 @@ bool filled_by_another(const Part& part, const std::vector<Aabb>& boxes, std::si
   return false;
 }
 
-std::vector<DrawnEdge> edges_of_solids(const Part& part) {
+std::vector<Aabb> boxes_of(const Part& part) {
   std::vector<Aabb> boxes;
   for (const Polytope& piece : part.pieces) boxes.push_back(bounds(piece.vertices));
+  return boxes;
+}
+
+std::vector<DrawnEdge> edges_of_solids(const Part& part) {
+  const std::vector<Aabb> boxes = boxes_of(part);
   const double aside = kAside * bounds(part.surface.vertices).diagonal();
   const double flattest = std::cos(kDrawnBend_rad);
   std::vector<DrawnEdge> edges;
@@ -76,6 +81,34 @@ std::vector<DrawnEdge> edges_of_surface(const Part& part) {
 std::vector<DrawnEdge> edges_to_draw(const Part& part) {
   if (part.surface.triangles.size() > kMostDrawn) return {};
   return part.one_sided ? edges_of_surface(part) : edges_of_solids(part);
+}
+
+std::vector<bool> covered_triangles(const Part& part) {
+  std::vector<bool> covered;
+  if (part.one_sided || part.pieces.size() < 2 || part.surface.triangles.size() > kMostDrawn) {
+    covered.resize(part.surface.triangles.size(), false);
+    return covered;
+  }
+  constexpr double kTowardsCorner = 0.9;
+  const std::vector<Aabb> boxes = boxes_of(part);
+  const double aside = kAside * bounds(part.surface.vertices).diagonal();
+  for (std::size_t i = 0; i < part.pieces.size(); ++i) {
+    const Polytope& piece = part.pieces[i];
+    for (const Polytope::Face& face : piece.faces) {
+      const int* loop = piece.face_vertices.data() + face.first;
+      const auto corner = [&](int k) { return piece.vertices[static_cast<std::size_t>(loop[k])]; };
+      for (int t = 1; t + 1 < face.count; ++t) {
+        const Vec3 middle = (corner(0) + corner(t) + corner(t + 1)) / 3.0;
+        bool all = true;
+        for (const Vec3& towards : {middle, corner(0), corner(t), corner(t + 1)}) {
+          const Vec3 point = middle + kTowardsCorner * (towards - middle) + aside * face.normal;
+          all = all && filled_by_another(part, boxes, i, point);
+        }
+        covered.push_back(all);
+      }
+    }
+  }
+  return covered;
 }
 
 }  // namespace tactum

@@ -26,6 +26,9 @@ export function check(condition, sentence) {
   if (!condition) throw new Error(sentence);
 }
 
+const started = [];
+process.on("exit", () => started.forEach((program) => program.kill("SIGKILL"))); // none outlives its test
+
 /** The program with its page, as a user starts it. */
 export class Program {
   static async start(tactum, scene, options = []) {
@@ -35,6 +38,7 @@ export class Program {
     program.process = spawn(tactum, ["feel", scene, "--view", "--json", program.json, ...options], {
       stdio: ["ignore", "pipe", "pipe"], env: { ...process.env, DISPLAY: "", WAYLAND_DISPLAY: "" },
     });
+    started.push(program.process);
     program.said = "";
     program.ended = new Promise((resolve) => program.process.on("exit", (code) => resolve(code)));
     for (const stream of [program.process.stdout, program.process.stderr]) stream.on("data", (data) => (program.said += data));
@@ -67,7 +71,7 @@ export async function until(sentence, ask, seconds = 40) {
 }
 
 /** A page that remembers what it complained of, and its sockets so that a test can cut them. */
-export async function openPage(browser, program, options = {}) {
+export async function openPage(browser, program, options = {}, look = "") {
   const context = await browser.newContext({ viewport: { width: 1280, height: 720 }, colorScheme: "dark", acceptDownloads: true, ...options });
   const page = await context.newPage();
   page.complaints = [];
@@ -85,7 +89,7 @@ export async function openPage(browser, program, options = {}) {
       }
     };
   });
-  await page.goto(program.address);
+  await page.goto(program.address + look);
   await until("the page shows frames", async () => Number((await state(page)).samples) > 200);
   return page;
 }

@@ -30,7 +30,7 @@ export class Bodies {
     this.matrices = run.bodies.map(() => new THREE.Matrix4());
     this.material = new THREE.MeshStandardMaterial({ metalness: 0.35, roughness: 0.42 });
     this.glass = new THREE.MeshStandardMaterial({
-      metalness: 0.1, roughness: 0.3, transparent: true, opacity: 0.22, depthWrite: false, side: THREE.DoubleSide,
+      metalness: 0.1, roughness: 0.3, transparent: true, opacity: 0.2, depthWrite: false, side: THREE.DoubleSide,
     });
     const withEdges = run.bodies.length <= mostWithEdges;
     // A body that is fixed stands apart from its kin, so that it can become glass.

@@ -55,6 +55,7 @@ export class Charts {
   private to = 0;
   private isDark = true;
   private lastDrawn = 0;
+  private cost_ms = 0; // of drawing once: a slow machine draws less often
 
   constructor(private readonly root: HTMLElement, spanChoice: HTMLSelectElement,
     private readonly alsoChoice: HTMLSelectElement, private readonly cursor: HTMLElement) {
@@ -204,12 +205,12 @@ export class Charts {
     this.draw(true);
   }
 
-  /** Shows the newest, unless paused; twenty times a second is more than an eye follows. */
+  /** Shows the newest, unless paused; twenty times a second is all an eye follows. */
   draw(now = false) {
     const samples = this.samples;
     if (!samples || samples.count === 0) return;
     const time = performance.now();
-    if (!now && (this.paused || time - this.lastDrawn < 50)) return;
+    if (!now && (this.paused || time - this.lastDrawn < Math.max(50, 4 * this.cost_ms))) return;
     this.lastDrawn = time;
     if (!this.paused) {
       this.to = samples.count;
@@ -233,6 +234,7 @@ export class Charts {
       note.textContent = strip.tail ? ` ${unit} · p99.9 ${withUnit(quantile(data[0], 0.999), strip.unit)}`
         : ` ${unit} · ${withUnit(last, strip.unit)}`;
     }
+    this.cost_ms = performance.now() - time;
   }
 
   private resize() {

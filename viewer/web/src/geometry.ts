@@ -46,15 +46,20 @@ export function nearGeometry(shape: Shape): THREE.BufferGeometry {
   const place = places(vertices);
   const facets = facetNormals(shape);
   const at: number[][] = [];
-  for (let corner = 0; corner < triangles.length; ++corner) (at[place[triangles[corner]]] ??= []).push(corner - (corner % 3));
-  const positions = new Float32Array(3 * triangles.length);
-  const normals = new Float32Array(3 * triangles.length);
-  const colours = new Float32Array(3 * triangles.length);
+  const drawn: number[] = []; // corners of the triangles that can be seen
+  for (let corner = 0; corner < triangles.length; ++corner) {
+    if (shape.covered[(corner - (corner % 3)) / 3]) continue;
+    (at[place[triangles[corner]]] ??= []).push(corner - (corner % 3));
+    drawn.push(corner);
+  }
+  const positions = new Float32Array(3 * drawn.length);
+  const normals = new Float32Array(3 * drawn.length);
+  const colours = new Float32Array(3 * drawn.length);
   const colour = new THREE.Color();
   const own = new THREE.Vector3();
   const other = new THREE.Vector3();
   const sum = new THREE.Vector3();
-  for (let corner = 0; corner < triangles.length; ++corner) {
+  drawn.forEach((corner, i) => {
     const vertex = triangles[corner];
     const facet = corner - (corner % 3);
     own.fromArray(facets, facet).normalize();
@@ -64,10 +69,10 @@ export function nearGeometry(shape: Shape): THREE.BufferGeometry {
       const length = other.length();
       if (length > 0 && other.dot(own) > smoothBelow * length) sum.add(other);
     }
-    (sum.lengthSq() > 0 ? sum.normalize() : own).toArray(normals, 3 * corner);
-    for (let k = 0; k < 3; ++k) positions[3 * corner + k] = vertices[3 * vertex + k];
-    pieceColour(shape.piece[facet / 3], colour).toArray(colours, 3 * corner);
-  }
+    (sum.lengthSq() > 0 ? sum.normalize() : own).toArray(normals, 3 * i);
+    for (let k = 0; k < 3; ++k) positions[3 * i + k] = vertices[3 * vertex + k];
+    pieceColour(shape.piece[facet / 3], colour).toArray(colours, 3 * i);
+  });
   const geometry = new THREE.BufferGeometry();
   geometry.setAttribute("position", new THREE.BufferAttribute(positions, 3));
   geometry.setAttribute("normal", new THREE.BufferAttribute(normals, 3));

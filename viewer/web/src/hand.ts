@@ -101,6 +101,7 @@ export class Hand {
       grabbed: point.clone().applyMatrix4(held.clone().invert()), depth: 0, free: !hinged,
     };
     this.canvas.focus({ preventScroll: true });
+    this.canvas.classList.add("by-pointer"); // no ring around what a pointer has chosen
     this.send(true);
     this.onChange?.();
   }
@@ -196,6 +197,7 @@ export class Hand {
   }
 
   private key(event: KeyboardEvent) {
+    this.canvas.classList.remove("by-pointer");
     const directions: Record<string, [number, number, number]> = {
       ArrowLeft: [-1, 0, 0], ArrowRight: [1, 0, 0], ArrowUp: [0, 1, 0], ArrowDown: [0, -1, 0], PageUp: [0, 0, -1], PageDown: [0, 0, 1],
     };

@@ -93,7 +93,7 @@ export function readFrames(buffer: ArrayBuffer): Frames {
 
 /** A part's surface. */
 export interface Shape {
-  vertices: Float32Array; triangles: Uint32Array; piece: Uint32Array; face: Uint32Array; edges: Float32Array;
+  vertices: Float32Array; triangles: Uint32Array; piece: Uint32Array; face: Uint32Array; covered: Uint8Array; edges: Float32Array;
 }
 
 export function readShapes(buffer: ArrayBuffer): Shape[] {
@@ -108,11 +108,13 @@ export function readShapes(buffer: ArrayBuffer): Shape[] {
     const triangles = words.slice(at, (at += 3 * triangleCount));
     const piece = new Uint32Array(triangleCount);
     const face = new Uint32Array(triangleCount);
+    const covered = new Uint8Array(triangleCount); // by another piece: inside the part
     for (let t = 0; t < triangleCount; ++t) {
       piece[t] = words[at++];
-      face[t] = words[at++];
+      covered[t] = words[at] >>> 31;
+      face[t] = words[at++] & 0x7fffffff;
     }
-    shapes.push({ vertices, triangles, piece, face, edges: floats.slice(at, (at += 6 * edgeCount)) });
+    shapes.push({ vertices, triangles, piece, face, covered, edges: floats.slice(at, (at += 6 * edgeCount)) });
   }
   return shapes;
 }

@@ -5,10 +5,10 @@ export function withUnit(value: number, unit: string, digits = 3): string {
   if (!Number.isFinite(value)) return "–";
   if (unit === "") return String(Math.round(value * 1000) / 1000);
   if (unit === "rad") return `${((value * 180) / Math.PI).toPrecision(digits)}°`;
-  const size = Math.abs(value);
+  const size = Math.abs(value) < 1e-12 ? 0 : Math.abs(value); // rounding is not shown as if it were something
   const usable = unit.includes("/") || unit === "deg" ? prefixes.slice(0, 1) : prefixes;
   const [scale, prefix] = usable.find(([s]) => size >= s * 0.9995) ?? (size === 0 ? usable[0] : usable[usable.length - 1]);
-  const shown = value / scale;
+  const shown = size === 0 ? 0 : value / scale;
   const text = Math.abs(shown) >= 1000 ? String(Math.round(shown)) : Number(shown.toPrecision(digits)).toString();
   return `${text.replace("-", "−")} ${prefix}${unit}`;
 }

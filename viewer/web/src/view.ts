@@ -46,6 +46,13 @@ function roomLight(): THREE.Scene {
   return room;
 }
 
+/** Whether the browser has no graphics card to draw with. */
+function drawnBySoftware(): boolean {
+  const gl = document.createElement("canvas").getContext("webgl2");
+  const info = gl?.getExtension("WEBGL_debug_renderer_info");
+  return !gl || !info || /swiftshader|llvmpipe|software/i.test(String(gl.getParameter(info.UNMASKED_RENDERER_WEBGL)));
+}
+
 export class View {
   readonly camera = new THREE.PerspectiveCamera(32, 1, 0.02, 60);
   readonly controls: OrbitControls;
@@ -78,10 +85,11 @@ export class View {
   onDraw: (() => void) | null = null;
 
   constructor(private readonly canvas: HTMLCanvasElement, labels: HTMLElement, private readonly scaleNote: HTMLElement) {
-    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true });
-    this.renderer.setPixelRatio(Math.min(2, devicePixelRatio));
+    const plain = drawnBySoftware() && location.hash !== "#fine"; // without a graphics card every pixel costs
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: !plain, alpha: true });
+    this.renderer.setPixelRatio(plain ? 1 : Math.min(2, devicePixelRatio));
     this.renderer.shadowMap.enabled = true;
-    this.renderer.shadowMap.type = THREE.PCFSoftShadowMap;
+    this.renderer.shadowMap.type = plain ? THREE.BasicShadowMap : THREE.PCFSoftShadowMap;
     this.renderer.toneMapping = THREE.NeutralToneMapping;
     this.renderer.toneMappingExposure = 1.1;
     const room = new THREE.PMREMGenerator(this.renderer);
@@ -95,7 +103,7 @@ export class View {
     this.controls.minDistance = 0.4;
     this.controls.maxDistance = 20;
     this.sun.castShadow = true;
-    this.sun.shadow.mapSize.set(2048, 2048);
+    this.sun.shadow.mapSize.setScalar(plain ? 1024 : 2048);
     this.sun.shadow.camera.left = this.sun.shadow.camera.bottom = -1.7;
     this.sun.shadow.camera.right = this.sun.shadow.camera.top = 1.7;
     this.sun.shadow.camera.near = 0.5;

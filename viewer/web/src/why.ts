@@ -7,6 +7,7 @@ import type { Samples } from "./samples";
 import { withUnit } from "./units";
 
 const kinds = ["vertex", "edge", "face"];
+const mostRows = 12;
 
 const size = (v: number[]) => Math.hypot(v[0], v[1], v[2]);
 const dot = (a: number[], b: number[]) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -25,14 +26,18 @@ export class Why {
   private run: Run | null = null;
   private last = 0;
   private readonly sentence = make("p", { class: "sentence", role: "status", "aria-live": "off" });
-  private readonly table = make("table", { class: "contacts" });
+  private readonly table = make("table", { class: "contacts" },
+    make("thead", {}, make("tr", {}, make("th", { scope: "col" }, "pieces and features"), make("th", { scope: "col" }, "force, share"),
+      make("th", { scope: "col" }, "distance, normal"))), make("tbody"));
+  private readonly more = make("p", { class: "quiet" });
+  private rows: Push[] = [];
   private readonly ladder = make("table", { class: "ladder" });
   private readonly flags = make("ul", { class: "flags" });
   private readonly numbers = make("dl", { class: "numbers" });
 
   constructor(root: HTMLElement) {
     const more = make("details", {}, make("summary", {}, "Every number of this frame"), this.numbers);
-    root.append(this.sentence, make("h2", {}, "What pushes"), this.table, make("h2", {}, "From the contact to your hand"), this.ladder,
+    root.append(this.sentence, make("h2", {}, "What pushes"), this.table, this.more, make("h2", {}, "From the contact to your hand"), this.ladder,
       this.flags, more);
   }
 
@@ -87,34 +92,41 @@ export class Why {
     return `${this.name(contact.bodies[side])}:${piece}${kind}`;
   }
 
+  /** Rows stay where they are and change their text: what is being pressed is never replaced under the press. */
   private showContacts(pushes: Push[], sum: number[], picture: Picture) {
     const total = size(sum);
-    const rows = pushes.slice(0, 12).map((push) => {
+    const shown = pushes.slice(0, mostRows);
+    const body = this.table.tBodies[0];
+    while (body.rows.length < shown.length) body.append(this.contactRow(body.rows.length));
+    this.rows = shown;
+    [...body.rows].forEach((row, i) => {
+      const push = shown[i];
+      row.hidden = !push;
+      if (!push) return;
       const share = push.onHeld && total > 1e-9 ? dot(push.force, sum) / (total * total) : Number.NaN;
-      const row = make("tr", push.patch === this.chosen ? { class: "chosen", "aria-selected": "true" } : {});
-      const choose = make("button", { class: "plain", title: "Show it in the scene" }, this.feature(push.contact, 0), make("br"), this.feature(push.contact, 1));
-      choose.onclick = () => {
-        this.chosen = this.chosen === push.patch ? -1 : push.patch;
-        this.onChoose?.(this.chosen < 0 ? null : push.contact);
-      };
-      const bar = make("span", { class: "bar" });
-      bar.style.width = `${Math.round(100 * Math.min(1, Math.max(0, share || 0)))}%`;
-      row.append(
-        make("td", {}, choose),
-        make("td", { class: "number" }, withUnit(size(push.force), "N"), make("br"), Number.isNaN(share) ? "to others" : `${Math.round(100 * share)} %`.replace("-", "−"), bar),
-        make("td", { class: "number" }, withUnit(push.distance, "m"), make("br"), push.contact.n.map((c) => c.toFixed(2).replace("-", "−")).join(" ")));
-      return row;
+      const chosen = push.patch === this.chosen;
+      row.classList.toggle("chosen", chosen);
+      const [button, force, place] = [...row.cells].map((cell) => cell.firstElementChild as HTMLElement);
+      button.setAttribute("aria-pressed", String(chosen));
+      button.textContent = `${this.feature(push.contact, 0)}\n${this.feature(push.contact, 1)}`;
+      force.textContent = `${withUnit(size(push.force), "N")}\n${Number.isNaN(share) ? "to others" : `${Math.round(100 * share)} %`.replace("-", "−")}`;
+      (row.cells[1].lastElementChild as HTMLElement).style.width = `${Math.round(100 * Math.min(1, Math.max(0, share || 0)))}%`;
+      place.textContent = `${withUnit(push.distance, "m")}\n${push.contact.n.map((c) => c.toFixed(2).replace("-", "−")).join(" ")}`;
     });
-    // A row under the pointer or the focus stays: what is pressed must not be replaced under the press.
-    if (this.table.matches(":hover") || this.table.contains(document.activeElement)) {
-      if (this.table.rows.length > 1 && rows.length > 0 && !this.table.dataset.stale) return;
-    }
-    const head = make("tr", {}, make("th", { scope: "col" }, "pieces and features"), make("th", { scope: "col" }, "force, share"),
-      make("th", { scope: "col" }, "distance, normal"));
-    const hidden = pushes.length - rows.length + picture.leftOut;
-    this.table.replaceChildren(head, ...rows);
-    if (rows.length === 0) this.table.append(make("tr", {}, make("td", { colspan: "3", class: "quiet" }, "no contact")));
-    if (hidden > 0) this.table.append(make("tr", {}, make("td", { colspan: "3", class: "quiet" }, `and ${hidden} more`)));
+    const hidden = pushes.length - shown.length + picture.leftOut;
+    this.more.textContent = shown.length === 0 ? "no contact" : hidden > 0 ? `and ${hidden} more` : "";
+  }
+
+  private contactRow(i: number) {
+    const choose = make("button", { class: "plain", title: "Show it in the scene" });
+    choose.onclick = () => {
+      const push = this.rows[i];
+      if (!push) return;
+      this.chosen = this.chosen === push.patch ? -1 : push.patch;
+      this.onChoose?.(this.chosen < 0 ? null : push.contact);
+    };
+    return make("tr", {}, make("td", {}, choose), make("td", { class: "number" }, make("span"), make("span", { class: "bar" })),
+      make("td", { class: "number" }, make("span")));
   }
 
   private showLadder(samples: Samples, sample: number) {
