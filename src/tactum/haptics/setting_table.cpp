@@ -42,7 +42,7 @@ constexpr SettingInfo kSettings[] = {
 
   {"penalty", "stiffness_N_per_m", "Contact stiffness", "N/m", "how hard a wall pushes per metre it is entered", 50, 20000, kNumber, true,
    TACTUM_FIELD(frame.penalty.stiffness_N_per_m)},
-  {"penalty", "max_step_m", "Longest step", "m", "how far the held part may travel in one frame", 5.0e-5, 0.005, kNumber, true,
+  {"penalty", "max_step_m", "Longest step", "m", "how far the held part may travel in one frame", 0.05e-3, 0.005, kNumber, true,
    TACTUM_FIELD(frame.penalty.max_step_m)},
   {"penalty", "min_tolerance_m", "Least tolerance", "m", "distance at which resting parts still push", 0, 0.001, kNumber, true,
    TACTUM_FIELD(frame.penalty.min_tolerance_m)},
