@@ -32,7 +32,7 @@ function wrenchStrip(stage: number, half: 0 | 3, title: string, unit: string): S
 
 function channelStrip(channels: ChannelInfo[], group: string, samples: Samples): Strip {
   const members = channels.filter((channel) => channel.group === group);
-  const names: Record<string, string> = { stretch: "Stretch", frame: "Frame time", contacts: "Contacts" };
+  const names: Record<string, string> = { stretch: "Stretch", frame: "Frame", contacts: "Contacts" };
   return {
     key: group, title: names[group] ?? members.map((m) => m.name)[0], unit: members[0].unit, tail: group === "frame",
     lines: members.map((channel, i) => {
@@ -153,6 +153,7 @@ export class Charts {
   /** Room above and below, and never so narrow that rounding is drawn as a signal. */
   private range(low: number | null, high: number | null): [number, number] {
     if (low === null || high === null || !Number.isFinite(low) || !Number.isFinite(high)) return [0, 1];
+    if (low === 0 && high === 0) return [-0.05, 1];
     const span = Math.max(high - low, 0.02 * Math.max(Math.abs(low), Math.abs(high)), 1e-9);
     return [low - 0.08 * span, high + 0.08 * span];
   }

@@ -15,7 +15,7 @@ export function withUnit(value: number, unit: string, digits = 3): string {
 
 /** Which prefix suits a whole axis, as a factor and the unit to write. */
 export function axisUnit(largest: number, unit: string): [number, string] {
-  if (unit === "" || unit.includes("/")) return [1, unit];
+  if (unit === "" || unit.includes("/") || largest === 0) return [1, unit];
   if (unit === "rad") return [180 / Math.PI, "°"];
   const [scale, prefix] = prefixes.find(([s]) => largest >= s * 0.5) ?? prefixes[2];
   return [1 / scale, prefix + unit];

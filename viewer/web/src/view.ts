@@ -72,6 +72,7 @@ export class View {
   private readonly floor = new THREE.Mesh(new THREE.CircleGeometry(6, 48), new THREE.ShadowMaterial({ color: 0x000000 }));
   private grid: THREE.LineSegments | null = null;
   private spacing = 0; // of the grid [m]
+  private readonly box = new THREE.Box3(); // of the scene as it starts
   private look: Look = dark;
   private run: Run | null = null;
   private readonly X_HB = new THREE.Matrix4(); // held body from the handle
@@ -168,6 +169,7 @@ export class View {
     this.scale = 1 / radius;
     this.toView.makeScale(this.scale, this.scale, this.scale).multiply(new THREE.Matrix4().makeTranslation(centre.clone().negate()));
     this.toWorld.copy(this.toView).invert();
+    this.box.copy(box).applyMatrix4(this.toView);
     this.world.matrix.copy(this.toView);
     this.world.matrixWorldNeedsUpdate = true;
     this.floorZ = (box.min.z - centre.z) * this.scale - 0.004;
@@ -217,11 +219,41 @@ export class View {
 
   look_from(name: ViewName) {
     const direction = new THREE.Vector3(...directions[name]).normalize();
-    const narrow = Math.min(1, this.camera.aspect);
-    const distance = 0.74 / Math.sin((this.camera.fov * Math.PI) / 360) / Math.max(0.45, narrow);
-    this.controls.target.set(0, 0, name === "top" ? 0 : -0.04);
-    this.camera.position.copy(this.controls.target).addScaledVector(direction, distance);
+    this.controls.target.set(0, 0, 0);
+    this.stepBack(direction);
+    // In the middle: what is seen from above stands higher on the screen than its middle.
+    const { top, bottom } = this.extent();
+    const up = new THREE.Vector3(0, 1, 0).applyQuaternion(this.camera.quaternion);
+    const shift = 0.5 * (top + bottom) * Math.tan((this.camera.fov * Math.PI) / 360) * this.camera.position.distanceTo(this.controls.target);
+    this.controls.target.addScaledVector(up, shift);
+    this.stepBack(direction);
     this.controls.update();
+  }
+
+  /** As near as it can be with everything in view. */
+  private stepBack(direction: THREE.Vector3) {
+    let near = 0.8;
+    let far = 12;
+    for (let i = 0; i < 20; ++i) {
+      const middle = 0.5 * (near + far);
+      this.camera.position.copy(this.controls.target).addScaledVector(direction, middle);
+      this.camera.lookAt(this.controls.target);
+      this.camera.updateMatrixWorld();
+      const { top, bottom, side } = this.extent();
+      if (side < 0.92 && top < 0.84 && bottom > -0.84) far = middle;
+      else near = middle;
+    }
+  }
+
+  /** How far the scene's box reaches on the screen; the borders are at one. */
+  private extent() {
+    const { min, max } = this.box;
+    const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((i) =>
+      new THREE.Vector3(i & 1 ? max.x : min.x, i & 2 ? max.y : min.y, i & 4 ? max.z : min.z).project(this.camera));
+    return {
+      top: Math.max(...corners.map((c) => c.y)), bottom: Math.min(...corners.map((c) => c.y)),
+      side: Math.max(...corners.map((c) => Math.abs(c.x))),
+    };
   }
 
   show(picture: Picture, live: boolean) {

@@ -27,7 +27,7 @@ export class Why {
   private last = 0;
   private readonly sentence = make("p", { class: "sentence", role: "status", "aria-live": "off" });
   private readonly table = make("table", { class: "contacts" },
-    make("thead", {}, make("tr", {}, make("th", { scope: "col" }, "pieces and features"), make("th", { scope: "col" }, "force, share"),
+    make("thead", {}, make("tr", {}, make("th", { scope: "col" }, "pieces and features"), make("th", { scope: "col" }, "force"),
       make("th", { scope: "col" }, "distance, normal"))), make("tbody"));
   private readonly more = make("p", { class: "quiet" });
   private rows: Push[] = [];
