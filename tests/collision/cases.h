@@ -145,10 +145,10 @@ inline Pose make_pose(Random& random, const Polytope& A, const Polytope& B, Maki
       on_b = B.vertices[std::size_t(B.face_vertices[std::size_t(fb.first)])];
       break;
     case Making::kEdgeToEdge: {
-      outward = (A.side_normals[std::size_t(ea.left_slot)] + A.side_normals[std::size_t(ea.right_slot)])
+      outward = (A.sides[std::size_t(ea.left_slot)].normal + A.sides[std::size_t(ea.right_slot)].normal)
                     .normalized();
       const Vec3 out_b =
-          (B.side_normals[std::size_t(eb.left_slot)] + B.side_normals[std::size_t(eb.right_slot)])
+          (B.sides[std::size_t(eb.left_slot)].normal + B.sides[std::size_t(eb.right_slot)].normal)
               .normalized();
       X.R = turning(out_b, -outward, angle);
       if (random.index(2)) {  // parallel edges
@@ -161,7 +161,7 @@ inline Pose make_pose(Random& random, const Polytope& A, const Polytope& B, Maki
       break;
     }
     case Making::kVertexOverEdge:
-      outward = (A.side_normals[std::size_t(ea.left_slot)] + A.side_normals[std::size_t(ea.right_slot)])
+      outward = (A.sides[std::size_t(ea.left_slot)].normal + A.sides[std::size_t(ea.right_slot)].normal)
                     .normalized();
       X.R = turning((B.vertices[vb] - B.center).normalized(), -outward, angle);
       on_a = A.vertices[std::size_t(ea.tail)] + ea.direction * (ea.length * share);

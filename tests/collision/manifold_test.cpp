@@ -214,7 +214,7 @@ TEST(Manifold, MomentsAgreeWithCounting) {
       for (int s = f.first; s < f.first + f.count; ++s) {  // the border's plane holds the common normal
         const Vec3& u = P.edges[std::size_t(P.face_edges[std::size_t(s)])].direction;
         Vec3 side = u.cross(along);
-        if (side.dot(P.side_normals[std::size_t(s)]) < 0) side = -side;
+        if (side.dot(P.sides[std::size_t(s)].normal) < 0) side = -side;
         if (side.dot(p - P.vertices[std::size_t(P.face_vertices[std::size_t(s)])]) > 0) return false;
       }
       return true;

@@ -24,7 +24,7 @@ void expect_sound(const Polytope& P, double size) {
     for (int i = face.first; i < face.first + face.count; ++i)
       EXPECT_NEAR(face.normal.dot(P.vertices[std::size_t(P.face_vertices[std::size_t(i)])]), face.offset,
                   4 * tolerances::kCoplanar * size);
-  for (std::size_t v = 0; v < P.vertices.size(); ++v) EXPECT_GE(P.edges_at(int(v)).size(), P.flat ? 2u : 3u);
+  for (std::size_t v = 0; v < P.vertices.size(); ++v) EXPECT_GE(P.rays_at(int(v)).size(), P.flat ? 2u : 3u);
 }
 
 TEST(Hull, TurnedBoxHasEightCornersAndSixFaces) {

@@ -1,6 +1,7 @@
 #include "oracles/exhaustive.h"
 
 #include <cmath>
+#include <limits>
 #include <set>
 #include <sstream>
 #include <utility>
@@ -175,6 +176,17 @@ bool surely_overlap(const Polytope& A, const Polytope& B, const Pose& X_AB, long
     for (const Point& x : b.points)
       if (outside(a, x) < -margin) return true;
   return sides_pierce(a, b, margin) || sides_pierce(b, a, margin);
+}
+
+long double support_gap(const Polytope& A, const Polytope& B, const Pose& X_AB, const Vec3& n) {
+  const Eigen::Matrix<Real, 3, 3> R = X_AB.R.cast<Real>();
+  const Point n_A = n.cast<Real>();
+  Real lowest = std::numeric_limits<Real>::infinity();
+  Real highest = -lowest;
+  for (const Vec3& v : A.vertices) lowest = std::min(lowest, n_A.dot(v.cast<Real>()));
+  for (const Vec3& v : B.vertices)
+    highest = std::max(highest, n_A.dot(R * v.cast<Real>() + X_AB.p.cast<Real>()));
+  return (lowest - highest) / n_A.norm();
 }
 
 std::string complaint(const Polytope& A, const Polytope& B, const Pose& X_AB, const PairDistance& answer,

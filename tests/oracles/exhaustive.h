@@ -21,6 +21,10 @@ long double axes_separation(const Polytope& A, const Polytope& B, const Pose& X_
 /// distance when separated, minus the smallest depth when not [m].
 long double signed_distance(const Polytope& A, const Polytope& B, const Pose& X_AB);
 
+/// The gap between the support planes across unit `n` (from B to A), over all corners: a lower bound on the
+/// signed distance [m].
+long double support_gap(const Polytope& A, const Polytope& B, const Pose& X_AB, const Vec3& n);
+
 /// Do the solids share a point: a corner of one inside the other, or a side of one through a face of the
 /// other? `margin` [m] is how deep it must be, so that the answer is sure.
 bool surely_overlap(const Polytope& A, const Polytope& B, const Pose& X_AB, long double margin);

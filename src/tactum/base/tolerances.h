@@ -64,6 +64,10 @@ inline constexpr double kConvexMesh = 1e-9;
 /// largest one asked for: a force error far below what a hand or a device resolves (1e-3).
 inline constexpr double kContactVelocity = 1e-6;
 
+/// A direction in which less than this share of a body's mobility is left, once the directions found before
+/// are taken away, is none: a hinge's mobility is of rank one, but for rounding.
+inline constexpr double kNoMobility = 1e-12;
+
 /// A pair overlaps when its depth exceeds this share of the pieces' size: below it is the certificate's own
 /// doubt.
 inline constexpr double kPenetrating = 1e-9;

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "tactum/collision/every_feature.h"
+#include "tactum/collision/overlap.h"
 #include "tactum/collision/penetration.h"
 #include "tactum/collision/support_distance.h"
 #include "tactum/collision/voronoi_march.h"
@@ -13,37 +14,36 @@ namespace {
 
 using Kind = FeatureKind;
 
-/// Distance and normal as the features give them, and what the support planes say about it.
+/// Distance and normal as the features give them, with the doubt that the support planes leave.
 struct Judged {
   PairDistance answer;
-  double doubt = 0.0;  ///< distance minus the support planes' gap [m]
   int support_a = 0, support_b = 0;
 };
 
 /// The common perpendicular of two edges, from B to A. Their cones give the sign when the points coincide.
-Vec3 edges_normal(const PairView& pair, const March& march, const Vec3& d, double gap) noexcept {
-  const Polytope::Edge& ea = pair.A.edges[march.a.index];
-  const Polytope::Edge& eb = pair.B.edges[march.b.index];
+Vec3 edges_normal(const PairView& pair, const PairDistance& at, const Vec3& d, double gap) noexcept {
+  const Polytope::Edge& ea = pair.A.edges[at.a.index];
+  const Polytope::Edge& eb = pair.B.edges[at.b.index];
   const Vec3 c = ea.direction.cross(pair.X_AB.R * eb.direction);
   const double sine = c.norm();
   if (sine * pair.size <= gap) return d / gap;  // the difference has more digits than the cross product
   if (sine < tolerances::kParallelSine) return Vec3::Zero();
   double side = c.dot(d);
   if (gap < tolerances::kTouching * pair.size) {
-    const Vec3 out_a = pair.A.side_normals[ea.left_slot] + pair.A.side_normals[ea.right_slot];
-    const Vec3 out_b = pair.B.side_normals[eb.left_slot] + pair.B.side_normals[eb.right_slot];
+    const Vec3 out_a = pair.A.sides[ea.left_slot].normal + pair.A.sides[ea.right_slot].normal;
+    const Vec3 out_b = pair.B.sides[eb.left_slot].normal + pair.B.sides[eb.right_slot].normal;
     side = c.dot(pair.X_AB.R * out_b - out_a);
   }
   return side < 0.0 ? Vec3(-c / sine) : Vec3(c / sine);
 }
 
 /// The normal of the closest features; zero when only the penetration walk can tell it.
-Vec3 features_normal(const PairView& pair, const March& march) noexcept {
-  if (march.a.kind == Kind::kFace) return -pair.A.faces[march.a.index].normal;
-  if (march.b.kind == Kind::kFace) return pair.X_AB.R * pair.B.faces[march.b.index].normal;
-  const Vec3 d = march.p_a - march.p_b;
+Vec3 features_normal(const PairView& pair, const PairDistance& at) noexcept {
+  if (at.a.kind == Kind::kFace) return -pair.A.faces[at.a.index].normal;
+  if (at.b.kind == Kind::kFace) return pair.X_AB.R * pair.B.faces[at.b.index].normal;
+  const Vec3 d = at.p_a - at.p_b;
   const double gap = d.norm();
-  if (march.a.kind == Kind::kEdge && march.b.kind == Kind::kEdge) return edges_normal(pair, march, d, gap);
+  if (at.a.kind == Kind::kEdge && at.b.kind == Kind::kEdge) return edges_normal(pair, at, d, gap);
   return gap > tolerances::kTouching * pair.size ? Vec3(d / gap) : Vec3::Zero();
 }
 
@@ -53,23 +53,23 @@ Feature facing_side(const Polytope& P, Feature f, const Vec3& outward) noexcept 
   return f;
 }
 
-Judged judge(const PairView& pair, const March& march, const Vec3& normal) noexcept {
+Judged judge(const PairView& pair, const PairDistance& at, const Vec3& normal) noexcept {
   Judged judged;
   PairDistance& x = judged.answer;
   x.normal = normal;
-  x.p_a = march.p_a;
-  x.p_b = march.p_b;
-  x.a = facing_side(pair.A, march.a, -normal);
-  x.b = facing_side(pair.B, march.b, pair.X_BA.R * normal);
-  x.distance = normal.dot(march.p_a - march.p_b);
-  judged.support_a = vertex_of(pair.A, march.a);
-  judged.support_b = vertex_of(pair.B, march.b);
-  judged.doubt = std::numeric_limits<double>::infinity();
+  x.p_a = at.p_a;
+  x.p_b = at.p_b;
+  x.a = facing_side(pair.A, at.a, -normal);
+  x.b = facing_side(pair.B, at.b, pair.X_BA.R * normal);
+  x.distance = normal.dot(at.p_a - at.p_b);
+  judged.support_a = vertex_of(pair.A, at.a);
+  judged.support_b = vertex_of(pair.B, at.b);
+  x.doubt = std::numeric_limits<double>::infinity();
   if (normal.isZero()) return judged;
   const double gap = pair.separation(normal, judged.support_a, judged.support_b);
   // The points' whole distance counts, and that they lie on one normal.
-  const Vec3 d = march.p_a - march.p_b;
-  judged.doubt = std::max(d.norm() - gap, (d - normal * x.distance).norm());
+  const Vec3 d = at.p_a - at.p_b;
+  x.doubt = std::max(d.norm() - gap, (d - normal * x.distance).norm());
   return judged;
 }
 
@@ -78,17 +78,14 @@ Judged judge(const PairView& pair, const March& march, const Vec3& normal) noexc
 Vec3 inside_cones(const PairView& pair, const Feature& fa, const Feature& fb, Vec3 n) noexcept {
   const auto project = [](const Polytope& P, const Feature& f, Vec3& outward) {
     if (f.kind == Kind::kVertex) {
-      for (int e : P.edges_at(f.index)) {
-        const Vec3& u = P.edges[e].direction;
-        const double up = u.dot(outward);
-        if ((P.edges[e].tail == f.index) == (up > 0.0)) outward -= u * up;
-      }
+      for (const Polytope::Ray& ray : P.rays_at(f.index))
+        if (const double up = ray.direction.dot(outward); up > 0.0) outward -= ray.direction * up;
     } else if (f.kind == Kind::kEdge) {
       const Polytope::Edge& edge = P.edges[f.index];
       outward -= edge.direction * edge.direction.dot(outward);
       for (int slot : {edge.left_slot, edge.right_slot})
-        if (const double in = P.side_normals[slot].dot(outward); in < 0.0)
-          outward -= P.side_normals[slot] * in;
+        if (const double in = P.sides[slot].normal.dot(outward); in < 0.0)
+          outward -= P.sides[slot].normal * in;
     }
   };
   for (int round = 0; round < 16; ++round) {
@@ -105,58 +102,63 @@ struct Seed {
   Feature a, b;
 };
 
-Seed seed_from_table(const PairView& pair) noexcept {
+/// The vertices farthest along the line of centres: near the closest features of pieces met for the first
+/// time. A climb goes there faster than a walk, whose every step is a pair.
+Seed first_seed(const PiecePair& pair) noexcept {
   Vec3 toward_b = pair.X_AB * pair.B.center - pair.A.center;
   if (toward_b.isZero()) toward_b = Vec3::UnitX();
-  return {{Kind::kVertex, table_vertex(pair.A, toward_b)},
-          {Kind::kVertex, table_vertex(pair.B, -(pair.X_BA.R * toward_b))}};
+  return {{Kind::kVertex, support_vertex(pair.A, toward_b)},
+          {Kind::kVertex, support_vertex(pair.B, -rotated_back(pair.X_AB.R, toward_b))}};
 }
+
+Seed seed_of(const PiecePair& pair, const PairCache& cache) noexcept {
+  if (valid_feature(pair.A, cache.a) && valid_feature(pair.B, cache.b)) return {cache.a, cache.b};
+  return first_seed(pair);
+}
+
+double certificate(const PiecePair& pair) noexcept { return tolerances::kCertificate * pair.size; }
 
 /// The query while it climbs down its ladder.
 class Query {
  public:
-  Query(const PairView& pair, PairCache& cache) noexcept : pair_(pair), cache_(cache) {
-    best_.doubt = std::numeric_limits<double>::infinity();
-  }
+  Query(const PairView& pair, PairCache& cache) noexcept : pair_(pair), cache_(cache) {}
 
-  PairDistance run() noexcept {
-    if (walked() || on_planes() || by_supports()) return result_;
-    if (pair_.A.edges.size() * pair_.B.edges.size() <= kSmallEdgePairs &&
-        (certified(closest_of_every_feature(pair_), Stop::kFallback) || on_planes()))
-      return result_;
+  /// From a first walk, which ended at `at` and did not prove itself.
+  PairDistance run(const March& first, const PairDistance& at) noexcept {
+    if (walked(first, at) || on_planes() || by_supports() || by_every_feature()) return result_;
     return done(best_.answer, Stop::kBounded);
   }
 
  private:
-  /// The walk, and again from the supports with wider slack. True when certified or overlapping.
-  bool walked() noexcept {
-    Seed seed{cache_.a, cache_.b};
-    if (!valid_feature(pair_.A, seed.a) || !valid_feature(pair_.B, seed.b)) seed = seed_from_table(pair_);
+  /// Judges the walk, and walks again from the supports with wider slack. True when certified or overlapping.
+  bool walked(March march, PairDistance at) noexcept {
     double slack = tolerances::kVoronoiSlack * pair_.scale;
-    for (int attempt = 0; attempt < kAttempts; ++attempt, slack *= kWiderSlack) {
-      const March march = voronoi_march(pair_, seed.a, seed.b, slack);
+    for (int attempt = 0; attempt < kAttempts; ++attempt) {
       steps_ += march.steps;
       if (march.end == MarchEnd::kOverlap) return overlapping();
+      if (march.end == MarchEnd::kBehind) return by_supports();
       const bool straight = attempt == 0 && march.end == MarchEnd::kClosest;
-      if (certified(march, straight ? Stop::kCertified : Stop::kFallback)) return true;
-      seed = {{Kind::kVertex, last_.support_a}, {Kind::kVertex, last_.support_b}};
+      if (certified(at, straight ? Stop::kCertified : Stop::kFallback)) return true;
+      slack *= kWiderSlack;
+      march =
+          voronoi_march(pair_, {Kind::kVertex, last_.support_a}, {Kind::kVertex, last_.support_b}, slack, at);
     }
     return false;
   }
 
-  /// Judges the points of a march, with the features' normal or that normal healed.
-  bool certified(const March& march, Stop stop) noexcept {
-    last_ = judge(pair_, march, features_normal(pair_, march));
-    if (last_.doubt > tolerance() && std::isfinite(last_.doubt)) {
-      const Judged healed = judge(pair_, march, inside_cones(pair_, march.a, march.b, last_.answer.normal));
-      if (healed.doubt < last_.doubt) last_ = healed;
+  /// Judges the points `at`, with their features' normal or that normal healed.
+  bool certified(const PairDistance& at, Stop stop) noexcept {
+    last_ = judge(pair_, at, features_normal(pair_, at));
+    if (last_.answer.doubt > certificate(pair_) && std::isfinite(last_.answer.doubt)) {
+      const Judged healed = judge(pair_, at, inside_cones(pair_, at.a, at.b, last_.answer.normal));
+      if (healed.answer.doubt < last_.answer.doubt) last_ = healed;
     }
-    const double gap = (march.p_a - march.p_b).norm();
+    const double gap = (at.p_a - at.p_b).norm();
     if (gap < least_gap_) {
       least_gap_ = gap;
       best_ = last_;
     }
-    if (last_.doubt > tolerance()) return false;
+    if (last_.answer.doubt > certificate(pair_)) return false;
     done(last_.answer, stop);
     return true;
   }
@@ -165,14 +167,29 @@ class Query {
   bool overlapping() noexcept {
     result_ = penetration_depth(pair_.A, pair_.B, pair_.X_AB, cache_);
     result_.steps += steps_;
+    cache_.overlap.known = true;
     return true;
   }
 
+  /// What no walk can lead astray, and then a walk from there for the last digits.
   bool by_supports() noexcept {
-    const March march = closest_by_supports(pair_);
+    PairDistance at;
+    const March supports = closest_by_supports(pair_, cache_.overlap, at);
+    steps_ += supports.steps;
+    if (supports.end == MarchEnd::kOverlap) return overlapping();
+    PairDistance polished;
+    const March march = voronoi_march(pair_, at.a, at.b, tolerances::kVoronoiSlack * pair_.scale, polished);
     steps_ += march.steps;
     if (march.end == MarchEnd::kOverlap) return overlapping();
-    return certified(march, Stop::kFallback) || on_planes();
+    if (march.end == MarchEnd::kClosest && certified(polished, Stop::kFallback)) return true;
+    return certified(at, Stop::kFallback) || on_planes();
+  }
+
+  bool by_every_feature() noexcept {
+    if (pair_.A.edges.size() * pair_.B.edges.size() > kSmallEdgePairs) return false;
+    PairDistance at;
+    closest_of_every_feature(pair_, at);
+    return certified(at, Stop::kFallback) || on_planes();
   }
 
   /// A facet of the Minkowski difference tells the normal where the points' difference cannot. Its witness
@@ -182,7 +199,8 @@ class Query {
     PairCache cache = cache_;
     const PairDistance planes = penetration_depth(pair_.A, pair_.B, pair_.X_AB, cache);
     steps_ += planes.steps;
-    if (!planes.certified() || (planes.distance < -tolerance() && least_gap_ > tolerance())) return false;
+    const double tolerance = certificate(pair_);
+    if (!planes.certified() || (planes.distance < -tolerance && least_gap_ > tolerance)) return false;
     done(planes, Stop::kFallback);
     return true;
   }
@@ -191,11 +209,12 @@ class Query {
     result_ = answer;
     result_.stop = stop;
     result_.steps = steps_;
-    cache_ = {result_.a, result_.b, result_.normal};
+    cache_.a = result_.a;
+    cache_.b = result_.b;
+    cache_.normal_A = result_.normal;
+    cache_.overlap = {};
     return result_;
   }
-
-  double tolerance() const noexcept { return tolerances::kCertificate * pair_.size; }
 
   static constexpr int kAttempts = 4;
   static constexpr double kWiderSlack = 32.0;
@@ -209,12 +228,33 @@ class Query {
   int steps_ = 0;
 };
 
+/// Pieces that overlapped in the last frame: their depth, and a proof that it is one.
+bool still_inside(const PairView& pair, PairCache& cache, PairDistance& x) noexcept {
+  x = penetration_depth(pair.A, pair.B, pair.X_AB, cache);
+  return overlap_by_facet(pair, x) || overlap_by_vertices(pair, cache.overlap);
+}
+
 }  // namespace
 
 PairDistance closest_features(const Polytope& A, const Polytope& B, const Pose& X_AB,
                               PairCache& cache) noexcept {
-  const PairView pair(A, B, X_AB);
-  return Query(pair, cache).run();
+  const PiecePair pair(A, B, X_AB);
+  PairDistance x;
+  if (cache.overlap.known && still_inside(PairView(pair), cache, x)) return x;
+  const Seed seed = seed_of(pair, cache);
+  const March march = voronoi_march(pair, seed.a, seed.b, tolerances::kVoronoiSlack * pair.scale, x);
+  if (march.doubt > certificate(pair)) {
+    const PairView view(pair);
+    return Query(view, cache).run(march, x);
+  }
+  x.doubt = march.doubt;
+  x.stop = Stop::kCertified;  // the walk proved it itself
+  x.steps = march.steps;
+  cache.a = x.a;
+  cache.b = x.b;
+  cache.normal_A = x.normal;
+  cache.overlap.known = false;
+  return x;
 }
 
 }  // namespace tactum

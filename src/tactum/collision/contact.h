@@ -11,6 +11,7 @@
 ///
 /// Swapping A and B keeps the distance, turns the normal around and swaps the points. Tested for every query.
 
+#include <array>
 #include <cstdint>
 
 #include "tactum/base/static_vector.h"
@@ -27,11 +28,28 @@ struct Feature {
   bool operator==(const Feature&) const = default;
 };
 
+/// A feature of A and one of B.
+struct FeaturePair {
+  Feature a, b;
+  bool empty() const noexcept { return a.index < 0 || b.index < 0; }
+};
+
+/// Four pairs of vertices of A and B. While their differences hold the origin between them the pieces share a
+/// point; all zero when none were needed. Pieces have at most 65 535 vertices.
+struct OverlapProof {
+  std::array<std::uint16_t, 4> a{}, b{};
+  bool known = false;
+};
+
 /// The closest features of a pair in the last frame: the coherence the tracker lives on. Value-initialised
 /// means none.
 struct PairCache {
   Feature a, b;
   Vec3 normal_A = Vec3::Zero();  ///< last normal from B to A, unit, or zero when there was none [-]
+  OverlapProof overlap;          ///< known when they overlapped in the last frame
+  // Of an overlapping pair: the next best way out, and the walk that looks for others (penetration.h).
+  FeaturePair rival, scout;
+  std::uint32_t turn = 0;  ///< frames tracked inside
 };
 
 /// Why a query stopped.
@@ -48,6 +66,9 @@ struct PairDistance {
   Vec3 p_b = Vec3::Zero();     ///< witness point on B, A's frame [m]
   Vec3 normal = Vec3::Zero();  ///< n_BA_A, unit [-]
   Feature a, b;                ///< the features the witness points lie on
+  /// How much less than `distance` the signed distance can be at most [m]: below 1e-9 of the size when
+  /// certified, infinite when nothing is known.
+  double doubt = 0.0;
   Stop stop = Stop::kBounded;
   int steps = 0;  ///< feature pairs visited
   bool certified() const { return stop != Stop::kBounded; }
@@ -60,6 +81,7 @@ struct ContactPoint {
   Vec3 p_b = Vec3::Zero();  ///< on B, A's frame [m]
   double distance = 0.0;    ///< normal . (p_a - p_b) [m]
   double weight = 0.0;      ///< share of the patch's stiffness [-]
+  std::uint64_t id = 0;  ///< the same from frame to frame while the features of the patch and its kind stay
 };
 
 /// Where two convex pieces touch or nearly touch: one normal and up to four points (quadrature of the clipped

@@ -10,17 +10,17 @@ namespace {
 using Kind = FeatureKind;
 
 struct Nearest {
-  March march;
+  PairDistance& x;
   double gap_sq = std::numeric_limits<double>::infinity();
 
   void take(const Feature& a, const Feature& b, const Vec3& p_a, const Vec3& p_b) noexcept {
     const double next = (p_a - p_b).squaredNorm();
     if (next >= gap_sq) return;
     gap_sq = next;
-    march.a = a;
-    march.b = b;
-    march.p_a = p_a;
-    march.p_b = p_b;
+    x.a = a;
+    x.b = b;
+    x.p_a = p_a;
+    x.p_b = p_b;
   }
 };
 
@@ -33,15 +33,15 @@ Feature along_edge(const Polytope& P, int e, double s) noexcept {
 /// The vertex of P over the face of Q, when its foot is inside: the foot, in Q's frame.
 bool foot_on_face(const Polytope& Q, const Polytope::Face& face, const Vec3& p, Vec3& foot) noexcept {
   for (int slot = face.first; slot < face.first + face.count; ++slot)
-    if (Q.side_normals[slot].dot(p) > Q.side_offsets[slot]) return false;
+    if (Q.sides[slot].normal.dot(p) > Q.sides[slot].offset) return false;
   foot = p - face.normal * (face.normal.dot(p) - face.offset);
   return true;
 }
 
 }  // namespace
 
-March closest_of_every_feature(const PairView& pair) noexcept {
-  Nearest nearest;
+void closest_of_every_feature(const PairView& pair, PairDistance& x) noexcept {
+  Nearest nearest{x};
   const int faces_a = static_cast<int>(pair.A.faces.size());
   const int faces_b = static_cast<int>(pair.B.faces.size());
   const int edges_a = static_cast<int>(pair.A.edges.size());
@@ -62,13 +62,12 @@ March closest_of_every_feature(const PairView& pair) noexcept {
     for (int i = 0; i < edges_a; ++i) {
       const Polytope::Edge& ea = pair.A.edges[i];
       const Vec3& a0 = pair.vertex_a(ea.tail);
-      const SegmentPair at = nearest_on_segments(a0, ea.direction, ea.length, b0, w, eb.length);
+      const SegmentPair at =
+          nearest_on_segments(ea.direction, ea.length, w, eb.length, b0 - a0, ea.direction.cross(w));
       nearest.take(along_edge(pair.A, i, at.s), along_edge(pair.B, j, at.t), a0 + ea.direction * at.s,
                    b0 + w * at.t);
     }
   }
-  nearest.march.end = MarchEnd::kClosest;
-  return nearest.march;
 }
 
 }  // namespace tactum

@@ -38,7 +38,10 @@ void for_faces_at(const Polytope& P, const Feature& f, const Visit& visit) noexc
     visit(P.edges[f.index].right);
     return;
   }
-  for (int e : P.edges_at(f.index)) visit(P.edges[e].tail == f.index ? P.edges[e].left : P.edges[e].right);
+  for (const Polytope::Ray& ray : P.rays_at(f.index)) {
+    const Polytope::Edge& edge = P.edges[ray.edge];
+    visit(edge.tail == f.index ? edge.left : edge.right);
+  }
 }
 
 /// Of the edges at feature `f`, that bound `face`, the one most square to `outward`; its slope in `slope`.
@@ -49,11 +52,11 @@ int level_edge(const Polytope& P, const Feature& f, int face, const Vec3& outwar
   }
   int best = -1;
   slope = 2.0;
-  for (int e : P.edges_at(f.index)) {
-    if (P.edges[e].left != face && P.edges[e].right != face) continue;
-    if (const double rise = std::abs(P.edges[e].direction.dot(outward)); rise < slope) {
+  for (const Polytope::Ray& ray : P.rays_at(f.index)) {
+    if (P.edges[ray.edge].left != face && P.edges[ray.edge].right != face) continue;
+    if (const double rise = std::abs(ray.direction.dot(outward)); rise < slope) {
       slope = rise;
-      best = e;
+      best = ray.edge;
     }
   }
   return best;
@@ -63,26 +66,28 @@ int level_edge(const Polytope& P, const Feature& f, int face, const Vec3& outwar
 /// as little the patch shrinks too, so that rolling from one face to the next passes through their edge.
 Facing facing_feature(const Polytope& P, const Feature& f, const Vec3& outward, double angle) noexcept {
   int face = -1;
-  double lean = 3.0;
-  double next = 3.0;
+  double lean = 9.0;  // squared sines
+  double next = 9.0;
   for_faces_at(P, f, [&](int candidate) {
     const Vec3& normal = P.faces[candidate].normal;
-    const double sine = normal.dot(outward) > 0.0 ? normal.cross(outward).norm() : 2.0;
-    if (sine < lean) {
+    const double sine_sq = normal.dot(outward) > 0.0 ? normal.cross(outward).squaredNorm() : 4.0;
+    if (sine_sq < lean) {
       next = lean;
-      lean = sine;
+      lean = sine_sq;
       face = candidate;
     } else {
-      next = std::min(next, sine);
+      next = std::min(next, sine_sq);
     }
   });
   Facing facing;
   facing.feature = {Kind::kFace, face};
   if (f.kind == Kind::kFace) {
     // Square to the normal; where it is not (an answer that is none of the queries'), a point.
-    if (lean >= angle) facing.feature = {Kind::kVertex, vertex_of(P, f)};
+    if (lean >= angle * angle) facing.feature = {Kind::kVertex, vertex_of(P, f)};
     return facing;
   }
+  lean = std::sqrt(lean);
+  next = std::sqrt(next);
   double slope = 0.0;
   facing.edge = level_edge(P, f, face, outward, slope);
   // An edge shrinks at a quarter of the angle: where two edges of a leaning face slope alike, both are points
@@ -103,18 +108,26 @@ struct Tangent {
   Vec3 point(const Vec2& x, double z) const noexcept { return origin + e1 * x.x() + e2 * x.y() + n * z; }
 };
 
+/// The same plane as seen from a piece: its axes and where its origin is, in the piece's frame.
+struct Plan {
+  Vec3 origin, e1, e2, n;
+
+  static Plan of_a(const Tangent& t) noexcept { return {t.origin, t.e1, t.e2, t.n}; }
+  static Plan of_b(const Tangent& t, const Pose& X_BA) noexcept {
+    return {X_BA * t.origin, rotated(X_BA.R, t.e1), rotated(X_BA.R, t.e2), rotated(X_BA.R, t.n)};
+  }
+  Vec2 flat(const Vec3& p) const noexcept {
+    const Vec3 r = p - origin;
+    return {e1.dot(r), e2.dot(r)};
+  }
+};
+
 /// Height of a plane over the contact plane, linear in x.
 struct Height {
   double at_origin = 0.0;
   Vec2 slope = Vec2::Zero();
   double operator()(const Vec2& x) const noexcept { return at_origin + slope.dot(x); }
 };
-
-Height height_of_plane(const Tangent& tangent, const Vec3& normal, const Vec3& on_plane) noexcept {
-  const double up = normal.dot(tangent.n);
-  return {normal.dot(on_plane - tangent.origin) / up,
-          {-normal.dot(tangent.e1) / up, -normal.dot(tangent.e2) / up}};
-}
 
 struct Work {
   const PairView& pair;
@@ -126,19 +139,22 @@ struct Work {
   Manifold& out;
 };
 
-void face_outline(const Tangent& tangent, const Polytope& P, int face_index, const Pose& X,
+/// The outline of a face, counter-clockwise in the contact plane: B's faces look along n, A's against it.
+void face_outline(const Plan& plan, const Polytope& P, int face_index, bool on_a,
                   PatchPolygon& loop) noexcept {
   const Polytope::Face& face = P.faces[face_index];
   const int stride = (face.count + kPatchCorners - 1) / kPatchCorners;
   loop.clear();
-  for (int i = 0; i < face.count; i += stride)
-    loop.push_back(tangent.flat(X * P.vertices[P.face_vertices[face.first + i]]));
-  if (twice_area(loop) < 0.0) std::reverse(loop.begin(), loop.end());
+  const int last = (face.count - 1) / stride * stride;
+  for (int i = 0; i <= last; i += stride)
+    loop.push_back(plan.flat(P.vertices[P.face_vertices[face.first + (on_a ? last - i : i)]]));
 }
 
-Height face_height(const Tangent& tangent, const Polytope& P, int face_index, const Pose& X) noexcept {
+Height face_height(const Plan& plan, const Polytope& P, int face_index) noexcept {
   const Polytope::Face& face = P.faces[face_index];
-  return height_of_plane(tangent, X.R * face.normal, X * P.vertices[P.face_vertices[face.first]]);
+  const double per_up = 1.0 / face.normal.dot(plan.n);
+  return {(face.offset - face.normal.dot(plan.origin)) * per_up,
+          {-face.normal.dot(plan.e1) * per_up, -face.normal.dot(plan.e2) * per_up}};
 }
 
 /// The gap above which the patch ends: the tolerance, or nearer the least gap when the features lean.
@@ -165,14 +181,10 @@ Rise rise_from_edge(const Tangent& tangent, const Polytope& P, int edge, const P
   return {across, across.dot(on_line)};
 }
 
-void add_point(const Work& w, const Vec2& x, double za, double zb, double weight) noexcept {
-  w.out.points.push_back({w.tangent.point(x, za), w.tangent.point(x, zb), za - zb, weight});
-}
-
 void point_contact(const Work& w) noexcept {
   w.out.points.clear();
   w.out.area = 0.0;
-  w.out.points.push_back({w.closest.p_a, w.closest.p_b, w.closest.distance, 1.0});
+  w.out.points.push_back({w.closest.p_a, w.closest.p_b, w.closest.distance, 1.0, 0});
 }
 
 /// Points of A and of B over each other at both ends of a segment; linear between.
@@ -206,7 +218,7 @@ void interval_contact(const Work& w, const Strip& strip, PatchInterval kept,
   const double reach = 0.5 * (kept.high - kept.low) / std::sqrt(3.0);
   for (double s : {middle - reach, middle + reach})
     w.out.points.push_back(
-        {strip.a0 + (strip.a1 - strip.a0) * s, strip.b0 + (strip.b1 - strip.b0) * s, gap(s), 0.5});
+        {strip.a0 + (strip.a1 - strip.a0) * s, strip.b0 + (strip.b1 - strip.b0) * s, gap(s), 0.5, 0});
 }
 
 /// Keeps the part of x0..x1 inside a convex, counter-clockwise window.
@@ -238,11 +250,12 @@ EdgeOverFace edge_over_face(const Work& w, const Polytope& E, int edge, const Po
   strip.edge1 = X_E * E.vertices[E.edges[edge].head];
   const Vec2 x0 = w.tangent.flat(strip.edge0);
   const Vec2 x1 = w.tangent.flat(strip.edge1);
-  const Height height = face_height(w.tangent, F, face, X_F);
+  const Plan plan = up > 0.0 ? Plan::of_a(w.tangent) : Plan::of_b(w.tangent, w.pair.X_BA);
+  const Height height = face_height(plan, F, face);
   strip.face0 = w.tangent.point(x0, height(x0));
   strip.face1 = w.tangent.point(x1, height(x1));
   PatchPolygon window;
-  face_outline(w.tangent, F, face, X_F, window);
+  face_outline(plan, F, face, up > 0.0, window);
   strip.kept = clip_segment(x0, x1, window);
   if (facing.face_share < 1.0) {
     const Rise rise = rise_from_edge(w.tangent, F, facing.edge, X_F, up * height.slope);
@@ -303,6 +316,7 @@ void sliver_contact(const Work& w, const PatchPolygon& polygon, const Height& za
     if ((x - x0).squaredNorm() > (x1 - x0).squaredNorm()) x1 = x;
   for (const Vec2& x : polygon)
     if ((x - x1).squaredNorm() > (x0 - x1).squaredNorm()) x0 = x;
+  if (x1.x() < x0.x()) std::swap(x0, x1);  // along A's feature, so that the ends keep their places
   interval_contact(w,
                    {w.tangent.point(x0, za(x0)), w.tangent.point(x1, za(x1)), w.tangent.point(x0, zb(x0)),
                     w.tangent.point(x1, zb(x1))},
@@ -310,22 +324,30 @@ void sliver_contact(const Work& w, const PatchPolygon& polygon, const Height& za
 }
 
 void face_face_contact(const Work& w) noexcept {
+  const Plan plan_a = Plan::of_a(w.tangent);
+  const Plan plan_b = Plan::of_b(w.tangent, w.pair.X_BA);
   PatchPolygon polygon;
   PatchPolygon window;
-  face_outline(w.tangent, w.pair.A, w.a.feature.index, {}, polygon);
-  face_outline(w.tangent, w.pair.B, w.b.feature.index, w.pair.X_AB, window);
-  const Height za = face_height(w.tangent, w.pair.A, w.a.feature.index, {});
-  const Height zb = face_height(w.tangent, w.pair.B, w.b.feature.index, w.pair.X_AB);
+  face_outline(plan_a, w.pair.A, w.a.feature.index, true, polygon);
+  face_outline(plan_b, w.pair.B, w.b.feature.index, false, window);
+  const Height za = face_height(plan_a, w.pair.A, w.a.feature.index);
+  const Height zb = face_height(plan_b, w.pair.B, w.b.feature.index);
+  const Height gap{za.at_origin - zb.at_origin, za.slope - zb.slope};
   clip_polygon(polygon, window);
   if (polygon.empty()) return point_contact(w);
   double least = std::numeric_limits<double>::infinity();
-  for (const Vec2& x : polygon) least = std::min(least, za(x) - zb(x));
+  double most = -least;
+  for (const Vec2& x : polygon) {
+    least = std::min(least, gap(x));
+    most = std::max(most, gap(x));
+  }
   if (least >= w.tolerance) return point_contact(w);
-  clip_polygon(polygon, za.slope - zb.slope, cut_level(w, least) - (za.at_origin - zb.at_origin));
+  if (const double level = cut_level(w, least); most > level)
+    clip_polygon(polygon, gap.slope, level - gap.at_origin);
   const auto cut_toward_edge = [&](const Rise& rise, double share) {
-    double most = 0.0;
-    for (const Vec2& x : polygon) most = std::max(most, rise(x));
-    clip_polygon(polygon, rise.slope, rise.offset + most * share);
+    double highest = 0.0;
+    for (const Vec2& x : polygon) highest = std::max(highest, rise(x));
+    clip_polygon(polygon, rise.slope, rise.offset + highest * share);
   };
   if (w.a.face_share < 1.0)
     cut_toward_edge(rise_from_edge(w.tangent, w.pair.A, w.a.edge, {}, za.slope), w.a.face_share);
@@ -335,12 +357,18 @@ void face_face_contact(const Work& w) noexcept {
   const PatchMoments m = moments_of(polygon);
   if (m.area <= tolerances::kPatchArea * w.pair.size * w.pair.size) return sliver_contact(w, polygon, za, zb);
   w.out.area = m.area;
-  const Vec2 across(-m.axis.y(), m.axis.x());
-  const Vec2 major = m.axis * std::sqrt(2.0 * m.major);
-  const Vec2 minor = across * std::sqrt(2.0 * m.minor);
-  for (const Vec2& x : {Vec2(m.centroid + major), Vec2(m.centroid - major), Vec2(m.centroid + minor),
-                        Vec2(m.centroid - minor)})
-    add_point(w, x, za(x), zb(x), 0.25);
+  const PatchSpread arms = spread_of(m);
+  const Vec3 center_a = w.tangent.point(m.centroid, za(m.centroid));
+  const Vec3 center_b = w.tangent.point(m.centroid, zb(m.centroid));
+  const double center_gap = gap(m.centroid);
+  for (const Vec2* arm : {&arms.u, &arms.v}) {
+    const Vec3 flat = w.tangent.e1 * arm->x() + w.tangent.e2 * arm->y();
+    const Vec3 to_a = flat + w.tangent.n * za.slope.dot(*arm);
+    const Vec3 to_b = flat + w.tangent.n * zb.slope.dot(*arm);
+    const double opens = gap.slope.dot(*arm);
+    w.out.points.push_back({center_a + to_a, center_b + to_b, center_gap + opens, 0.25, 0});
+    w.out.points.push_back({center_a - to_a, center_b - to_b, center_gap - opens, 0.25, 0});
+  }
 }
 
 using Handler = void (*)(const Work&) noexcept;
@@ -352,6 +380,35 @@ constexpr std::array<std::array<Handler, 3>, 3> kHandlers = {{
     {point_contact, edge_edge_contact, edge_a_face_b},  // A: edge
     {point_contact, face_a_edge_b, face_face_contact},  // A: face
 }};
+
+/// Identities: the two features, and the place among the four points of an area, two of a line, or the one.
+/// Arms and ends go with the features, so the places do.
+void name_points(Manifold& patch) noexcept {
+  const auto name = [](const Feature& f) {
+    return static_cast<std::uint64_t>(f.kind) | static_cast<std::uint64_t>(f.index) << 2;
+  };
+  const std::size_t points = patch.points.size();
+  const std::uint64_t first = points == 4 ? 0 : points == 2 ? 4 : 6;
+  const std::uint64_t features = name(patch.a) << 33 | name(patch.b) << 3;
+  for (std::size_t i = 0; i < points; ++i) patch.points[i].id = features | (first + i);
+}
+
+/// The contact plane's first axis goes with A's feature, so that points keep their places while it stays.
+Tangent contact_plane(const Polytope& A, const Feature& a, const Vec3& origin, const Vec3& n) noexcept {
+  Tangent tangent{origin, Vec3::Zero(), Vec3::Zero(), n};
+  if (a.kind == Kind::kVertex) {
+    tangent.e1 = any_orthogonal(n);
+  } else {
+    const int edge = a.kind == Kind::kEdge ? a.index : A.face_edges[A.faces[a.index].first];
+    const Vec3& u = A.edges[edge].direction;
+    tangent.e1 = u - n * n.dot(u);
+    const double length_sq = tangent.e1.squaredNorm();
+    // Nearly square to n already, in the answers of the queries.
+    tangent.e1 = length_sq > 0.25 ? Vec3(tangent.e1 / std::sqrt(length_sq)) : any_orthogonal(n);
+  }
+  tangent.e2 = n.cross(tangent.e1);
+  return tangent;
+}
 
 }  // namespace
 
@@ -368,19 +425,13 @@ void contact_manifold_within(const Polytope& A, const Polytope& B, const Pose& X
     return;
   const PairView pair(A, B, X_AB);
   const Vec3& n = closest.normal;
-  Tangent tangent{closest.p_b, any_orthogonal(n), Vec3::Zero(), n};
-  tangent.e2 = n.cross(tangent.e1);
-  const Work work{pair,
-                  closest,
-                  tolerance,
-                  angle,
-                  tangent,
-                  facing_feature(A, closest.a, -n, angle),
-                  facing_feature(B, closest.b, pair.X_BA.R * n, angle),
-                  out};
+  const Facing a = facing_feature(A, closest.a, -n, angle);
+  const Facing b = facing_feature(B, closest.b, rotated(pair.X_BA.R, n), angle);
+  const Work work{pair, closest, tolerance, angle, contact_plane(A, a.feature, closest.p_b, n), a, b, out};
   out.a = work.a.feature;
   out.b = work.b.feature;
   kHandlers[static_cast<std::size_t>(out.a.kind)][static_cast<std::size_t>(out.b.kind)](work);
+  name_points(out);
 }
 
 void contact_manifold(const Polytope& A, const Polytope& B, const Pose& X_AB, const PairDistance& closest,

@@ -14,10 +14,10 @@
 ///   3. Cut off where the gap exceeds the tolerance, and as a feature leans toward the limit of 1., toward
 ///   its edge and
 ///      its vertex: as the pieces tilt the patch shrinks, it does not jump.
-///   4. Replace the patch by points with the same area, centroid and second moments: a polygon by four on its
-///   principal
-///      axes, c +- sqrt(2 l1) e1 and c +- sqrt(2 l2) e2; an interval by its two Gauss points. Any force that
-///      is linear in the gap, and its torque, is then the exact integral over the patch.
+///   4. Replace the patch by points with the same area, centroid and second moments C: a polygon by four,
+///   c +- u and c +- v, with u and v the columns of the symmetric root of 2 C; an interval by its two Gauss
+///   points. Any force that is linear in the gap, and its torque, is then the exact integral over the patch.
+///   Points keep their identities while the features stay.
 ///
 /// The figures are cut along the contact normal, by the borders of the face they are cut with. Departs from
 /// [Gregory 2000, 4.1] in 3 and 4: the bare corners of the clipped polygon come and go, and their mean with

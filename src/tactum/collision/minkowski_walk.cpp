@@ -38,21 +38,18 @@ ArcEnd follow_arc(const Polytope& P, const Polytope& Q, const Mat3& R_QP, const 
                   int excluded) noexcept {
   const Vec3& m1 = P.faces[arc.end].normal;
   double first = cotangent(arc.m0.dot(m1), arc.t0.dot(m1));
-  const Vec3 o0 = -(R_QP * arc.m0);  // Q's outward direction
-  const Vec3 o_t = -(R_QP * arc.t0);
+  const Vec3 o0 = -rotated(R_QP, arc.m0);  // Q's outward direction
+  const Vec3 o_t = -rotated(R_QP, arc.t0);
   ArcEnd meets;
-  for (int e : Q.edges_at(arc.vertex)) {
-    if (e == excluded) continue;
-    const Polytope::Edge& edge = Q.edges[e];
-    const double sign = edge.tail == arc.vertex ? 1.0 : -1.0;
-    const double below =
-        std::max(0.0, -sign * edge.direction.dot(o0));  // how much lower the far end is, per metre
-    const double rising = sign * edge.direction.dot(o_t);
+  for (const Polytope::Ray& ray : Q.rays_at(arc.vertex)) {
+    if (ray.edge == excluded) continue;
+    const double below = std::max(0.0, -ray.direction.dot(o0));  // how much lower the far end is, per metre
+    const double rising = ray.direction.dot(o_t);
     if (rising <= tolerances::kSameArc && below <= tolerances::kSameArc) continue;  // rolls on the edge
     const double at = cotangent(rising, below);
     if (at <= first) continue;
     first = at;
-    meets.edge = e;
+    meets.edge = ray.edge;
     meets.m = (rising * arc.m0 + below * arc.t0).normalized();
   }
   return meets;
@@ -73,22 +70,27 @@ MinkowskiFacet edge_facet(const PairView& pair, int edge_a, int edge_b, const Ve
   MinkowskiFacet facet;
   facet.a = {Kind::kEdge, edge_a};
   facet.b = {Kind::kEdge, edge_b};
-  facet.n = crossing_normal(ea.direction, pair.X_AB.R * eb.direction, near);
+  facet.n = crossing_normal(ea.direction, rotated(pair.X_AB.R, eb.direction), near);
   facet.height = facet.n.dot(pair.vertex_b(eb.tail) - pair.vertex_a(ea.tail));
   return facet;
 }
 
-/// The facet of N behind a followed arc of A's edge (vertex of B fixed), or of B's edge (vertex of A fixed).
-MinkowskiFacet facet_behind_a(const PairView& pair, const Arc& arc, int excluded) noexcept {
-  const ArcEnd end = follow_arc(pair.A, pair.B, pair.X_BA.R, arc, excluded);
-  if (end.edge < 0) return facet_of_face(pair, true, arc.end, arc.vertex);
-  return edge_facet(pair, arc.edge, end.edge, -end.m);
-}
+/// The arc that leads across a border of a facet: of an edge of A (`on_a`) or of B. The other piece's edge
+/// `excluded` ends where the arc begins and is not met.
+struct Passage {
+  Arc arc;
+  bool on_a = true;
+  int excluded = -1;
+};
 
-MinkowskiFacet facet_behind_b(const PairView& pair, const Arc& arc, int excluded) noexcept {
-  const ArcEnd end = follow_arc(pair.B, pair.A, pair.X_AB.R, arc, excluded);
-  if (end.edge < 0) return facet_of_face(pair, false, arc.end, arc.vertex);
-  return edge_facet(pair, end.edge, arc.edge, pair.X_AB.R * end.m);
+/// The facet of N at the other end.
+MinkowskiFacet facet_behind(const PairView& pair, const Passage& passage) noexcept {
+  const Arc& arc = passage.arc;
+  const ArcEnd end = passage.on_a ? follow_arc(pair.A, pair.B, pair.X_BA.R, arc, passage.excluded)
+                                  : follow_arc(pair.B, pair.A, pair.X_AB.R, arc, passage.excluded);
+  if (end.edge < 0) return facet_of_face(pair, passage.on_a, arc.end, arc.vertex);
+  return passage.on_a ? edge_facet(pair, arc.edge, end.edge, -end.m)
+                      : edge_facet(pair, end.edge, arc.edge, rotated(pair.X_AB.R, end.m));
 }
 
 /// A border of a facet that the target point lies beyond, and by how much.
@@ -102,7 +104,7 @@ struct Crossing {
 /// The worst border among those with less than `cap` outside.
 struct Worst {
   double cap;
-  Crossing crossing;
+  Crossing crossing{-std::numeric_limits<double>::infinity()};
 
   void consider(const Crossing& next) noexcept {
     if (next.outside > crossing.outside && next.outside < cap) crossing = next;
@@ -111,9 +113,9 @@ struct Worst {
 
 Crossing worst_side(const Polytope& P, int face_index, const Vec3& point, double cap) noexcept {
   const Polytope::Face& face = P.faces[face_index];
-  Worst worst{cap, {}};
+  Worst worst{cap};
   for (int slot = face.first; slot < face.first + face.count; ++slot)
-    worst.consider({P.side_normals[slot].dot(point) - P.side_offsets[slot], slot});
+    worst.consider({P.sides[slot].normal.dot(point) - P.sides[slot].offset, slot});
   return worst.crossing;
 }
 
@@ -135,10 +137,11 @@ Crossing place(const PairView& pair, const MinkowskiFacet& facet, const Vec3& ta
   const Polytope::Edge& eb = pair.B.edges[facet.b.index];
   const Vec3& a0 = pair.vertex_a(ea.tail);
   const Vec3 b0 = pair.vertex_b(eb.tail);
-  const Vec3 u_b = pair.X_AB.R * eb.direction;
+  const Vec3 u_b = rotated(pair.X_AB.R, eb.direction);
   double s = 0.0;
   double t = 0.0;
-  if (!nearest_on_lines(a0, ea.direction, b0 - target, u_b, tolerances::kSameArc, s, t)) {
+  const Vec3 r = b0 - target - a0;
+  if (!nearest_on_lines(ea.direction, u_b, r, ea.direction.cross(u_b), tolerances::kSameArc, s, t)) {
     s = std::clamp(ea.direction.dot(b0 - target - a0), 0.0, ea.length);
     t = u_b.dot(a0 + ea.direction * s - b0 + target);
     walk.outside =
@@ -146,7 +149,7 @@ Crossing place(const PairView& pair, const MinkowskiFacet& facet, const Vec3& ta
   }
   walk.p_a = a0 + ea.direction * s;
   walk.p_b = b0 + u_b * t;
-  Worst worst{cap, {}};
+  Worst worst{cap};
   worst.consider({-s, -1, true, true});
   worst.consider({s - ea.length, -1, true, false});
   worst.consider({-t, -1, false, true});
@@ -158,47 +161,67 @@ int other_face(const Polytope::Edge& edge, int face) noexcept {
   return edge.left == face ? edge.right : edge.left;
 }
 
-MinkowskiFacet across_face_border(const PairView& pair, const MinkowskiFacet& facet, int slot) noexcept {
-  const bool on_a = facet.a.kind == Kind::kFace;
-  const Polytope& P = on_a ? pair.A : pair.B;
-  const int face = on_a ? facet.a.index : facet.b.index;
-  Arc arc;
+Passage across_face_border(const PairView& pair, const MinkowskiFacet& facet, int slot) noexcept {
+  Passage passage;
+  passage.on_a = facet.a.kind == Kind::kFace;
+  const Polytope& P = passage.on_a ? pair.A : pair.B;
+  const int face = passage.on_a ? facet.a.index : facet.b.index;
+  Arc& arc = passage.arc;
   arc.edge = P.face_edges[slot];
   arc.end = other_face(P.edges[arc.edge], face);
-  arc.vertex = on_a ? facet.b.index : facet.a.index;
+  arc.vertex = passage.on_a ? facet.b.index : facet.a.index;
   arc.m0 = P.faces[face].normal;
-  arc.t0 = P.side_normals[slot];
-  return on_a ? facet_behind_a(pair, arc, -1) : facet_behind_b(pair, arc, -1);
+  arc.t0 = P.sides[slot].normal;
+  return passage;
 }
 
 /// Beyond an end of one edge, that end is the vertex and the *other* edge's arc is followed, in the direction
 /// in which the end becomes the support.
-MinkowskiFacet across_edge_border(const PairView& pair, const MinkowskiFacet& facet,
-                                  const Crossing& crossing) noexcept {
+Passage across_edge_border(const PairView& pair, const MinkowskiFacet& facet,
+                           const Crossing& crossing) noexcept {
   const Polytope& P = crossing.on_a ? pair.B : pair.A;  // whose arc is followed
   const Polytope& Q = crossing.on_a ? pair.A : pair.B;
   const int followed = crossing.on_a ? facet.b.index : facet.a.index;
   const int ended = crossing.on_a ? facet.a.index : facet.b.index;
   const Polytope::Edge& edge = P.edges[followed];
   const Polytope::Edge& other = Q.edges[ended];
-  Arc arc;
+  Passage passage;
+  passage.on_a = !crossing.on_a;
+  passage.excluded = ended;
+  Arc& arc = passage.arc;
   arc.edge = followed;
   arc.vertex = crossing.at_tail ? other.tail : other.head;
-  arc.m0 = crossing.on_a ? Vec3(pair.X_BA.R * facet.n) : Vec3(-facet.n);
+  arc.m0 = crossing.on_a ? Vec3(rotated(pair.X_BA.R, facet.n)) : Vec3(-facet.n);
   arc.t0 = edge.direction.cross(arc.m0);
   // Q's outward direction turns by -t0; the end must rise over the other end.
-  const Vec3 u_P = (crossing.on_a ? pair.X_BA.R : pair.X_AB.R) * other.direction;
+  const Vec3 u_P = rotated(crossing.on_a ? pair.X_BA.R : pair.X_AB.R, other.direction);
   const double toward_head = -arc.t0.dot(u_P);
   const bool backward = (toward_head > 0.0) == crossing.at_tail;
   if (backward) arc.t0 = -arc.t0;
   arc.end =
       backward ? edge.left : edge.right;  // about +direction an arc turns from the left face to the right
-  return crossing.on_a ? facet_behind_b(pair, arc, ended) : facet_behind_a(pair, arc, ended);
+  return passage;
 }
 
-MinkowskiFacet across(const PairView& pair, const MinkowskiFacet& facet, const Crossing& crossing) noexcept {
+Passage across(const PairView& pair, const MinkowskiFacet& facet, const Crossing& crossing) noexcept {
   const bool edges = facet.a.kind == Kind::kEdge && facet.b.kind == Kind::kEdge;
   return edges ? across_edge_border(pair, facet, crossing) : across_face_border(pair, facet, crossing.slot);
+}
+
+/// Can the plane behind the border be nearer although the foot is inside? Seen along the common ridge, a foot
+/// at depth d and `inside` from a ridge where the planes turn by alpha is at depth  inside sin alpha + d cos
+/// alpha  under the other: less than d when  inside < d tan(alpha / 2). The arc's end bounds alpha.
+bool maybe_lower_behind(const PairView& pair, const MinkowskiFacet& facet, const Passage& passage,
+                        double inside, double d) noexcept {
+  const Polytope& P = passage.on_a ? pair.A : pair.B;
+  const double cosine = passage.arc.m0.dot(P.faces[passage.arc.end].normal);
+  double inside_sq = inside * inside;
+  if (facet.a.kind == Kind::kEdge && facet.b.kind == Kind::kEdge) {  // told along an edge, not square to it
+    const double along = pair.A.edges[facet.a.index].direction.dot(
+        rotated(pair.X_AB.R, pair.B.edges[facet.b.index].direction));
+    inside_sq *= 1.0 - along * along;
+  }
+  return inside_sq * (1.0 + cosine) < d * d * (1.0 - cosine);
 }
 
 /// What the walk goes down on: the height of a facet's plane, or the length of the ray to it.
@@ -213,13 +236,47 @@ struct Measure {
   Vec3 target(const MinkowskiFacet& f) const noexcept { return (ray ? *ray : f.n) * (*this)(f); }
 };
 
-MinkowskiWalk walk(const PairView& pair, const MinkowskiFacet& start, const Vec3* ray) noexcept {
+/// Across the worst border, or where rounding has bent the facets the next worst, whose plane is not farther.
+bool moved_outside(const PairView& pair, const Measure& measure, Crossing crossing, double limit,
+                   double slack, MinkowskiWalk& here) noexcept {
+  const Vec3 target = measure.target(here.facet);
+  while (crossing.outside > slack) {
+    const MinkowskiFacet next = facet_behind(pair, across(pair, here.facet, crossing));
+    if (measure(next) <= limit) {
+      here.facet = next;
+      return true;
+    }
+    crossing = place(pair, here.facet, target, crossing.outside, here);
+  }
+  return false;
+}
+
+/// The foot is inside; the nearest borders may still have a lower facet behind them: two local minima side by
+/// side, of which the walk takes the better.
+bool moved_inside(const PairView& pair, Crossing crossing, double limit, MinkowskiWalk& here) noexcept {
+  constexpr int kBorders = 2;
+  const double d = here.facet.height;
+  for (int k = 0; k < kBorders && -crossing.outside < d; ++k) {
+    const Passage passage = across(pair, here.facet, crossing);
+    if (maybe_lower_behind(pair, here.facet, passage, -crossing.outside, d)) {
+      const MinkowskiFacet next = facet_behind(pair, passage);
+      if (next.height < limit) {
+        here.facet = next;
+        return true;
+      }
+    }
+    if (k + 1 < kBorders) crossing = place(pair, here.facet, here.facet.n * d, crossing.outside, here);
+  }
+  return false;
+}
+
+MinkowskiWalk walk(const PairView& pair, const MinkowskiFacet& start, const Vec3* ray, int most) noexcept {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   constexpr int kLevelSteps = 16;  // between facets of one plane, while nothing gets better
   const Measure measure{ray};
   const double slack = tolerances::kVoronoiSlack * pair.scale;
   const double level = tolerances::kCoplanar * pair.scale;  // facets of one plane, by rounding this far apart
-  const int bound = 32 + static_cast<int>(pair.A.edges.size() + pair.B.edges.size()) / 2;
+  const int bound = std::min(most, 32 + static_cast<int>(pair.A.edges.size() + pair.B.edges.size()) / 2);
   MinkowskiWalk best;
   best.facet = start;
   best.outside = kInfinity;
@@ -227,29 +284,35 @@ MinkowskiWalk walk(const PairView& pair, const MinkowskiFacet& start, const Vec3
   int improved = 0;
   for (int step = 1; step <= bound && step - improved <= kLevelSteps; ++step) {
     here.outside = 0.0;
-    const Vec3 target = measure.target(here.facet);
-    Crossing crossing = place(pair, here.facet, target, kInfinity, here);
-    here.outside = std::max(here.outside, crossing.outside);
     const double length = measure(here.facet);
+    const Crossing crossing = place(pair, here.facet, measure.target(here.facet), kInfinity, here);
+    here.outside = std::max(here.outside, crossing.outside);
     const double best_length = measure(best.facet);
     if (length < best_length - level || (length < best_length + level && here.outside < best.outside)) {
       best = here;
       improved = step;
     }
     best.steps = step;
-    // Across the worst border, or where rounding has bent the facets the next worst, whose plane is not
-    // farther.
-    bool moved = false;
-    while (!moved && crossing.outside > slack) {
-      const MinkowskiFacet next = across(pair, here.facet, crossing);
-      moved = measure(next) <= measure(best.facet) + level;
-      if (moved) {
-        here.facet = next;
-      } else {
-        crossing = place(pair, here.facet, target, crossing.outside, here);
-      }
-    }
+    const bool inside = here.outside <= slack;
+    const bool moved = inside
+                           ? !ray && moved_inside(pair, crossing, length - level, here)
+                           : moved_outside(pair, measure, crossing, measure(best.facet) + level, slack, here);
     if (!moved) break;
+  }
+  return best;
+}
+
+/// The face at `vertex` whose normal is most along `d`, and how much.
+int aligned_face(const Polytope& P, int vertex, const Vec3& d, double& along) noexcept {
+  int best = -1;
+  along = -std::numeric_limits<double>::infinity();
+  for (const Polytope::Ray& ray : P.rays_at(vertex)) {
+    const Polytope::Edge& edge = P.edges[ray.edge];
+    const int face = edge.tail == vertex ? edge.left : edge.right;  // each face once
+    if (const double cosine = P.faces[face].normal.dot(d); cosine > along) {
+      along = cosine;
+      best = face;
+    }
   }
   return best;
 }
@@ -260,14 +323,14 @@ MinkowskiFacet facet_of_face(const PairView& pair, bool on_a, int face, int vert
   MinkowskiFacet facet;
   if (on_a) {
     const Polytope::Face& f = pair.A.faces[face];
-    vertex = support_vertex(pair.B, -(pair.X_BA.R * f.normal), vertex);
+    vertex = support_vertex(pair.B, -(rotated(pair.X_BA.R, f.normal)), vertex);
     facet.a = {Kind::kFace, face};
     facet.b = {Kind::kVertex, vertex};
     facet.n = -f.normal;
     facet.height = f.offset - f.normal.dot(pair.vertex_b(vertex));
   } else {
     const Polytope::Face& f = pair.B.faces[face];
-    facet.n = pair.X_AB.R * f.normal;
+    facet.n = rotated(pair.X_AB.R, f.normal);
     vertex = support_vertex(pair.A, -facet.n, vertex);
     facet.a = {Kind::kVertex, vertex};
     facet.b = {Kind::kFace, face};
@@ -279,39 +342,43 @@ MinkowskiFacet facet_of_face(const PairView& pair, bool on_a, int face, int vert
 std::optional<MinkowskiFacet> facet_of_edges(const PairView& pair, int edge_a, int edge_b) noexcept {
   const Polytope::Edge& ea = pair.A.edges[edge_a];
   const Polytope::Edge& eb = pair.B.edges[edge_b];
-  const Vec3 c = ea.direction.cross(pair.X_AB.R * eb.direction);
-  const double a_left = pair.A.side_normals[ea.left_slot].dot(c);
-  const double a_right = pair.A.side_normals[ea.right_slot].dot(c);
+  const Vec3 c = ea.direction.cross(rotated(pair.X_AB.R, eb.direction));
+  const double a_left = pair.A.sides[ea.left_slot].normal.dot(c);
+  const double a_right = pair.A.sides[ea.right_slot].normal.dot(c);
   if (a_left * a_right < 0.0) return std::nullopt;
-  const Vec3 c_B = pair.X_BA.R * c;
-  const double b_left = pair.B.side_normals[eb.left_slot].dot(c_B);
-  const double b_right = pair.B.side_normals[eb.right_slot].dot(c_B);
+  const Vec3 c_B = rotated(pair.X_BA.R, c);
+  const double b_left = pair.B.sides[eb.left_slot].normal.dot(c_B);
+  const double b_right = pair.B.sides[eb.right_slot].normal.dot(c_B);
   // The normal cone of an edge is outside both its side planes; A's and B's outward directions are opposite.
   if (b_left * b_right < 0.0 || (a_left + a_right) * (b_left + b_right) >= 0.0) return std::nullopt;
   if (c.squaredNorm() < tolerances::kParallelSine * tolerances::kParallelSine) return std::nullopt;
   return edge_facet(pair, edge_a, edge_b, (b_left + b_right > 0.0 ? c : Vec3(-c)).normalized());
 }
 
-MinkowskiFacet facet_near(const PairView& pair, const Vec3& n) noexcept {
-  const Vec3 n_B = pair.X_BA.R * n;
-  const int a = support_vertex(pair.A, -n);
-  const int b = support_vertex(pair.B, n_B);
-  const auto aligned_face = [](const Polytope& P, int vertex, const Vec3& d) {
-    int best = -1;
-    double most = -std::numeric_limits<double>::infinity();
-    for (int e : P.edges_at(vertex))
-      for (int f : {P.edges[e].left, P.edges[e].right})
-        if (const double cosine = P.faces[f].normal.dot(d); cosine > most) {
-          most = cosine;
-          best = f;
-        }
-    return best;
-  };
-  const int face_a = aligned_face(pair.A, a, -n);
-  const int face_b = aligned_face(pair.B, b, n_B);
-  const double along_a = -pair.A.faces[face_a].normal.dot(n);
-  const double along_b = pair.B.faces[face_b].normal.dot(n_B);
+MinkowskiFacet facet_near(const PairView& pair, const Vec3& n, int from_a, int from_b) noexcept {
+  const Vec3 n_B = rotated(pair.X_BA.R, n);
+  const int a = support_vertex(pair.A, -n, from_a);
+  const int b = support_vertex(pair.B, n_B, from_b);
+  double along_a = 0.0;
+  double along_b = 0.0;
+  const int face_a = aligned_face(pair.A, a, -n, along_a);
+  const int face_b = aligned_face(pair.B, b, n_B, along_b);
   return along_a >= along_b ? facet_of_face(pair, true, face_a, b) : facet_of_face(pair, false, face_b, a);
+}
+
+MinkowskiFacet facet_near(const PairView& pair, const Vec3& n) noexcept {
+  return facet_near(pair, n, table_vertex(pair.A, -n), table_vertex(pair.B, rotated(pair.X_BA.R, n)));
+}
+
+bool is_real(const PairView& pair, const MinkowskiFacet& facet) noexcept {
+  if (facet.a.kind != Kind::kEdge || facet.b.kind != Kind::kEdge) return true;
+  const Polytope::Edge& ea = pair.A.edges[facet.a.index];
+  const Polytope::Edge& eb = pair.B.edges[facet.b.index];
+  const Vec3 n_B = rotated(pair.X_BA.R, facet.n);
+  return pair.A.sides[ea.left_slot].normal.dot(facet.n) <= 0.0 &&
+         pair.A.sides[ea.right_slot].normal.dot(facet.n) <= 0.0 &&
+         pair.B.sides[eb.left_slot].normal.dot(n_B) >= 0.0 &&
+         pair.B.sides[eb.right_slot].normal.dot(n_B) >= 0.0;
 }
 
 MinkowskiWalk stand_on(const PairView& pair, const MinkowskiFacet& facet) noexcept {
@@ -324,13 +391,13 @@ MinkowskiWalk stand_on(const PairView& pair, const MinkowskiFacet& facet) noexce
   return here;
 }
 
-MinkowskiWalk walk_to_foot(const PairView& pair, const MinkowskiFacet& start) noexcept {
-  return walk(pair, start, nullptr);
+MinkowskiWalk walk_to_foot(const PairView& pair, const MinkowskiFacet& start, int most_steps) noexcept {
+  return walk(pair, start, nullptr, most_steps);
 }
 
 MinkowskiWalk walk_along_ray(const PairView& pair, const MinkowskiFacet& start,
                              const Vec3& direction) noexcept {
-  return walk(pair, start, &direction);
+  return walk(pair, start, &direction, kAllSteps);
 }
 
 }  // namespace tactum

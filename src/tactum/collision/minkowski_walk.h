@@ -16,6 +16,7 @@
 /// the pseudo-internal Voronoi regions of [Ponamgi 1997]; the facets are found on the fly,
 /// not stored.) Cost: about 60 ns a facet.
 
+#include <limits>
 #include <optional>
 
 #include "tactum/collision/pair_view.h"
@@ -29,6 +30,11 @@ struct MinkowskiFacet {
   double height = 0.0;    ///< n . (b - a): what A must move along n to be clear [m]
 };
 
+/// Do the features of the facet lie in the support planes across its normal? Sure for a facet of a face,
+/// whose vertex was climbed to. Edges are local peaks where the normal is in both their cones, and a convex
+/// polytope has no other peaks than its supports.
+bool is_real(const PairView& pair, const MinkowskiFacet& facet) noexcept;
+
 /// Where a walk ended.
 struct MinkowskiWalk {
   MinkowskiFacet facet;
@@ -36,6 +42,11 @@ struct MinkowskiWalk {
   Vec3 p_b = Vec3::Zero();
   double outside = 0.0;  ///< how far the witness points lie outside their features [m]
   int steps = 0;
+
+  /// At a local minimum of the depth, proved: the facet is real and holds its foot.
+  bool arrived(const PairView& pair) const noexcept {
+    return outside <= tolerances::kCertificate * pair.size && is_real(pair, facet);
+  }
 };
 
 /// The facet of a face of A (`on_a`) or of B, with the other piece's support vertex climbed to from `vertex`.
@@ -47,11 +58,19 @@ std::optional<MinkowskiFacet> facet_of_edges(const PairView& pair, int edge_a, i
 /// A facet near the outward direction `n` (any length): the best aligned face at either support vertex.
 MinkowskiFacet facet_near(const PairView& pair, const Vec3& n) noexcept;
 
+/// The same, climbing from vertices that are near.
+MinkowskiFacet facet_near(const PairView& pair, const Vec3& n, int from_a, int from_b) noexcept;
+
 /// The witness points on a facet itself, without walking.
 MinkowskiWalk stand_on(const PairView& pair, const MinkowskiFacet& facet) noexcept;
 
-/// Walks from `start` to the facet that holds its own foot: a local minimum of the depth.
-MinkowskiWalk walk_to_foot(const PairView& pair, const MinkowskiFacet& start) noexcept;
+/// No bound but the walk's own.
+inline constexpr int kAllSteps = std::numeric_limits<int>::max();
+
+/// Walks from `start` to the facet that holds its own foot: a local minimum of the depth, and not above those
+/// behind its nearest borders. After `most_steps` facets it stops at the lowest so far; its `outside` tells.
+MinkowskiWalk walk_to_foot(const PairView& pair, const MinkowskiFacet& start,
+                           int most_steps = kAllSteps) noexcept;
 
 /// Walks from `start` to the facet where the ray along unit `direction` leaves N; start.n . direction > 0.
 MinkowskiWalk walk_along_ray(const PairView& pair, const MinkowskiFacet& start,

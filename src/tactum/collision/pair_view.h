@@ -1,6 +1,6 @@
 #pragma once
 /// Two convex pieces and where they are, as every query of this folder looks at them: B's pose in A, its
-/// inverse, and the lengths that tolerances are measured by. Lives for one query.
+/// inverse, and the lengths that tolerances are measured by. Both live for one query.
 ///
 ///   separation(n) = min_A n.a - max_B n.b     the gap between the two support planes across n (unit, from B
 ///   to A):
@@ -14,21 +14,28 @@
 
 namespace tactum {
 
-struct PairView {
+/// What a walk needs.
+struct PiecePair {
   const Polytope& A;
   const Polytope& B;
   const Pose& X_AB;
-  Pose X_BA;
   double size;   ///< of the larger piece: what certificates are relative to [m]
   double scale;  ///< size of the numbers that are added up: what rounding is relative to [m]
 
-  PairView(const Polytope& a, const Polytope& b, const Pose& x) noexcept
+  PiecePair(const Polytope& a, const Polytope& b, const Pose& x) noexcept
       : A(a),
         B(b),
         X_AB(x),
-        X_BA(x.inverse()),
         size(std::max(a.size, b.size)),
-        scale(size + x.p.lpNorm<1>() + a.center.lpNorm<1>() + b.center.lpNorm<1>()) {}
+        scale(x.p.lpNorm<1>() + a.magnitude + b.magnitude) {}
+};
+
+/// What the longer queries need: the inverse as well.
+struct PairView : PiecePair {
+  Pose X_BA;
+
+  PairView(const Polytope& a, const Polytope& b, const Pose& x) noexcept : PairView(PiecePair(a, b, x)) {}
+  explicit PairView(const PiecePair& pair) noexcept : PiecePair(pair), X_BA(pair.X_AB.inverse()) {}
 
   const Vec3& vertex_a(int v) const noexcept { return A.vertices[v]; }
   /// Vertex of B, in A.
@@ -55,12 +62,22 @@ inline int vertex_of(const Polytope& P, const Feature& f) noexcept {
   return 0;
 }
 
+/// Some face at a feature.
+inline int face_of(const Polytope& P, const Feature& f) noexcept {
+  switch (f.kind) {
+    case FeatureKind::kVertex:
+      return P.edges[P.rays_at(f.index)[0].edge].left;
+    case FeatureKind::kEdge:
+      return P.edges[f.index].left;
+    case FeatureKind::kFace:
+      return f.index;
+  }
+  return 0;
+}
+
 /// Does the feature exist on `P`? A cache may come from another pair of pieces.
 inline bool valid_feature(const Polytope& P, const Feature& f) noexcept {
-  const std::size_t count = f.kind == FeatureKind::kVertex ? P.vertices.size()
-                            : f.kind == FeatureKind::kEdge ? P.edges.size()
-                                                           : P.faces.size();
-  return f.index >= 0 && static_cast<std::size_t>(f.index) < count;
+  return f.index >= 0 && f.index < P.counts[static_cast<std::size_t>(f.kind)];
 }
 
 }  // namespace tactum

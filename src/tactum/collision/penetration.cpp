@@ -70,16 +70,22 @@ bool witness_on_plane(const PairView& pair, int a, int b, PairDistance& result) 
 /// The answer a walk stands for, its depth by true supports.
 PairDistance answer(const PairView& pair, const MinkowskiWalk& walk, int steps) noexcept {
   PairDistance result;
-  int a = vertex_of(pair.A, walk.facet.a);
-  int b = vertex_of(pair.B, walk.facet.b);
   result.normal = walk.facet.n;
-  result.distance = pair.separation(walk.facet.n, a, b);
   result.a = walk.facet.a;
   result.b = walk.facet.b;
   result.p_b = walk.p_b;
-  result.p_a = walk.p_b + walk.facet.n * result.distance;
   result.steps = steps;
   const double tolerance = tolerances::kCertificate * pair.size;
+  if (walk.arrived(pair)) {
+    result.distance = -walk.facet.height;
+    result.p_a = walk.p_b + walk.facet.n * result.distance;
+    result.stop = Stop::kCertified;
+    return result;
+  }
+  int a = vertex_of(pair.A, walk.facet.a);
+  int b = vertex_of(pair.B, walk.facet.b);
+  result.distance = pair.separation(walk.facet.n, a, b);
+  result.p_a = walk.p_b + walk.facet.n * result.distance;
   const bool real = std::abs(result.distance + walk.facet.height) <= tolerance;
   result.stop = Stop::kBounded;
   if (real && walk.outside <= tolerance) result.stop = Stop::kCertified;
@@ -118,15 +124,14 @@ class Shallowest {
   int steps_ = 0;
 };
 
-/// The facet of the cached features, if the pair of kinds makes one and (for edges) their arcs still cross.
-std::optional<MinkowskiFacet> cached_facet(const PairView& pair, const PairCache& cache) noexcept {
-  if (!valid_feature(pair.A, cache.a) || !valid_feature(pair.B, cache.b)) return std::nullopt;
-  if (cache.a.kind == Kind::kFace)
-    return facet_of_face(pair, true, cache.a.index, vertex_of(pair.B, cache.b));
-  if (cache.b.kind == Kind::kFace)
-    return facet_of_face(pair, false, cache.b.index, vertex_of(pair.A, cache.a));
-  if (cache.a.kind == Kind::kEdge && cache.b.kind == Kind::kEdge)
-    return facet_of_edges(pair, cache.a.index, cache.b.index);
+/// The facet of features of the last frame, if their kinds make one and (for edges) their arcs still cross.
+std::optional<MinkowskiFacet> cached_facet(const PairView& pair, const FeaturePair& last) noexcept {
+  const Feature& a = last.a;
+  const Feature& b = last.b;
+  if (!valid_feature(pair.A, a) || !valid_feature(pair.B, b)) return std::nullopt;
+  if (a.kind == Kind::kFace) return facet_of_face(pair, true, a.index, vertex_of(pair.B, b));
+  if (b.kind == Kind::kFace) return facet_of_face(pair, false, b.index, vertex_of(pair.A, a));
+  if (a.kind == Kind::kEdge && b.kind == Kind::kEdge) return facet_of_edges(pair, a.index, b.index);
   return std::nullopt;
 }
 
@@ -177,17 +182,117 @@ void remember(const PairDistance& result, PairCache& cache) noexcept {
   cache.normal_A = result.normal;
 }
 
+/// The warm query: the last frame's minimum followed, and beside it a search for a better one that costs a
+/// few facets a frame. Two walks wait in the cache: the rival, the best other minimum known, and the scout,
+/// on its way from a direction that turns from one to the next.
+class Tracker {
+ public:
+  Tracker(const PairView& pair, PairCache& cache) noexcept : pair_(pair), cache_(cache) {}
+
+  PairDistance run() noexcept {
+    const auto facet = cached_facet(pair_, {cache_.a, cache_.b});
+    current_ = walk_to_foot(pair_, facet ? *facet : facet_near(pair_, cache_.normal_A));
+    steps_ = current_.steps;
+    const std::uint32_t phase = cache_.turn++ % kRound;
+    if (phase == 0) scout();
+    watch(phase == kRound / 2);
+    return answer(pair_, current_, steps_);
+  }
+
+ private:
+  static constexpr std::uint32_t kRound = 4;  ///< frames from one look around to the next
+  static constexpr int kSteps = 4;            ///< facets walked beside the tracked minimum in a frame
+
+  static bool same(const MinkowskiFacet& f, const MinkowskiFacet& g) noexcept {
+    return f.a == g.a && f.b == g.b;
+  }
+  double height(const FeaturePair& features) const noexcept {
+    const auto facet = cached_facet(pair_, features);
+    return facet ? facet->height : std::numeric_limits<double>::infinity();
+  }
+
+  /// The scout sets out, or walks on and arrives, or waits for its next turn.
+  void scout() noexcept {
+    if (cache_.scout.empty()) {
+      const MinkowskiFacet start = seed();
+      cache_.scout = {start.a, start.b};
+      return;
+    }
+    const MinkowskiWalk walk = go_on(cache_.scout);
+    if (!walk.arrived(pair_)) {
+      cache_.scout = {walk.facet.a, walk.facet.b};
+      return;
+    }
+    cache_.scout = {};
+    if (same(walk.facet, current_.facet)) return;
+    if (compare(walk)) return;
+    if (walk.facet.height < height(cache_.rival)) cache_.rival = {walk.facet.a, walk.facet.b};
+  }
+
+  /// The rival is only looked at while it is above, but walks on when `due`.
+  void watch(bool due) noexcept {
+    if (cache_.rival.empty() || (!due && !(height(cache_.rival) < current_.facet.height))) return;
+    const MinkowskiWalk walk = go_on(cache_.rival);
+    if (walk.arrived(pair_) && compare(walk)) return;
+    cache_.rival = same(walk.facet, current_.facet) ? FeaturePair{} : FeaturePair{walk.facet.a, walk.facet.b};
+  }
+
+  /// Takes a better minimum; the other becomes the rival.
+  bool compare(const MinkowskiWalk& walk) noexcept {
+    if (!(walk.facet.height < current_.facet.height - tolerances::kCoplanar * pair_.scale)) return false;
+    cache_.rival = {current_.facet.a, current_.facet.b};
+    current_ = walk;
+    return true;
+  }
+
+  MinkowskiWalk go_on(const FeaturePair& from) noexcept {
+    const MinkowskiWalk walk = walk_to_foot(pair_, facet_again(from), kSteps);
+    steps_ += walk.steps;
+    return walk;
+  }
+
+  MinkowskiFacet facet_again(const FeaturePair& features) const noexcept {
+    if (const auto facet = cached_facet(pair_, features)) return *facet;
+    if (!valid_feature(pair_.A, features.a) || !valid_feature(pair_.B, features.b)) return current_.facet;
+    // Edges that no longer cross: a face beside.
+    return facet_of_face(pair_, true, face_of(pair_.A, features.a), vertex_of(pair_.B, features.b));
+  }
+
+  /// In turn from the line of centres and from about the current normal: by the corners of an icosahedron,
+  /// nearly square to it or not, nearer and farther.
+  MinkowskiFacet seed() const noexcept {
+    const std::uint32_t round = cache_.turn / kRound;
+    if (round % 2 == 0) return facet_near(pair_, line_of_centers(pair_));
+    constexpr double kShort = 0.5257311121191336;  // corners (0, +-short, +-long) and their rotations
+    constexpr double kLong = 0.85065080835204;
+    const auto corner = static_cast<int>(round / 2 * 7 % 12);
+    Vec3 offset;
+    offset[corner % 3] = 0.0;
+    offset[(corner + 1) % 3] = (corner / 3) % 2 ? kShort : -kShort;
+    offset[(corner + 2) % 3] = corner / 6 ? kLong : -kLong;
+    constexpr std::array<double, 3> kReach = {0.15, 0.6, 1.2};
+    const double reach = kReach[round / 2 % kReach.size()];
+    return facet_near(pair_, current_.facet.n + offset * reach, vertex_of(pair_.A, current_.facet.a),
+                      vertex_of(pair_.B, current_.facet.b));
+  }
+
+  const PairView& pair_;
+  PairCache& cache_;
+  MinkowskiWalk current_;
+  int steps_ = 0;
+};
+
 }  // namespace
 
 PairDistance penetration_depth(const Polytope& A, const Polytope& B, const Pose& X_AB,
                                PairCache& cache) noexcept {
   const PairView pair(A, B, X_AB);
-  Shallowest shallowest(pair);
   if (!cache.normal_A.isZero()) {
-    const auto facet = cached_facet(pair, cache);
-    shallowest.from(facet ? *facet : facet_near(pair, cache.normal_A));
-    shallowest.from(facet_near(pair, line_of_centers(pair)));
+    const PairDistance result = Tracker(pair, cache).run();
+    remember(result, cache);
+    if (result.certified()) return result;
   }
+  Shallowest shallowest(pair);
   if (!shallowest.any() || !shallowest.best().certified()) {
     if (small_pair(pair)) {
       from_every_facet(pair, shallowest, [](const Vec3&) { return true; });
@@ -219,7 +324,7 @@ PairDistance penetration_one_sided(const Polytope& A, const Polytope& B, const P
     const MinkowskiWalk walk = walk_to_foot(pair, seed);
     if (allowed(walk.facet.n)) shallowest.take(walk);
   };
-  if (const auto facet = cached_facet(pair, cache)) take(*facet);
+  if (const auto facet = cached_facet(pair, {cache.a, cache.b})) take(*facet);
   if (small_pair(pair)) {
     from_every_facet(pair, shallowest, allowed);
   } else {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
 #include "tactum/base/tolerances.h"
 
@@ -12,42 +13,86 @@ namespace {
 
 double cross(const Vec2& a, const Vec2& b) noexcept { return a.x() * b.y() - a.y() * b.x(); }
 
-/// A polygon as a ring of corners, for cutting pieces off without moving the rest. A corner within `snap_` of
-/// a cut lies on it: so no two corners get so near each other that rounding turns the side between them.
+/// A side of the window as a cut: heights over it are in metres times the side's length, `scale` to within a
+/// factor of 1.5, so that no root is drawn.
+struct Cut {
+  Vec2 outward;
+  double offset;
+  double scale;
+
+  Cut(const Vec2& from, const Vec2& to) noexcept
+      : outward(to.y() - from.y(), from.x() - to.x()),
+        offset(outward.x() * from.x() + outward.y() * from.y()),
+        scale(std::abs(outward.x()) + std::abs(outward.y())) {}
+  double height(const Vec2& x) const noexcept { return outward.x() * x.x() + outward.y() * x.y() - offset; }
+};
+
+/// A corner within this share of the polygon's extent of a cut lies on it: so no two corners get so near each
+/// other that rounding turns the side between them.
+constexpr double kSnap = tolerances::kCoplanar;
+
+double extent(double most, const Vec2& x) noexcept {
+  return std::max(most, std::abs(x.x()) + std::abs(x.y()));
+}
+
+/// A polygon as a ring of corners, for cutting pieces off without moving the rest.
 class Ring {
  public:
-  explicit Ring(const PatchPolygon& polygon) noexcept : count_(static_cast<int>(polygon.size())) {
-    for (int i = 0; i < count_; ++i)
-      corners_[Index(i)] = {polygon[Index(i)], i + 1 == count_ ? 0 : i + 1, i == 0 ? count_ - 1 : i - 1};
-    for (const Vec2& x : polygon) snap_ = std::max(snap_, tolerances::kCoplanar * x.lpNorm<1>());
-  }
-
-  /// The corner farthest along `d`, looked for from the last one on, counter-clockwise.
-  void advance(const Vec2& d) noexcept {
-    for (int turns = 0; turns < count_; ++turns) {
-      const int next = corners_[Index(top_)].next;
-      if (d.dot(at(next)) < d.dot(at(top_))) return;
-      top_ = next;
+  /// `first` is the first side that will cut: the farthest corner for it is found on the way.
+  Ring(const PatchPolygon& polygon, const Cut& first) noexcept : count_(static_cast<int>(polygon.size())) {
+    double most = 0.0;
+    double top_height = -std::numeric_limits<double>::infinity();
+    for (int i = 0; i < count_; ++i) {
+      const Vec2& x = polygon[Index(i)];
+      Corner& corner = corners_[Index(i)];
+      corner.x = x;
+      corner.next = i + 1;
+      corner.previous = i - 1;
+      most = extent(most, x);
+      if (const double height = first.height(x); height > top_height) {
+        top_height = height;
+        top_ = i;
+      }
     }
-  }
-  void start(const Vec2& d) noexcept {
-    for (int i = 1; i < count_; ++i)
-      if (d.dot(at(i)) > d.dot(at(top_))) top_ = i;
+    link(count_ - 1, 0);
+    snap_ = kSnap * most;
   }
 
-  /// Cuts off what is beyond normal . x = offset (`normal` unit); false when nothing is left.
-  bool cut(const Vec2& normal, double offset) noexcept {
-    const auto height = [&](int i) { return normal.dot(at(i)) - offset; };
-    if (height(top_) <= snap_) return true;
-    int ahead = corners_[Index(top_)].next;
-    while (height(ahead) > snap_) {
+  /// Cuts off what is beyond; false when nothing is left. The farthest corner is looked for from the last one
+  /// on, counter-clockwise, and every height is taken once.
+  bool cut(const Cut& side) noexcept {
+    const double snap = snap_ * side.scale;
+    double top_height = side.height(at(top_));
+    int ahead = next(top_);
+    double ahead_height = side.height(at(ahead));
+    for (int turns = 0; turns < count_ && ahead_height >= top_height; ++turns) {
+      top_ = ahead;
+      top_height = ahead_height;
+      ahead = next(top_);
+      ahead_height = side.height(at(ahead));
+    }
+    if (top_height <= snap) return true;
+    int outside = top_;
+    double height = top_height;
+    while (ahead_height > snap) {
       if (ahead == top_) return false;
-      ahead = corners_[Index(ahead)].next;
+      outside = ahead;
+      height = ahead_height;
+      ahead = next(ahead);
+      ahead_height = side.height(at(ahead));
     }
-    int behind = corners_[Index(top_)].previous;
-    while (height(behind) > snap_) behind = corners_[Index(behind)].previous;
-    const int first = crossing(behind, corners_[Index(behind)].next, height);
-    const int second = crossing(ahead, corners_[Index(ahead)].previous, height);
+    const int second = crossing(ahead, ahead_height, outside, height, snap);
+    outside = top_;
+    height = top_height;
+    int behind = previous(top_);
+    double behind_height = side.height(at(behind));
+    while (behind_height > snap) {
+      outside = behind;
+      height = behind_height;
+      behind = previous(behind);
+      behind_height = side.height(at(behind));
+    }
+    const int first = crossing(behind, behind_height, outside, height, snap);
     if (first != behind) link(behind, first);
     link(first, second);
     if (second != ahead) link(second, ahead);
@@ -71,15 +116,15 @@ class Ring {
     int next, previous;
   };
   const Vec2& at(int i) const noexcept { return corners_[Index(i)].x; }
+  int next(int i) const noexcept { return corners_[Index(i)].next; }
+  int previous(int i) const noexcept { return corners_[Index(i)].previous; }
   void link(int a, int b) noexcept {
     corners_[Index(a)].next = b;
     corners_[Index(b)].previous = a;
   }
-  template <class Height>
-  int crossing(int inside, int outside, const Height& height) noexcept {
-    const double low = height(inside);
-    if (low >= -snap_) return inside;
-    corners_[Index(count_)].x = at(inside) + (at(outside) - at(inside)) * (low / (low - height(outside)));
+  int crossing(int inside, double low, int outside, double high, double snap) noexcept {
+    if (low >= -snap) return inside;
+    corners_[Index(count_)].x = at(inside) + (at(outside) - at(inside)) * (low / (low - high));
     return count_++;
   }
 
@@ -89,37 +134,89 @@ class Ring {
   double snap_ = 0.0;  // [m]
 };
 
+/// A polygon's coordinates apart, as cutting side by side likes them.
+template <std::size_t N>
+struct Corners {
+  std::array<double, N> x, y;
+  std::size_t count = 0;
+
+  explicit Corners(const PatchPolygon& polygon) noexcept : count(polygon.size()) {
+    for (std::size_t i = 0; i < count; ++i) {
+      x[i] = polygon[i].x();
+      y[i] = polygon[i].y();
+    }
+  }
+  void copy_to(PatchPolygon& polygon) const noexcept {
+    polygon.clear();
+    for (std::size_t i = 0; i < count; ++i) polygon.push_back({x[i], y[i]});
+  }
+
+  /// Keeps what is below normal . x = offset [Sutherland and Hodgman 1974]. Where no corner is more than
+  /// `snap` above, all stay: false.
+  bool cut(double nx, double ny, double offset, double snap) noexcept {
+    std::array<double, N> height;
+    bool any = false;
+    for (std::size_t i = 0; i < count; ++i) {
+      height[i] = nx * x[i] + ny * y[i] - offset;
+      any |= height[i] > snap;
+    }
+    if (!any) return false;
+    const Corners whole = *this;
+    const std::size_t n = count;
+    count = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      const std::size_t next = i + 1 == n ? 0 : i + 1;
+      if (height[i] <= snap) add(whole.x[i], whole.y[i]);
+      if ((height[i] < -snap && height[next] > snap) || (height[i] > snap && height[next] < -snap)) {
+        const double s = height[i] / (height[i] - height[next]);
+        add(whole.x[i] + (whole.x[next] - whole.x[i]) * s, whole.y[i] + (whole.y[next] - whole.y[i]) * s);
+      }
+    }
+    return true;
+  }
+
+ private:
+  Corners(const Corners& other) noexcept : count(other.count) {
+    std::copy_n(other.x.begin(), count, x.begin());
+    std::copy_n(other.y.begin(), count, y.begin());
+  }
+  void add(double px, double py) noexcept {
+    if (count == N) return;
+    x[count] = px;
+    y[count++] = py;
+  }
+};
+
+Cut side_of(const PatchPolygon& window, std::size_t i) noexcept {
+  return {window[i], window[i + 1 == window.size() ? 0 : i + 1]};
+}
+
 }  // namespace
 
 void clip_polygon(PatchPolygon& polygon, const Vec2& normal, double offset) noexcept {
-  bool cut = false;
-  for (const Vec2& x : polygon) cut |= normal.dot(x) > offset;
-  if (!cut) return;
-  const PatchPolygon whole = polygon;
-  polygon.clear();
-  const std::size_t n = whole.size();
-  for (std::size_t i = 0; i < n; ++i) {
-    const Vec2& a = whole[i];
-    const Vec2& b = whole[i + 1 == n ? 0 : i + 1];
-    const double ha = normal.dot(a) - offset;
-    const double hb = normal.dot(b) - offset;
-    if (ha <= 0.0) polygon.push_back(a);
-    if ((ha < 0.0 && hb > 0.0) || (ha > 0.0 && hb < 0.0)) polygon.push_back(a + (b - a) * (ha / (ha - hb)));
-  }
+  Corners<PatchPolygon::capacity()> corners(polygon);
+  if (corners.cut(normal.x(), normal.y(), offset, 0.0)) corners.copy_to(polygon);
 }
 
 void clip_polygon(PatchPolygon& polygon, const PatchPolygon& window) noexcept {
+  constexpr std::size_t kFew = 6;  // corners of both up to which going around costs more than it saves
   if (polygon.empty()) return;
-  Ring ring(polygon);
   const std::size_t n = window.size();
-  for (std::size_t i = 0; i < n; ++i) {
-    const Vec2& a = window[i];
-    const Vec2 side = window[i + 1 == n ? 0 : i + 1] - a;
-    const Vec2 outward = Vec2(side.y(), -side.x()).normalized();
-    if (i == 0) ring.start(outward);
-    ring.advance(outward);
-    if (!ring.cut(outward, outward.dot(a))) return polygon.clear();
+  if (n <= kFew && polygon.size() <= kFew) {
+    Corners<2 * kFew> corners(polygon);
+    double most = 0.0;
+    for (const Vec2& x : polygon) most = extent(most, x);
+    bool any = false;
+    for (std::size_t i = 0; i < n; ++i) {
+      const Cut cut = side_of(window, i);
+      any |= corners.cut(cut.outward.x(), cut.outward.y(), cut.offset, kSnap * most * cut.scale);
+    }
+    if (any) corners.copy_to(polygon);
+    return;
   }
+  Ring ring(polygon, side_of(window, 0));
+  for (std::size_t i = 0; i < n; ++i)
+    if (!ring.cut(side_of(window, i))) return polygon.clear();
   ring.copy_to(polygon);
 }
 
@@ -132,31 +229,50 @@ double twice_area(const PatchPolygon& polygon) noexcept {
 
 PatchMoments moments_of(const PatchPolygon& polygon) noexcept {
   PatchMoments m;
-  Vec2 first = Vec2::Zero();  // sums over the triangles of a fan at corner 0, about corner 0
-  Eigen::Matrix2d second = Eigen::Matrix2d::Zero();
+  const std::size_t n = polygon.size();
+  if (n < 3) return m;
+  // Sums over the triangles of a fan at corner 0, about corner 0.
+  const Vec2 origin = polygon[0];
   double twice = 0.0;
-  for (std::size_t i = 2; i < polygon.size(); ++i) {
-    const Vec2 a = polygon[i - 1] - polygon[0];
-    const Vec2 b = polygon[i] - polygon[0];
-    const double weight = cross(a, b);
-    const Vec2 sum = a + b;
+  double fx = 0.0;
+  double fy = 0.0;
+  double xx = 0.0;
+  double xy = 0.0;
+  double yy = 0.0;
+  double ax = polygon[1].x() - origin.x();
+  double ay = polygon[1].y() - origin.y();
+  for (std::size_t i = 2; i < n; ++i) {
+    const double bx = polygon[i].x() - origin.x();
+    const double by = polygon[i].y() - origin.y();
+    const double weight = ax * by - ay * bx;
+    const double sx = ax + bx;
+    const double sy = ay + by;
     twice += weight;
-    first += weight / 3.0 * sum;
-    second += weight / 12.0 * (a * a.transpose() + b * b.transpose() + sum * sum.transpose());
+    fx += weight * sx;
+    fy += weight * sy;
+    xx += weight * (ax * ax + bx * bx + sx * sx);
+    xy += weight * (ax * ay + bx * by + sx * sy);
+    yy += weight * (ay * ay + by * by + sy * sy);
+    ax = bx;
+    ay = by;
   }
   m.area = 0.5 * twice;
   if (!(m.area > 0.0)) return m;
-  const Vec2 c = first / twice;
-  const Eigen::Matrix2d central = second / twice - c * c.transpose();
-  m.centroid = polygon[0] + c;
-  const double half_trace = 0.5 * (central(0, 0) + central(1, 1));
-  const double half_difference = 0.5 * (central(0, 0) - central(1, 1));
-  const double spread = std::hypot(half_difference, central(0, 1));
-  const double angle = 0.5 * std::atan2(central(0, 1), half_difference);
-  m.axis = {std::cos(angle), std::sin(angle)};
-  m.major = std::max(0.0, half_trace + spread);
-  m.minor = std::max(0.0, half_trace - spread);
+  const double share = 1.0 / twice;
+  const Vec2 c(fx * share / 3.0, fy * share / 3.0);
+  m.centroid = origin + c;
+  m.xx = std::max(0.0, xx * share / 12.0 - c.x() * c.x());
+  m.xy = xy * share / 12.0 - c.x() * c.y();
+  m.yy = std::max(0.0, yy * share / 12.0 - c.y() * c.y());
   return m;
+}
+
+PatchSpread spread_of(const PatchMoments& m) noexcept {
+  const double root = std::sqrt(std::max(0.0, m.xx * m.yy - m.xy * m.xy));
+  const double trace = m.xx + m.yy + 2.0 * root;
+  if (!(trace > 0.0)) return {};
+  const double scale = std::sqrt(2.0 / trace);
+  return {{(m.xx + root) * scale, m.xy * scale}, {m.xy * scale, (m.yy + root) * scale}};
 }
 
 void PatchInterval::keep_below(double at0, double at1, double limit) noexcept {

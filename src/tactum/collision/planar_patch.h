@@ -16,23 +16,30 @@ using PatchPolygon = StaticVector<Vec2, 2 * kPatchCorners + 4>;
 /// What is left of convex `polygon` where normal . x <= offset [Sutherland and Hodgman 1974].
 void clip_polygon(PatchPolygon& polygon, const Vec2& normal, double offset) noexcept;
 
-/// `polygon` clipped by every side of `window`, both convex and counter-clockwise. The outermost corner of
-/// the polygon moves around with the side of the window, so all sides together cost as much as going around
-/// both once.
+/// `polygon` clipped by every side of `window`, both convex and counter-clockwise. Few corners are cut side
+/// by side. Of many, the outermost corner of the polygon moves around with the side of the window, so all
+/// sides together cost as much as going around both once.
 void clip_polygon(PatchPolygon& polygon, const PatchPolygon& window) noexcept;
 
 /// Twice the signed area: positive when counter-clockwise.
 double twice_area(const PatchPolygon& polygon) noexcept;
 
 struct PatchMoments {
-  double area = 0.0;             ///< [m^2]
-  Vec2 centroid = Vec2::Zero();  ///< [m]
-  Vec2 axis = Vec2::UnitX();     ///< direction of the larger second moment, unit
-  double major = 0.0;            ///< second moment about the centroid over the area, along axis [m^2]
-  double minor = 0.0;            ///< ... and across it [m^2]
+  double area = 0.0;                    ///< [m^2]
+  Vec2 centroid = Vec2::Zero();         ///< [m]
+  double xx = 0.0, xy = 0.0, yy = 0.0;  ///< second moments about the centroid over the area [m^2]
 };
 
 PatchMoments moments_of(const PatchPolygon& polygon) noexcept;
+
+/// Two arms u, v with u u' + v v' = 2 [xx xy; xy yy]: points at centroid +- u and +- v, a quarter of the
+/// weight each, have the polygon's moments. The symmetric root of the matrix: unlike its axes it is
+/// continuous, also where the patch is as long as it is wide.
+struct PatchSpread {
+  Vec2 u = Vec2::Zero(), v = Vec2::Zero();  ///< [m]
+};
+
+PatchSpread spread_of(const PatchMoments& moments) noexcept;
 
 /// A straight piece x0 + (x1 - x0) s of the plane.
 struct PatchInterval {

@@ -11,7 +11,7 @@ using Kind = FeatureKind;
 
 struct Corner {
   int a = 0, b = 0;
-  Vec3 p_a, p_b, d;  // d = p_a - p_b
+  Vec3 p_a = Vec3::Zero(), p_b = Vec3::Zero(), d = Vec3::Zero();  // d = p_a - p_b
 };
 
 struct Simplex {
@@ -98,10 +98,10 @@ Feature common_feature(const Polytope& P, std::array<int, 4> v, int count) noexc
     for (int k = 0; k < i; ++k) seen |= v[k] == v[i];
     kinds += !seen;
   }
-  for (int e : P.edges_at(v[0]))
-    if (kinds == 2 && among(P.across(e, v[0]))) return {Kind::kEdge, e};
-  for (int e : P.edges_at(v[0]))
-    for (int f : {P.edges[e].left, P.edges[e].right}) {
+  for (const Polytope::Ray& ray : P.rays_at(v[0]))
+    if (kinds == 2 && among(ray.far)) return {Kind::kEdge, ray.edge};
+  for (const Polytope::Ray& ray : P.rays_at(v[0]))
+    for (int f : {P.edges[ray.edge].left, P.edges[ray.edge].right}) {
       int held = 0;
       for (int slot = P.faces[f].first; slot < P.faces[f].first + P.faces[f].count; ++slot)
         held += among(P.face_vertices[slot]);
@@ -121,26 +121,35 @@ Corner support(const PairView& pair, const Vec3& toward, const Corner* warm) noe
   return c;
 }
 
-March march_of(const PairView& pair, const Simplex& simplex, MarchEnd end, int steps) noexcept {
-  March march;
+void tell(const PairView& pair, const Simplex& simplex, PairDistance& x) noexcept {
+  x.p_a.setZero();
+  x.p_b.setZero();
   std::array<int, 4> a{};
   std::array<int, 4> b{};
   for (int i = 0; i < simplex.count; ++i) {
-    march.p_a += simplex.corners[i].p_a * simplex.share[i];
-    march.p_b += simplex.corners[i].p_b * simplex.share[i];
+    x.p_a += simplex.corners[i].p_a * simplex.share[i];
+    x.p_b += simplex.corners[i].p_b * simplex.share[i];
     a[i] = simplex.corners[i].a;
     b[i] = simplex.corners[i].b;
   }
-  march.a = common_feature(pair.A, a, simplex.count);
-  march.b = common_feature(pair.B, b, simplex.count);
-  march.end = end;
-  march.steps = steps;
-  return march;
+  x.a = common_feature(pair.A, a, simplex.count);
+  x.b = common_feature(pair.B, b, simplex.count);
+}
+
+OverlapProof proof_of(const Simplex& simplex) noexcept {
+  OverlapProof proof;
+  proof.known = true;
+  for (int i = 0; i < 4; ++i) {
+    const Corner& corner = simplex.corners[std::min(i, simplex.count - 1)];
+    proof.a[i] = static_cast<std::uint16_t>(corner.a);
+    proof.b[i] = static_cast<std::uint16_t>(corner.b);
+  }
+  return proof;
 }
 
 }  // namespace
 
-March closest_by_supports(const PairView& pair) noexcept {
+March closest_by_supports(const PairView& pair, OverlapProof& proof, PairDistance& x) noexcept {
   constexpr int kSteps = 100;
   Simplex simplex;
   Vec3 d = pair.A.center - pair.X_AB * pair.B.center;
@@ -148,10 +157,14 @@ March closest_by_supports(const PairView& pair) noexcept {
   simplex.corners[0] = support(pair, d, nullptr);
   simplex.count = 1;
   d = reduce(simplex);
-  int steps = 1;
-  for (; steps < kSteps; ++steps) {
-    if (simplex.count == 4 || d.norm() <= tolerances::kVoronoiSlack * pair.scale)
-      return march_of(pair, simplex, MarchEnd::kOverlap, steps);
+  March march;
+  march.end = MarchEnd::kClosest;
+  for (march.steps = 1; march.steps < kSteps; ++march.steps) {
+    if (simplex.count == 4 || d.norm() <= tolerances::kVoronoiSlack * pair.scale) {
+      proof = proof_of(simplex);
+      march.end = MarchEnd::kOverlap;
+      break;
+    }
     const Corner next = support(pair, d, &simplex.corners[0]);
     bool known = false;
     for (int i = 0; i < simplex.count; ++i)
@@ -166,7 +179,8 @@ March closest_by_supports(const PairView& pair) noexcept {
     }
     d = nearer;
   }
-  return march_of(pair, simplex, MarchEnd::kClosest, steps);
+  tell(pair, simplex, x);
+  return march;
 }
 
 }  // namespace tactum

@@ -9,7 +9,8 @@
 
 namespace tactum {
 
-/// Closest points, with the lowest features they lie on; or kOverlap and a common point.
-March closest_by_supports(const PairView& pair) noexcept;
+/// Closest points in `x`, with the lowest features they lie on; or kOverlap and a common point, and then in
+/// `proof` what shows it.
+March closest_by_supports(const PairView& pair, OverlapProof& proof, PairDistance& x) noexcept;
 
 }  // namespace tactum

@@ -67,30 +67,62 @@ SolverResult sweep(std::span<ContactRow> rows, double h, int max_sweeps, std::sp
   return result;
 }
 
-/// The same problem as  0 <= lambda  _|_  A lambda - b >= 0  with A dense, for a few rows.
-class DenseProblem {
+/// The same problem in the coordinates of motion. A body's mobility is W = B B^T; with V = V* + B z and
+/// g_i = B^T J_i the impulses are  lambda_i = max(0, b_i - g_i z) / c_i,  c_i = 1 / (k h^2),  and z is the
+/// least of
+///
+///     |z|^2 / 2 + sum_i max(0, b_i - g_i z)^2 / (2 c_i):
+///
+/// convex, quadratic while the same rows push. A Newton step is a Cholesky factor of I + sum g_i g_i^T / c_i
+/// over those, whose size is the freedom of the bodies (a hinge 1, a free body 6), however many rows there
+/// are.
+class MotionProblem {
  public:
-  static constexpr Index kMostRows = 48;
+  static constexpr Index kMostRows = 128;
+  static constexpr Index kMostColumns = 24;  // four free bodies
 
-  DenseProblem(std::span<const ContactRow> rows, double h, std::span<const Twist> V) : n_(rows.size()) {
-    for (Index i = 0; i < n_; ++i) {
-      const ContactRow& row = rows[i];
-      for (Index j = 0; j <= i; ++j) A_[i][j] = A_[j][i] = coupled(row, rows[j]);
-      A_[i][i] += 1.0 / (row.stiffness * h * h);
-      b_[i] = (row.tolerance - row.distance) / h - normal_velocity(row, V);
-      active_[i] = b_[i] > 0.0;
-      scale_ = std::max(scale_, std::abs(b_[i]));
+  /// False when there are too many rows or bodies.
+  bool set(std::span<const ContactRow> rows, std::span<const Pose> X_WB, std::span<const Mobility> W,
+           double h, std::span<const Twist> V) {
+    if (rows.size() > kMostRows) return false;
+    for (const ContactRow& row : rows) {
+      const int a = mover(row.body_a, W);
+      const int b = mover(row.body_b, W);
+      if (a < 0 || b < 0) return false;
+      Row& r = rows_[n_];
+      const Vec3 arm_a = row.p_W - X_WB[Index(row.body_a)].p;
+      const Vec3 arm_b = row.p_W - X_WB[Index(row.body_b)].p;
+      r.body_a = a;
+      r.body_b = b;
+      project(a, jacobian(row.n_BA_W, arm_a), 1.0, r.g_a);
+      project(b, jacobian(row.n_BA_W, arm_b), -1.0, r.g_b);
+      r.stiffness = row.stiffness * h * h;
+      const Twist& V_a = V[Index(row.body_a)];
+      const Twist& V_b = V[Index(row.body_b)];
+      const double approach = row.n_BA_W.dot(V_a.v + V_a.w.cross(arm_a) - V_b.v - V_b.w.cross(arm_b));
+      r.wanted = (row.tolerance - row.distance) / h - approach;
+      r.active = false;
+      scale_ = std::max(scale_, std::abs(r.wanted));
+      ++n_;
     }
+    for (Index i = 0; i < columns_; ++i) {
+      right_[i] = 0.0;
+      for (Index j = 0; j <= i; ++j) H_[i][j] = i == j ? 1.0 : 0.0;
+    }
+    return true;
   }
 
-  /// Block principal pivoting [Portugal 1994]: solve for the active rows, swap all that came out with the
-  /// wrong sign, and when that stops making progress one at a time. Returns the rounds, 0 when they ran out.
+  /// Newton's method from the rows that approach too fast; where the same number of rows stays wrong it turns
+  /// one at a time [Portugal 1994]. Returns the rounds, 0 when they ran out.
   int solve() {
+    for (Index i = 0; i < n_; ++i)
+      if (rows_[i].wanted > 0.0) turn(rows_[i]);
     Index fewest = n_ + 1;
     int tries = kTries;
     for (int round = 1; round <= kMostRounds; ++round) {
-      solve_active();
-      const Index wrong = count_wrong();
+      newton_step();
+      Index wrong = 0;
+      for (Index i = 0; i < n_; ++i) wrong += is_wrong(rows_[i]) ? 1 : 0;
       if (wrong == 0) return round;
       if (wrong < fewest) {
         fewest = wrong;
@@ -99,71 +131,150 @@ class DenseProblem {
         --tries;
       }
       for (Index i = n_; i-- > 0;) {
-        if (!is_wrong(i)) continue;
-        active_[i] = !active_[i];
+        if (!is_wrong(rows_[i])) continue;
+        turn(rows_[i]);
         if (tries < 0) break;
       }
     }
     return 0;
   }
-  double impulse(Index i) const { return active_[i] ? x_[i] : 0.0; }
+
+  double impulse(Index i) const {
+    return rows_[i].active ? std::max(0.0, slack(rows_[i])) * rows_[i].stiffness : 0.0;
+  }
+
+  void add_motion(std::span<Twist> V) const {
+    for (Index m = 0; m < movers_; ++m) {
+      const Mover& mover = mover_[m];
+      Vec6 change = Vec6::Zero();
+      for (Index k = 0; k < mover.rank; ++k) change += mover.B[k] * z_[mover.first + k];
+      V[Index(mover.body)].v += change.head<3>();
+      V[Index(mover.body)].w += change.tail<3>();
+    }
+  }
 
  private:
   static constexpr int kTries = 3;
-  static constexpr int kMostRounds = 24;  // two to four are usual
+  static constexpr int kMostRounds = 24;  // two are usual
+  static constexpr Index kMostMovers = 16;
 
-  /// Normal velocity at row `a` per unit impulse at row `b`.
-  static double coupled(const ContactRow& a, const ContactRow& b) {
-    double sum = 0.0;
-    if (a.body_a == b.body_a) sum += a.jacobian_a.dot(b.response_a);
-    if (a.body_a == b.body_b) sum += a.jacobian_a.dot(b.response_b);
-    if (a.body_b == b.body_a) sum += a.jacobian_b.dot(b.response_a);
-    if (a.body_b == b.body_b) sum += a.jacobian_b.dot(b.response_b);
+  struct Mover {
+    int body = -1;
+    Index first = 0, rank = 0;  // its columns
+    Vec6 B[6];
+  };
+  struct Row {
+    int body_a, body_b;
+    double g_a[6], g_b[6];
+    double stiffness;  // 1 / c
+    double wanted;     // b
+    bool active;
+  };
+
+  /// The mover of a body, made when it is met first; -1 when there is no room.
+  int mover(int body, std::span<const Mobility> W) {
+    for (Index m = 0; m < movers_; ++m)
+      if (mover_[m].body == body) return static_cast<int>(m);
+    if (movers_ == kMostMovers) return -1;
+    Mover& next = mover_[movers_];
+    next.body = body;
+    next.first = columns_;
+    next.rank = factor(W[Index(body)], next.B);
+    if (columns_ + next.rank > kMostColumns) return -1;
+    columns_ += next.rank;
+    return static_cast<int>(movers_++);
+  }
+
+  /// W = sum_k B_k B_k^T by Cholesky with the largest pivot first; a hinge has one column, what is fixed
+  /// none.
+  static Index factor(Mobility W, Vec6 (&B)[6]) {
+    const Vec6 whole = W.diagonal();
+    for (Index rank = 0; rank < 6; ++rank) {
+      int pivot = -1;
+      double most = tolerances::kNoMobility;  // of the share of the diagonal that is left
+      for (int i = 0; i < 6; ++i)
+        if (W(i, i) > most * whole[i]) {
+          most = W(i, i) / whole[i];
+          pivot = i;
+        }
+      if (pivot < 0) return rank;
+      B[rank] = W.col(pivot) / std::sqrt(W(pivot, pivot));
+      W -= B[rank] * B[rank].transpose();
+    }
+    return 6;
+  }
+
+  void project(int m, const Vec6& J, double sign, double (&g)[6]) const {
+    const Mover& mover = mover_[Index(m)];
+    for (Index k = 0; k < mover.rank; ++k) g[k] = sign * mover.B[k].dot(J);
+  }
+
+  /// Puts a row among those that push, or takes it out.
+  void turn(Row& row) {
+    row.active = !row.active;
+    const double weight = row.active ? row.stiffness : -row.stiffness;
+    double g[12];
+    Index column[12];
+    Index count = 0;
+    // Columns in rising order: H is kept below its diagonal.
+    const bool a_first = mover_[Index(row.body_a)].first <= mover_[Index(row.body_b)].first;
+    for (const bool of_a : {a_first, !a_first}) {
+      const Mover& mover = mover_[Index(of_a ? row.body_a : row.body_b)];
+      for (Index k = 0; k < mover.rank; ++k) {
+        column[count] = mover.first + k;
+        g[count++] = of_a ? row.g_a[k] : row.g_b[k];
+      }
+    }
+    for (Index i = 0; i < count; ++i) {
+      const double scaled = weight * g[i];
+      right_[column[i]] += scaled * row.wanted;
+      for (Index j = 0; j <= i; ++j) H_[column[i]][column[j]] += scaled * g[j];
+    }
+  }
+
+  /// z = H^-1 right.
+  void newton_step() {
+    for (Index i = 0; i < columns_; ++i) {
+      double y = right_[i];
+      for (Index j = 0; j <= i; ++j) {
+        double sum = H_[i][j];
+        for (Index k = 0; k < j; ++k) sum -= L_[i][k] * L_[j][k];
+        if (j < i) {
+          L_[i][j] = sum * inverse_[j];
+          y -= L_[i][j] * z_[j];
+        } else {
+          inverse_[i] = 1.0 / std::sqrt(sum);
+        }
+      }
+      z_[i] = y * inverse_[i];
+    }
+    for (Index i = columns_; i-- > 0;) {
+      double sum = z_[i];
+      for (Index k = i + 1; k < columns_; ++k) sum -= L_[k][i] * z_[k];
+      z_[i] = sum * inverse_[i];
+    }
+  }
+
+  /// b - g z: by how much the row still approaches too fast.
+  double slack(const Row& row) const {
+    double sum = row.wanted;
+    const Mover& a = mover_[Index(row.body_a)];
+    const Mover& b = mover_[Index(row.body_b)];
+    for (Index k = 0; k < a.rank; ++k) sum -= row.g_a[k] * z_[a.first + k];
+    for (Index k = 0; k < b.rank; ++k) sum -= row.g_b[k] * z_[b.first + k];
     return sum;
   }
-
-  /// x: impulses of the active rows (by Cholesky), and A x - b of the others.
-  void solve_active() {
-    Index m = 0;
-    for (Index i = 0; i < n_; ++i)
-      if (active_[i]) row_[m++] = i;
-    for (Index i = 0; i < m; ++i) {
-      double y = b_[row_[i]];
-      for (Index j = 0; j <= i; ++j) {
-        double sum = A_[row_[i]][row_[j]];
-        for (Index k = 0; k < j; ++k) sum -= L_[i][k] * L_[j][k];
-        L_[i][j] = i == j ? std::sqrt(sum)
-                          : sum / L_[j][j];  // A is positive definite: the compliance is on its diagonal
-      }
-      for (Index k = 0; k < i; ++k) y -= L_[i][k] * y_[k];
-      y_[i] = y / L_[i][i];
-    }
-    for (Index i = m; i-- > 0;) {
-      double sum = y_[i];
-      for (Index k = i + 1; k < m; ++k) sum -= L_[k][i] * x_[row_[k]];
-      x_[row_[i]] = sum / L_[i][i];
-    }
-    for (Index i = 0; i < n_; ++i) {
-      if (active_[i]) continue;
-      x_[i] = -b_[i];
-      for (Index k = 0; k < m; ++k) x_[i] += A_[i][row_[k]] * x_[row_[k]];
-    }
-  }
-  bool is_wrong(Index i) const {
-    return active_[i] ? !(x_[i] >= 0.0) : !(x_[i] >= -tolerances::kContactVelocity * scale_);  // NaN is wrong
-  }
-  Index count_wrong() const {
-    Index wrong = 0;
-    for (Index i = 0; i < n_; ++i) wrong += is_wrong(i) ? 1 : 0;
-    return wrong;
+  bool is_wrong(const Row& row) const {
+    const double tolerance = tolerances::kContactVelocity * scale_;
+    return row.active ? !(slack(row) >= -tolerance) : !(slack(row) <= tolerance);  // NaN is wrong
   }
 
-  Index n_;
+  Index n_ = 0, movers_ = 0, columns_ = 0;
   double scale_ = 0.0;
-  double A_[kMostRows][kMostRows], L_[kMostRows][kMostRows];
-  double b_[kMostRows], x_[kMostRows], y_[kMostRows];
-  Index row_[kMostRows];
-  bool active_[kMostRows];
+  Row rows_[kMostRows];
+  Mover mover_[kMostMovers];
+  double H_[kMostColumns][kMostColumns], L_[kMostColumns][kMostColumns];
+  double right_[kMostColumns], z_[kMostColumns], inverse_[kMostColumns];
 };
 
 }  // namespace
@@ -181,18 +292,16 @@ Twist after_hinge_friction(const Joint& joint, const Pose& X_WB, const Mobility&
 SolverResult solve_contacts(std::span<ContactRow> rows, std::span<const Pose> X_WB,
                             std::span<const Mobility> W, double h, int max_sweeps,
                             std::span<Twist> V) noexcept {
-  for (ContactRow& row : rows) prepare(row, X_WB, W);
   if (rows.empty()) return {.iterations = 0, .converged = true};
-  if (rows.size() <= DenseProblem::kMostRows) {
-    DenseProblem problem(rows, h, V);
+  MotionProblem problem;
+  if (problem.set(rows, X_WB, W, h, V)) {
     if (const int rounds = problem.solve(); rounds > 0) {
-      for (Index i = 0; i < rows.size(); ++i) {
-        rows[i].impulse = problem.impulse(i);
-        if (rows[i].impulse > 0.0) add_impulse(rows[i], rows[i].impulse, V);
-      }
+      for (Index i = 0; i < rows.size(); ++i) rows[i].impulse = problem.impulse(i);
+      problem.add_motion(V);
       return {.iterations = rounds, .converged = true};
     }
   }
+  for (ContactRow& row : rows) prepare(row, X_WB, W);
   return sweep(rows, h, max_sweeps, V);
 }
 

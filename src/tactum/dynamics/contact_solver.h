@@ -8,11 +8,11 @@
 ///
 ///     vn + lambda / (k h^2) = (delta - d) / h,     lambda >= 0,     vn = n . (v_A - v_B) after all impulses,
 ///
-/// which is a linear complementarity problem with a positive definite matrix. Up to 48 rows it is solved
-/// exactly by principal pivoting (two gears, 14 rows:
-/// Gauss-Seidel needed 54 sweeps, and the response stage went from 17 to 7 us), beyond
-/// that by projected Gauss-Seidel with a bounded number of sweeps. It is stable for every k, h and mass, and
-/// at rest its forces are the published ones exactly.
+/// which is a linear complementarity problem with a positive definite matrix, and its other side the least of
+/// a convex function of the bodies' motion. That is found exactly by Newton's method while at most 24
+/// directions of motion (four free bodies) and 128 rows take part: two rounds as a rule, each linear in the
+/// rows. Beyond that by projected Gauss-Seidel with a bounded number of sweeps (two gears with 14 rows took
+/// it 54). It is stable for every k, h and mass, and at rest its forces are the published ones exactly.
 
 #include <span>
 
@@ -31,14 +31,14 @@ struct ContactRow {
   double stiffness = 0.0;      ///< k, the point's share [N/m]
   double impulse = 0.0;        ///< lambda, the solver's answer [N s]
 
-  // Filled by the solver: twist changes per unit impulse, and the lever arms.
+  // For the sweeps only: lever arms, twist changes per unit impulse.
   Vec6 jacobian_a = Vec6::Zero(), jacobian_b = Vec6::Zero();
   Vec6 response_a = Vec6::Zero(), response_b = Vec6::Zero();
   double diagonal = 0.0;
 };
 
 struct SolverResult {
-  int iterations = 0;      ///< rounds of pivoting, or sweeps
+  int iterations = 0;      ///< rounds of Newton's method, or sweeps
   bool converged = false;  ///< false: the sweeps ran out; the impulses are usable, not exact
 };
 

@@ -64,32 +64,30 @@ bool build_edges(Polytope& P, const char** why) {
   return true;
 }
 
-void build_vertex_rows(Polytope& P) {
-  P.vertex_first.assign(P.vertices.size() + 1, 0);
+void build_rays(Polytope& P) {
+  P.ray_first.assign(P.vertices.size() + 1, 0);
   for (const Polytope::Edge& edge : P.edges) {
-    ++P.vertex_first[Index(edge.tail) + 1];
-    ++P.vertex_first[Index(edge.head) + 1];
+    ++P.ray_first[Index(edge.tail) + 1];
+    ++P.ray_first[Index(edge.head) + 1];
   }
-  for (Index v = 0; v < P.vertices.size(); ++v) P.vertex_first[v + 1] += P.vertex_first[v];
-  P.vertex_edges.resize(P.edges.size() * 2);
-  std::vector<int> next(P.vertex_first.begin(), P.vertex_first.end() - 1);
+  for (Index v = 0; v < P.vertices.size(); ++v) P.ray_first[v + 1] += P.ray_first[v];
+  P.rays.resize(P.edges.size() * 2);
+  std::vector<int> next(P.ray_first.begin(), P.ray_first.end() - 1);
   for (Index e = 0; e < P.edges.size(); ++e) {
-    P.vertex_edges[Index(next[Index(P.edges[e].tail)]++)] = static_cast<int>(e);
-    P.vertex_edges[Index(next[Index(P.edges[e].head)]++)] = static_cast<int>(e);
+    const Polytope::Edge& edge = P.edges[e];
+    P.rays[Index(next[Index(edge.tail)]++)] = {edge.direction, static_cast<int>(e), edge.head};
+    P.rays[Index(next[Index(edge.head)]++)] = {-edge.direction, static_cast<int>(e), edge.tail};
   }
 }
 
-void build_side_planes(Polytope& P) {
-  P.side_normals.resize(P.face_vertices.size());
-  P.side_offsets.resize(P.face_vertices.size());
+void build_sides(Polytope& P) {
+  P.sides.resize(P.face_vertices.size());
   for (const Polytope::Edge& edge : P.edges) {
     const Vec3& tail = P.vertices[Index(edge.tail)];
     const Vec3 left = edge.direction.cross(P.faces[Index(edge.left)].normal).normalized();
     const Vec3 right = -edge.direction.cross(P.faces[Index(edge.right)].normal).normalized();
-    P.side_normals[Index(edge.left_slot)] = left;
-    P.side_normals[Index(edge.right_slot)] = right;
-    P.side_offsets[Index(edge.left_slot)] = left.dot(tail);
-    P.side_offsets[Index(edge.right_slot)] = right.dot(tail);
+    P.sides[Index(edge.left_slot)] = {left, left.dot(tail)};
+    P.sides[Index(edge.right_slot)] = {right, right.dot(tail)};
   }
 }
 
@@ -137,20 +135,19 @@ int table_vertex(const Polytope& polytope, const Vec3& direction) noexcept {
 int support_vertex(const Polytope& P, const Vec3& direction, int start) noexcept {
   int best = start;
   double height = direction.dot(P.vertices[Index(best)]);
-  for (bool climbed = true; climbed;) {
-    climbed = false;
-    for (int e : P.edges_at(best)) {
-      const int neighbour = P.across(e, best);
-      const double h = direction.dot(P.vertices[Index(neighbour)]);
-      if (h > height) {
-        height = h;
-        best = neighbour;
-        climbed = true;
-        break;
+  for (;;) {
+    int next = best;
+    double steepest = 0.0;
+    for (const Polytope::Ray& ray : P.rays_at(best))
+      if (const double slope = direction.dot(ray.direction); slope > steepest) {
+        steepest = slope;
+        next = ray.far;
       }
-    }
+    const double higher = direction.dot(P.vertices[Index(next)]);
+    if (!(higher > height)) return best;  // slopes may go round in rounding, heights cannot
+    best = next;
+    height = higher;
   }
-  return best;
 }
 
 bool complete_polytope(Polytope& P, const char** why) {
@@ -162,15 +159,18 @@ bool complete_polytope(Polytope& P, const char** why) {
   if (!build_edges(P, why)) return false;
   if (P.vertices.size() + P.faces.size() != P.edges.size() + 2)
     return *why = "the faces do not close up to a sphere (V - E + F is not 2)", false;
-  build_vertex_rows(P);
-  build_side_planes(P);
+  build_rays(P);
+  build_sides(P);
   P.center.setZero();
   for (const Vec3& vertex : P.vertices) P.center += vertex;
   P.center /= static_cast<double>(P.vertices.size());
   P.radius = 0.0;
   for (const Vec3& vertex : P.vertices) P.radius = std::max(P.radius, (vertex - P.center).norm());
   P.size = bounds(P.vertices).diagonal();
+  P.magnitude = P.size + P.center.lpNorm<1>();
   P.flat = P.faces.size() == 2;
+  P.counts = {static_cast<int>(P.vertices.size()), static_cast<int>(P.edges.size()),
+              static_cast<int>(P.faces.size())};
   build_direction_table(P);
   return true;
 }

@@ -26,7 +26,7 @@ struct Polytope {
   struct Edge {
     int tail = 0, head = 0;             ///< vertices
     int left = 0, right = 0;            ///< faces
-    int left_slot = 0, right_slot = 0;  ///< where the edge stands in face_vertices, face_edges, side_normals
+    int left_slot = 0, right_slot = 0;  ///< where the edge stands in face_vertices, face_edges, sides
     double length = 0.0;                ///< [m]
     Vec3 direction = Vec3::Zero();      ///< unit, tail to head
   };
@@ -37,6 +37,18 @@ struct Polytope {
     int first = 0, count = 0;    ///< the loop: slots [first, first + count)
   };
 
+  /// A plane that bounds a face's column: normal . x <= offset inside.
+  struct Side {
+    Vec3 normal = Vec3::Zero();  ///< unit, in the face's plane, pointing away from the face across the edge
+    double offset = 0.0;         ///< [m]
+  };
+  /// An edge as seen from one of its ends. All that a climb and a Voronoi test of a vertex read.
+  struct Ray {
+    Vec3 direction = Vec3::Zero();  ///< unit, away from the vertex
+    int edge = 0;
+    int far = 0;  ///< the vertex at the other end
+  };
+
   std::vector<Vec3> vertices;  ///< [m]
   std::vector<Edge> edges;
   std::vector<Face> faces;
@@ -44,32 +56,28 @@ struct Polytope {
   // Loops of the faces, counter-clockwise seen from outside; slot i runs from its vertex to the next slot's.
   std::vector<int> face_vertices;
   std::vector<int> face_edges;
-  std::vector<Vec3> side_normals;  ///< unit, in the face's plane, pointing away from the face across the edge
-  std::vector<double> side_offsets;  ///< side_normal . x <= side_offset inside the face's column [m]
+  std::vector<Side> sides;
 
-  // Edges around each vertex: vertex_edges[vertex_first[v] .. vertex_first[v + 1]).
-  std::vector<int> vertex_first;
-  std::vector<int> vertex_edges;
+  // Edges around each vertex: rays[ray_first[v] .. ray_first[v + 1]).
+  std::vector<int> ray_first;
+  std::vector<Ray> rays;
 
-  Vec3 center = Vec3::Zero();  ///< mean of the vertices: inside
-  double radius = 0.0;         ///< largest distance of a vertex from center [m]
-  double size = 0.0;           ///< diagonal of the bounding box [m]
-  bool flat = false;           ///< a polygon with two faces, no inside
+  Vec3 center = Vec3::Zero();   ///< mean of the vertices: inside
+  double radius = 0.0;          ///< largest distance of a vertex from center [m]
+  double size = 0.0;            ///< diagonal of the bounding box [m]
+  double magnitude = 0.0;       ///< size + |center|: of the numbers that are added up about it [m]
+  bool flat = false;            ///< a polygon with two faces, no inside
+  std::array<int, 3> counts{};  ///< of vertices, edges and faces
 
   /// Direction lookup table [Ehmann and Lin 2000]: for directions on a cube around the center, the vertex
   /// farthest along each. 6 x 8 x 8 entries of two bytes: 768 bytes.
   static constexpr int kTableSide = 8;
   std::array<std::uint16_t, 6 * kTableSide * kTableSide> direction_table{};
 
-  std::span<const int> edges_at(int vertex) const noexcept {
-    const int first = vertex_first[static_cast<std::size_t>(vertex)];
-    const int last = vertex_first[static_cast<std::size_t>(vertex) + 1];
-    return {vertex_edges.data() + first, static_cast<std::size_t>(last - first)};
-  }
-  /// The other end of an edge.
-  int across(int edge, int vertex) const noexcept {
-    const Edge& e = edges[static_cast<std::size_t>(edge)];
-    return e.tail == vertex ? e.head : e.tail;
+  std::span<const Ray> rays_at(int vertex) const noexcept {
+    const int first = ray_first[static_cast<std::size_t>(vertex)];
+    const int last = ray_first[static_cast<std::size_t>(vertex) + 1];
+    return {rays.data() + first, static_cast<std::size_t>(last - first)};
   }
 };
 

@@ -35,16 +35,18 @@ void gather_points(const Source& from, std::span<const Facet> facet, std::vector
   points.clear();
   double claims = 0.0;
   for (const Facet& f : facet) claims += claim(from.patches[Index(f.patch)]);
+  const Pose& X_WA = from.X_WB[Index(facet[0].body_a)];
+  const Pose X_AB = relative_pose(X_WA, from.X_WB[Index(facet[0].body_b)]);
+  const Pose X_BA = X_AB.inverse();
   for (const Facet& f : facet) {
     const ContactPatch& patch = from.patches[Index(f.patch)];
-    const Pose& X_WA = from.X_WB[Index(patch.body_a)];
     const double share = claim(patch) / claims;
     for (const ContactPoint& point : patch.manifold.points) {
       Vec3 normal_A = patch.manifold.normal;
       if (!from.shading.empty()) {
-        normal_A = shaded_normal(from.shading[Index(patch.body_a)], patch.piece_a,
-                                 from.shading[Index(patch.body_b)], patch.piece_b,
-                                 relative_pose(X_WA, from.X_WB[Index(patch.body_b)]), patch.manifold, point);
+        normal_A =
+            shaded_normal(from.shading[Index(patch.body_a)], patch.piece_a, from.shading[Index(patch.body_b)],
+                          patch.piece_b, X_AB, X_BA, patch.manifold, point);
       }
       points.push_back(
           {X_WA * (0.5 * (point.p_a + point.p_b)), X_WA.R * normal_A, point.distance, share * point.weight});

@@ -10,25 +10,42 @@ namespace {
 
 using Index = std::size_t;
 
-/// Wachspress' product form needs n^2 products; faces with more corners are flat ends, not parts of curved
-/// surfaces.
+/// Faces with more corners are flat ends, not parts of curved surfaces.
 constexpr int kMostCorners = 16;
 
-/// The interpolated normal inside a convex polygon: w_i = A(i-1,i,i+1) prod_{j != i-1,i} A(j,j+1,p).
-Vec3 interpolated(const Polytope& piece, const Polytope::Face& face, const Vec3* normals, const Vec3& point) {
-  const int n = face.count;
-  double area[kMostCorners];
-  const auto corner = [&](int i) -> const Vec3& {
-    return piece.vertices[Index(piece.face_vertices[Index(face.first + (i + n) % n)])];
+/// A corner's part of its Wachspress weight that does not depend on the point: A(i-1,i,i+1).
+double corner_area(const Polytope& piece, const Polytope::Face& face, int i) {
+  const auto corner = [&](int k) -> const Vec3& {
+    return piece.vertices[Index(piece.face_vertices[Index(face.first + (k + face.count) % face.count)])];
   };
-  for (int i = 0; i < n; ++i)
-    area[i] = std::max(0.0, face.normal.dot((corner(i) - point).cross(corner(i + 1) - point)));
-  Vec3 sum = Vec3::Zero();
+  return face.normal.dot((corner(i) - corner(i - 1)).cross(corner(i + 1) - corner(i)));
+}
+
+/// The interpolated normal inside a convex polygon: w_i = A(i-1,i,i+1) prod_{j != i-1,i} A(j,j+1,p), the
+/// product as that of all before times that of all behind.
+Vec3 interpolated(const Polytope& piece, const Polytope::Face& face, const ShadedCorner* corners,
+                  const Vec3& point) {
+  const int n = face.count;
+  const int* vertex = &piece.face_vertices[Index(face.first)];
+  double area[kMostCorners];
+  Vec3 from_point = piece.vertices[Index(vertex[0])] - point;
+  const Vec3 first = from_point;
   for (int i = 0; i < n; ++i) {
-    double weight = face.normal.dot((corner(i) - corner(i - 1)).cross(corner(i + 1) - corner(i)));
-    for (int j = 0; j < n; ++j)
-      if (j != i && j != (i + n - 1) % n) weight *= area[j];
-    sum += weight * normals[i];
+    const Vec3 next = i + 1 < n ? Vec3(piece.vertices[Index(vertex[i + 1])] - point) : first;
+    area[i] = std::max(0.0, face.normal.dot(from_point.cross(next)));
+    from_point = next;
+  }
+  double behind[kMostCorners + 1];  // area[i] area[i + 1] ... area[n - 1]
+  behind[n] = 1.0;
+  for (int i = n; i-- > 0;) behind[i] = behind[i + 1] * area[i];
+  // The last side meets the first corner: area[n - 1] is left out there.
+  double without_last = 1.0;
+  for (int i = 1; i + 1 < n; ++i) without_last *= area[i];
+  Vec3 sum = corners[0].area * without_last * corners[0].normal;
+  double before = 1.0;  // area[0] ... area[i - 2]
+  for (int i = 1; i < n; ++i) {
+    sum += corners[i].area * before * behind[i + 1] * corners[i].normal;
+    before *= area[i - 1];
   }
   const double length = sum.norm();
   return length > 0.0 ? Vec3(sum / length) : face.normal;
@@ -39,7 +56,7 @@ Vec3 interpolated(const Polytope& piece, const Polytope::Face& face, const Vec3*
 ShadingNormals::ShadingNormals(const Part& part, double crease_rad) : part_(&part) {
   const double cosine = std::cos(crease_rad);
   for (const Polytope& piece : part.pieces) {
-    first_slot_.push_back(static_cast<int>(normals_.size()));
+    first_slot_.push_back(static_cast<int>(corners_.size()));
     first_face_.push_back(static_cast<int>(curved_face_.size()));
     shade_polytope(piece, cosine);
   }
@@ -48,31 +65,33 @@ ShadingNormals::ShadingNormals(const Part& part, double crease_rad) : part_(&par
     const Polytope& piece = part.pieces[p];
     for (Index f = 0; f < piece.faces.size(); ++f) {
       const Polytope::Face& face = piece.faces[f];
-      const bool curved = std::any_of(&normals_[Index(first_slot_[p] + face.first)],
-                                      &normals_[Index(first_slot_[p] + face.first)] + face.count,
-                                      [&](const Vec3& normal) { return normal != face.normal; });
+      const ShadedCorner* corners = &corners_[Index(first_slot_[p] + face.first)];
+      const bool curved = std::any_of(corners, corners + face.count, [&](const ShadedCorner& corner) {
+        return corner.normal != face.normal;
+      });
       curved_face_[Index(first_face_[p]) + f] = curved && face.count <= kMostCorners;
     }
   }
 }
 
 void ShadingNormals::shade_polytope(const Polytope& piece, double cosine) {
-  const Index first = normals_.size();
-  normals_.resize(first + piece.face_vertices.size());
+  const Index first = corners_.size();
+  corners_.resize(first + piece.face_vertices.size());
   curved_face_.resize(curved_face_.size() + piece.faces.size());
   for (const Polytope::Face& face : piece.faces)
     for (int slot = face.first; slot < face.first + face.count; ++slot) {
       Vec3 sum = Vec3::Zero();
-      for (int e : piece.edges_at(piece.face_vertices[Index(slot)])) {
+      for (const Polytope::Ray& ray : piece.rays_at(piece.face_vertices[Index(slot)])) {
         // Every face around the corner is on the left or the right of two of its edges: counted twice, all
         // alike.
-        for (int f : {piece.edges[Index(e)].left, piece.edges[Index(e)].right}) {
+        for (int f : {piece.edges[Index(ray.edge)].left, piece.edges[Index(ray.edge)].right}) {
           const Vec3& normal = piece.faces[Index(f)].normal;
           if (normal.dot(face.normal) >= cosine) sum += normal;
         }
       }
       const bool alone = (sum.normalized() - face.normal).norm() < tolerances::kSameNormal;
-      normals_[first + Index(slot)] = alone ? face.normal : Vec3(sum.normalized());
+      corners_[first + Index(slot)] = {alone ? face.normal : Vec3(sum.normalized()),
+                                       corner_area(piece, face, slot - face.first)};
     }
 }
 
@@ -94,7 +113,7 @@ void ShadingNormals::shade_surface(const Part& part, double cosine) {
       const Polytope::Face& face = piece.faces[front];
       for (int slot = face.first; slot < face.first + face.count; ++slot)
         if (piece.vertices[Index(piece.face_vertices[Index(slot)])] == part.surface.vertices[Index(v)])
-          normals_[Index(first_slot_[t] + slot)] = normal;
+          corners_[Index(first_slot_[t] + slot)].normal = normal;
     }
   }
 }
@@ -104,15 +123,16 @@ Vec3 ShadingNormals::deviation(int piece, const Feature& feature, const Vec3& po
   if (!curved_face_[Index(first_face_[Index(piece)] + feature.index)]) return Vec3::Zero();
   const Polytope& polytope = part_->pieces[Index(piece)];
   const Polytope::Face& face = polytope.faces[Index(feature.index)];
-  return interpolated(polytope, face, &normals_[Index(first_slot_[Index(piece)] + face.first)], point) -
+  return interpolated(polytope, face, &corners_[Index(first_slot_[Index(piece)] + face.first)], point) -
          face.normal;
 }
 
 Vec3 shaded_normal(const ShadingNormals& a, int piece_a, const ShadingNormals& b, int piece_b,
-                   const Pose& X_AB, const Manifold& manifold, const ContactPoint& point) noexcept {
+                   const Pose& X_AB, const Pose& X_BA, const Manifold& manifold,
+                   const ContactPoint& point) noexcept {
   const Vec3 from_a = a.deviation(piece_a, manifold.a, point.p_a);
-  const Vec3 from_b = b.deviation(piece_b, manifold.b, X_AB.inverse() * point.p_b);
-  return (manifold.normal + X_AB.R * from_b - from_a).normalized();
+  const Vec3 from_b = b.deviation(piece_b, manifold.b, X_BA * point.p_b);
+  return (manifold.normal + rotated(X_AB.R, from_b) - from_a).normalized();
 }
 
 }  // namespace tactum

@@ -16,6 +16,12 @@
 
 namespace tactum {
 
+/// A corner of a face: the normal of the surface there, and its part of the Wachspress weight.
+struct ShadedCorner {
+  Vec3 normal = Vec3::Zero();  ///< unit [-]
+  double area = 0.0;           ///< twice that of the triangle with its neighbours [m^2]
+};
+
 class ShadingNormals {
  public:
   /// Cost: once per part, linear in its corners.
@@ -30,15 +36,16 @@ class ShadingNormals {
   void shade_surface(const Part& part, double cosine);
 
   const Part* part_;
-  std::vector<int> first_slot_;    // per piece, into normals_; slots as in Polytope::face_vertices
-  std::vector<Vec3> normals_;      // per slot
-  std::vector<char> curved_face_;  // per piece and face: whether any corner deviates
-  std::vector<int> first_face_;    // per piece, into curved_face_
+  std::vector<int> first_slot_;        // per piece, into corners_; slots as in Polytope::face_vertices
+  std::vector<ShadedCorner> corners_;  // per slot
+  std::vector<char> curved_face_;      // per piece and face: whether any corner deviates
+  std::vector<int> first_face_;        // per piece, into curved_face_
 };
 
 /// The manifold's normal, turned by the deviations of the faces it lies on; told in A's frame. `p_a` and
-/// `p_b` as in ContactPoint, X_AB the pose of body B in A.
+/// `p_b` as in ContactPoint, X_AB the pose of body B in A and X_BA its inverse.
 Vec3 shaded_normal(const ShadingNormals& a, int piece_a, const ShadingNormals& b, int piece_b,
-                   const Pose& X_AB, const Manifold& manifold, const ContactPoint& point) noexcept;
+                   const Pose& X_AB, const Pose& X_BA, const Manifold& manifold,
+                   const ContactPoint& point) noexcept;
 
 }  // namespace tactum

@@ -5,13 +5,23 @@
 
 namespace tactum {
 
+/// R v, written out: Eigen's general product is a call.
+inline Vec3 rotated(const Mat3& R, const Vec3& v) {
+  return R.col(0) * v.x() + R.col(1) * v.y() + R.col(2) * v.z();
+}
+
+/// R^T v: back from B to A where R is B's in A.
+inline Vec3 rotated_back(const Mat3& R, const Vec3& v) {
+  return {R.col(0).dot(v), R.col(1).dot(v), R.col(2).dot(v)};
+}
+
 struct Pose {
   Mat3 R = Mat3::Identity();  ///< axes of B, as columns, in A [-]
   Vec3 p = Vec3::Zero();      ///< origin of B in A [m]
 
-  Vec3 operator*(const Vec3& point) const { return R * point + p; }
+  Vec3 operator*(const Vec3& point) const { return rotated(R, point) + p; }
   Pose operator*(const Pose& X) const { return {R * X.R, R * X.p + p}; }
-  Pose inverse() const { return {R.transpose(), -(R.transpose() * p)}; }
+  Pose inverse() const { return {R.transpose(), -rotated_back(R, p)}; }
 
   bool finite() const { return R.allFinite() && p.allFinite(); }
 };

@@ -1,0 +1,29 @@
+#pragma once
+/// What the contact patch of two pieces costs, and how steady it is: the way of its centroid in a frame of a
+/// slow hand.
+
+#include "bench/pairs.h"
+#include "bench/report.h"
+
+namespace tactum::bench {
+
+struct ManifoldRow {
+  Row row;  ///< regime "sliding" or "rocking"; error: of the gap the patch is laid out over
+  double centroid_p999_m = 0.0;  ///< step of the centroid by the points' weights, in a frame [m]
+  double centroid_max_m = 0.0;   ///< [m]
+  double pressure_max_m = 0.0;   ///< ... by weight times how far the gap is below the tolerance [m]
+};
+
+struct ManifoldReport {
+  std::vector<ManifoldRow> rows;
+  std::string how;
+};
+
+std::span<const Pair> patch_pairs();
+ManifoldReport bench_manifold(const PairsOptions& options,
+                              const std::function<void(const std::string&)>& progress);
+
+Table table_of(const ManifoldReport& report);
+nlohmann::ordered_json to_json(const ManifoldRow& row);
+
+}  // namespace tactum::bench

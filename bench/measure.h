@@ -1,0 +1,58 @@
+#pragma once
+/// One engine on one recording: what a query costs and how far off it is. Every pose is replayed several
+/// times and counts with its fastest, so that what the machine did meanwhile is left out; the cost of reading
+/// the clock, measured the same way on an engine that does nothing, is taken off.
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "bench/clock.h"
+#include "bench/engine.h"
+#include "bench/referee.h"
+
+namespace tactum::bench {
+
+struct Row {
+  std::string shape_a, shape_b;
+  int vertices = 0;  ///< of the piece that has more
+  std::string regime, engine;
+  int frames = 0;  ///< queries; slow engines are asked fewer
+  double median_ns = 0.0, p99_ns = 0.0, p999_ns = 0.0, max_ns = 0.0;  ///< [ns]
+  double batched_ns = 0.0;   ///< mean over the whole recording between two looks at the clock [ns]
+  double max_error_m = 0.0;  ///< against the referee, of the queries answered [m]
+  int missed = 0;            ///< not answered, not certified (ours), or contact and no contact mistaken
+  int depths_checked = 0;    ///< overlapping poses of which the referee proved the depth
+  int depths_wrong = 0;      ///< ... where the answer is not the global minimum, to a micrometre
+  double steps_mean = 0.0;   ///< ours only
+  int steps_max = 0;         ///< ours only
+  /// Every query answered, and right to a micrometre.
+  bool accurate() const { return missed == 0 && max_error_m <= kAccurate_m; }
+  static constexpr double kAccurate_m = 1e-6;
+};
+
+/// The keys are the members' names.
+nlohmann::ordered_json to_json(const Row& row);
+
+class Meter {
+ public:
+  explicit Meter(int replays);
+  /// The engine has been given the pair. `cold`: it forgets before each query. Engines are asked as many of
+  /// the poses as fit into `budget_s`.
+  Row measure(Engine& engine, const Recording& recording, const std::vector<Truth>& truth, bool cold,
+              double budget_s) const;
+  /// What the numbers are: "each the fastest of 5 replays ...".
+  std::string describe() const;
+
+ private:
+  /// Fastest of the replays of each pose, the clock's cost still in it [ns].
+  std::vector<double> fastest_ns(Engine& engine, const Recording& recording, std::size_t count,
+                                 bool cold) const;
+  double batched_ns(Engine& engine, const Recording& recording, std::size_t count, bool cold) const;
+
+  FineClock clock_;
+  int replays_;
+  double overhead_ns_ = 0.0;
+};
+
+}  // namespace tactum::bench

@@ -1,0 +1,29 @@
+#pragma once
+/// Two quick proofs that pieces share a point, from what the last frame left. D is the set of all b - a,
+/// points of B less points of A: the pieces overlap where D holds the origin, and what lies between points of
+/// D is in D.
+///
+///     by four vertices                         by a facet and the centres
+///          d2                                     ---facet---  x         the line from c = center_b -
+///          center_a
+///         / | \.                                    \     . /            through the origin leaves D's plane
+///         at x:
+///       d0--o---d3    o between the corners          \  o  /             x on the facet, so o between c and
+///       x
+///         \ | /                                       \ ./
+///          d1                                          c
+///
+/// The first lasts while the pieces are deep inside each other, the second while they barely are. Either may
+/// fail for pieces that do overlap: then it says nothing. Cost: 15-25 ns each.
+
+#include "tactum/collision/pair_view.h"
+
+namespace tactum {
+
+/// Do the corners of `proof` hold the origin between them? `proof` may be any pair's.
+bool overlap_by_vertices(const PairView& pair, const OverlapProof& proof) noexcept;
+
+/// Is the origin behind the facet of D that `depth`, an answer of penetration_depth for this pose, stands on?
+bool overlap_by_facet(const PairView& pair, const PairDistance& depth) noexcept;
+
+}  // namespace tactum

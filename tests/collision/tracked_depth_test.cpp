@@ -1,0 +1,152 @@
+/// The depth under a hand's motion: how often a tracked answer is not the global minimum, and what renaming,
+/// swapping, moving and scaling change.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "collision/cases.h"
+#include "tactum/collision/penetration.h"
+
+namespace tactum {
+namespace {
+
+struct Count {
+  int frames = 0, missed = 0;
+  double worst = 0.0;  ///< [m]
+};
+
+/// 1 kHz, 0.1-0.5 mm and 1-3 mrad a frame, another way every 60 frames, from first touch; the depth is kept
+/// within `most` [m]. Every `stride`-th frame is held against every facet of the Minkowski difference.
+Count track(const Polytope& A, const Polytope& B, std::uint64_t seed, int frames, int stride, double most) {
+  Random random(seed);
+  Count count;
+  Pose X{cases::random_rotation(random), Vec3::Zero()};
+  Vec3 v = Vec3::Zero();
+  Vec3 w = Vec3::Zero();
+  PairCache cache;
+  for (int i = 0; i < frames; ++i) {
+    if (i % 500 == 0) {  // a new touch
+      X.R = cases::random_rotation(random);
+      X.p = A.center - X.R * B.center + cases::random_unit(random) * 0.3 * std::min(A.radius, B.radius);
+      const PairDistance inside = penetration_exhaustive(A, B, X);
+      X.p -= inside.normal * (-inside.distance - 1e-3 * most);
+      cache = {};
+    }
+    if (i % 60 == 0) {
+      v = cases::random_unit(random) * random.uniform(1e-4, 5e-4);
+      w = cases::random_unit(random) * random.uniform(1e-3, 3e-3);
+    }
+    const Vec3 center = X * B.center + v;
+    X.R = renormalized({exp_rotation(w) * X.R, Vec3::Zero()}).R;
+    X.p = center - X.R * B.center;
+    const PairDistance tracked = penetration_depth(A, B, X, cache);
+    if (-tracked.distance > most)
+      X.p -= tracked.normal * (-tracked.distance - 0.95 * most);
+    else if (tracked.distance > 0.0)
+      X.p += tracked.normal * (tracked.distance + 0.05 * most);
+    if (i % stride != 0 || tracked.distance > 0.0) continue;
+    PairCache again = cache;
+    const PairDistance now = penetration_depth(A, B, X, again);
+    const double least = penetration_exhaustive(A, B, X).distance;
+    const double size = std::max(A.size, B.size);
+    EXPECT_LE(now.distance, least + 1e-9 * size) << "deeper than the least depth is no depth";
+    ++count.frames;
+    count.missed += now.distance < least - 1e-9 * size;
+    count.worst = std::max(count.worst, least - now.distance);
+  }
+  return count;
+}
+
+TEST(TrackedDepth, MissesFewGlobalMinimaUnderAHandsMotion) {
+  const std::uint64_t seed = 61;
+  Random random(seed);
+  const Polytope box = make_box({0.04, 0.05, 0.06});
+  const Polytope prism = make_prism(64, 0.04, 0.05);
+  const Polytope hull_30 = cases::random_hull(random, 30, {0.04, 0.05, 0.06});
+  const Polytope hull_150 = cases::random_hull(random, 150, {0.04, 0.05, 0.06});
+  const Polytope sphere_42 = make_icosphere(1, 0.05);
+  const Polytope sphere_162 = make_icosphere(2, 0.05);
+  const Polytope sphere_642 = make_icosphere(3, 0.05);
+  const Polytope needle = make_box({0.001, 0.001, 0.05});
+  const Polytope plate = make_box({0.05, 0.05, 0.0005});
+  struct Pair {
+    const char* name;
+    const Polytope *a, *b;
+    int stride;
+    double most;  ///< [m]
+    bool compact;
+  };
+  const std::vector<Pair> pairs = {{"boxes", &box, &box, 1, 5e-3, true},
+                                   {"box, hull of 30", &box, &hull_30, 1, 5e-3, true},
+                                   {"hulls of 30", &hull_30, &hull_30, 2, 5e-3, true},
+                                   {"box, 64-prism", &box, &prism, 2, 5e-3, true},
+                                   {"64-prisms", &prism, &prism, 16, 5e-3, true},
+                                   {"box, sphere of 162", &box, &sphere_162, 4, 5e-3, true},
+                                   {"spheres of 42", &sphere_42, &sphere_42, 8, 5e-3, true},
+                                   {"spheres of 162", &sphere_162, &sphere_162, 64, 5e-3, true},
+                                   {"hulls of 150", &hull_150, &hull_150, 64, 5e-3, true},
+                                   {"spheres of 642", &sphere_642, &sphere_642, 1000, 5e-3, true},
+                                   {"needle 50:1, box", &needle, &box, 1, 1e-4, false},
+                                   {"needles", &needle, &needle, 1, 1e-4, false},
+                                   {"plate 100:1, box", &plate, &box, 1, 1e-4, false},
+                                   {"plates", &plate, &plate, 1, 1e-4, false}};
+  Count compact;
+  std::uint64_t k = 0;
+  for (const Pair& pair : pairs) {
+    const int frames = cases::full() ? 100000 : std::max(10, cases::some_of(4000));
+    const Count count = track(*pair.a, *pair.b, seed + ++k, frames, pair.stride, pair.most);
+    std::printf("  %-22s %6d frames compared, %4d missed (%.3f %%), by %.3g um at most\n", pair.name,
+                count.frames, count.missed, 100.0 * count.missed / std::max(1, count.frames),
+                count.worst * 1e6);
+    if (!pair.compact) continue;
+    compact.frames += count.frames;
+    compact.missed += count.missed;
+  }
+  EXPECT_GT(compact.frames, cases::some_of(10000));
+  EXPECT_LE(compact.missed, 0.003 * compact.frames) << "seed " << seed;
+}
+
+Polytope scaled(const Polytope& P, double by) {
+  std::vector<Vec3> corners = P.vertices;
+  for (Vec3& x : corners) x *= by;
+  return *convex_hull(corners);
+}
+
+Polytope renamed(const Polytope& P, Random& random) {
+  std::vector<Vec3> corners = P.vertices;
+  for (std::size_t i = corners.size(); i > 1; --i)
+    std::swap(corners[i - 1], corners[std::size_t(random.index(int(i)))]);
+  return *convex_hull(corners);
+}
+
+/// Cold, where small pieces give the global minimum: 2e-9 of the size, and 1e-12 m a kilometre away.
+TEST(TrackedDepth, NamesOrderPlaceAndScaleDoNotMatter) {
+  const std::uint64_t seed = 62;
+  Random random(seed);
+  const auto shapes = cases::shapes(random, false);
+  const auto depth = [](const Polytope& A, const Polytope& B, const Pose& X) {
+    PairCache cache;
+    return penetration_depth(A, B, X, cache).distance;
+  };
+  for (int i = 0; i < cases::some_of(1500); ++i) {
+    const Polytope& A = shapes[std::size_t(random.index(int(shapes.size())))].polytope;
+    const Polytope& B = shapes[std::size_t(random.index(int(shapes.size())))].polytope;
+    if (A.flat || B.flat) continue;
+    Pose X{cases::random_rotation(random), Vec3::Zero()};
+    X.p = A.center - X.R * B.center + cases::random_unit(random) * 0.5 * std::min(A.radius, B.radius);
+    const double size = std::max(A.size, B.size);
+    const double d = depth(A, B, X);
+    if (d >= 0.0) continue;
+    SCOPED_TRACE("seed " + std::to_string(seed) + ", case " + std::to_string(i) + " " + cases::describe(X));
+    EXPECT_NEAR(depth(B, A, X.inverse()), d, 2e-9 * size);
+    EXPECT_NEAR(depth(renamed(A, random), renamed(B, random), X), d, 2e-9 * size);
+    const Pose X_WA{cases::random_rotation(random), cases::random_vector(random, 1000.0)};
+    EXPECT_NEAR(depth(A, B, relative_pose(X_WA, X_WA * X)), d, 1e-11);
+    for (double by : {1e-3 / size, 10.0 / size})
+      EXPECT_NEAR(depth(scaled(A, by), scaled(B, by), {X.R, X.p * by}), d * by, 2e-9 * size * by);
+  }
+}
+
+}  // namespace
+}  // namespace tactum
