@@ -21,6 +21,17 @@ function bare(port, text) {
   });
 }
 
+/** Drags the held part down until it presses with so much, and no deeper: a hand without force sinks to its aim. */
+async function pressDown(page, force_N) {
+  const [x, y] = await heldAt(page);
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  for (let i = 1; i < 100 && Number((await state(page)).force) < force_N; ++i) {
+    await page.mouse.move(x, y + 2 * i);
+    await pause(0.15);
+  }
+}
+
 const topics = {
   async loads(browser) {
     const program = await Program.start(tactum, "gears");
@@ -94,8 +105,8 @@ const topics = {
     const page = await openPage(browser, program);
     await page.click('[data-view="front"]');
     await pause(0.3);
-    await drag(page, 0, 110, 40, false);
-    await until("there is a force to stop", async () => Number((await state(page)).force) > 0.5);
+    await pressDown(page, 0.8);
+    check(Number((await state(page)).force) > 0.5, "there is a force to stop");
     await page.focus("#reset"); // the space bar stops, whatever has the focus
     await page.keyboard.press("Space");
     await until("it is stopped", async () => (await state(page)).stopped === "true");
