@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 namespace tactum {
 namespace {
@@ -18,37 +19,53 @@ constexpr SettingKind kNumber = SettingKind::kNumber;
 constexpr SettingKind kInteger = SettingKind::kInteger;
 constexpr SettingKind kOnOff = SettingKind::kOnOff;
 
-/// get and set of a plain member.
-#define TACTUM_FIELD(member)                                    \
-  [](const Frame& frame, const Safety& safety) -> double {      \
-    static_cast<void>(frame), static_cast<void>(safety);        \
-    return member;                                              \
-  },                                                            \
-      [](Frame& frame, Safety& safety, double value) {          \
-        static_cast<void>(frame), static_cast<void>(safety);    \
-        member = static_cast<decltype(member + member)>(value); \
-      }
+/// Reading and writing a member of a section of the frame's settings, and of what is asked of safety.
+template <auto Section, auto Member>
+double get_field(const Frame& frame, const Safety&) {
+  return static_cast<double>((frame.*Section).*Member);
+}
+template <auto Section, auto Member>
+void set_field(Frame& frame, Safety&, double value) {
+  auto& member = (frame.*Section).*Member;
+  member = static_cast<std::remove_reference_t<decltype(member)>>(value);
+}
+template <auto Member>
+double get_limit(const Frame&, const Safety& safety) {
+  return safety.*Member;
+}
+template <auto Member>
+void set_limit(Frame&, Safety& safety, double value) {
+  safety.*Member = value;
+}
 
 // clang-format off
 constexpr SettingInfo kSettings[] = {
   {"coupling", "stiffness_N_per_m", "Stiffness", "N/m", "spring between the hand and the held part", 20, 5000, kNumber, true,
-   TACTUM_FIELD(frame.coupling.stiffness_N_per_m)},
+   get_field<&Frame::coupling, &Coupling::stiffness_N_per_m>,
+   set_field<&Frame::coupling, &Coupling::stiffness_N_per_m>},
   {"coupling", "stiffness_Nm_per_rad", "Turning stiffness", "N m/rad", "the same spring against turning", 0.01, 10, kNumber, true,
-   TACTUM_FIELD(frame.coupling.stiffness_Nm_per_rad)},
+   get_field<&Frame::coupling, &Coupling::stiffness_Nm_per_rad>,
+   set_field<&Frame::coupling, &Coupling::stiffness_Nm_per_rad>},
   {"coupling", "damping_Ns_per_m", "Damping", "N s/m", "what takes the swing out of that spring", 0, 20, kNumber, true,
-   TACTUM_FIELD(frame.coupling.damping_Ns_per_m)},
+   get_field<&Frame::coupling, &Coupling::damping_Ns_per_m>,
+   set_field<&Frame::coupling, &Coupling::damping_Ns_per_m>},
   {"coupling", "damping_Nms_per_rad", "Turning damping", "N m s/rad", "the same against turning", 0, 0.05, kNumber, true,
-   TACTUM_FIELD(frame.coupling.damping_Nms_per_rad)},
+   get_field<&Frame::coupling, &Coupling::damping_Nms_per_rad>,
+   set_field<&Frame::coupling, &Coupling::damping_Nms_per_rad>},
 
   {"penalty", "stiffness_N_per_m", "Contact stiffness", "N/m", "how hard a wall pushes per metre it is entered", 50, 20000, kNumber, true,
-   TACTUM_FIELD(frame.penalty.stiffness_N_per_m)},
+   get_field<&Frame::penalty, &Penalty::stiffness_N_per_m>,
+   set_field<&Frame::penalty, &Penalty::stiffness_N_per_m>},
   {"penalty", "max_step_m", "Longest step", "m", "how far the held part may travel in one frame", 0.05e-3, 0.005, kNumber, true,
-   TACTUM_FIELD(frame.penalty.max_step_m)},
+   get_field<&Frame::penalty, &Penalty::max_step_m>,
+   set_field<&Frame::penalty, &Penalty::max_step_m>},
   {"penalty", "min_tolerance_m", "Least tolerance", "m", "distance at which resting parts still push", 0, 0.001, kNumber, true,
-   TACTUM_FIELD(frame.penalty.min_tolerance_m)},
+   get_field<&Frame::penalty, &Penalty::min_tolerance_m>,
+   set_field<&Frame::penalty, &Penalty::min_tolerance_m>},
 
   {"shading", "on", "Force shading", "", "facets of a curved surface feel round", 0, 1, kOnOff, false,
-   TACTUM_FIELD(frame.shading.on)},
+   get_field<&Frame::shading, &Shading::on>,
+   set_field<&Frame::shading, &Shading::on>},
   {"shading", "crease_deg", "Crease", "deg", "facets that meet at less are one curved surface", 0, 90, kNumber, false,
    [](const Frame& frame, const Safety&) { return degrees(frame.shading.crease_rad); },
    [](Frame& frame, Safety&, double value) { frame.shading.crease_rad = radians(value); }},
@@ -59,34 +76,39 @@ constexpr SettingInfo kSettings[] = {
      frame.smoothing = value != 0.0 ? SmoothingSettings{} : SmoothingSettings{kNone, kNone};
    }},
   {"smoothing", "max_force_step_N", "Largest force step", "N", "of the shown force, from frame to frame", 0.01, 10, kNumber, true,
-   TACTUM_FIELD(frame.smoothing.max_force_step_N)},
+   get_field<&Frame::smoothing, &SmoothingSettings::max_force_step_N>,
+   set_field<&Frame::smoothing, &SmoothingSettings::max_force_step_N>},
   {"smoothing", "max_torque_step_Nm", "Largest torque step", "N m", "of the shown torque, from frame to frame", 0.0005, 0.5, kNumber, true,
-   TACTUM_FIELD(frame.smoothing.max_torque_step_Nm)},
+   get_field<&Frame::smoothing, &SmoothingSettings::max_torque_step_Nm>,
+   set_field<&Frame::smoothing, &SmoothingSettings::max_torque_step_Nm>},
 
   {"safety", "max_force_N", "Largest force", "N", "never more is sent; can only be tighter than the device's own", 0, 50, kNumber, true,
-   TACTUM_FIELD(safety.max_force_N)},
+   get_limit<&Safety::max_force_N>, set_limit<&Safety::max_force_N>},
   {"safety", "max_torque_Nm", "Largest torque", "N m", "never more is sent; can only be tighter than the device's own", 0, 5, kNumber, true,
-   TACTUM_FIELD(safety.max_torque_Nm)},
+   get_limit<&Safety::max_torque_Nm>, set_limit<&Safety::max_torque_Nm>},
   {"safety", "max_force_slew_N_per_s", "Fastest force", "N/s", "how fast the shown force may change", 1, 20000, kNumber, true,
-   TACTUM_FIELD(safety.max_force_slew_N_per_s)},
+   get_limit<&Safety::max_force_slew_N_per_s>, set_limit<&Safety::max_force_slew_N_per_s>},
   {"safety", "max_torque_slew_Nm_per_s", "Fastest torque", "N m/s", "how fast the shown torque may change", 0.02, 1000, kNumber, true,
-   TACTUM_FIELD(safety.max_torque_slew_Nm_per_s)},
+   get_limit<&Safety::max_torque_slew_Nm_per_s>, set_limit<&Safety::max_torque_slew_Nm_per_s>},
   {"safety", "start_ramp_s", "Start ramp", "s", "from nothing to the full force after a start", 0, 5, kNumber, true,
-   TACTUM_FIELD(safety.start_ramp_s)},
+   get_limit<&Safety::start_ramp_s>, set_limit<&Safety::start_ramp_s>},
   {"safety", "stop_ramp_s", "Stop ramp", "s", "from the full force to nothing when stopped", 0.001, 0.1, kNumber, true,
-   TACTUM_FIELD(safety.stop_ramp_s)},
+   get_limit<&Safety::stop_ramp_s>, set_limit<&Safety::stop_ramp_s>},
 
   {"", "dt_s", "Frame time", "s", "time from frame to frame: the rate of the loop is one over it", 0.0001, 0.01, kNumber, false,
-   TACTUM_FIELD(frame.dt_s)},
+   [](const Frame& frame, const Safety&) { return frame.dt_s; },
+   [](Frame& frame, Safety&, double value) { frame.dt_s = value; }},
   {"budget", "max_exact_tests", "Exact tests", "", "most exact tests of pairs in a frame", 1, 100000, kInteger, true,
-   TACTUM_FIELD(frame.budget.max_exact_tests)},
+   get_field<&Frame::budget, &WorkBudget::max_exact_tests>,
+   set_field<&Frame::budget, &WorkBudget::max_exact_tests>},
   {"budget", "max_contact_points", "Contact points", "", "most contact points in a frame", 1, 10000, kInteger, false,
-   TACTUM_FIELD(frame.budget.max_contact_points)},
+   get_field<&Frame::budget, &WorkBudget::max_contact_points>,
+   set_field<&Frame::budget, &WorkBudget::max_contact_points>},
   {"budget", "solver_iterations", "Solver rounds", "", "most rounds of the contact solver", 1, 1000, kInteger, true,
-   TACTUM_FIELD(frame.budget.solver_iterations)},
+   get_field<&Frame::budget, &WorkBudget::solver_iterations>,
+   set_field<&Frame::budget, &WorkBudget::solver_iterations>},
 };
 // clang-format on
-#undef TACTUM_FIELD
 
 }  // namespace
 

@@ -22,7 +22,8 @@ struct SessionCommand {
   int setting = -1;                                        ///< of kSet: index in setting_table()
   double value = 0.0;                                      ///< of kSet
 
-  Pose X_WH() const {
+  /// Of kAim: p_WH and quat_wxyz_WH as one.
+  Pose aim() const {
     const auto& q = quat_wxyz_WH;
     return {Quat(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix(), {p_WH[0], p_WH[1], p_WH[2]}};
   }

@@ -86,7 +86,7 @@ void Session::obey(const SessionCommand& command) noexcept {
   switch (command.kind) {
     case SessionCommand::Kind::kAim: {
       if (pointer_ == nullptr || !state_.hand.known) return;
-      Pose X_DH = relative_pose(state_.hand.X_WD, command.X_WH());
+      Pose X_DH = relative_pose(state_.hand.X_WD, command.aim());
       X_DH.p /= scene_.settings.workspace.scale;
       pointer_->aim(X_DH, command.buttons);
       return;
