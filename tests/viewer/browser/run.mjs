@@ -32,6 +32,20 @@ async function pressDown(page, force_N) {
   }
 }
 
+/** The largest force as the page, its CSV file and the program's summary tell it. Ends the program. */
+async function forcesAgree(page, program) {
+  await page.keyboard.press("Space"); // from here on no force can be larger
+  await until("there is no force", async () => (await state(page)).force === "0");
+  const rows = readCsv(await downloaded(page, "#csv"));
+  const peakOfPage = Number((await state(page)).peakForce);
+  const summary = await program.end();
+  const peakOfCsv = Math.max(...rows.map(shownForce));
+  console.log(`largest force: page ${peakOfPage} N, CSV ${peakOfCsv} N, program ${summary.max_force_N} N`);
+  check(Math.abs(peakOfPage - summary.max_force_N) < 1e-5 * summary.max_force_N, "page and program agree");
+  check(Math.abs(peakOfCsv - summary.max_force_N) < 1e-5 * summary.max_force_N, "CSV and program agree");
+  for (let i = 1; i < rows.length; ++i) check(rows[i].frame === rows[i - 1].frame + 1, `the CSV lacks a frame after ${rows[i - 1].frame}`);
+}
+
 const topics = {
   async loads(browser) {
     const program = await Program.start(tactum, "gears");
@@ -89,15 +103,30 @@ const topics = {
     for (let i = 0; i < 60; ++i) await page.keyboard.press("ArrowUp"); // up again by the keys
     await until("the part is free", async () => Number((await state(page)).force) < 0.05);
     await pause(0.3);
-    const rows = readCsv(await downloaded(page, "#csv"));
-    const peakOfPage = Number((await state(page)).peakForce);
-    const summary = await program.end();
-    const peakOfCsv = Math.max(...rows.map(shownForce));
-    console.log(`largest force: page ${peakOfPage} N, CSV ${peakOfCsv} N, program ${summary.max_force_N} N`);
-    check(Math.abs(peakOfPage - summary.max_force_N) < 1e-5 * summary.max_force_N, "page and program agree");
-    check(Math.abs(peakOfCsv - summary.max_force_N) < 1e-5 * summary.max_force_N, "CSV and program agree");
-    for (let i = 1; i < rows.length; ++i) check(rows[i].frame === rows[i - 1].frame + 1, `the CSV lacks a frame after ${rows[i - 1].frame}`);
+    await forcesAgree(page, program);
     check(page.complaints.length === 0, page.complaints.join("; "));
+  },
+
+  async wall(browser) {
+    const program = await Program.start(tactum, "peg-in-hole");
+    const page = await openPage(browser, program);
+    await page.selectOption("#span", "40");
+    await page.click("#see-through"); // the peg can be taken through the block
+    await until("the peg is in its hole", async () => Number((await state(page)).newest) > 4900);
+    await drag(page, 0, 0, 1, false);
+    await pause(1);
+    const before = Number((await state(page)).force);
+    const [x, y] = await heldAt(page);
+    for (let i = 1; i <= 30; ++i) {
+      await page.mouse.move(x + 3 * i, y + i); // along the block's long side, to the right
+      await pause(0.05);
+    }
+    await until("the wall pushes back", async () => Number((await state(page)).force) > before + 1);
+    check((await page.textContent("#why")).includes("“peg” touches “block”"), "the page says what pushes");
+    await page.mouse.up();
+    await pause(0.3);
+    check(page.complaints.length === 0, page.complaints.join("; "));
+    await forcesAgree(page, program);
   },
 
   async stop(browser) {
