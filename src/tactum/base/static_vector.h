@@ -1,6 +1,7 @@
 #pragma once
 /// A vector with its room inside, for the frame: it never allocates, and a push that does not fit says so.
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 
@@ -22,6 +23,11 @@ class StaticVector {
     --size_;
   }
   void clear() noexcept { size_ = 0; }
+  /// The first `count` of `items`, as many of them as fit.
+  void assign(const T* items, std::size_t count) noexcept {
+    size_ = count < N ? count : N;
+    std::copy_n(items, size_, items_.begin());
+  }
   std::size_t size() const noexcept { return size_; }
   bool empty() const noexcept { return size_ == 0; }
   bool full() const noexcept { return size_ == N; }

@@ -230,8 +230,8 @@ class Query {
 
 /// Pieces that overlapped in the last frame: their depth, and a proof that it is one.
 bool still_inside(const PairView& pair, PairCache& cache, PairDistance& x) noexcept {
-  x = penetration_depth(pair.A, pair.B, pair.X_AB, cache);
-  return overlap_by_facet(pair, x) || overlap_by_vertices(pair, cache.overlap);
+  x = tracked_depth(pair, cache);
+  return x.certified() && (overlap_by_facet(pair, x) || overlap_by_vertices(pair, cache.overlap));
 }
 
 }  // namespace

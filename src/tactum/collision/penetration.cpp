@@ -284,21 +284,24 @@ class Tracker {
 
 }  // namespace
 
+PairDistance tracked_depth(const PairView& pair, PairCache& cache) noexcept {
+  const PairDistance result = Tracker(pair, cache).run();
+  remember(result, cache);
+  return result;
+}
+
 PairDistance penetration_depth(const Polytope& A, const Polytope& B, const Pose& X_AB,
                                PairCache& cache) noexcept {
   const PairView pair(A, B, X_AB);
   if (!cache.normal_A.isZero()) {
-    const PairDistance result = Tracker(pair, cache).run();
-    remember(result, cache);
+    const PairDistance result = tracked_depth(pair, cache);
     if (result.certified()) return result;
   }
   Shallowest shallowest(pair);
-  if (!shallowest.any() || !shallowest.best().certified()) {
-    if (small_pair(pair)) {
-      from_every_facet(pair, shallowest, [](const Vec3&) { return true; });
-    } else {
-      from_many_directions(pair, shallowest);
-    }
+  if (small_pair(pair)) {
+    from_every_facet(pair, shallowest, [](const Vec3&) { return true; });
+  } else {
+    from_many_directions(pair, shallowest);
   }
   const PairDistance result = shallowest.best();
   remember(result, cache);

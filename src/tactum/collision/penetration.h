@@ -9,8 +9,7 @@
 
 #include <optional>
 
-#include "tactum/collision/contact.h"
-#include "tactum/geometry/polytope.h"
+#include "tactum/collision/pair_view.h"
 
 namespace tactum {
 
@@ -20,6 +19,10 @@ namespace tactum {
 /// distance.
 PairDistance penetration_depth(const Polytope& A, const Polytope& B, const Pose& X_AB,
                                PairCache& cache) noexcept;
+
+/// From the last frame's features alone (`cache.normal_A` must not be zero): what penetration_depth tries
+/// first. Not certified when the pieces have come apart, or when the walk has lost its way. Cost: 0.1-0.2 us.
+PairDistance tracked_depth(const PairView& pair, PairCache& cache) noexcept;
 
 /// The global minimum, over every facet of the Minkowski difference. Not for the frame: E_A E_B x 10 ns (two
 /// spheres of 642 vertices: 40 ms).

@@ -18,8 +18,9 @@ double cross(const Vec2& a, const Vec2& b) noexcept { return a.x() * b.y() - a.y
 struct Cut {
   Vec2 outward;
   double offset;
-  double scale;
+  double scale = 1.0;
 
+  Cut(const Vec2& normal, double reach) noexcept : outward(normal), offset(reach) {}
   Cut(const Vec2& from, const Vec2& to) noexcept
       : outward(to.y() - from.y(), from.x() - to.x()),
         offset(outward.x() * from.x() + outward.y() * from.y()),
@@ -134,90 +135,63 @@ class Ring {
   double snap_ = 0.0;  // [m]
 };
 
-/// A polygon's coordinates apart, as cutting side by side likes them.
-template <std::size_t N>
-struct Corners {
-  std::array<double, N> x, y;
-  std::size_t count = 0;
-
-  explicit Corners(const PatchPolygon& polygon) noexcept : count(polygon.size()) {
-    for (std::size_t i = 0; i < count; ++i) {
-      x[i] = polygon[i].x();
-      y[i] = polygon[i].y();
+/// Corners of what a cut leaves of a convex polygon of `n` [Sutherland and Hodgman 1974], in one pass. Room
+/// for n + 2 corners is the caller's.
+std::size_t cut_off(const Vec2* from, std::size_t n, const Cut& cut, double snap, Vec2* to) noexcept {
+  std::size_t kept = 0;
+  const Vec2* last = from + n - 1;
+  double last_height = cut.height(*last);
+  for (const Vec2* x = from; x != from + n; ++x) {
+    const double height = cut.height(*x);
+    if ((last_height < -snap && height > snap) || (last_height > snap && height < -snap)) {
+      const double s = last_height / (last_height - height);
+      to[kept++] = *last + (*x - *last) * s;
     }
+    to[kept] = *x;
+    kept += height <= snap ? 1 : 0;
+    last = x;
+    last_height = height;
   }
-  void copy_to(PatchPolygon& polygon) const noexcept {
-    polygon.clear();
-    for (std::size_t i = 0; i < count; ++i) polygon.push_back({x[i], y[i]});
-  }
-
-  /// Keeps what is below normal . x = offset [Sutherland and Hodgman 1974]. Where no corner is more than
-  /// `snap` above, all stay: false.
-  bool cut(double nx, double ny, double offset, double snap) noexcept {
-    std::array<double, N> height;
-    bool any = false;
-    for (std::size_t i = 0; i < count; ++i) {
-      height[i] = nx * x[i] + ny * y[i] - offset;
-      any |= height[i] > snap;
-    }
-    if (!any) return false;
-    const Corners whole = *this;
-    const std::size_t n = count;
-    count = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      const std::size_t next = i + 1 == n ? 0 : i + 1;
-      if (height[i] <= snap) add(whole.x[i], whole.y[i]);
-      if ((height[i] < -snap && height[next] > snap) || (height[i] > snap && height[next] < -snap)) {
-        const double s = height[i] / (height[i] - height[next]);
-        add(whole.x[i] + (whole.x[next] - whole.x[i]) * s, whole.y[i] + (whole.y[next] - whole.y[i]) * s);
-      }
-    }
-    return true;
-  }
-
- private:
-  Corners(const Corners& other) noexcept : count(other.count) {
-    std::copy_n(other.x.begin(), count, x.begin());
-    std::copy_n(other.y.begin(), count, y.begin());
-  }
-  void add(double px, double py) noexcept {
-    if (count == N) return;
-    x[count] = px;
-    y[count++] = py;
-  }
-};
+  return kept;
+}
 
 Cut side_of(const PatchPolygon& window, std::size_t i) noexcept {
-  return {window[i], window[i + 1 == window.size() ? 0 : i + 1]};
+  const Vec2* corners = window.begin();
+  return {corners[i], corners[i + 1 == window.size() ? 0 : i + 1]};
 }
 
 }  // namespace
 
 void clip_polygon(PatchPolygon& polygon, const Vec2& normal, double offset) noexcept {
-  Corners<PatchPolygon::capacity()> corners(polygon);
-  if (corners.cut(normal.x(), normal.y(), offset, 0.0)) corners.copy_to(polygon);
+  if (polygon.empty()) return;
+  std::array<Vec2, PatchPolygon::capacity() + 2> kept;
+  const std::size_t n = cut_off(polygon.begin(), polygon.size(), {normal, offset}, 0.0, kept.data());
+  polygon.assign(kept.data(), n);
 }
 
 void clip_polygon(PatchPolygon& polygon, const PatchPolygon& window) noexcept {
   constexpr std::size_t kFew = 6;  // corners of both up to which going around costs more than it saves
   if (polygon.empty()) return;
-  const std::size_t n = window.size();
-  if (n <= kFew && polygon.size() <= kFew) {
-    Corners<2 * kFew> corners(polygon);
-    double most = 0.0;
-    for (const Vec2& x : polygon) most = extent(most, x);
-    bool any = false;
-    for (std::size_t i = 0; i < n; ++i) {
-      const Cut cut = side_of(window, i);
-      any |= corners.cut(cut.outward.x(), cut.outward.y(), cut.offset, kSnap * most * cut.scale);
-    }
-    if (any) corners.copy_to(polygon);
-    return;
+  const std::size_t sides = window.size();
+  if (sides > kFew || polygon.size() > kFew) {
+    Ring ring(polygon, side_of(window, 0));
+    for (std::size_t i = 0; i < sides; ++i)
+      if (!ring.cut(side_of(window, i))) return polygon.clear();
+    return ring.copy_to(polygon);
   }
-  Ring ring(polygon, side_of(window, 0));
-  for (std::size_t i = 0; i < n; ++i)
-    if (!ring.cut(side_of(window, i))) return polygon.clear();
-  ring.copy_to(polygon);
+  double most = 0.0;
+  for (const Vec2& x : polygon) most = extent(most, x);
+  std::array<std::array<Vec2, 3 * kFew + 2>, 2>
+      rows;  // every cut of a convex polygon adds one corner, or two by rounding
+  const Vec2* from = polygon.begin();
+  std::size_t n = polygon.size();
+  for (std::size_t i = 0; i < sides && n > 0; ++i) {
+    const Cut cut = side_of(window, i);
+    Vec2* to = rows[i & 1].data();
+    n = cut_off(from, n, cut, kSnap * most * cut.scale, to);
+    from = to;
+  }
+  polygon.assign(from, n);
 }
 
 double twice_area(const PatchPolygon& polygon) noexcept {
@@ -232,18 +206,19 @@ PatchMoments moments_of(const PatchPolygon& polygon) noexcept {
   const std::size_t n = polygon.size();
   if (n < 3) return m;
   // Sums over the triangles of a fan at corner 0, about corner 0.
-  const Vec2 origin = polygon[0];
+  const Vec2* corners = polygon.begin();
+  const Vec2 origin = corners[0];
   double twice = 0.0;
   double fx = 0.0;
   double fy = 0.0;
   double xx = 0.0;
   double xy = 0.0;
   double yy = 0.0;
-  double ax = polygon[1].x() - origin.x();
-  double ay = polygon[1].y() - origin.y();
+  double ax = corners[1].x() - origin.x();
+  double ay = corners[1].y() - origin.y();
   for (std::size_t i = 2; i < n; ++i) {
-    const double bx = polygon[i].x() - origin.x();
-    const double by = polygon[i].y() - origin.y();
+    const double bx = corners[i].x() - origin.x();
+    const double by = corners[i].y() - origin.y();
     const double weight = ax * by - ay * bx;
     const double sx = ax + bx;
     const double sy = ay + by;
