@@ -8,12 +8,14 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <thread>
 
 #include "commands.h"
 #include "output.h"
 #include "tactum/scene/builtin_scenes.h"
 #include "tactum/session/session.h"
+#include "viewer/server/viewer.h"
 
 namespace tactum {
 namespace {
@@ -26,6 +28,8 @@ struct FeelOptions {
   std::string hand;
   std::string json;
   bool virtual_clock = false;
+  bool view = false;
+  int port = 0;
 };
 
 // Set by the signal handler, read by the main thread; the loop then ramps the wrench to zero.
@@ -116,10 +120,107 @@ Summary feel_live(Session& session, std::uint64_t frames) {
   return session.frame_times().summary();
 }
 
+/// Tells the address, and opens it where there is a screen.
+void open_page(std::FILE* out, const std::string& address) {
+  fmt::print(out, "see and feel it at {}\n", address);
+  std::fflush(out);
+  const bool screen = std::getenv("DISPLAY") != nullptr || std::getenv("WAYLAND_DISPLAY") != nullptr;
+  if (!screen) return;
+  // The address holds digits, letters and slashes only. Where there is no browser, it stays printed.
+  const std::string command = "xdg-open '" + address + "' >/dev/null 2>&1 &";
+  if (std::system(command.c_str()) != 0) fmt::print(stderr, "cannot start a browser; open the address\n");
+}
+
+/// Passes the frames of a virtual run on to the pages.
+class ViewedVirtualWatch final : public LoopObserver {
+ public:
+  explicit ViewedVirtualWatch(Viewer& viewer) : viewer_(viewer) {}
+  bool after_frame(const FrameRecord& record) noexcept override {
+    frame_times.add(static_cast<std::int64_t>(record.frame_time_s * 1e9));
+    viewer_.after_virtual_frame(record);
+    return !g_interrupted.load();
+  }
+  DurationHistogram frame_times;
+
+ private:
+  Viewer& viewer_;
+};
+
+Summary feel_viewed_virtually(Viewer& viewer, std::uint64_t frames) {
+  ViewedVirtualWatch watch(viewer);
+  const Result<VirtualRun> run = viewer.session().run_virtual(frames, &watch);
+  if (!run) fail(run.error());
+  return watch.frame_times.summary();
+}
+
+/// Until it is interrupted; or, where an end was asked for, until that is reached and no page is open any
+/// more.
+Summary feel_viewed(Viewer& viewer, std::uint64_t frames) {
+  constexpr double kReload_s = 2.0;  // a page that comes back within this was only loaded anew
+  if (const Result<void> started = viewer.start(); !started) fail(started.error());
+  for (const std::string& sentence : viewer.session().privileges().sentences)
+    fmt::print(stderr, "{}\n", sentence);
+  StatusLine status;
+  auto last_line = std::chrono::steady_clock::now();
+  std::uint64_t earlier = 0, last = 0;  // frames of runs that a page has ended
+  while (!g_interrupted.load()) {
+    viewer.poll(std::chrono::milliseconds(8));
+    const LoopStatus loop = viewer.session().loop_status();
+    if (!loop.running) break;
+    if (loop.frames < last) earlier += last;
+    last = loop.frames;
+    const bool page_was_here = viewer.server().status().pages_ever > 0;
+    if (frames > 0 && earlier + loop.frames >= frames && viewer.alone_s() > (page_was_here ? kReload_s : 0.0))
+      break;
+    if (std::chrono::steady_clock::now() - last_line < std::chrono::milliseconds(100)) continue;
+    last_line = std::chrono::steady_clock::now();
+    status.show(viewer.session(), viewer.status());
+  }
+  viewer.stop();
+  viewer.poll(std::chrono::microseconds(0));
+  return viewer.session().frame_times().summary();
+}
+
+void tell_what_is_felt(std::FILE* out, const Session& session, const std::string& grip) {
+  fmt::print(out, "{}: {}\n{} at {:.0f} Hz, hand {}\n", session.scene().name, session.scene().description,
+             session.device().name, session.rate_Hz(), grip.empty() ? session.scene().grip : grip);
+  std::fflush(out);
+}
+
+void sum_up(std::FILE* out, const FeelOptions& options, const Session& session, const Summary& times,
+            const StageClock& stages) {
+  print_summary(out, session, times, stages);
+  if (!options.json.empty()) write_json(options.json, summary_json(session, times, stages));
+  if (session.loop_status().device_lost)
+    fail({"the device refused every wrench for a while, so the loop has ended", "",
+          "a device that is plugged in and powered", session.device().name});
+}
+
+void feel_with_pages(const FeelOptions& options, Scene scene, std::FILE* out) {
+  Result<std::unique_ptr<Viewer>> opened = Viewer::open(
+      std::move(scene), {.device = options.device, .grip = options.hand, .rate_Hz = 0.0}, options.port);
+  if (!opened) fail(opened.error());
+  Viewer& viewer = **opened;
+  tell_what_is_felt(out, viewer.session(), options.hand);
+  open_page(out, viewer.server().address());
+  const std::uint64_t asked =
+      options.updates > 0 ? options.updates
+                          : static_cast<std::uint64_t>(options.duration_s * viewer.session().rate_Hz());
+  const Summary times = options.virtual_clock
+                            ? feel_viewed_virtually(viewer, frames_asked_for(options, viewer.session()))
+                            : feel_viewed(viewer, asked);
+  sum_up(out, options, viewer.session(), times, viewer.stages());
+}
+
 void feel(const FeelOptions& options) {
   Result<Scene> scene = open_scene(options.scene);
   if (!scene) fail(scene.error());
   for (const std::string& remark : scene->remarks) fmt::print(stderr, "{}\n", remark);
+  std::signal(SIGINT, on_interrupt);
+  std::signal(SIGTERM, on_interrupt);
+  // With --json - the standard output is for machines alone.
+  std::FILE* out = options.json == "-" ? stderr : stdout;
+  if (options.view) return feel_with_pages(options, std::move(*scene), out);
   Result<std::unique_ptr<Session>> opened =
       Session::open(std::move(*scene), {.device = options.device, .grip = options.hand, .rate_Hz = 0.0});
   if (!opened) fail(opened.error());
@@ -127,22 +228,10 @@ void feel(const FeelOptions& options) {
 
   StageClock stages;
   session.time_stages(&stages);
-
-  std::signal(SIGINT, on_interrupt);
-  std::signal(SIGTERM, on_interrupt);
-  // With --json - the standard output is for machines alone.
-  std::FILE* out = options.json == "-" ? stderr : stdout;
-  fmt::print(out, "{}: {}\n{} at {:.0f} Hz, hand {}\n", session.scene().name, session.scene().description,
-             session.device().name, session.rate_Hz(),
-             options.hand.empty() ? session.scene().grip : options.hand);
-  std::fflush(out);
+  tell_what_is_felt(out, session, options.hand);
   const std::uint64_t frames = frames_asked_for(options, session);
   const Summary times = options.virtual_clock ? feel_virtually(session, frames) : feel_live(session, frames);
-  print_summary(out, session, times, stages);
-  if (!options.json.empty()) write_json(options.json, summary_json(session, times, stages));
-  if (session.loop_status().device_lost)
-    fail({"the device refused every wrench for a while, so the loop has ended", "",
-          "a device that is plugged in and powered", session.device().name});
+  sum_up(out, options, session, times, stages);
 }
 
 }  // namespace
@@ -164,6 +253,13 @@ void add_feel(CLI::App& app) {
   command->add_option("--json", options->json, "write the summary to this file (- for standard output)");
   command->add_flag("--virtual-clock", options->virtual_clock,
                     "as fast as the machine can, with the same result on every machine");
+  command->add_flag(
+      "--view", options->view,
+      "serve a page that shows it, and on which the mouse is the hand; without a duration until "
+      "interrupted, else until no page is open");
+  command->add_option("--port", options->port, "of the page; by default one that is free")
+      ->check(CLI::Range(1, 65535))
+      ->needs("--view");
   command->callback([options] { feel(*options); });
 }
 

@@ -13,9 +13,9 @@ import re
 import sys
 
 FRAME_LINES = 80
-LOOKED_AT = ("src", "app", "tests", "bench", "fuzz", "examples", "scenes", "docs", "cmake", "README.md", "CMakeLists.txt", "run",
+LOOKED_AT = ("src", "app", "viewer/server", "viewer/web/src", "tests", "bench", "fuzz", "examples", "scenes", "docs", "cmake", "README.md", "CMakeLists.txt", "run",
              "test")
-SUFFIXES = (".h", ".cpp", ".md", ".toml", ".cmake", ".txt", ".bib", "")
+SUFFIXES = (".h", ".cpp", ".md", ".toml", ".cmake", ".txt", ".bib", ".ts", ".mjs", ".css", "")
 
 COMMENT_OR_STRING = re.compile(r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"', re.DOTALL)
 EPSILON = re.compile(r"(?<![\w.])(?:\d[\d']*\.?\d*|\.\d+)[eE]-0*(?:[4-9]|[1-9]\d+)\b|(?<![\w.])0?\.0000\d*(?![\w.])")

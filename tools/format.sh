@@ -5,5 +5,5 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 mode=(-i)
 [[ ${1:-} != --check ]] || mode=(--dry-run --Werror)
 folders=()
-for folder in src app tests bench fuzz examples; do [[ ! -d $folder ]] || folders+=("$folder"); done
+for folder in src app viewer/server tests bench fuzz examples; do [[ ! -d $folder ]] || folders+=("$folder"); done
 find "${folders[@]}" \( -name '*.h' -o -name '*.cpp' \) -print0 | xargs -0 -r clang-format "${mode[@]}"

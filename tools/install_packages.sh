@@ -17,11 +17,13 @@ for section in "$@"; do
 done
 
 if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
-  stop "this is not a Debian machine. Install these in your system's own way, then set TACTUM_SKIP_INSTALL=1: ${wanted[*]}"
+  stop "this is not a Debian machine. Install these in your system's own way, then set TACTUM_SKIP_INSTALL=1: ${wanted[*]%%|*}"
 fi
 
 missing=()
-for package in "${wanted[@]}"; do
+for entry in "${wanted[@]}"; do
+  package="${entry%%|*}"
+  if [[ "$entry" == *"|"* ]] && command -v "${entry#*|}" >/dev/null; then continue; fi
   [[ $(dpkg-query -W -f '${Status}' "$package" 2>/dev/null) == "install ok installed" ]] || missing+=("$package")
 done
 [[ ${#missing[@]} -gt 0 ]] || exit 0

@@ -2,7 +2,7 @@
 """clang-tidy (settings: .clang-tidy) over the program's own sources:  tools/tidy.py BUILD_FOLDER [FILE...]
 
 Without files it checks the heart, where a slip moves a motor, and every header at once through one generated
-file; with TACTUM_FULL=1 every source of src/ and app/.
+file; with TACTUM_FULL=1 every source of src/, app/ and viewer/server/.
 """
 import json
 import os
@@ -12,7 +12,7 @@ import sys
 from concurrent.futures import ThreadPoolExecutor
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-OWN = ("src/", "app/")
+OWN = ("src/", "app/", "viewer/server/")
 HEART = ("src/tactum/base/", "src/tactum/devices/", "src/tactum/haptics/")
 
 

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "tactum/devices/motion_file.h"
+#include "tactum/devices/pointer_device.h"
 #include "tactum/devices/replay_device.h"
 #include "tactum/devices/simulated_device.h"
 
@@ -14,7 +15,9 @@ using MadeDevice = Result<std::unique_ptr<Device>>;
 
 constexpr const char* kDefaultPreset = "premium-1.5-6dof";
 
-MadeDevice make_simulated(const std::string& preset, const DeviceOptions& options) {
+/// A simulated device of some kind: simulated or led by a pointer.
+template <class Kind>
+MadeDevice make_handled(const std::string& preset, const DeviceOptions& options) {
   Result<SimulatedDeviceModel> model = simulated_device_preset(preset.empty() ? kDefaultPreset : preset);
   if (!model) return model.error();
   HandModel hand = no_hand();
@@ -23,7 +26,7 @@ MadeDevice make_simulated(const std::string& preset, const DeviceOptions& option
     if (!grip) return grip.error();
     hand = *grip;
   }
-  return MadeDevice(std::make_unique<SimulatedDevice>(*model, hand, options.hand_motion));
+  return MadeDevice(std::make_unique<Kind>(*model, hand, options.hand_motion));
 }
 
 MadeDevice make_replay(const std::string& path, const DeviceOptions& options) {
@@ -49,6 +52,10 @@ std::vector<DeviceListing> list_simulated() {
   return listings;
 }
 
+std::vector<DeviceListing> list_pointer() {
+  return {{"pointer:PRESET", "a simulated device in a hand that the mouse leads, on the viewer's page"}};
+}
+
 std::vector<DeviceListing> list_replay() {
   return {{"replay:FILE", "plays a recorded hand from a motion file; nothing is felt"}};
 }
@@ -60,8 +67,9 @@ struct Kind {
   std::vector<DeviceListing> (*list)();
 };
 
-constexpr std::array<Kind, 2> kKinds = {{
-    {"simulated", make_simulated, list_simulated},
+constexpr std::array<Kind, 3> kKinds = {{
+    {"simulated", make_handled<SimulatedDevice>, list_simulated},
+    {"pointer", make_handled<PointerDevice>, list_pointer},
     {"replay", make_replay, list_replay},
 }};
 

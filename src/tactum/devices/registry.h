@@ -3,6 +3,7 @@
 ///
 ///   simulated            the premium-1.5-6dof preset
 ///   simulated:PRESET     a preset of simulated_device.h
+///   pointer:PRESET       the same in a hand that is led from outside (pointer_device.h)
 ///   replay:FILE          a motion file (motion_file.h)
 
 #include <memory>

@@ -23,6 +23,7 @@ namespace tactum {
 /// One contact point between two bodies: normal from B to A, as in collision/contact.h, told in the world.
 struct ContactRow {
   int body_a = -1, body_b = -1;
+  int patch = -1;              ///< the caller's number of the patch it stands for; the solver ignores it
   Vec3 n_BA_W = Vec3::Zero();  ///< unit [-]
   Vec3 p_W = Vec3::Zero();     ///< where the force acts [m]
   double distance = 0.0;       ///< signed, at the start of the step [m]

@@ -128,6 +128,7 @@ void make_contact_rows(const World& world, std::span<const Pose> X_WB, std::span
       ContactRow& row = out.rows.emplace_back();
       row.body_a = first->body_a;
       row.body_b = first->body_b;
+      row.patch = first->patch;
       row.n_BA_W = point.n_BA_W;
       row.p_W = point.p_W;
       row.distance = point.distance;

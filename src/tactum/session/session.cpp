@@ -1,6 +1,9 @@
 #include "tactum/session/session.h"
 
+#include <cmath>
+
 #include "tactum/devices/registry.h"
+#include "tactum/haptics/setting_table.h"
 
 namespace tactum {
 namespace {
@@ -40,16 +43,20 @@ Result<std::unique_ptr<Session>> Session::open(Scene scene, const SessionOptions
     if (Result<void> rate = check_rate(options.rate_Hz); !rate) return rate.error();
     scene.settings.dt_s = 1.0 / options.rate_Hz;
   }
-  scene.settings.safety = tightened(safety_limits((*device)->info()), scene.safety);
   return std::unique_ptr<Session>(new Session(std::move(scene), std::move(*device)));
 }
 
 Session::Session(Scene scene, std::unique_ptr<Device> device)
     : scene_(std::move(scene)),
+      device_limits_(safety_limits(device->info())),
       device_(std::move(device)),
+      pointer_(dynamic_cast<PointerDevice*>(device_.get())),
+      commands_(kCommands),
       state_(scene_.world, scene_.settings),
       goals_(scene_.world, scene_.goals),
-      glances_(kGlances) {}
+      glances_(kGlances) {
+  scene_.settings.safety = tightened(device_limits_, scene_.safety);
+}
 
 Result<VirtualRun> Session::run_virtual(std::uint64_t frames, LoopObserver* observer) {
   return tactum::run_virtual(*device_, *this, rate_Hz(), frames, observer);
@@ -64,20 +71,50 @@ Result<void> Session::start(std::uint64_t frames) {
   return started;
 }
 
-SessionStatus Session::poll() noexcept {
+SessionStatus Session::poll(std::vector<FrameTiming>* timings) {
   while (glances_.pop(newest_)) {
   }
   if (!threaded_) return newest_;  // the observer of a virtual run has the times
-  for (FrameTiming timing; loop_.timings().pop(timing);)
+  for (FrameTiming timing; loop_.timings().pop(timing);) {
     frame_times_.add(static_cast<std::int64_t>(timing.frame_time_s * 1e9));
+    if (timings != nullptr) timings->push_back(timing);
+  }
   return newest_;
 }
 
+void Session::obey(const SessionCommand& command) noexcept {
+  switch (command.kind) {
+    case SessionCommand::Kind::kAim: {
+      if (pointer_ == nullptr || !state_.hand.known) return;
+      Pose X_DH = relative_pose(state_.hand.X_WD, command.aim());
+      X_DH.p /= scene_.settings.workspace.scale;
+      pointer_->aim(X_DH, command.buttons);
+      return;
+    }
+    case SessionCommand::Kind::kRest:
+      if (pointer_ != nullptr && pointer_->aimed()) pointer_->rest();
+      return;
+    case SessionCommand::Kind::kSet: {
+      const std::span<const SettingInfo> table = setting_table();
+      if (command.setting < 0 || command.setting >= static_cast<int>(table.size())) return;
+      const SettingInfo& setting = table[static_cast<std::size_t>(command.setting)];
+      if (!setting.live || !in_range(setting, command.value)) return;
+      setting.set(scene_.settings, scene_.safety, command.value);
+      scene_.settings.safety = tightened(device_limits_, scene_.safety);
+      return;
+    }
+  }
+}
+
 Wrench Session::run(const DeviceSample& sample, const FrameTick& tick) noexcept {
+  for (SessionCommand command; commands_.pop(command);) obey(command);
+  FrameTick felt = tick;
+  felt.stop = tick.stop || held_at_zero_.load(std::memory_order_relaxed);
   if (stage_clock_ != nullptr) stage_clock_->frame_begins();
-  const Wrench F_D = haptic_frame(scene_.world, scene_.settings, sample, tick, state_, report_);
+  const Wrench F_D = haptic_frame(scene_.world, scene_.settings, sample, felt, state_, report_);
   if (!tick.stop) record_.add(report_, state_.world);
   goals_.watch(scene_.world, state_.world);
+  if (feed_ != nullptr) feed_->take({report_, state_, scene_.settings}, stage_clock_);
   // A full ring means nobody has looked for seconds: the newest glance is then lost, the frame is not.
   glances_.push({report_.index, report_.shown.f.norm(), report_.shown.t.norm(), report_.contact_points,
                  (report_.X_WH_proxy.p - report_.X_WH.p).norm(), report_.safety});

@@ -4,7 +4,8 @@
 ///   Scene + device name --open--> Session --run_virtual()--> or --start(), status(), stop()--> RunRecord,
 ///   goals
 ///
-/// The loop's thread owns the frame; other threads see it only through a ring of small status records.
+/// The loop's thread owns the frame; other threads see it only through rings of small records, and ask for
+/// changes through another (command.h), which the loop empties between two frames.
 
 #include <atomic>
 #include <memory>
@@ -12,9 +13,12 @@
 
 #include "tactum/base/spsc_ring.h"
 #include "tactum/devices/device.h"
+#include "tactum/devices/pointer_device.h"
 #include "tactum/haptics/frame.h"
 #include "tactum/haptics/loop_thread.h"
 #include "tactum/scene/scene.h"
+#include "tactum/session/command.h"
+#include "tactum/telemetry/frame_feed.h"
 #include "tactum/telemetry/run_record.h"
 #include "tactum/telemetry/statistics.h"
 
@@ -54,8 +58,18 @@ class Session final : private HapticFrame {
   void stop() noexcept { loop_.stop(); }
   LoopStatus loop_status() const noexcept { return loop_.status(); }
   const LoopPrivileges& privileges() const noexcept { return loop_.privileges(); }
-  /// Moves what the loop has published since the last call into frame_times(); returns the newest status.
-  SessionStatus poll() noexcept;
+  /// Moves what the loop has published since the last call into frame_times(), and behind `timings` when
+  /// that is given; returns the newest status.
+  SessionStatus poll(std::vector<FrameTiming>* timings = nullptr);
+
+  // What one other thread may ask of a running session.
+  /// Done before the next frame; false when so many are waiting that this one was not taken.
+  bool ask(const SessionCommand& command) noexcept { return commands_.push(command); }
+  /// The big stop: the wrench is led to zero within the stop ramp and stays there, while frames go on, until
+  /// taken back; the force then returns by the start ramp.
+  void hold_wrench_at_zero(bool on) noexcept { held_at_zero_.store(on, std::memory_order_relaxed); }
+  /// Whether the hand can be led by SessionCommand::kAim.
+  bool can_be_led() const noexcept { return pointer_ != nullptr; }
 
   const Scene& scene() const noexcept { return scene_; }
   const DeviceInfo& device() const noexcept { return device_->info(); }
@@ -67,6 +81,8 @@ class Session final : private HapticFrame {
   const GoalRecord& goals() const noexcept { return goals_; }
   const FrameReport& last_report() const noexcept { return report_; }
   const FrameState& state() const noexcept { return state_; }
+  /// Shows every frame to `feed`; set before the run, null for none.
+  void show_to(FrameFeed* feed) noexcept { feed_ = feed; }
   /// Takes the times of the stages of every frame; set before the run, null for none.
   void time_stages(StageClock* clock) noexcept {
     stage_clock_ = clock;
@@ -76,9 +92,17 @@ class Session final : private HapticFrame {
  private:
   Session(Scene scene, std::unique_ptr<Device> device);
   Wrench run(const DeviceSample& sample, const FrameTick& tick) noexcept override;
+  void obey(const SessionCommand& command) noexcept;
+
+  static constexpr std::size_t kCommands = 256;
 
   Scene scene_;
+  SafetyLimits device_limits_;  // scene_.safety tightens them
   std::unique_ptr<Device> device_;
+  PointerDevice* pointer_;  // the device, when it is one that can be led
+  SpscRing<SessionCommand> commands_;
+  std::atomic<bool> held_at_zero_{false};
+  FrameFeed* feed_ = nullptr;
   FrameState state_;
   StageClock* stage_clock_ = nullptr;
   FrameReport report_;

@@ -1,0 +1,156 @@
+#include "tactum/haptics/setting_table.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <type_traits>
+
+namespace tactum {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::infinity();
+constexpr double degrees(double radians) { return radians * (180.0 / kPi); }
+constexpr double radians(double degrees) { return degrees * (kPi / 180.0); }
+
+using Frame = FrameSettings;
+using Safety = SafetySettings;
+constexpr SettingKind kNumber = SettingKind::kNumber;
+constexpr SettingKind kInteger = SettingKind::kInteger;
+constexpr SettingKind kOnOff = SettingKind::kOnOff;
+
+/// Reading and writing a member of a section of the frame's settings, and of what is asked of safety.
+template <auto Section, auto Member>
+double get_field(const Frame& frame, const Safety&) {
+  return static_cast<double>((frame.*Section).*Member);
+}
+template <auto Section, auto Member>
+void set_field(Frame& frame, Safety&, double value) {
+  auto& member = (frame.*Section).*Member;
+  member = static_cast<std::remove_reference_t<decltype(member)>>(value);
+}
+template <auto Member>
+double get_limit(const Frame&, const Safety& safety) {
+  return safety.*Member;
+}
+template <auto Member>
+void set_limit(Frame&, Safety& safety, double value) {
+  safety.*Member = value;
+}
+
+// clang-format off
+constexpr SettingInfo kSettings[] = {
+  {"coupling", "stiffness_N_per_m", "Stiffness", "N/m", "spring between the hand and the held part", 20, 5000, kNumber, true,
+   get_field<&Frame::coupling, &Coupling::stiffness_N_per_m>,
+   set_field<&Frame::coupling, &Coupling::stiffness_N_per_m>},
+  {"coupling", "stiffness_Nm_per_rad", "Turning stiffness", "N m/rad", "the same spring against turning", 0.01, 10, kNumber, true,
+   get_field<&Frame::coupling, &Coupling::stiffness_Nm_per_rad>,
+   set_field<&Frame::coupling, &Coupling::stiffness_Nm_per_rad>},
+  {"coupling", "damping_Ns_per_m", "Damping", "N s/m", "what takes the swing out of that spring", 0, 20, kNumber, true,
+   get_field<&Frame::coupling, &Coupling::damping_Ns_per_m>,
+   set_field<&Frame::coupling, &Coupling::damping_Ns_per_m>},
+  {"coupling", "damping_Nms_per_rad", "Turning damping", "N m s/rad", "the same against turning", 0, 0.05, kNumber, true,
+   get_field<&Frame::coupling, &Coupling::damping_Nms_per_rad>,
+   set_field<&Frame::coupling, &Coupling::damping_Nms_per_rad>},
+
+  {"penalty", "stiffness_N_per_m", "Contact stiffness", "N/m", "how hard a wall pushes per metre it is entered", 50, 20000, kNumber, true,
+   get_field<&Frame::penalty, &Penalty::stiffness_N_per_m>,
+   set_field<&Frame::penalty, &Penalty::stiffness_N_per_m>},
+  {"penalty", "max_step_m", "Longest step", "m", "how far the held part may travel in one frame", 0.05e-3, 0.005, kNumber, true,
+   get_field<&Frame::penalty, &Penalty::max_step_m>,
+   set_field<&Frame::penalty, &Penalty::max_step_m>},
+  {"penalty", "min_tolerance_m", "Least tolerance", "m", "distance at which resting parts still push", 0, 0.001, kNumber, true,
+   get_field<&Frame::penalty, &Penalty::min_tolerance_m>,
+   set_field<&Frame::penalty, &Penalty::min_tolerance_m>},
+
+  {"shading", "on", "Force shading", "", "facets of a curved surface feel round", 0, 1, kOnOff, false,
+   get_field<&Frame::shading, &Shading::on>,
+   set_field<&Frame::shading, &Shading::on>},
+  {"shading", "crease_deg", "Crease", "deg", "facets that meet at less are one curved surface", 0, 90, kNumber, false,
+   [](const Frame& frame, const Safety&) { return degrees(frame.shading.crease_rad); },
+   [](Frame& frame, Safety&, double value) { frame.shading.crease_rad = radians(value); }},
+
+  {"smoothing", "on", "Smoothing", "", "no step in the shown force is larger than told below", 0, 1, kOnOff, true,
+   [](const Frame& frame, const Safety&) { return std::isfinite(frame.smoothing.max_force_step_N) ? 1.0 : 0.0; },
+   [](Frame& frame, Safety&, double value) {
+     frame.smoothing = value != 0.0 ? SmoothingSettings{} : SmoothingSettings{kNone, kNone};
+   }},
+  {"smoothing", "max_force_step_N", "Largest force step", "N", "of the shown force, from frame to frame", 0.01, 10, kNumber, true,
+   get_field<&Frame::smoothing, &SmoothingSettings::max_force_step_N>,
+   set_field<&Frame::smoothing, &SmoothingSettings::max_force_step_N>},
+  {"smoothing", "max_torque_step_Nm", "Largest torque step", "N m", "of the shown torque, from frame to frame", 0.0005, 0.5, kNumber, true,
+   get_field<&Frame::smoothing, &SmoothingSettings::max_torque_step_Nm>,
+   set_field<&Frame::smoothing, &SmoothingSettings::max_torque_step_Nm>},
+
+  {"safety", "max_force_N", "Largest force", "N", "never more is sent; can only be tighter than the device's own", 0, 50, kNumber, true,
+   get_limit<&Safety::max_force_N>, set_limit<&Safety::max_force_N>},
+  {"safety", "max_torque_Nm", "Largest torque", "N m", "never more is sent; can only be tighter than the device's own", 0, 5, kNumber, true,
+   get_limit<&Safety::max_torque_Nm>, set_limit<&Safety::max_torque_Nm>},
+  {"safety", "max_force_slew_N_per_s", "Fastest force", "N/s", "how fast the shown force may change", 1, 20000, kNumber, true,
+   get_limit<&Safety::max_force_slew_N_per_s>, set_limit<&Safety::max_force_slew_N_per_s>},
+  {"safety", "max_torque_slew_Nm_per_s", "Fastest torque", "N m/s", "how fast the shown torque may change", 0.02, 1000, kNumber, true,
+   get_limit<&Safety::max_torque_slew_Nm_per_s>, set_limit<&Safety::max_torque_slew_Nm_per_s>},
+  {"safety", "start_ramp_s", "Start ramp", "s", "from nothing to the full force after a start", 0, 5, kNumber, true,
+   get_limit<&Safety::start_ramp_s>, set_limit<&Safety::start_ramp_s>},
+  {"safety", "stop_ramp_s", "Stop ramp", "s", "from the full force to nothing when stopped", 0.001, 0.1, kNumber, true,
+   get_limit<&Safety::stop_ramp_s>, set_limit<&Safety::stop_ramp_s>},
+
+  {"", "dt_s", "Frame time", "s", "time from frame to frame: the rate of the loop is one over it", 0.0001, 0.01, kNumber, false,
+   [](const Frame& frame, const Safety&) { return frame.dt_s; },
+   [](Frame& frame, Safety&, double value) { frame.dt_s = value; }},
+  {"budget", "max_exact_tests", "Exact tests", "", "most exact tests of pairs in a frame", 1, 100000, kInteger, true,
+   get_field<&Frame::budget, &WorkBudget::max_exact_tests>,
+   set_field<&Frame::budget, &WorkBudget::max_exact_tests>},
+  {"budget", "max_contact_points", "Contact points", "", "most contact points in a frame", 1, 10000, kInteger, false,
+   get_field<&Frame::budget, &WorkBudget::max_contact_points>,
+   set_field<&Frame::budget, &WorkBudget::max_contact_points>},
+  {"budget", "solver_iterations", "Solver rounds", "", "most rounds of the contact solver", 1, 1000, kInteger, true,
+   get_field<&Frame::budget, &WorkBudget::solver_iterations>,
+   set_field<&Frame::budget, &WorkBudget::solver_iterations>},
+};
+// clang-format on
+
+}  // namespace
+
+std::span<const SettingInfo> setting_table() noexcept { return kSettings; }
+
+int setting_called(std::string_view section_and_key) noexcept {
+  const std::size_t dot = section_and_key.find('.');
+  const bool top = dot == std::string_view::npos;
+  const std::string_view section = top ? "" : section_and_key.substr(0, dot);
+  const std::string_view key = top ? section_and_key : section_and_key.substr(dot + 1);
+  int index = 0;
+  for (const SettingInfo& setting : kSettings) {
+    if (section == setting.section && key == setting.key) return index;
+    ++index;
+  }
+  return -1;
+}
+
+bool in_range(const SettingInfo& setting, double value) noexcept {
+  if (!(value >= setting.low && value <= setting.high)) return false;
+  return setting.kind == SettingKind::kNumber || std::floor(value) == value;
+}
+
+std::string settings_toml(const FrameSettings& frame, const SafetySettings& safety) {
+  std::string top, text;
+  std::string_view section;
+  for (const SettingInfo& setting : kSettings) {
+    const double value = setting.get(frame, safety);
+    if (!std::isfinite(value)) continue;  // no limit: the key's absence says so
+    const std::string shown = setting.kind == SettingKind::kOnOff     ? (value != 0.0 ? "true" : "false")
+                              : setting.kind == SettingKind::kInteger ? fmt::format("{:.0f}", value)
+                                                                      : fmt::format("{}", value);
+    const std::string unit = *setting.unit ? fmt::format(" [{}]", setting.unit) : "";
+    const std::string line = fmt::format("{} = {}  # {}{}\n", setting.key, shown, setting.meaning, unit);
+    if (*setting.section == '\0') {
+      top += line;
+      continue;
+    }
+    if (section != setting.section) text += fmt::format("\n[{}]\n", section = setting.section);
+    text += line;
+  }
+  return top + text;
+}
+
+}  // namespace tactum

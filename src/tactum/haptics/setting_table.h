@@ -1,0 +1,48 @@
+#pragma once
+/// The settings described by themselves: section and key as in scene files, unit, range, meaning. One table,
+/// from which panels, saved files and checks are made; a setting that gets a line here appears everywhere.
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "tactum/haptics/settings.h"
+
+namespace tactum {
+
+/// What can be set: the frame's settings, and what the user asks of safety (which only tightens the device's
+/// limits).
+struct UserSettings {
+  FrameSettings frame;
+  SafetySettings safety;
+};
+
+enum class SettingKind { kNumber, kInteger, kOnOff };
+
+struct SettingInfo {
+  const char* section;  ///< of the scene file; "" for the file's top
+  const char* key;      ///< in it; its unit stands in the name
+  const char* name;     ///< for people: "Stiffness"
+  const char* unit;     ///< of the values told here: "N/m"; "" for none
+  const char* meaning;  ///< one line
+  double low, high;     ///< the range that is offered; the ends belong to it
+  SettingKind kind;
+  bool live;  ///< takes effect between two frames; else when the scene starts again
+  double (*get)(const FrameSettings&, const SafetySettings&);  ///< infinite where there is no limit
+  void (*set)(FrameSettings&, SafetySettings&, double);
+};
+
+/// In the order in which people should meet them.
+std::span<const SettingInfo> setting_table() noexcept;
+
+/// Index of "coupling.stiffness_N_per_m" (or "dt_s"); -1 when there is none.
+int setting_called(std::string_view section_and_key) noexcept;
+
+/// Whether the value lies in the setting's range (and is whole, or 0 or 1, where it must be).
+bool in_range(const SettingInfo& setting, double value) noexcept;
+
+/// All of them as sections of a scene file, with units and meanings as comments. Reading them gives the same
+/// settings.
+std::string settings_toml(const FrameSettings& frame, const SafetySettings& safety);
+
+}  // namespace tactum

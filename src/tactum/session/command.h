@@ -1,0 +1,32 @@
+#pragma once
+/// What another thread may ask of a running session. Plain data, so that it can pass through a ring; the
+/// session obeys before the next frame.
+
+#include <array>
+#include <cstdint>
+
+#include "tactum/math/pose.h"
+
+namespace tactum {
+
+struct SessionCommand {
+  enum class Kind : std::uint8_t {
+    kAim,   ///< lead the hand to a pose (pointer_device.h)
+    kRest,  ///< a hand that was led stays where it is
+    kSet,   ///< a setting that is live (setting_table.h)
+  };
+  Kind kind = Kind::kRest;
+  std::uint32_t buttons = 0;     ///< of kAim: bit 0 is the primary button
+  std::array<double, 3> p_WH{};  ///< of kAim: where the hand shall be in the world [m]
+  std::array<double, 4> quat_wxyz_WH{1.0, 0.0, 0.0, 0.0};  ///< of kAim: its orientation there
+  int setting = -1;                                        ///< of kSet: index in setting_table()
+  double value = 0.0;                                      ///< of kSet
+
+  /// Of kAim: p_WH and quat_wxyz_WH as one.
+  Pose aim() const {
+    const auto& q = quat_wxyz_WH;
+    return {Quat(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix(), {p_WH[0], p_WH[1], p_WH[2]}};
+  }
+};
+
+}  // namespace tactum

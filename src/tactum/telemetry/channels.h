@@ -1,0 +1,48 @@
+#pragma once
+/// What a frame can show of itself, by name: the wrench after every stage that changes it, and single
+/// numbers. Displays, charts and exports are made from these two tables alone, so that a stage or a number
+/// that gets a line here appears in all of them.
+
+#include <cstdint>
+#include <span>
+
+#include "tactum/haptics/frame_report.h"
+#include "tactum/haptics/frame_state.h"
+
+namespace tactum {
+
+/// A frame that is over.
+struct FrameSource {
+  const FrameReport& report;
+  const FrameState& state;
+  const FrameSettings& settings;
+};
+
+/// The wrench behind one stage, in the order of the stages: the first is raw, the last is what was sent.
+struct WrenchStage {
+  const char* key;                            ///< "smoothed"
+  const char* name;                           ///< "After smoothing"
+  const char* meaning;                        ///< what the stage did
+  Wrench (*of)(const FrameSource&) noexcept;  ///< on the hand, at the handle, axes of W [N, N m]
+};
+
+struct Channel {
+  const char* key;      ///< "stretch_m"
+  const char* name;     ///< "Stretch"
+  const char* unit;     ///< SI; "" for counts
+  const char* group;    ///< numbers of one group belong on one chart
+  const char* meaning;  ///< one line
+  double (*of)(const FrameSource&) noexcept;
+};
+
+std::span<const WrenchStage> wrench_stages() noexcept;
+std::span<const Channel> channels() noexcept;
+
+/// A bit of FrameReport::flags and what it tells, with the setting to raise.
+struct FlagName {
+  std::uint32_t flag;
+  const char* name;
+};
+std::span<const FlagName> frame_flag_table() noexcept;
+
+}  // namespace tactum

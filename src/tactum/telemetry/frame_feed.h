@@ -1,0 +1,82 @@
+#pragma once
+/// From the loop's thread to whoever watches: every frame's numbers, and now and then the whole picture.
+///
+///   loop thread    take(frame) --- every frame ---> ring of FrameSample ---> pop, in order
+///                              --- at kPictures_Hz ---> newest FramePicture ---> the newest only
+///
+/// The loop writes plain records whether or not anyone reads: its work does not depend on who watches. It
+/// never waits; when the ring is full the newest sample is lost and counted.
+
+#include <atomic>
+#include <cstdint>
+#include <vector>
+
+#include "tactum/base/newest.h"
+#include "tactum/base/spsc_ring.h"
+#include "tactum/haptics/settings.h"
+#include "tactum/telemetry/channels.h"
+#include "tactum/telemetry/run_record.h"
+
+namespace tactum {
+
+/// The numbers of one frame: six a wrench stage (force, torque), then the channels, then the times of the
+/// frame's stages [s] (zero when nobody takes them).
+struct FrameSample {
+  static constexpr int kRoom = 64;
+  std::uint64_t index = 0;  ///< frames since the start
+  std::array<float, kRoom> values{};
+};
+
+/// How many of FrameSample::values are used.
+int sample_size() noexcept;
+
+/// A contact point that pushes, or would if it were nearer.
+struct ShownContact {
+  std::int32_t body_a = -1, body_b = -1, piece_a = -1, piece_b = -1;
+  Feature a, b;              ///< of the pieces
+  Vec3 p_W = Vec3::Zero();   ///< [m]
+  Vec3 n_W = Vec3::Zero();   ///< from B to A, as shaded [-]
+  double distance_m = 0.0;   ///< signed [m]
+  double tolerance_m = 0.0;  ///< pushes below this [m]
+  double force_N = 0.0;      ///< along n on A [N]
+  std::int32_t patch = -1;   ///< points of one patch have one number
+};
+
+/// Where everything is in one frame.
+struct FramePicture {
+  std::uint64_t index = 0;
+  Pose X_WH, X_WH_proxy, X_WD;
+  bool held = false;
+  std::vector<Pose> X_WB;  ///< of every body
+  std::vector<ShownContact> contacts;
+  int contacts_left_out = 0;  ///< for lack of room
+};
+
+class FrameFeed {
+ public:
+  static constexpr double kPictures_Hz = 125.0;      ///< twice what a screen shows [Hz]
+  static constexpr std::size_t kSamples = 1u << 14;  ///< sixteen seconds at 1 kHz until somebody pops
+  static constexpr std::size_t kContacts = 256;      ///< contacts of a picture
+
+  FrameFeed(std::size_t bodies, double rate_Hz);
+
+  /// The loop's thread, after the frame. `clock` may be null. No allocation, no lock, no clock.
+  void take(const FrameSource& frame, const StageClock* clock) noexcept;
+
+  // One other thread.
+  bool pop(FrameSample& sample) noexcept { return samples_.pop(sample); }
+  /// True when there is a newer picture than last time.
+  bool look() noexcept { return pictures_.take(); }
+  const FramePicture& picture() const noexcept { return pictures_.readable(); }
+  std::uint64_t dropped() const noexcept { return dropped_.load(std::memory_order_relaxed); }
+
+ private:
+  void draw(const FrameSource& frame, FramePicture& picture) noexcept;
+
+  SpscRing<FrameSample> samples_;
+  Newest<FramePicture> pictures_;
+  std::atomic<std::uint64_t> dropped_{0};
+  std::uint64_t frames_a_picture_;
+};
+
+}  // namespace tactum

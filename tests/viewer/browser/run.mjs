@@ -1,0 +1,449 @@
+// The viewer as people use it, in Debian's Chromium:  node run.mjs TOPIC TACTUM
+// A topic that fails says which sentence was not true. 77: nothing to run it with.
+import { createConnection } from "node:net";
+import { mkdirSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
+import { check, downloaded, drag, heldAt, inkOf, missing, openBrowser, openPage, Program, readCsv, root, shownForce, state, until } from "./support.mjs";
+
+const [topic, tactum] = process.argv.slice(2);
+const pause = (seconds) => new Promise((resolve) => setTimeout(resolve, 1000 * seconds));
+const refusedOf = async (page) => JSON.parse((await state(page)).refused);
+
+/** One request on a bare socket: what a browser would never send. */
+function bare(port, text) {
+  return new Promise((resolve) => {
+    const socket = createConnection(port, "127.0.0.1", () => socket.write(text));
+    let answer = "";
+    socket.on("data", (data) => (answer += data));
+    socket.on("error", () => resolve(answer));
+    socket.on("close", () => resolve(answer));
+    setTimeout(() => socket.destroy(), 1500);
+  });
+}
+
+/** Drags the held part down until it presses with so much, and no deeper: a hand without force sinks to its aim. */
+async function pressDown(page, force_N) {
+  const [x, y] = await heldAt(page);
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  for (let i = 1; i < 100 && Number((await state(page)).force) < force_N; ++i) {
+    await page.mouse.move(x, y + 2 * i);
+    await pause(0.15);
+  }
+}
+
+/** The largest force as the page, its CSV file and the program's summary tell it. Ends the program. */
+async function forcesAgree(page, program) {
+  await page.keyboard.press("Space"); // from here on no force can be larger
+  await until("there is no force", async () => (await state(page)).force === "0");
+  const rows = readCsv(await downloaded(page, "#csv"));
+  const peakOfPage = Number((await state(page)).peakForce);
+  const summary = await program.end();
+  const peakOfCsv = Math.max(...rows.map(shownForce));
+  console.log(`largest force: page ${peakOfPage} N, CSV ${peakOfCsv} N, program ${summary.max_force_N} N`);
+  check(Math.abs(peakOfPage - summary.max_force_N) < 1e-5 * summary.max_force_N, "page and program agree");
+  check(Math.abs(peakOfCsv - summary.max_force_N) < 1e-5 * summary.max_force_N, "CSV and program agree");
+  for (let i = 1; i < rows.length; ++i) check(rows[i].frame === rows[i - 1].frame + 1, `the CSV lacks a frame after ${rows[i - 1].frame}`);
+}
+
+const topics = {
+  async loads(browser) {
+    const program = await Program.start(tactum, "gears");
+    const page = await openPage(browser, program);
+    check((await page.title()) === "Tactum: gears", "the title names the scene");
+    const response = await page.request.get(program.address);
+    const policy = response.headers()["content-security-policy"];
+    check(policy.includes("default-src 'none'") && !policy.includes("unsafe"), `the policy is strict: ${policy}`);
+    const blocked = await page.evaluate(async () => {
+      const script = document.createElement("script");
+      try {
+        script.textContent = "document.body.dataset.inline = 'ran'";
+        document.body.append(script);
+      } catch {
+        return true;
+      }
+      return document.body.dataset.inline === undefined;
+    });
+    check(blocked, "no inline script runs");
+    page.complaints.length = 0; // that one was ours
+    await pause(3);
+    const strips = await page.locator("#strips canvas").count();
+    check(strips >= 5, `force, torque, stretch, frame time and contacts have their charts: ${strips}`);
+    for (let i = 0; i < 2; ++i) {
+      const before = await inkOf(page, i);
+      await pause(0.6);
+      const after = await inkOf(page, i);
+      check(before[0] > 300, `chart ${i} shows something: ${before[0]} pixels`);
+      check(before[1] !== after[1], `chart ${i} moves on`);
+    }
+    const now = await state(page);
+    check(now.gaps === "0" && now.lost === "0", `no sample is missing: ${JSON.stringify(now)}`);
+    check(page.complaints.length === 0, `no complaints: ${page.complaints.join("; ")}`);
+    await program.end();
+  },
+
+  async drag(browser) {
+    const program = await Program.start(tactum, "block-on-plate");
+    const page = await openPage(browser, program);
+    await page.selectOption("#span", "40");
+    await page.click('[data-view="front"]');
+    await pause(0.3);
+    const before = await inkOf(page, 0);
+    await drag(page, 0, 130, 50, false); // down, into the plate
+    await until("the page shows a force", async () => Number((await state(page)).force) > 1);
+    await pause(0.5);
+    check((await inkOf(page, 0))[1] !== before[1], "the force chart has changed");
+    const held = Number((await state(page)).force);
+    await page.mouse.up(); // the hand stays where it was led
+    await pause(0.4);
+    const still = Number((await state(page)).force);
+    check(still > 0.5 * held, `let go of the mouse, the hand goes on pressing: ${held} N, then ${still} N`);
+    check((await page.textContent("#why")).includes("plate"), "the page says what pushes");
+    await page.focus("#canvas");
+    for (let i = 0; i < 60; ++i) await page.keyboard.press("ArrowUp"); // up again by the keys
+    await until("the part is free", async () => Number((await state(page)).force) < 0.05);
+    await pause(0.3);
+    await forcesAgree(page, program);
+    check(page.complaints.length === 0, page.complaints.join("; "));
+  },
+
+  async wall(browser) {
+    const program = await Program.start(tactum, "peg-in-hole");
+    const page = await openPage(browser, program);
+    await page.selectOption("#span", "40");
+    await page.click("#see-through"); // the peg can be taken through the block
+    await until("the peg is in its hole", async () => Number((await state(page)).newest) > 4900);
+    await drag(page, 0, 0, 1, false);
+    await pause(1);
+    const before = Number((await state(page)).force);
+    const [x, y] = await heldAt(page);
+    for (let i = 1; i <= 30; ++i) {
+      await page.mouse.move(x + 3 * i, y + i); // along the block's long side, to the right
+      await pause(0.05);
+    }
+    await until("the wall pushes back", async () => Number((await state(page)).force) > before + 1);
+    check((await page.textContent("#why")).includes("“peg” touches “block”"), "the page says what pushes");
+    await page.mouse.up();
+    await pause(0.3);
+    check(page.complaints.length === 0, page.complaints.join("; "));
+    await forcesAgree(page, program);
+  },
+
+  async stop(browser) {
+    const program = await Program.start(tactum, "block-on-plate");
+    const page = await openPage(browser, program);
+    await page.click('[data-view="front"]');
+    await pause(0.3);
+    await pressDown(page, 0.8);
+    check(Number((await state(page)).force) > 0.5, "there is a force to stop");
+    await page.focus("#reset"); // the space bar stops, whatever has the focus
+    await page.keyboard.press("Space");
+    await until("it is stopped", async () => (await state(page)).stopped === "true");
+    await until("there is no force", async () => (await state(page)).force === "0");
+    check((await state(page)).run === "1", "the focused button was not pressed by the space bar");
+    check(await page.isVisible("#stopped"), "the page says that it is stopped");
+    await page.mouse.up();
+    const rows = readCsv(await downloaded(page, "#csv"));
+    const stopping = 1 << 5; // safety_flag::kStopping
+    const first = rows.findIndex((row) => row.safety_flags & stopping);
+    const zero = rows.findIndex((row, i) => i >= first && shownForce(row) === 0);
+    console.log(`stopped with ${shownForce(rows[first - 1]).toFixed(3)} N; zero after ${zero - first + 1} frames`);
+    check(first > 0 && zero >= first && zero - first < 101, "the force is zero within 101 frames");
+    check(rows.slice(zero).every((row) => shownForce(row) === 0), "... and stays there");
+    await page.click("#resume");
+    await until("the force comes back", async () => Number((await state(page)).force) > 0.3);
+    await program.end();
+  },
+
+  async scenes(browser) {
+    const program = await Program.start(tactum, "gears");
+    const page = await openPage(browser, program);
+    for (const scene of ["peg-in-hole", "block-on-plate", "gears-rim"]) {
+      await page.selectOption("#scene", scene);
+      await until(`${scene} is there`, async () => (await state(page)).scene === scene && Number((await state(page)).samples) > 300);
+    }
+    const before = (await state(page)).run;
+    await page.click("#reset");
+    await until("it starts again", async () => (await state(page)).run !== before && Number((await state(page)).newest) < 5000);
+    check((await state(page)).gaps === "0", "no sample is missing");
+    check(page.complaints.length === 0, page.complaints.join("; "));
+    const summary = await program.end();
+    check(summary.scene === "gears-rim", "the summary is of the scene that was felt last");
+  },
+
+  async viewers(browser) {
+    const program = await Program.start(tactum, "gears");
+    const first = await openPage(browser, program);
+    const second = await openPage(browser, program);
+    await until("both know of each other", async () => (await state(first)).pages === "2" && (await state(second)).pages === "2");
+    check((await state(first)).steering === "true" && (await state(second)).steering === "false", "the first steers");
+    await second.selectOption("#scene", "peg-in-hole");
+    await pause(0.5);
+    check((await state(second)).scene === "gears", "who does not steer changes nothing");
+    await second.click("#steer");
+    await until("the second has the hand", async () => (await state(second)).steering === "true" && (await state(first)).steering === "false");
+    await first.keyboard.press("Space");
+    await until("anyone may stop", async () => (await state(second)).stopped === "true");
+    await second.click("#resume");
+    await until("it goes on", async () => (await state(first)).stopped === "false");
+    await second.close();
+    await until("the first is alone", async () => (await state(first)).pages === "1");
+    await drag(first, 40, 20);
+    await until("the hand is free to take", async () => (await state(first)).steering === "true");
+    check((await state(first)).gaps === "0", "no sample is missing");
+    await program.end();
+  },
+
+  async stall(browser) {
+    const program = await Program.start(tactum, "gears");
+    const page = await openPage(browser, program);
+    const before = Number((await state(page)).samples);
+    await page.evaluate(() => {
+      const end = performance.now() + 3000;
+      while (performance.now() < end);
+    });
+    await until("the page has caught up", async () => Number((await state(page)).samples) > before + 3000);
+    await until("it shows the present again, not the past", async () => {
+      const now = await state(page);
+      return Number(now.newest) > Number(now.frames) - 800;
+    });
+    const now = await state(page);
+    check(now.gaps === "0" && now.lost === "0", `stalled for 3 s, it misses nothing: ${JSON.stringify(now)}`);
+    await program.end();
+  },
+
+  async dropped(browser) {
+    const program = await Program.start(tactum, "gears");
+    const page = await openPage(browser, program);
+    await page.evaluate(() => window.openSockets.at(-1).close());
+    await until("the loss is told", async () => (await state(page)).link === "down");
+    await until("it has come back by itself", async () => (await state(page)).link === "up");
+    const samples = Number((await state(page)).newest);
+    await until("frames go on", async () => Number((await state(page)).newest) > samples + 500);
+    await page.reload();
+    await until("a reload shows frames again", async () => Number((await state(page)).samples) > 300);
+    await until("only one page is counted", async () => (await state(page)).pages === "1");
+    check((await state(page)).steering === "true", "it has its hand back");
+    check((await state(page)).gaps === "0", "no sample is missing");
+    await program.end();
+  },
+
+  async refusals(browser) {
+    const program = await Program.start(tactum, "gears");
+    const page = await openPage(browser, program);
+    const before = await refusedOf(page);
+    const upgrade = (host, origin, token) => `GET /${token}/ws HTTP/1.1\r\nHost: ${host}\r\nOrigin: ${origin}\r\nUpgrade: websocket\r\n` +
+      "Connection: Upgrade\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n";
+    const own = `127.0.0.1:${program.port}`;
+    for (const [what, request] of [
+      ["a foreign origin", upgrade(own, "http://tactum.example", program.token)],
+      ["a foreign host", upgrade("tactum.example", "http://tactum.example", program.token)],
+      ["a wrong token", upgrade(own, `http://${own}`, "0".repeat(32))],
+      ["an old-fashioned address", `GET / HTTP/1.1\r\nHost: ${own}\r\n\r\n`],
+    ]) check((await bare(program.port, request)).startsWith("HTTP/1.1 403"), `${what} is refused`);
+    const closed = await page.evaluate(() => new Promise((resolve) => {
+      const socket = new WebSocket(location.href.replace("http", "ws") + "ws");
+      socket.onopen = () => {
+        socket.send("this is no request");
+        socket.send('{"do":"format the disk"}');
+        socket.send("x".repeat(5000));
+      };
+      socket.onclose = () => resolve(true);
+    }));
+    check(closed, "who sends too much is cut off");
+    const after = await until("the page shows the counts", async () => {
+      const refused = await refusedOf(page);
+      return refused.malformed >= before.malformed + 2 && refused["too large"] > before["too large"] && refused;
+    });
+    check(after["foreign origin"] === before["foreign origin"] + 1, "the foreign origin is counted");
+    check(after["foreign host"] === before["foreign host"] + 1, "the foreign host is counted");
+    check(after["wrong token"] === before["wrong token"] + 2, "the wrong tokens are counted");
+    await page.click("#tab-panel");
+    check((await page.textContent("#panel")).includes("foreign origin"), "people can read it");
+    check((await state(page)).gaps === "0", "the charts did not notice");
+    const summary = await program.end();
+    check(summary.non_finite_frames === 0, "the loop did not notice");
+  },
+
+  async why(browser) {
+    const program = await Program.start(tactum, "gears");
+    const page = await openPage(browser, program);
+    await until("the gears touch", async () => (await page.textContent(".sentence")).includes("touches"));
+    const stages = await page.locator(".ladder tr").count();
+    check(stages === 5, `every stage has its row: ${stages - 1}`);
+    await page.click(".contacts button");
+    check((await page.locator(".contacts tr.chosen").count()) <= 1, "one contact can be chosen");
+    await page.click("#pause");
+    const chart = await page.locator("#strips .u-over").first().boundingBox();
+    await page.mouse.click(chart.x + chart.width / 2, chart.y + chart.height / 2);
+    await until("the moment is shown", async () => await page.isVisible("#past"));
+    const then = await page.textContent(".sentence");
+    await pause(0.6);
+    check((await page.textContent(".sentence")) === then, "a moment that was picked stays");
+    const png = await downloaded(page, "#charts-png");
+    check(png.length > 3000 && png.subarray(1, 4).toString() === "PNG", "the charts as a picture");
+    const picture = await downloaded(page, "#picture");
+    check(picture.length > 20000 && picture.subarray(1, 4).toString() === "PNG", "the scene as a picture");
+    await page.keyboard.press("l");
+    await until("it is now again", async () => !(await page.isVisible("#past")));
+    await page.selectOption("#also", { index: 1 });
+    await until("a further chart is there", async () => (await page.locator("#strips canvas").count()) === 6);
+    check(page.complaints.length === 0, page.complaints.join("; "));
+    await program.end();
+  },
+
+  async panel(browser) {
+    const program = await Program.start(tactum, "block-on-plate");
+    const page = await openPage(browser, program);
+    await page.click("#tab-panel");
+    const field = page.locator('[id="set-coupling.stiffness_N_per_m"]');
+    await field.fill("432");
+    await field.press("Enter");
+    await field.blur();
+    await pause(0.5);
+    const toml = (await downloaded(page, "#save-toml")).toString();
+    check(toml.includes("[coupling]") && toml.includes("stiffness_N_per_m = 432  #"), `the saved settings have it: ${toml}`);
+    await field.fill("99999999");
+    await field.press("Enter");
+    await until("what is out of range is told", async () => await page.isVisible("#notice"));
+    const run = (await state(page)).run;
+    await page.selectOption("#device", "pointer:omega.6");
+    await until("the device is another", async () => (await state(page)).run !== run && (await page.textContent("#panel")).includes("no torque"));
+    const units = await page.locator(".setting .unit").allTextContents();
+    check(units.filter((unit) => unit !== "").length >= 15, "settings have units");
+    const unnamed = await page.evaluate(() => [...document.querySelectorAll("button, input, select")].filter((element) =>
+      !element.textContent.trim() && !element.getAttribute("aria-label") && !element.labels?.length && !element.title).length);
+    check(unnamed === 0, `${unnamed} controls have no name`);
+    check(page.complaints.length === 0, page.complaints.join("; "));
+    await program.end();
+  },
+
+  async keyboard(browser) {
+    const program = await Program.start(tactum, "block-on-plate");
+    const page = await openPage(browser, program);
+    await page.focus("#canvas");
+    await page.keyboard.press("ArrowRight"); // takes the hand; the demonstration ends
+    await pause(1.5);
+    const before = await heldAt(page);
+    for (let i = 0; i < 25; ++i) await page.keyboard.press("ArrowLeft");
+    await pause(1.5);
+    const after = await heldAt(page);
+    check(after[0] < before[0] - 10, `arrows move the part: ${before} to ${after}`);
+    await page.keyboard.press("4");
+    await pause(0.3);
+    check((await heldAt(page)).join() !== after.join(), "digits choose the view");
+    await page.keyboard.press("g");
+    check((await page.getAttribute("#grasp", "aria-pressed")) === "true", "G grasps");
+    await page.keyboard.press("p");
+    check((await page.getAttribute("#pieces", "aria-pressed")) === "true", "P colours the pieces");
+    await page.keyboard.press("?");
+    check(await page.isVisible("#help"), "? explains");
+    await page.keyboard.press("Escape");
+    check(!(await page.isVisible("#help")), "escape closes it");
+    await page.focus("#tab-why");
+    await page.keyboard.press("ArrowRight");
+    check((await page.getAttribute("#tab-panel", "aria-selected")) === "true", "arrows change tabs");
+    for (const [id, role] of [["canvas", "application"], ["summary", "status"], ["stopped", "alert"]])
+      check((await page.getAttribute(`#${id}`, "role")) === role, `${id} is a ${role} to a screen reader`);
+    const lost = await page.evaluate(() => {
+      const seen = [];
+      document.querySelectorAll("header button, .tools button").forEach((button) => {
+        button.focus();
+        if (!button.hidden && document.activeElement !== button) seen.push(button.id);
+      });
+      return seen;
+    });
+    check(lost.length === 0, `these cannot be reached by the keyboard: ${lost}`);
+    await program.end();
+  },
+
+  async narrow(browser) {
+    const program = await Program.start(tactum, "gears");
+    const page = await openPage(browser, program, { viewport: { width: 390, height: 800 }, colorScheme: "light", hasTouch: true });
+    check((await page.getAttribute("html", "data-theme")) === "light", "a light system gets a light page");
+    const wide = await page.evaluate(() => document.documentElement.scrollWidth - window.innerWidth);
+    check(wide <= 0, `nothing sticks out sideways: ${wide} pixels`);
+    for (const id of ["stop", "scene", "canvas", "pause"]) check(await page.isVisible(`#${id}`), `${id} is there`);
+    const stop = await page.locator("#stop").boundingBox();
+    check(stop.y < 60 && stop.width > 60 && stop.height >= 40, "the stop is at hand and large");
+    // A finger on the part moves it; the camera stays.
+    const [x, y] = await heldAt(page);
+    const session = await page.context().newCDPSession(page);
+    const touch = (type, dx, dy) => session.send("Input.dispatchTouchEvent", { type, touchPoints: type === "touchEnd" ? [] : [{ x: x - 45 + dx, y: y + 12 + dy }] });
+    await touch("touchStart", 0, 0);
+    for (let i = 1; i <= 20; ++i) {
+      await touch("touchMove", i, 2 * i);
+      await pause(0.03);
+    }
+    check(await page.evaluate(() => document.getElementById("canvas").classList.contains("holding")), "a finger takes the part");
+    await touch("touchEnd");
+    check(page.complaints.length === 0, page.complaints.join("; "));
+    await program.end();
+  },
+
+  /** The pictures of the README. TACTUM_PICTURES=keep writes them into the sources. */
+  async pictures(browser) {
+    const keep = process.env.TACTUM_PICTURES === "keep";
+    const folder = keep ? join(root, "docs/pictures") : join(root, "build/pictures");
+    mkdirSync(folder, { recursive: true });
+    const take = async (scene, options, prepare) => {
+      const program = await Program.start(tactum, scene);
+      const page = await openPage(browser, program, { viewport: { width: 1280, height: 720 }, ...options }, "#fine");
+      await prepare(page);
+      const png = await page.screenshot();
+      check(png.length > 60000, `the picture of ${scene} shows something: ${png.length} bytes`);
+      writeFileSync(join(folder, `${scene}.png`), png);
+      await program.end();
+      console.log(`${join(folder, `${scene}.png`)}: ${png.length} bytes`);
+    };
+    await take("gears", {}, async (page) => {
+      const [x, y] = await heldAt(page);
+      await page.mouse.move(x - 70, y + 6);
+      await page.mouse.down();
+      for (let i = 1; i <= 30; ++i) {
+        await page.mouse.move(x - 70 - i * 1.5, y + 6 + i * 1.4);
+        await pause(0.03);
+      }
+      await pause(2);
+    });
+    await take("peg-in-hole", { colorScheme: "light" }, async (page) => {
+      await page.click("#see-through");
+      const deep = async () => Number((await state(page)).newest) % 22000 > 6500; // the demonstration, forth and back
+      await until("the peg has been deep in its hole", deep, 60);
+      await page.click("#pause");
+      // The moment of the largest force within reach of the charts.
+      const chart = await page.locator("#strips .u-over").first().boundingBox();
+      let best = [0, 0];
+      for (let share = 0.05; share < 1; share += 0.03) {
+        await page.mouse.move(chart.x + share * chart.width, chart.y + chart.height / 2);
+        const [, size, prefix] = (await page.textContent("#cursor")).match(/size ([\d.]+) (m?)N/) ?? [];
+        const force = Number(size ?? 0) * (prefix ? 1e-3 : 1);
+        if (force > best[0]) best = [force, share];
+      }
+      check(best[0] > 0.2, `a moment with a force was found: ${best[0]} N`);
+      await page.mouse.click(chart.x + best[1] * chart.width, chart.y + chart.height / 2);
+      await page.mouse.move(700, 500);
+      await pause(1.5);
+    });
+  },
+};
+
+if (!topics[topic] || !tactum) {
+  console.error(`usage: node run.mjs ${Object.keys(topics).join("|")} TACTUM`);
+  process.exit(2);
+}
+if (missing) {
+  console.log(`skipped: ${missing}`);
+  process.exit(77);
+}
+const browser = await openBrowser();
+try {
+  await topics[topic](browser);
+  console.log(`${topic}: passed`);
+} catch (error) {
+  console.error(`${topic}: ${error.message}`);
+  process.exitCode = 1;
+} finally {
+  await browser.close();
+  if (process.exitCode) process.exit(1); // the program that was started ends with us
+}

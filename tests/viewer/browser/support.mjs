@@ -1,0 +1,145 @@
+// What every browser test needs: the program, a browser, pages whose every complaint is remembered, and waiting.
+import { spawn } from "node:child_process";
+import { existsSync, mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { createRequire } from "node:module";
+import { tmpdir } from "node:os";
+import { dirname, join } from "node:path";
+import { fileURLToPath } from "node:url";
+
+export const root = join(dirname(fileURLToPath(import.meta.url)), "../../..");
+const browserPath = ["/usr/bin/chromium", "/usr/bin/chromium-browser"].find((path) => existsSync(path));
+const playwright = join(root, "viewer/web/node_modules/playwright-core");
+
+/** Why the tests cannot run here; empty when they can. */
+export const missing = !browserPath ? "there is no chromium" : !existsSync(playwright) ? "the page was not built here, so there is no playwright-core" : "";
+
+export async function openBrowser() {
+  const { chromium } = createRequire(import.meta.url)(playwright);
+  return await chromium.launch({
+    executablePath: browserPath,
+    args: ["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
+      "--disable-component-update", "--disable-sync", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
+  });
+}
+
+export function check(condition, sentence) {
+  if (!condition) throw new Error(sentence);
+}
+
+const started = [];
+process.on("exit", () => started.forEach((program) => program.kill("SIGKILL"))); // none outlives its test
+
+/** The program with its page, as a user starts it. */
+export class Program {
+  static async start(tactum, scene, options = []) {
+    const program = new Program();
+    program.folder = mkdtempSync(join(tmpdir(), "tactum-browser-"));
+    program.json = join(program.folder, "summary.json");
+    program.process = spawn(tactum, ["feel", scene, "--view", "--json", program.json, ...options], {
+      stdio: ["ignore", "pipe", "pipe"], env: { ...process.env, DISPLAY: "", WAYLAND_DISPLAY: "" },
+    });
+    started.push(program.process);
+    program.said = "";
+    program.ended = new Promise((resolve) => program.process.on("exit", (code) => resolve(code)));
+    for (const stream of [program.process.stdout, program.process.stderr]) stream.on("data", (data) => (program.said += data));
+    const address = await until("the program tells its address", () => program.said.match(/http:\/\/\S+/)?.[0]);
+    program.address = address;
+    const url = new URL(address);
+    program.port = Number(url.port);
+    program.token = url.pathname.split("/")[1];
+    return program;
+  }
+  /** Ends it as Ctrl-C does; its summary for machines. */
+  async end() {
+    this.process.kill("SIGINT");
+    const code = await this.ended;
+    check(code === 0, `the program ended with ${code}:\n${this.said}`);
+    const summary = JSON.parse(readFileSync(this.json, "utf8"));
+    rmSync(this.folder, { recursive: true, force: true });
+    return summary;
+  }
+}
+
+/** Asks again and again until the answer is neither false nor undefined. */
+export async function until(sentence, ask, seconds = 40) {
+  for (let i = 0; i < seconds * 20; ++i) {
+    const answer = await ask();
+    if (answer !== false && answer !== undefined && answer !== null) return answer;
+    await new Promise((resolve) => setTimeout(resolve, 50));
+  }
+  throw new Error(`waited in vain until ${sentence}`);
+}
+
+/** A page that remembers what it complained of, and its sockets so that a test can cut them. */
+export async function openPage(browser, program, options = {}, look = "") {
+  const context = await browser.newContext({ viewport: { width: 1280, height: 720 }, colorScheme: "dark", acceptDownloads: true, ...options });
+  const page = await context.newPage();
+  page.complaints = [];
+  page.on("console", (message) => {
+    if (message.type() === "error" || /Content Security Policy|Trusted/i.test(message.text())) page.complaints.push(message.text());
+  });
+  page.on("pageerror", (error) => page.complaints.push(String(error)));
+  await page.addInitScript(() => {
+    const Plain = window.WebSocket;
+    window.openSockets = [];
+    window.WebSocket = class extends Plain {
+      constructor(...all) {
+        super(...all);
+        window.openSockets.push(this);
+      }
+    };
+  });
+  await page.goto(program.address + look);
+  await until("the page shows frames", async () => Number((await state(page)).samples) > 200);
+  return page;
+}
+
+/** What the page tells of itself in attributes: the strict policy forbids most other ways to ask. */
+export async function state(page) {
+  return await page.evaluate(() => ({ ...document.body.dataset }));
+}
+
+export async function heldAt(page) {
+  return (await state(page)).heldAt.split(",").map(Number);
+}
+
+/** Takes the held part where it is now and drags it by so many pixels, slowly. */
+export async function drag(page, right, down, steps = 40, release = true) {
+  const [x, y] = await heldAt(page);
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  for (let i = 1; i <= steps; ++i) {
+    await page.mouse.move(x + (right * i) / steps, y + (down * i) / steps);
+    await new Promise((resolve) => setTimeout(resolve, 25));
+  }
+  if (release) await page.mouse.up();
+}
+
+/** The content of what a click downloads. */
+export async function downloaded(page, selector) {
+  const [download] = await Promise.all([page.waitForEvent("download"), page.click(selector)]);
+  return readFileSync(await download.path());
+}
+
+/** Rows of a CSV file as objects. */
+export function readCsv(bytes) {
+  const [head, ...lines] = bytes.toString("utf8").trim().split("\n");
+  const names = head.split(",");
+  return lines.map((line) => Object.fromEntries(line.split(",").map((value, i) => [names[i], value === "" ? Number.NaN : Number(value)])));
+}
+export const shownForce = (row) => Math.hypot(row["shown.fx [N]"], row["shown.fy [N]"], row["shown.fz [N]"]);
+
+/** How many pixels of a chart are not of its most common colour: a flat or empty chart has few. */
+export async function inkOf(page, index) {
+  return await page.evaluate((i) => {
+    const canvas = document.querySelectorAll("#strips canvas")[i];
+    const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+    let ink = 0;
+    let sum = 0;
+    for (let k = 3; k < data.length; k += 4) {
+      if (data[k] > 40) ++ink;
+      sum = (sum * 31 + data[k] + data[k - 1]) % 1000000007;
+    }
+    return [ink, sum];
+  }, index);
+}

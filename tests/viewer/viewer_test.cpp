@@ -1,0 +1,273 @@
+#include "viewer/server/viewer.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "support/allocation_guard.h"
+#include "tactum/scene/builtin_scenes.h"
+#include "tactum/scene/scene_file.h"
+#include "viewer/raw_page.h"
+#include "viewer/server/page.h"
+#include "viewer/server/shape_edges.h"
+
+namespace tactum {
+namespace {
+
+using testing::RawPage;
+using testing::word_at;
+using Json = nlohmann::json;
+
+std::unique_ptr<Viewer> open_viewer(const std::string& scene_name) {
+  Result<Scene> scene = open_scene(scene_name);
+  EXPECT_TRUE(scene);
+  Result<std::unique_ptr<Viewer>> viewer = Viewer::open(std::move(*scene), {}, 0);
+  EXPECT_TRUE(viewer) << viewer.error().message();
+  return std::move(*viewer);
+}
+
+/// A page that looks, acknowledges, and steers nothing, on its own thread.
+class Onlooker {
+ public:
+  Onlooker(int port, const std::string& token)
+      : page_(port, token, "http://127.0.0.1:" + std::to_string(port)), thread_([this] { look(); }) {}
+  ~Onlooker() {
+    done_ = true;
+    thread_.join();
+  }
+  std::uint64_t samples() const { return samples_; }
+
+ private:
+  void look() {
+    while (!done_) {
+      const RawPage::Message message = page_.next(50);
+      if (message.kind == 8) return;
+      if (message.kind != 2) continue;
+      samples_ += word_at(message.payload, 3);
+      page_.say("{\"do\":\"ack\",\"seq\":" + std::to_string(word_at(message.payload, 1)) + "}");
+    }
+  }
+  RawPage page_;
+  std::atomic<bool> done_{false};
+  std::atomic<std::uint64_t> samples_{0};
+  std::thread thread_;
+};
+
+class PassOn final : public LoopObserver {
+ public:
+  explicit PassOn(Viewer& viewer) : viewer_(viewer) {}
+  bool after_frame(const FrameRecord& record) noexcept override {
+    viewer_.after_virtual_frame(record);
+    return true;
+  }
+
+ private:
+  Viewer& viewer_;
+};
+
+/// The hash of a run on the virtual clock with so many pages looking; and how many samples they saw.
+std::uint64_t hash_with_pages(int pages, std::uint64_t frames, std::uint64_t& seen) {
+  const std::unique_ptr<Viewer> viewer = open_viewer("gears");
+  const Server& server = viewer->server();
+  std::vector<std::unique_ptr<Onlooker>> onlookers;
+  for (int i = 0; i < pages; ++i)
+    onlookers.push_back(std::make_unique<Onlooker>(server.port(), server.token()));
+  while (server.status().pages < pages) std::this_thread::yield();
+  PassOn watch(*viewer);
+  EXPECT_TRUE(viewer->session().run_virtual(frames, &watch));
+  const std::uint64_t expected = static_cast<std::uint64_t>(pages) * (frames / 16 * 16);
+  const auto all_seen = [&] {
+    seen = 0;
+    for (const auto& onlooker : onlookers) seen += onlooker->samples();
+    return seen + server.status().samples_lost >= expected;
+  };
+  for (int i = 0; i < 1000 && !all_seen(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  EXPECT_TRUE(all_seen()) << seen << " of " << expected;
+  return viewer->session().record().hash();
+}
+
+constexpr std::uint64_t kFrames = 4000;
+
+// tools/viewer_work.py runs these two by name and counts the instructions of the loop's work.
+TEST(ViewerRun, WithoutPages) {
+  std::uint64_t seen = 0;
+  EXPECT_NE(hash_with_pages(0, kFrames, seen), 0u);
+}
+TEST(ViewerRun, WithFourPages) {
+  std::uint64_t seen = 0;
+  EXPECT_NE(hash_with_pages(4, kFrames, seen), 0u);
+}
+
+TEST(ViewerRun, TheFramesAreTheSameWithAndWithoutPages) {
+  std::uint64_t seen = 0;
+  const std::uint64_t alone = hash_with_pages(0, kFrames, seen);
+  EXPECT_EQ(hash_with_pages(4, kFrames, seen), alone);
+  EXPECT_GT(seen, 0u);
+  // ... and as in a session that nobody could look at.
+  Result<Scene> scene = open_scene("gears");
+  ASSERT_TRUE(scene);
+  Result<std::unique_ptr<Session>> bare =
+      Session::open(std::move(*scene), {.device = "pointer:premium-1.5-6dof", .grip = "", .rate_Hz = 0.0});
+  ASSERT_TRUE(bare);
+  ASSERT_TRUE((*bare)->run_virtual(kFrames, nullptr));
+  EXPECT_EQ((*bare)->record().hash(), alone);
+}
+
+/// Polls until the condition holds; false after a long while.
+bool polled_until(Viewer& viewer, const std::function<bool()>& condition) {
+  for (int i = 0; i < 4000; ++i) {
+    if (condition()) return true;
+    viewer.poll(std::chrono::milliseconds(5));
+  }
+  return false;
+}
+
+/// Reads messages of one type until one pleases.
+Json message_when(Viewer& viewer, RawPage& page, const std::string& type,
+                  const std::function<bool(const Json&)>& pleases) {
+  for (int i = 0; i < 4000; ++i) {
+    viewer.poll(std::chrono::milliseconds(1));
+    const RawPage::Message message = page.next(1);
+    if (message.kind == 2)
+      page.say("{\"do\":\"ack\",\"seq\":" + std::to_string(word_at(message.payload, 1)) + "}");
+    if (message.kind != 1) continue;
+    Json json = Json::parse(message.payload, nullptr, false);
+    if (json.value("type", "") == type && pleases(json)) return json;
+  }
+  return {};
+}
+
+TEST(ViewerThread, StopsResumesSetsAndSwitchesAsAsked) {
+  const std::unique_ptr<Viewer> viewer = open_viewer("block-on-plate");
+  ASSERT_TRUE(viewer->start());
+  const Server& server = viewer->server();
+  RawPage page(server.port(), server.token(), "http://127.0.0.1:" + std::to_string(server.port()));
+  ASSERT_TRUE(page.accepted());
+  const auto any = [](const Json&) { return true; };
+  const Json run = message_when(*viewer, page, "run", any);
+  ASSERT_TRUE(run.is_object());
+  EXPECT_EQ(run["scene"], "block-on-plate");
+  EXPECT_EQ(run["stages"].size(), wrench_stages().size());
+  EXPECT_EQ(run["channels"].size(), channels().size() + kStageCount + 2);
+  EXPECT_EQ(run["settings"].size(), setting_table().size());
+
+  page.say("{\"do\":\"set\",\"key\":\"coupling.stiffness_N_per_m\",\"value\":432}");
+  const Json settings = message_when(*viewer, page, "settings", any);
+  ASSERT_TRUE(settings.is_object());
+  EXPECT_NE(settings["toml"].get<std::string>().find("stiffness_N_per_m = 432"), std::string::npos);
+  page.say("{\"do\":\"set\",\"key\":\"coupling.stiffness_N_per_m\",\"value\":1e9}");
+  EXPECT_TRUE(message_when(*viewer, page, "told", any).is_object());
+
+  page.say("{\"do\":\"stop\"}");
+  EXPECT_TRUE(polled_until(*viewer, [&] { return (viewer->status().safety & safety_flag::kStopped) != 0; }));
+  EXPECT_EQ(viewer->status().force_N, 0.0);
+  page.say("{\"do\":\"scene\",\"name\":\"peg-in-hole\"}");
+  const Json next = message_when(*viewer, page, "run", [](const Json& json) { return json["run"] == 2; });
+  ASSERT_TRUE(next.is_object());
+  EXPECT_EQ(next["scene"], "peg-in-hole");
+  // A stop outlives the scene it was said in.
+  EXPECT_TRUE(polled_until(*viewer, [&] { return (viewer->status().safety & safety_flag::kStopped) != 0; }));
+  page.say("{\"do\":\"resume\"}");
+  EXPECT_TRUE(polled_until(*viewer, [&] { return (viewer->status().safety & safety_flag::kStopping) == 0; }));
+  page.say("{\"do\":\"scene\",\"name\":\"/etc/passwd\"}");
+  const Json told = message_when(*viewer, page, "told", any);
+  EXPECT_NE(told.value("sentence", "").find("no scene"), std::string::npos);
+  page.say("{\"do\":\"device\",\"name\":\"replay:/etc/passwd\"}");
+  EXPECT_TRUE(message_when(*viewer, page, "told", any).is_object());
+  viewer->stop();
+}
+
+TEST(FrameFeed, TakingAFrameAllocatesNothingAndLosesTheNewestWhenFull) {
+  Result<Scene> scene = open_scene("gears");
+  ASSERT_TRUE(scene);
+  Result<std::unique_ptr<Session>> session = Session::open(std::move(*scene), {});
+  ASSERT_TRUE(session);
+  FrameFeed feed(2, 1000.0);
+  (*session)->show_to(&feed);
+  ASSERT_TRUE((*session)->run_virtual(FrameFeed::kSamples + 100, nullptr));
+  EXPECT_EQ(feed.dropped(), 100u);
+  const AllocationGuard guard;
+  feed.take({(*session)->last_report(), (*session)->state(), (*session)->scene().settings}, nullptr);
+  EXPECT_EQ(guard.allocations(), 0u);
+  FrameSample sample;
+  std::uint64_t expected = 0;
+  while (feed.pop(sample)) {
+    ASSERT_EQ(sample.index, expected++);
+  }
+  EXPECT_EQ(expected, FrameFeed::kSamples);
+  ASSERT_TRUE(feed.look());
+  EXPECT_EQ(feed.picture().X_WB.size(), 2u);
+  EXPECT_LE(sample_size(), FrameSample::kRoom);
+}
+
+TEST(FrameFeed, TheForcesOfAPictureAddUpToTheContactStage) {
+  Result<Scene> scene = open_scene("block-on-plate");
+  ASSERT_TRUE(scene);
+  Result<std::unique_ptr<Session>> session = Session::open(std::move(*scene), {});
+  ASSERT_TRUE(session);
+  FrameFeed feed((*session)->scene().world.bodies.size(), 1000.0);
+  class Watch final : public LoopObserver {
+   public:
+    Watch(FrameFeed& feed, const Session& session) : feed_(feed), session_(session) {}
+    bool after_frame(const FrameRecord&) noexcept override {
+      FrameSample sample;
+      while (feed_.pop(sample)) {
+      }
+      if (!feed_.look() || feed_.picture().index != session_.last_report().index) return true;
+      const int held = session_.scene().settings.tool.body;
+      Vec3 sum = Vec3::Zero();
+      for (const ShownContact& contact : feed_.picture().contacts) {
+        if (contact.body_a == held) sum += contact.force_N * contact.n_W;
+        if (contact.body_b == held) sum -= contact.force_N * contact.n_W;
+      }
+      const Vec3 told(sample.values[0], sample.values[1], sample.values[2]);
+      worst = std::max(worst, (sum - told).norm());
+      largest = std::max(largest, told.norm());
+      return true;
+    }
+    double worst = 0.0, largest = 0.0;
+
+   private:
+    FrameFeed& feed_;
+    const Session& session_;
+  } watch(feed, **session);
+  (*session)->show_to(&feed);
+  ASSERT_TRUE((*session)->run_virtual(4000, &watch));
+  EXPECT_GT(watch.largest, 0.5);
+  EXPECT_LT(watch.worst, 1e-5 * watch.largest);  // single precision
+}
+
+TEST(Page, IsThereAndSmall) {
+  std::size_t bytes = 0;
+  for (const PageFile& file : page_files()) bytes += file.gzip.size();
+  std::printf("the page is %zu bytes, compressed\n", bytes);
+  EXPECT_GT(bytes, 1000u);
+  EXPECT_LE(bytes, 250'000u);
+  EXPECT_EQ(page_files().front().path, "index.html");
+}
+
+TEST(ShapeEdges, SeamsBetweenPiecesAreNotDrawn) {
+  // A bar of two cubes: twelve edges of the whole, in pieces; the four around the seam are no edges.
+  const auto cube = [](double x) {
+    std::vector<Vec3> points;
+    for (int i = 0; i < 8; ++i) points.emplace_back(x + (i & 1), (i >> 1) & 1, (i >> 2) & 1);
+    return points;
+  };
+  const Result<Part> bar = part_from_clouds({cube(0.0), cube(1.0)});
+  ASSERT_TRUE(bar);
+  const std::vector<DrawnEdge> edges = edges_to_draw(*bar);
+  EXPECT_EQ(edges.size(), 16u);  // 4 + 4 at the ends, 4 + 4 halves along
+  for (const DrawnEdge& edge : edges)
+    EXPECT_FALSE(std::abs(edge.tail.x() - 1.0) < 1e-9 && std::abs(edge.head.x() - 1.0) < 1e-9);
+  const std::vector<bool> covered = covered_triangles(*bar);
+  EXPECT_EQ(covered.size(), 24u);
+  EXPECT_EQ(std::count(covered.begin(), covered.end(), true), 4);  // two a face, on either side
+}
+
+}  // namespace
+}  // namespace tactum

@@ -1,0 +1,48 @@
+#pragma once
+/// The samples of the last half minute, kept once for all pages. A page has a place in it; a page that was
+/// slow gets everything since then, in order, and is told how many it is too late for.
+
+#include <cstdint>
+#include <vector>
+
+#include "tactum/telemetry/frame_feed.h"
+
+namespace tactum {
+
+/// A frame as charts see it: FrameSample with what the loop's clock has to say.
+struct ChartSample {
+  FrameSample frame;
+  float frame_time_s = 0.0F;      ///< of the whole frame; not a number when nobody took it [s]
+  float wakeup_latency_s = 0.0F;  ///< begun after its deadline by; not a number on a virtual clock [s]
+};
+
+/// Numbers a sample has on the wire: those of the frame, then the two times.
+int chart_sample_size() noexcept;
+
+class History {
+ public:
+  static constexpr std::size_t kRoom = 30'000;        ///< half a minute at 1 kHz
+  static constexpr std::size_t kAtOnce = 4096;        ///< samples in one message
+  static constexpr std::size_t kForNewcomers = 8000;  ///< samples a new page is given
+
+  History() : samples_(kRoom) {}
+
+  void add(const ChartSample& sample) noexcept { samples_[end_++ % kRoom] = sample; }
+  /// One past the newest; places count from the beginning of all.
+  std::uint64_t end() const noexcept { return end_; }
+  std::uint64_t oldest() const noexcept { return end_ > kRoom ? end_ - kRoom : 0; }
+  std::uint64_t newcomers_place() const noexcept;
+  /// A new run begins: what was before is of no use to those who come later.
+  void cut() noexcept { first_ = end_; }
+
+  /// Appends the samples from `place` on, at most kAtOnce, as rows: frame index (u32), then the numbers
+  /// (f32). Moves `place` behind them and adds to `dropped` what it was too late for. Returns the rows.
+  std::size_t write_rows(std::uint64_t& place, std::uint64_t& dropped, std::string& out) const;
+
+ private:
+  std::vector<ChartSample> samples_;
+  std::uint64_t end_ = 0;
+  std::uint64_t first_ = 0;  // of this run
+};
+
+}  // namespace tactum

@@ -1,0 +1,44 @@
+#pragma once
+/// What a page may say: one JSON object a message, `do` names what, and every other key is known, of the
+/// right type and in range; anything else is refused. docs/viewer.md lists them.
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "tactum/base/result.h"
+
+namespace tactum {
+
+struct Request {
+  enum class What {
+    kAck,      ///< `seq`: this message was taken in
+    kSteer,    ///< may I steer?
+    kRelease,  ///< I steer no more
+    kStop,     ///< zero wrench; anyone may
+    kResume,   ///< after a stop
+    kAim,      ///< `p`, `q`, `buttons`: the hand's pose in the world
+    kRest,     ///< the hand stays where it is
+    kSet,      ///< `key`, `value`: a setting
+    kReset,    ///< the scene from its start
+    kScene,    ///< `name`
+    kDevice,   ///< `name`
+    kGrip,     ///< `name`
+  };
+  What what = What::kAck;
+  std::uint32_t sequence = 0;
+  std::array<double, 3> p{};                    ///< [m]
+  std::array<double, 4> q{1.0, 0.0, 0.0, 0.0};  ///< w, x, y, z
+  std::uint32_t buttons = 0;
+  std::string key;   ///< of kSet
+  std::string name;  ///< of kScene, kDevice, kGrip
+  double value = 0.0;
+
+  /// Whether only the page that steers may ask this.
+  bool steers() const { return what >= What::kResume; }
+};
+
+Result<Request> parse_request(std::string_view text);
+
+}  // namespace tactum

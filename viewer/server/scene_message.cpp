@@ -1,0 +1,292 @@
+#include "viewer/server/scene_message.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "tactum/devices/registry.h"
+#include "tactum/haptics/safety.h"
+#include "tactum/scene/builtin_scenes.h"
+#include "viewer/server/access.h"
+#include "viewer/server/shape_edges.h"
+#include "viewer/server/wire.h"
+
+namespace tactum {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json vector_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
+Json pose_json(const Pose& X) {
+  const Quat q(X.R);
+  return {{"p", vector_json(X.p)}, {"q", {q.w(), q.x(), q.y(), q.z()}}};
+}
+
+/// The parts in use, each once, and which of them each body has.
+struct Shapes {
+  std::vector<const Part*> parts;
+  std::vector<int> of_body;
+};
+Shapes shapes_of(const World& world) {
+  Shapes shapes;
+  for (const Body& body : world.bodies) {
+    std::size_t i = 0;
+    while (i < shapes.parts.size() && shapes.parts[i] != body.part.get()) ++i;
+    if (i == shapes.parts.size()) shapes.parts.push_back(body.part.get());
+    shapes.of_body.push_back(static_cast<int>(i));
+  }
+  return shapes;
+}
+
+const char* joint_name(JointKind kind) {
+  switch (kind) {
+    case JointKind::kFree:
+      return "free";
+    case JointKind::kFixed:
+      return "fixed";
+    case JointKind::kHinge:
+      return "hinge";
+  }
+  return "";
+}
+
+Json bodies_json(const World& world) {
+  const Shapes shapes = shapes_of(world);
+  Json bodies = Json::array();
+  for (std::size_t i = 0; i < world.bodies.size(); ++i) {
+    const Body& body = world.bodies[i];
+    Json json = {{"name", body.name},
+                 {"shape", shapes.of_body[i]},
+                 {"moves", body.moves()},
+                 {"joint", joint_name(body.joint.kind)},
+                 {"pieces", body.part->pieces.size()},
+                 {"mass_kg", body.mass_kg},
+                 {"radius_m", body.part->radius},
+                 {"X_WB", pose_json(body.X_WB)}};
+    if (body.joint.kind == JointKind::kHinge) {
+      json["axis_W"] = vector_json(body.joint.axis_W);
+      json["anchor_W"] = vector_json(body.joint.anchor_W);
+    }
+    bodies.push_back(json);
+  }
+  return bodies;
+}
+
+Json settings_json(const FrameSettings& frame, const SafetySettings& safety) {
+  Json settings = Json::array();
+  for (const SettingInfo& setting : setting_table()) {
+    const double value = setting.get(frame, safety);
+    const char* kind = setting.kind == SettingKind::kOnOff     ? "on-off"
+                       : setting.kind == SettingKind::kInteger ? "integer"
+                                                               : "number";
+    settings.push_back({{"section", setting.section},
+                        {"key", setting.key},
+                        {"name", setting.name},
+                        {"unit", setting.unit},
+                        {"meaning", setting.meaning},
+                        {"low", setting.low},
+                        {"high", setting.high},
+                        {"kind", kind},
+                        {"live", setting.live},
+                        {"value", std::isfinite(value) ? Json(value) : Json()}});
+  }
+  return settings;
+}
+
+Json device_json(const Session& session, const RunFacts& facts) {
+  const DeviceInfo& info = session.device();
+  Json choices = Json::array();
+  for (const SimulatedDeviceModel& model : simulated_device_presets())
+    choices.push_back({{"name", "pointer:" + model.name}, {"label", model.name + " (simulated)"}});
+  return {{"name", facts.device},
+          {"label", info.name},
+          {"can_be_led", session.can_be_led()},
+          {"senses_rotation", info.senses_rotation},
+          {"actuates_force", info.actuates_force},
+          {"actuates_torque", info.actuates_torque},
+          {"max_force_N", info.max_force_N},
+          {"max_torque_Nm", info.max_torque_Nm},
+          {"max_stiffness_N_per_m", info.max_stiffness_N_per_m},
+          {"workspace_radius_m", info.workspace_radius_m},
+          {"grip", facts.grip},
+          {"grips", {"loose", "medium", "firm"}},
+          {"choices", choices}};
+}
+
+Json stages_json() {
+  Json stages = Json::array();
+  for (const WrenchStage& stage : wrench_stages())
+    stages.push_back({{"key", stage.key}, {"name", stage.name}, {"meaning", stage.meaning}});
+  return stages;
+}
+
+/// The channels behind the wrench stages, as ChartSample has them.
+Json channels_json() {
+  Json list = Json::array();
+  const auto add = [&list](const std::string& key, const std::string& name, const char* unit,
+                           const char* group, const char* meaning) {
+    list.push_back({{"key", key}, {"name", name}, {"unit", unit}, {"group", group}, {"meaning", meaning}});
+  };
+  for (const Channel& channel : channels())
+    add(channel.key, channel.name, channel.unit, channel.group, channel.meaning);
+  for (int i = 0; i < kStageCount; ++i) {
+    std::string key = stage_name(static_cast<Stage>(i));
+    const std::string name = "Stage: " + key;
+    for (char& letter : key) letter = letter == ' ' ? '_' : letter;
+    add("stage_" + key + "_s", name, "s", "stages", "time of this stage of the frame");
+  }
+  add("frame_time_s", "Frame", "s", "frame", "time of the whole frame");
+  add("wakeup_latency_s", "Wake-up", "s", "frame", "how late the frame began");
+  return list;
+}
+
+Json flags_json() {
+  Json safety = Json::array();
+  for (unsigned bit = 0; bit < 24; ++bit)
+    if (const std::string name = safety_flag_names(1u << bit); !name.empty())
+      safety.push_back(
+          {{"flag", 1u << bit}, {"name", name}, {"fault", (safety_flag::kFaults >> bit & 1u) != 0}});
+  Json frame = Json::array();
+  for (const FlagName& flag : frame_flag_table()) frame.push_back({{"flag", flag.flag}, {"name", flag.name}});
+  return {{"safety", safety}, {"frame", frame}};
+}
+
+Json scenes_json() {
+  Json scenes = Json::array();
+  for (const SceneEntry& scene : list_scenes())
+    scenes.push_back({{"name", scene.name}, {"description", scene.description}});
+  return scenes;
+}
+
+void put(std::string& out, const Pose& X) {
+  wire::put(out, X.p);
+  const Quat q(X.R);
+  for (double component : {q.w(), q.x(), q.y(), q.z()}) wire::put(out, static_cast<float>(component));
+}
+
+void write_shape(const Part& part, std::string& out) {
+  constexpr std::uint32_t kCovered = 1u << 31;  // of a face's number: another piece lies on it
+  const std::vector<DrawnEdge> edges = edges_to_draw(part);
+  const std::vector<bool> covered = covered_triangles(part);
+  wire::put(out, static_cast<std::uint32_t>(part.surface.vertices.size()));
+  wire::put(out, static_cast<std::uint32_t>(part.surface.triangles.size()));
+  wire::put(out, static_cast<std::uint32_t>(edges.size()));
+  wire::put(out, static_cast<std::uint32_t>(part.one_sided ? 1 : 0));
+  for (const Vec3& vertex : part.surface.vertices) wire::put(out, vertex);
+  for (const Triangle& triangle : part.surface.triangles)
+    for (int corner : triangle) wire::put(out, static_cast<std::uint32_t>(corner));
+  // Whose triangles: the surface of solid pieces is their faces in order, each a fan (geometry/part.h).
+  std::size_t triangle = 0;
+  for (std::size_t i = 0; i < part.pieces.size(); ++i) {
+    const Polytope& piece = part.pieces[i];
+    const std::size_t faces = part.one_sided ? 1 : piece.faces.size();
+    for (std::size_t face = 0; face < faces; ++face) {
+      const int triangles = part.one_sided ? 1 : piece.faces[face].count - 2;
+      for (int t = 0; t < triangles; ++t, ++triangle) {
+        wire::put(out, static_cast<std::uint32_t>(i));
+        wire::put(out, static_cast<std::uint32_t>(face) | (covered[triangle] ? kCovered : 0u));
+      }
+    }
+  }
+  for (const DrawnEdge& edge : edges) {
+    wire::put(out, edge.tail);
+    wire::put(out, edge.head);
+  }
+}
+
+/// Whether the pieces' faces are the surface's triangles, one after the other.
+bool told_by_pieces(const Part& part) {
+  std::size_t triangles = 0;
+  for (const Polytope& piece : part.pieces)
+    for (const Polytope::Face& face : piece.faces) triangles += static_cast<std::size_t>(face.count - 2);
+  return part.one_sided ? part.pieces.size() == part.surface.triangles.size()
+                        : triangles == part.surface.triangles.size();
+}
+
+/// A part whose surface is not cut as its pieces are (a convex mesh): the pieces' own faces instead.
+Part with_surface_of_pieces(const Part& part) {
+  Part told;
+  told.pieces = part.pieces;
+  for (const Polytope& piece : part.pieces) {
+    const int base = static_cast<int>(told.surface.vertices.size());
+    told.surface.vertices.insert(told.surface.vertices.end(), piece.vertices.begin(), piece.vertices.end());
+    for (const Polytope::Face& face : piece.faces) {
+      const int* loop = piece.face_vertices.data() + face.first;
+      for (int i = 1; i + 1 < face.count; ++i)
+        told.surface.triangles.push_back({base + loop[0], base + loop[i], base + loop[i + 1]});
+    }
+  }
+  return told;
+}
+
+}  // namespace
+
+std::string run_message(const Session& session, const UserSettings& settings, const RunFacts& facts) {
+  const Scene& scene = session.scene();
+  const Tool& tool = scene.settings.tool;
+  const Json message = {{"type", "run"},
+                        {"run", facts.run},
+                        {"scene", scene.name},
+                        {"description", scene.description},
+                        {"scenes", scenes_json()},
+                        {"rate_Hz", session.rate_Hz()},
+                        {"real_time", facts.loop_in_real_time},
+                        {"bodies", bodies_json(scene.world)},
+                        {"held", tool.body},
+                        {"X_BH", pose_json(tool.X_BH)},
+                        {"device", device_json(session, facts)},
+                        {"stages", stages_json()},
+                        {"channels", channels_json()},
+                        {"flags", flags_json()},
+                        {"settings", settings_json(settings.frame, settings.safety)},
+                        {"toml", settings_toml(settings.frame, settings.safety)}};
+  return message.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string settings_message(const FrameSettings& frame, const SafetySettings& safety) {
+  const Json message = {{"type", "settings"},
+                        {"settings", settings_json(frame, safety)},
+                        {"toml", settings_toml(frame, safety)}};
+  return message.dump();
+}
+
+std::string geometry_of(const World& world) {
+  const Shapes shapes = shapes_of(world);
+  std::string out;
+  wire::put(out, static_cast<std::uint32_t>(shapes.parts.size()));
+  for (const Part* part : shapes.parts) {
+    if (told_by_pieces(*part)) {
+      write_shape(*part, out);
+    } else {
+      write_shape(with_surface_of_pieces(*part), out);
+    }
+  }
+  return out;
+}
+
+void write_picture(const FramePicture& picture, std::string& out) {
+  wire::put(out, static_cast<std::uint32_t>(picture.index));
+  wire::put(out, static_cast<std::uint32_t>(picture.held ? 1 : 0));
+  wire::put(out, static_cast<std::uint32_t>(picture.X_WB.size()));
+  wire::put(out, static_cast<std::uint32_t>(picture.contacts.size()));
+  wire::put(out, static_cast<std::uint32_t>(picture.contacts_left_out));
+  put(out, picture.X_WH);
+  put(out, picture.X_WH_proxy);
+  put(out, picture.X_WD);
+  for (const Pose& X_WB : picture.X_WB) put(out, X_WB);
+  for (const ShownContact& contact : picture.contacts) {
+    for (std::int32_t number : {contact.body_a, contact.body_b, contact.piece_a, contact.piece_b})
+      wire::put(out, number);
+    wire::put(out, static_cast<std::int32_t>(contact.a.kind));
+    wire::put(out, static_cast<std::int32_t>(contact.a.index));
+    wire::put(out, static_cast<std::int32_t>(contact.b.kind));
+    wire::put(out, static_cast<std::int32_t>(contact.b.index));
+    wire::put(out, contact.patch);
+    wire::put(out, contact.p_W);
+    wire::put(out, contact.n_W);
+    for (double number : {contact.distance_m, contact.tolerance_m, contact.force_N})
+      wire::put(out, static_cast<float>(number));
+  }
+}
+
+}  // namespace tactum

@@ -1,0 +1,34 @@
+#pragma once
+/// What a page is told of a run: once, when the run begins, everything that stays (as JSON and as geometry),
+/// then pictures of what moves. docs/viewer.md draws the layouts.
+
+#include <string>
+#include <vector>
+
+#include "tactum/haptics/setting_table.h"
+#include "tactum/session/session.h"
+
+namespace tactum {
+
+/// What the page is told beside the session itself.
+struct RunFacts {
+  std::uint32_t run = 0;  ///< counts the runs: pictures and samples carry it
+  std::string device;     ///< as in the registry
+  std::string grip;
+  bool loop_in_real_time = true;
+};
+
+/// Scene, bodies, device, tables of stages, channels and settings with their values, choices.
+std::string run_message(const Session& session, const UserSettings& settings, const RunFacts& facts);
+
+/// The settings alone, after one was changed.
+std::string settings_message(const FrameSettings& frame, const SafetySettings& safety);
+
+/// The surfaces of the parts, each once: vertices, triangles with piece and face, and the edges worth
+/// drawing.
+std::string geometry_of(const World& world);
+
+/// Where everything is, with the contacts.
+void write_picture(const FramePicture& picture, std::string& out);
+
+}  // namespace tactum

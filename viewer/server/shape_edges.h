@@ -1,0 +1,30 @@
+#pragma once
+/// What of a part a drawing shows: the edges where its surface bends, and the triangles that lie on its
+/// surface. A part of several solid pieces has seams too, edges and faces that lie inside the part or in the
+/// middle of a flat wall; those are left out:
+///
+///      piece 1 | piece 2        just beyond face f of an edge, and just below its other face, lies another
+///     ---------+---------       piece: f is no surface there, so the edge is a seam
+///
+/// Cost: edges times pieces that are near, once a scene.
+
+#include <vector>
+
+#include "tactum/geometry/part.h"
+
+namespace tactum {
+
+struct DrawnEdge {
+  Vec3 tail, head;  ///< in the part's frame [m]
+};
+
+/// Edges that bend by more than kDrawnBend_rad.
+std::vector<DrawnEdge> edges_to_draw(const Part& part);
+
+/// Of each triangle of the part's surface, in order: whether another piece covers all of it.
+std::vector<bool> covered_triangles(const Part& part);
+
+inline constexpr double kDrawnBend_rad = 0.45;      ///< flatter ones are a curved surface's facets
+inline constexpr std::size_t kMostDrawn = 200'000;  ///< larger surfaces are drawn as they are
+
+}  // namespace tactum

@@ -1,0 +1,244 @@
+#include "viewer/server/viewer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "tactum/devices/registry.h"
+#include "tactum/haptics/setting_table.h"
+#include "tactum/scene/builtin_scenes.h"
+
+namespace tactum {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kShowEvery = 15ms;  // a little under a screen's period, so that none is missed
+constexpr auto kStatusEvery = 500ms;
+constexpr std::uint64_t kVirtualFramesAtOnce = 16;
+constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
+
+}  // namespace
+
+Result<std::unique_ptr<Viewer>> Viewer::open(Scene scene, SessionOptions options, int port) {
+  if (options.device.empty()) options.device = "pointer:" + scene.device;
+  if (options.grip.empty()) options.grip = scene.grip;
+  Result<std::unique_ptr<Server>> server = Server::start(port);
+  if (!server) return server.error();
+  std::unique_ptr<Viewer> viewer(new Viewer(std::move(scene), std::move(options), std::move(*server)));
+  if (Result<void> begun = viewer->begin_run(); !begun) return begun.error();
+  return viewer;
+}
+
+Viewer::Viewer(Scene scene, SessionOptions options, std::unique_ptr<Server> server)
+    : scene_(std::move(scene)), options_(std::move(options)), server_(std::move(server)) {
+  if (options_.rate_Hz > 0.0) scene_.settings.dt_s = 1.0 / options_.rate_Hz;
+  options_.rate_Hz = 0.0;  // from here on a setting like any other
+}
+
+Result<void> Viewer::begin_run() {
+  Result<std::unique_ptr<Session>> session = Session::open(scene_, options_);
+  if (!session) return session.error();
+  auto feed = std::make_unique<FrameFeed>(scene_.world.bodies.size(), (*session)->rate_Hz());
+  auto stages = std::make_unique<StageClock>();
+  (*session)->show_to(feed.get());
+  (*session)->time_stages(stages.get());
+  (*session)->hold_wrench_at_zero(stopped_);
+  session_ = std::move(*session);  // the old one first: it refers to the old feed
+  feed_ = std::move(feed);
+  stages_ = std::move(stages);
+  waiting_.clear();
+  timings_.clear();
+  newest_ = {};
+  ++run_;
+  const RunFacts facts{run_, options_.device, options_.grip, true};
+  server_->begin_run(run_, run_message(*session_, {scene_.settings, scene_.safety}, facts),
+                     geometry_of(scene_.world));
+  return {};
+}
+
+Result<void> Viewer::start() {
+  Result<void> started = session_->start();
+  threaded_ = static_cast<bool>(started);
+  return started;
+}
+
+/// The scene from its start, with the settings as they are now.
+void Viewer::restart() {
+  if (!threaded_) return server_->tell("a run on the virtual clock cannot be started anew");
+  session_->stop();
+  Result<void> begun = begin_run();
+  if (begun) begun = start();
+  if (!begun) server_->tell(begun.error().message());
+}
+
+void Viewer::poll(std::chrono::microseconds longest) {
+  server_->wait(longest);
+  for (Request request; server_->take(request);) obey(request);
+  newest_ = session_->poll(&timings_);
+  gather();
+  if (Clock::now() - last_shown_ >= kShowEvery) show();
+}
+
+void Viewer::after_virtual_frame(const FrameRecord& record) {
+  ChartSample sample;
+  while (feed_->pop(sample.frame)) {
+    sample.frame_time_s = static_cast<float>(record.frame_time_s);
+    sample.wakeup_latency_s = kUnknown;
+    ready_.push_back(sample);
+  }
+  if (++virtual_frames_ % kVirtualFramesAtOnce != 0) return;
+  for (Request request; server_->take(request);) obey(request);
+  newest_ = session_->poll();
+  show();
+}
+
+/// Puts samples and times of the same frame together. The times come a moment after the sample.
+void Viewer::gather() {
+  for (FrameSample sample; feed_->pop(sample);) waiting_.push_back(sample);
+  std::size_t used = 0;
+  while (!waiting_.empty()) {
+    const std::uint64_t index = waiting_.front().index;
+    while (used < timings_.size() && timings_[used].index < index) ++used;
+    if (used == timings_.size() && session_->loop_status().running) break;
+    const bool known = used < timings_.size() && timings_[used].index == index;
+    ready_.push_back({waiting_.front(), known ? static_cast<float>(timings_[used].frame_time_s) : kUnknown,
+                      known ? static_cast<float>(timings_[used].wakeup_latency_s) : kUnknown});
+    waiting_.pop_front();
+  }
+  timings_.erase(timings_.begin(), timings_.begin() + static_cast<std::ptrdiff_t>(used));
+}
+
+void Viewer::show() {
+  const Clock::time_point now = Clock::now();
+  last_shown_ = now;
+  const ServerStatus pages = server_->status();
+  if (pages.pages > 0) last_page_ = now;
+  std::string picture;
+  if (feed_->look()) write_picture(feed_->picture(), picture);
+  if (!ready_.empty() || !picture.empty()) server_->show(ready_, std::move(picture));
+  ready_.clear();
+  if (now - last_status_ < kStatusEvery) return;
+  last_status_ = now;
+  server_->tell_status(status_json());
+}
+
+double Viewer::alone_s() const noexcept {
+  return server_->status().pages > 0 ? 0.0 : std::chrono::duration<double>(Clock::now() - last_page_).count();
+}
+
+void Viewer::obey(const Request& request) {
+  using What = Request::What;
+  switch (request.what) {
+    case What::kStop:
+    case What::kResume:
+      stopped_ = request.what == What::kStop;
+      session_->hold_wrench_at_zero(stopped_);
+      server_->tell_status(status_json());
+      return;
+    case What::kAim:
+      session_->ask({.kind = SessionCommand::Kind::kAim,
+                     .buttons = request.buttons,
+                     .p_WH = request.p,
+                     .quat_wxyz_WH = request.q});
+      return;
+    case What::kRest:
+      session_->ask({.kind = SessionCommand::Kind::kRest});
+      return;
+    case What::kSet:
+      return set(request);
+    case What::kReset:
+      return restart();
+    case What::kScene:
+      return change_scene(request.name);
+    case What::kDevice:
+      return change_device(request.name, &SessionOptions::device);
+    case What::kGrip:
+      return change_device(request.name, &SessionOptions::grip);
+    case What::kAck:
+    case What::kSteer:
+    case What::kRelease:
+      return;  // the server's own affair
+  }
+}
+
+void Viewer::set(const Request& request) {
+  const int index = setting_called(request.key);
+  if (index < 0) return server_->tell("there is no setting called " + request.key);
+  const SettingInfo& setting = setting_table()[static_cast<std::size_t>(index)];
+  if (!in_range(setting, request.value)) {
+    server_->tell(fmt::format("{}: {} is not from {} to {} {}", setting.name, request.value, setting.low,
+                              setting.high, setting.unit));
+    return tell_settings();
+  }
+  setting.set(scene_.settings, scene_.safety, request.value);
+  if (!setting.live) return restart();
+  session_->ask({.kind = SessionCommand::Kind::kSet, .setting = index, .value = request.value});
+  tell_settings();
+}
+
+void Viewer::tell_settings() {
+  const RunFacts facts{run_, options_.device, options_.grip, true};
+  server_->tell_settings(settings_message(scene_.settings, scene_.safety),
+                         run_message(*session_, {scene_.settings, scene_.safety}, facts));
+}
+
+/// Only scenes that come with the program, and the one it was started with: a page names no files.
+void Viewer::change_scene(const std::string& name) {
+  if (name == scene_.name) return restart();
+  const std::vector<SceneEntry> known = list_scenes();
+  if (std::none_of(known.begin(), known.end(), [&](const SceneEntry& s) { return s.name == name; }))
+    return server_->tell("there is no scene called " + name);
+  Result<Scene> scene = open_scene(name);
+  if (!scene) return server_->tell(scene.error().message());
+  const bool follows_scene = options_.device == "pointer:" + scene_.device;
+  scene_ = std::move(*scene);
+  if (follows_scene) options_.device = "pointer:" + scene_.device;
+  options_.grip = scene_.grip;
+  restart();
+}
+
+/// Simulated devices and hands only: a page must not wake a motor that nobody has chosen at the keyboard.
+void Viewer::change_device(const std::string& name, std::string SessionOptions::*choice) {
+  const bool simulated = choice == &SessionOptions::grip || name.rfind("pointer:", 0) == 0;
+  DeviceOptions device_options;
+  device_options.grip = choice == &SessionOptions::grip ? name : options_.grip;
+  const std::string& device = choice == &SessionOptions::device ? name : options_.device;
+  const Result<std::unique_ptr<Device>> made = make_device(device, device_options);
+  if (!simulated || !made)
+    return server_->tell(made ? "only simulated devices can be chosen here" : made.error().message());
+  options_.*choice = name;
+  restart();
+}
+
+std::string Viewer::status_json() {
+  const LoopStatus loop = session_->loop_status();
+  const Summary times = session_->frame_times().summary();
+  nlohmann::ordered_json privileges = nlohmann::ordered_json::array();
+  if (threaded_)
+    for (const std::string& sentence : session_->privileges().sentences) privileges.push_back(sentence);
+  const nlohmann::ordered_json status = {{"stopped", stopped_},
+                                         {"stop_ramp_s", scene_.settings.safety.stop_ramp_s},
+                                         {"running", loop.running},
+                                         {"device_lost", loop.device_lost},
+                                         {"frames", loop.frames},
+                                         {"missed_deadlines", loop.missed_deadlines},
+                                         {"late_frames", loop.late_frames},
+                                         {"failed_reads", loop.failed_reads},
+                                         {"failed_writes", loop.failed_writes},
+                                         {"samples_dropped", feed_->dropped()},
+                                         {"frame_us",
+                                          {{"mean", times.mean_ns * 1e-3},
+                                           {"p50", times.p50_ns * 1e-3},
+                                           {"p99", times.p99_ns * 1e-3},
+                                           {"p999", times.p999_ns * 1e-3},
+                                           {"max", times.max_ns * 1e-3}}},
+                                         {"safety", safety_flag_names(newest_.safety)},
+                                         {"remarks", privileges}};
+  return status.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+}  // namespace tactum

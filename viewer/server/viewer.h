@@ -1,0 +1,72 @@
+#pragma once
+/// A session that can be seen and steered from a page: runs it, shows it, and does what the page asks.
+///
+///   loop thread  --- FrameFeed --->  poll() on the owner's thread  --- Server --->  pages
+///                <-- commands ---                                  <-- inbox ---
+///
+/// Scenes, devices and settings that need it start the session anew; the big stop outlives that.
+
+#include <deque>
+#include <memory>
+
+#include "viewer/server/scene_message.h"
+#include "viewer/server/server.h"
+
+namespace tactum {
+
+class Viewer {
+ public:
+  /// Opens the session and the server; `port` 0 finds a free one. The scene's simulated device is led by the
+  /// page unless the options name another device.
+  static Result<std::unique_ptr<Viewer>> open(Scene scene, SessionOptions options, int port);
+
+  /// The loop on its own thread.
+  Result<void> start();
+  void stop() noexcept { session_->stop(); }
+  /// Waits for the pages' requests for at most `longest`, does what they ask, and shows them what happened
+  /// since.
+  void poll(std::chrono::microseconds longest);
+  /// The same for a run on the virtual clock: call it after every frame.
+  void after_virtual_frame(const FrameRecord& record);
+
+  Session& session() noexcept { return *session_; }
+  const StageClock& stages() const noexcept { return *stages_; }
+  const Server& server() const noexcept { return *server_; }
+  const SessionStatus& status() const noexcept { return newest_; }
+  /// How long no page has been here [s]; zero while there is one.
+  double alone_s() const noexcept;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Viewer(Scene scene, SessionOptions options, std::unique_ptr<Server> server);
+
+  Result<void> begin_run();
+  void restart();
+  void obey(const Request& request);
+  void set(const Request& request);
+  void change_scene(const std::string& name);
+  void change_device(const std::string& name, std::string SessionOptions::*choice);
+  void gather();
+  void show();
+  void tell_settings();
+  std::string status_json();
+
+  Scene scene_;  // as it starts, with the settings as they are now
+  SessionOptions options_;
+  std::unique_ptr<Server> server_;
+  std::unique_ptr<FrameFeed> feed_;
+  std::unique_ptr<StageClock> stages_;
+  std::unique_ptr<Session> session_;
+  std::uint32_t run_ = 0;
+  bool threaded_ = false;
+  bool stopped_ = false;  // the big stop
+  SessionStatus newest_;
+  std::deque<FrameSample> waiting_;   // for their times
+  std::vector<FrameTiming> timings_;  // for their samples
+  std::vector<ChartSample> ready_;
+  std::uint64_t virtual_frames_ = 0;
+  Clock::time_point last_shown_, last_status_;
+  Clock::time_point last_page_ = Clock::now();
+};
+
+}  // namespace tactum

@@ -1,0 +1,190 @@
+// The bodies: one instanced mesh a shape, however many bodies have it; far ones by a simplified copy.
+import * as THREE from "three";
+import { edgeGeometry, farGeometry, featureGeometry, nearGeometry } from "./geometry";
+import type { Look } from "./look";
+import type { Run, Shape } from "./protocol";
+
+const farPixels = 70; // a body smaller than this on the screen is far
+const mostWithEdges = 80; // bodies
+
+interface Drawn {
+  shape: Shape; bodies: number[]; near: THREE.InstancedMesh; far: THREE.InstancedMesh | null; radius: number;
+}
+
+export class Bodies {
+  readonly root = new THREE.Group();
+  readonly matrices: THREE.Matrix4[];
+  private readonly drawn: Drawn[] = [];
+  private readonly edges: (THREE.LineSegments | null)[];
+  private readonly material: THREE.MeshStandardMaterial;
+  private readonly glass: THREE.MeshStandardMaterial;
+  private readonly edgeMaterial = new THREE.LineBasicMaterial({ transparent: true });
+  private readonly mark = new THREE.Group();
+  private readonly markMaterial = new THREE.MeshBasicMaterial({
+    transparent: true, opacity: 0.55, depthTest: false, side: THREE.DoubleSide,
+  });
+  private pieces = false;
+  private seeThrough = false;
+
+  constructor(private readonly run: Run, private readonly shapes: Shape[], private look: Look) {
+    this.matrices = run.bodies.map(() => new THREE.Matrix4());
+    this.material = new THREE.MeshStandardMaterial({ metalness: 0.35, roughness: 0.42 });
+    this.glass = new THREE.MeshStandardMaterial({
+      metalness: 0.1, roughness: 0.3, transparent: true, opacity: 0.2, depthWrite: false, side: THREE.DoubleSide,
+    });
+    const withEdges = run.bodies.length <= mostWithEdges;
+    // A body that is fixed stands apart from its kin, so that it can become glass.
+    const groups = new Map<string, number[]>();
+    run.bodies.forEach((body, i) => {
+      const key = `${body.shape} ${body.moves}`;
+      groups.set(key, [...(groups.get(key) ?? []), i]);
+    });
+    const geometries = shapes.map((shape) => ({ near: nearGeometry(shape), far: farGeometry(shape), edges: edgeGeometry(shape) }));
+    for (const bodies of groups.values()) {
+      const which = run.bodies[bodies[0]].shape;
+      const { near, far } = geometries[which];
+      this.drawn.push({
+        shape: shapes[which], bodies, near: this.instanced(near, bodies.length), far: far && this.instanced(far, bodies.length),
+        radius: near.boundingSphere?.radius ?? 1,
+      });
+    }
+    this.edges = run.bodies.map((body) => {
+      if (!withEdges || shapes[body.shape].edges.length === 0) return null;
+      const lines = new THREE.LineSegments(geometries[body.shape].edges, this.edgeMaterial);
+      lines.matrixAutoUpdate = false;
+      this.root.add(lines);
+      return lines;
+    });
+    this.mark.matrixAutoUpdate = false;
+    this.root.add(this.mark);
+    this.setLook(look);
+  }
+
+  private instanced(geometry: THREE.BufferGeometry, count: number) {
+    const mesh = new THREE.InstancedMesh(geometry, this.material, count);
+    mesh.castShadow = mesh.receiveShadow = true;
+    mesh.frustumCulled = false; // the bounds of an instanced mesh do not follow its instances
+    this.root.add(mesh);
+    return mesh;
+  }
+
+  colour(body: number): number {
+    const { bodies, held } = this.run;
+    if (body === held) return this.look.held;
+    if (!bodies[body].moves) return this.look.fixed;
+    const free = bodies.slice(0, body).filter((b, i) => b.moves && i !== held).length;
+    return this.look.others[free % this.look.others.length];
+  }
+
+  setLook(look: Look) {
+    this.look = look;
+    this.edgeMaterial.color.set(look.edge);
+    this.edgeMaterial.opacity = look.edgeOpacity;
+    this.markMaterial.color.set(look.chosen);
+  }
+
+  showPieces(on: boolean) {
+    this.pieces = on;
+    this.material.vertexColors = on;
+    this.material.needsUpdate = true;
+  }
+
+  showThrough(on: boolean) {
+    this.seeThrough = on;
+    for (const drawn of this.drawn) {
+      const fixed = !this.run.bodies[drawn.bodies[0]].moves;
+      for (const mesh of [drawn.near, drawn.far])
+        if (mesh) {
+          mesh.material = on && fixed ? this.glass : this.material;
+          mesh.castShadow = !(on && fixed);
+        }
+    }
+  }
+
+  /** Puts every body where it is; which copy is drawn depends on its size on the screen. */
+  place(poses: Float32Array, camera: THREE.PerspectiveCamera, pixels: number, toView: THREE.Matrix4) {
+    const q = new THREE.Quaternion();
+    const p = new THREE.Vector3();
+    const one = new THREE.Vector3(1, 1, 1);
+    this.matrices.forEach((matrix, i) => {
+      p.fromArray(poses, 7 * i);
+      q.set(poses[7 * i + 4], poses[7 * i + 5], poses[7 * i + 6], poses[7 * i + 3]);
+      matrix.compose(p, q, one);
+      const lines = this.edges[i];
+      if (lines) {
+        lines.matrix.copy(matrix);
+        lines.matrixWorldNeedsUpdate = true;
+      }
+    });
+    const perRadian = pixels / (2 * Math.tan((camera.fov * Math.PI) / 360));
+    const scale = toView.getMaxScaleOnAxis();
+    const colour = new THREE.Color();
+    for (const { bodies, near, far, radius } of this.drawn) {
+      let nearCount = 0;
+      let farCount = 0;
+      for (const body of bodies) {
+        p.setFromMatrixPosition(this.matrices[body]).applyMatrix4(toView);
+        const size = (2 * radius * scale * perRadian) / Math.max(1e-3, p.distanceTo(camera.position));
+        const mesh = far && size < farPixels ? far : near;
+        const slot = mesh === near ? nearCount++ : farCount++;
+        mesh.setMatrixAt(slot, this.matrices[body]);
+        mesh.setColorAt(slot, this.pieces && mesh === near ? colour.set(0xffffff) : colour.set(this.colour(body)));
+        if (mesh === near) near.userData[slot] = body;
+      }
+      near.count = nearCount;
+      near.instanceMatrix.needsUpdate = true;
+      if (near.instanceColor) near.instanceColor.needsUpdate = true;
+      near.boundingSphere = null; // it is kept for picking, and the instances have moved
+      if (!far) continue;
+      far.count = farCount;
+      far.instanceMatrix.needsUpdate = true;
+      if (far.instanceColor) far.instanceColor.needsUpdate = true;
+    }
+  }
+
+  /** The body under a ray, and where. */
+  pick(ray: THREE.Raycaster): { body: number; point: THREE.Vector3 } | null {
+    const solid = this.seeThrough ? this.drawn.filter((d) => this.run.bodies[d.bodies[0]].moves) : this.drawn;
+    const hit = ray.intersectObjects(solid.map((d) => d.near), false)[0];
+    if (!hit || hit.instanceId === undefined) return null;
+    return { body: hit.object.userData[hit.instanceId] as number, point: hit.point };
+  }
+
+  /** Marks a piece, or a face of it. */
+  markFeature(body: number | null, piece = -1, face: number | null = null) {
+    for (const child of [...this.mark.children]) {
+      this.mark.remove(child);
+      (child as THREE.Mesh).geometry.dispose();
+    }
+    if (body === null || piece < 0) return;
+    const mesh = new THREE.Mesh(featureGeometry(this.shapes[this.run.bodies[body].shape], piece, face), this.markMaterial);
+    mesh.renderOrder = 5;
+    this.mark.userData.body = body;
+    this.mark.add(mesh);
+    this.followMark();
+  }
+  followMark() {
+    const body = this.mark.userData.body as number | undefined;
+    if (body === undefined) return;
+    this.mark.matrix.copy(this.matrices[body]);
+    this.mark.matrixWorldNeedsUpdate = true;
+  }
+
+  /** A translucent copy of a body, for the ghost. */
+  copyOf(body: number, material: THREE.Material): THREE.Mesh {
+    const drawn = this.drawn.find((d) => d.bodies.includes(body)) as Drawn;
+    const mesh = new THREE.Mesh(drawn.near.geometry, material);
+    mesh.matrixAutoUpdate = false;
+    return mesh;
+  }
+
+  dispose() {
+    for (const { near, far } of this.drawn) {
+      near.geometry.dispose();
+      near.dispose();
+      far?.geometry.dispose();
+      far?.dispose();
+    }
+    this.edges.forEach((lines) => lines?.geometry.dispose());
+  }
+}

@@ -1,0 +1,48 @@
+// The line to the program: connects, comes back after a loss, acknowledges what was taken in.
+import { readFrames, type Frames, type Told } from "./protocol";
+
+export interface Listener {
+  told(message: Told): void;
+  frames(frames: Frames): void;
+  linked(up: boolean): void;
+}
+
+export class Connection {
+  private socket: WebSocket | null = null;
+  private wait_ms = 250;
+
+  constructor(private readonly listener: Listener) {
+    this.open();
+  }
+
+  private open() {
+    const address = new URL("ws", location.href);
+    address.protocol = "ws:";
+    const socket = new WebSocket(address);
+    socket.binaryType = "arraybuffer";
+    socket.onopen = () => {
+      this.wait_ms = 250;
+      this.listener.linked(true);
+    };
+    socket.onmessage = (event) => {
+      if (typeof event.data === "string") {
+        this.listener.told(JSON.parse(event.data) as Told);
+        return;
+      }
+      const frames = readFrames(event.data as ArrayBuffer);
+      this.listener.frames(frames);
+      this.send({ do: "ack", seq: frames.sequence });
+    };
+    socket.onclose = () => {
+      this.socket = null;
+      this.listener.linked(false);
+      setTimeout(() => this.open(), this.wait_ms);
+      this.wait_ms = Math.min(4000, 2 * this.wait_ms);
+    };
+    this.socket = socket;
+  }
+
+  send(message: Record<string, unknown>) {
+    if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
+  }
+}

@@ -1,0 +1,340 @@
+// The page: what is felt, seen. Puts the parts together; each file beside this one is one part.
+import "./style.css";
+import { Charts } from "./charts";
+import { Connection } from "./connection";
+import { download, get, make } from "./dom";
+import { Hand } from "./hand";
+import { Panel } from "./panel";
+import { readShapes, type Frames, type Picture, type Run, type Shape, type Status, type Told } from "./protocol";
+import { Samples } from "./samples";
+import { withUnit } from "./units";
+import { View, type ViewName } from "./view";
+import { Why } from "./why";
+
+const body = document.body;
+const canvas = get<HTMLCanvasElement>("canvas");
+const view = new View(canvas, get("labels"), get("scale"));
+const charts = new Charts(get("strips"), get("span"), get("also"), get("cursor"));
+const why = new Why(get("why"));
+let run: Run | null = null;
+let samples: Samples | null = null;
+let status: Status | null = null;
+let shapes: Shape[] = [];
+let waitingFrames: Frames[] = []; // of a run whose geometry is on its way
+let stopped = false;
+
+const connection = new Connection({ told, frames, linked });
+const ask = (message: Record<string, unknown>) => connection.send(message);
+const panel = new Panel(get("panel"), (message) => {
+  if (maySteer()) ask(message);
+});
+const hand = new Hand(view, canvas, { maySteer, send: ask });
+
+function maySteer(): boolean {
+  if (status?.steering) return true;
+  if (status?.somebody_steers) {
+    notice("Another page has the hand. “Take the hand” takes it over.");
+    return false;
+  }
+  ask({ do: "steer" });
+  return true;
+}
+
+function notice(text: string) {
+  const box = get("notice");
+  box.textContent = text;
+  box.hidden = false;
+  window.clearTimeout(Number(box.dataset.timer));
+  box.dataset.timer = String(window.setTimeout(() => (box.hidden = true), 6000));
+}
+
+// ---- what the program says
+
+function told(message: Told) {
+  if (message.type === "run") void begin(message);
+  else if (message.type === "settings") panel.showSettings(message.settings, message.toml);
+  else if (message.type === "told") notice(message.sentence);
+  else showStatus(message);
+}
+
+async function begin(next: Run) {
+  const response = await fetch("geometry");
+  if (!response.ok) return notice("The scene's geometry could not be loaded.");
+  shapes = readShapes(await response.arrayBuffer());
+  run = next;
+  samples = new Samples(next);
+  view.begin(next, shapes);
+  hand.begin(next);
+  charts.begin(next, samples);
+  why.begin(next);
+  panel.begin(next);
+  view.bodies?.showPieces(pressed("pieces"));
+  view.bodies?.showThrough(pressed("see-through"));
+  const choice = get<HTMLSelectElement>("scene");
+  const known = next.scenes.some((scene) => scene.name === next.scene);
+  choice.replaceChildren(
+    ...(known ? [] : [new Option(next.scene, next.scene)]),
+    ...next.scenes.map((scene) => new Option(`${scene.name}: ${scene.description}`, scene.name)));
+  choice.value = next.scene;
+  document.title = `Tactum: ${next.scene}`;
+  showHint();
+  back();
+  for (const early of waitingFrames.splice(0)) frames(early);
+  body.dataset.scene = next.scene;
+  body.dataset.run = String(next.run);
+}
+
+function frames(message: Frames) {
+  if (!run || message.run !== run.run) {
+    if (!run || message.run > run.run) waitingFrames.push(message);
+    return;
+  }
+  samples?.take(message);
+  if (message.picture) newest = message.picture;
+  body.dataset.lost = String(message.lost);
+}
+let newest: Picture | null = null;
+
+function linked(up: boolean) {
+  body.dataset.link = up ? "up" : "down";
+  get("link").textContent = up ? "connected" : "connection lost, trying again";
+  get("link").classList.toggle("bad", !up);
+  if (!up) {
+    run = null;
+    waitingFrames = [];
+    hand.lose();
+  }
+}
+
+function showStatus(message: Status) {
+  const led = status?.steering ?? false;
+  status = message;
+  if (led && !message.steering) {
+    hand.lose();
+    notice("Another page has taken the hand.");
+  }
+  stopped = message.program.stopped ?? false;
+  get("stopped").hidden = !stopped;
+  get("stop").setAttribute("aria-pressed", String(stopped));
+  get("steer").hidden = message.steering || !message.somebody_steers;
+  const link = get("link");
+  const health = message.program;
+  link.textContent = health.device_lost ? "device lost" : `${Math.round(run?.rate_Hz ?? 0)} Hz · ${message.pages} ${message.pages === 1 ? "page" : "pages"}`;
+  link.classList.toggle("bad", health.device_lost ?? false);
+  panel.showStatus(message);
+  body.dataset.steering = String(message.steering);
+  body.dataset.stopped = String(stopped);
+  body.dataset.pages = String(message.pages);
+  body.dataset.refused = JSON.stringify(message.refused);
+  body.dataset.frames = String(health.frames ?? 0);
+}
+
+// ---- drawing
+
+let lastSpoken = 0;
+function showSummary(sample: number) {
+  if (!run || !samples) return;
+  const shown = run.stages.length - 1;
+  const force = samples.length(shown, 0, sample);
+  const torque = samples.length(shown, 3, sample);
+  const points = samples.at(samples.column("held_contact_points"), sample);
+  get("summary").textContent = `${withUnit(force, "N")} · ${withUnit(torque, "N m")} · ${points > 0 ? `touching at ${points} points` : "free"}`;
+  body.dataset.force = String(force);
+  body.dataset.torque = String(torque);
+  body.dataset.peakForce = String(samples.peakForce);
+  body.dataset.samples = String(samples.count);
+  body.dataset.gaps = String(samples.gaps);
+  body.dataset.newest = String(samples.frameOf(samples.count - 1));
+  if (run.held >= 0) body.dataset.heldAt = view.onScreen(run.held).map(Math.round).join(",");
+  const now = performance.now();
+  if (now - lastSpoken > 3000 && document.activeElement === canvas) {
+    lastSpoken = now;
+    get("spoken").textContent = `${withUnit(force, "N")}, ${points > 0 ? `${points} contact points` : "free"}`;
+  }
+}
+
+let lastTick = 0;
+function tick(time: number) {
+  requestAnimationFrame(tick);
+  if (!run || !samples || samples.count === 0) return;
+  const past = charts.moment !== null;
+  const sample = charts.moment ?? samples.count - 1;
+  const picture = past ? samples.picture(samples.frameOf(sample)) : newest;
+  if (picture && (picture !== view.picture || past)) view.show(picture, !past);
+  if (picture) {
+    view.showWrench(samples.wrench(run.stages.length - 1, sample));
+    hand.drawPull(picture);
+  }
+  view.draw();
+  charts.draw();
+  why.update(samples, sample, picture);
+  if (time - lastTick > 100) {
+    lastTick = time;
+    showSummary(sample);
+  }
+}
+
+// ---- what people do
+
+function pressed(id: string) {
+  return get(id).getAttribute("aria-pressed") === "true";
+}
+function toggle(id: string, to = !pressed(id)) {
+  get(id).setAttribute("aria-pressed", String(to));
+  return to;
+}
+
+function stop() {
+  ask({ do: "stop" });
+}
+function resume() {
+  if (maySteer()) ask({ do: "resume" });
+}
+function back() {
+  charts.moment = null;
+  charts.pause(false);
+  why.chosen = view.overlay.chosen = -1;
+  view.bodies?.markFeature(null);
+  get("past").hidden = true;
+}
+function showHint() {
+  const held = run && run.held >= 0 ? run.bodies[run.held].name : "";
+  const hinged = run && run.held >= 0 && run.bodies[run.held].joint === "hinge";
+  get("hint").textContent = !run ? "" : !hand.canFeel ? "This device is not led by the mouse: look, or choose a simulated device in the settings."
+    : `Drag the orange part (${held}) to ${hinged ? "turn" : "move"} it and feel it push back. Drag beside it to look around.`;
+}
+function reset() {
+  if (maySteer()) ask({ do: "reset" });
+}
+function grasp() {
+  hand.setButton(toggle("grasp"));
+}
+function theme(isDark: boolean) {
+  document.documentElement.dataset.theme = isDark ? "dark" : "light";
+  view.setTheme(isDark);
+  charts.setTheme(isDark);
+}
+
+const actions: [string, string, () => void][] = [
+  ["stop", "", () => (stopped ? resume() : stop())],
+  ["resume", "", resume],
+  ["reset", "r", reset],
+  ["steer", "", () => ask({ do: "steer" })],
+  ["theme", "", () => theme(document.documentElement.dataset.theme !== "dark")],
+  ["help-button", "?", () => showHelp(get("help").hidden)],
+  ["pieces", "p", () => view.bodies?.showPieces(toggle("pieces"))],
+  ["see-through", "x", () => view.bodies?.showThrough(toggle("see-through"))],
+  ["trail", "t", () => (view.overlay.showsTrail = toggle("trail"))],
+  ["picture", "", () => void view.png().then((png) => download(`tactum-${run?.scene ?? "scene"}.png`, png))],
+  ["mode", "m", () => (hand.turns = toggle("mode"))],
+  ["grasp", "g", grasp],
+  ["pause", "c", () => charts.pause(!charts.paused)],
+  ["csv", "", () => download(`tactum-${run?.scene ?? "run"}.csv`, new Blob([charts.csv()], { type: "text/csv" }))],
+  ["charts-png", "", () => void charts.png().then((png) => download(`tactum-${run?.scene ?? "run"}-charts.png`, png))],
+  ["live", "l", back],
+];
+for (const [id, , action] of actions) get(id).addEventListener("click", action);
+const views: ViewName[] = ["iso", "front", "side", "top"];
+for (const button of document.querySelectorAll<HTMLButtonElement>("[data-view]"))
+  button.onclick = () => view.look_from(button.dataset.view as ViewName);
+
+function isTyping(target: EventTarget | null) {
+  return target instanceof HTMLInputElement && target.type !== "checkbox" && target.type !== "range";
+}
+// The space bar stops wherever the focus is: before any button, list or field sees it.
+window.addEventListener("keydown", (event) => {
+  if (event.code === "Space") {
+    event.preventDefault();
+    event.stopImmediatePropagation();
+    if (!event.repeat) stop();
+    return;
+  }
+  if (event.ctrlKey || event.metaKey || isTyping(event.target) || event.target instanceof HTMLSelectElement) return;
+  if (event.key === "Escape") return showHelp(false);
+  const number = Number(event.key);
+  if (number >= 1 && number <= views.length) view.look_from(views[number - 1]);
+  actions.find(([, key]) => key !== "" && key === event.key.toLowerCase())?.[2]();
+}, { capture: true });
+window.addEventListener("keyup", (event) => {
+  if (event.code === "Space") event.preventDefault();
+}, { capture: true });
+
+get<HTMLSelectElement>("scene").onchange = (event) => {
+  const choice = event.target as HTMLSelectElement;
+  if (maySteer()) ask({ do: "scene", name: choice.value });
+  else choice.value = run?.scene ?? "";
+};
+
+charts.onPause = (on) => {
+  toggle("pause", on);
+  get("pause").textContent = on ? "Go on" : "Pause";
+  if (!on) get("past").hidden = true;
+};
+charts.onPick = (sample) => {
+  if (!samples) return;
+  charts.pause(true);
+  charts.moment = sample;
+  charts.draw(true);
+  get("past").hidden = false;
+  (get("past").firstElementChild as HTMLElement).textContent = `This was ${samples.timeOf(sample).toFixed(3)} s, frame ${samples.frameOf(sample)}.`;
+  const picture = samples.picture(samples.frameOf(sample));
+  if (picture) why.update(samples, sample, picture, true);
+};
+why.onChoose = (contact) => {
+  view.overlay.chosen = contact?.patch ?? -1;
+  if (!contact || !run) return view.bodies?.markFeature(null);
+  const side = contact.bodies[0] === run.held ? 1 : 0; // what is touched
+  const face = contact.kinds[side] === 2 && contact.features[side] >= 0 ? contact.features[side] : null;
+  view.bodies?.markFeature(contact.bodies[side], contact.pieces[side], face);
+};
+
+// Tabs, as screen readers know them: arrows go from one to the other.
+const tabs = [...document.querySelectorAll<HTMLButtonElement>("[role=tab]")];
+function select(tab: HTMLButtonElement) {
+  for (const other of tabs) {
+    const on = other === tab;
+    other.setAttribute("aria-selected", String(on));
+    other.tabIndex = on ? 0 : -1;
+    get(other.getAttribute("aria-controls") ?? "").hidden = !on;
+  }
+}
+tabs.forEach((tab, i) => {
+  tab.onclick = () => select(tab);
+  tab.onkeydown = (event) => {
+    if (event.key !== "ArrowLeft" && event.key !== "ArrowRight") return;
+    const next = tabs[(i + 1) % tabs.length];
+    select(next);
+    next.focus();
+  };
+});
+
+const helpRows: [string, string][] = [
+  ["Drag the orange part", "take it by a spring; what it touches pushes back"],
+  ["Shift + drag, or Turn", "turn it about its handle"],
+  ["Wheel while dragging", "farther and nearer"],
+  ["Arrows, page up and down", "fine steps (shift turns, alt is finer) when the scene has the focus"],
+  ["G", "the device's button: grasp"],
+  ["Drag beside it, wheel, right drag", "look around, zoom, shift the view"],
+  ["1 2 3 4", "slanted, front, side, top"],
+  ["P, X, T", "pieces, glass, trail"],
+  ["Space", "STOP: zero force and torque, at once led to nothing"],
+  ["C, click on a chart", "pause; show that moment"],
+  ["L, R", "back to now; start again"],
+];
+function showHelp(on: boolean) {
+  const help = get("help");
+  help.hidden = !on;
+  get("help-button").setAttribute("aria-expanded", String(on));
+  if (!on || help.childElementCount > 0) return;
+  const close = make("button", { "aria-label": "Close" }, "×");
+  close.onclick = () => showHelp(false);
+  help.append(close, make("h2", {}, "How to"), make("dl", {}, ...helpRows.flatMap(([key, what]) => [make("dt", {}, key), make("dd", {}, what)])),
+    make("p", { class: "quiet" }, "Orange: the part in your hand. Blue ghost: where the device is. Red arrow: force on the hand. Pink arc: torque. White discs: contact points."));
+}
+
+const prefersDark = window.matchMedia("(prefers-color-scheme: dark)");
+prefersDark.onchange = () => theme(prefersDark.matches);
+theme(prefersDark.matches);
+body.append(make("p", { id: "spoken", class: "spoken", role: "status", "aria-live": "polite" }));
+canvas.addEventListener("focus", () => (lastSpoken = 0));
+requestAnimationFrame(tick);

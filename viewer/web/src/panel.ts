@@ -1,0 +1,150 @@
+// The settings, made from the program's own description of them: name, unit, range, meaning. And the device, the health of
+// the loop, and what the program has refused.
+import { download, get, make } from "./dom";
+import type { Run, Setting, Status } from "./protocol";
+import { withUnit } from "./units";
+
+export interface Ask { (message: Record<string, unknown>): void }
+
+const idOf = (setting: Setting) => (setting.section ? `${setting.section}.${setting.key}` : setting.key);
+const sections: Record<string, string> = {
+  coupling: "Coupling of hand and part", penalty: "Contact", shading: "Shading", smoothing: "Smoothing", safety: "Safety: only tighter",
+  "": "Rate", budget: "Work budget",
+};
+
+/** Sliders of wide ranges go by factors, not by steps. */
+class Scale {
+  private readonly wide: boolean;
+  constructor(private readonly s: Setting) {
+    this.wide = s.kind !== "on-off" && s.low > 0 && s.high / s.low > 50;
+  }
+  to(value: number) {
+    const { low, high } = this.s;
+    return this.wide ? Math.log(value / low) / Math.log(high / low) : (value - low) / (high - low);
+  }
+  from(share: number) {
+    const { low, high, kind } = this.s;
+    const value = this.wide ? low * (high / low) ** share : low + share * (high - low);
+    return kind === "integer" ? Math.round(value) : Number(value.toPrecision(3));
+  }
+}
+
+export class Panel {
+  private toml = "";
+  private scene = "";
+  private readonly form = make("form", { class: "settings", autocomplete: "off" });
+  private readonly device = make("div", { class: "device" });
+  private readonly health = make("dl", { class: "numbers" });
+  private readonly refused = make("dl", { class: "numbers" });
+  private shownFor = "";
+
+  constructor(root: HTMLElement, private readonly ask: Ask) {
+    const save = make("button", { type: "button", id: "save-toml", title: "Sections of a scene file" }, "Save as TOML");
+    save.onclick = () => download(`${this.scene}-settings.toml`, new Blob([this.toml], { type: "application/toml" }));
+    this.form.onsubmit = (event) => event.preventDefault();
+    root.append(make("h2", {}, "Device"), this.device, make("h2", {}, "Response"), this.form, save,
+      make("h2", {}, "Health"), this.health, make("h2", {}, "Refused by the program"), this.refused);
+  }
+
+  begin(run: Run) {
+    this.scene = run.scene;
+    this.showDevice(run);
+    this.showSettings(run.settings, run.toml);
+  }
+
+  private showDevice(run: Run) {
+    const { device } = run;
+    const choice = make("select", { id: "device", "aria-label": "Device" });
+    const known = device.choices.some((c) => c.name === device.name);
+    if (!known) choice.append(new Option(device.label, device.name, true, true));
+    for (const c of device.choices) choice.append(new Option(c.label, c.name, false, c.name === device.name));
+    choice.onchange = () => this.ask({ do: "device", name: choice.value });
+    const grip = make("select", { id: "grip", "aria-label": "Grip of the hand" });
+    for (const name of device.grips) grip.append(new Option(`${name} grip`, name, false, name === device.grip));
+    grip.onchange = () => this.ask({ do: "grip", name: grip.value });
+    const can = [
+      device.actuates_force ? `force to ${withUnit(device.max_force_N, "N")}` : "no force",
+      device.actuates_torque ? `torque to ${withUnit(device.max_torque_Nm, "N m")}` : "no torque: it is shown here only",
+      `reach ${withUnit(device.workspace_radius_m, "m")}`,
+    ];
+    this.device.replaceChildren(choice, grip, make("p", { class: "quiet" }, `${device.label}: ${can.join(", ")}.`,
+      device.can_be_led ? "" : " It cannot be led by the mouse."));
+  }
+
+  showSettings(settings: Setting[], toml: string) {
+    this.toml = toml;
+    const shape = settings.map(idOf).join();
+    if (shape !== this.shownFor) {
+      this.shownFor = shape;
+      this.build(settings);
+    }
+    for (const setting of settings) this.fill(setting);
+  }
+
+  private build(settings: Setting[]) {
+    this.form.replaceChildren();
+    for (const section of [...new Set(settings.map((s) => s.section))]) {
+      const group = make("fieldset", {}, make("legend", {}, sections[section] ?? section));
+      for (const setting of settings.filter((s) => s.section === section)) group.append(this.row(setting));
+      this.form.append(group);
+    }
+  }
+
+  private row(setting: Setting): HTMLElement {
+    const id = idOf(setting);
+    const note = `${setting.meaning}${setting.live ? "" : "; starts the scene again"}`;
+    const set = (value: number) => this.ask({ do: "set", key: id, value });
+    if (setting.kind === "on-off") {
+      const box = make("input", { type: "checkbox", id: `set-${id}` });
+      box.onchange = () => set(box.checked ? 1 : 0);
+      return make("div", { class: "setting", title: note }, make("label", { for: box.id }, setting.name), box, make("small", {}, note));
+    }
+    const scale = new Scale(setting);
+    const range = `${setting.low} to ${setting.high} ${setting.unit}`;
+    const slider = make("input", { type: "range", min: "0", max: "1", step: "0.002", id: `slide-${id}`, "aria-label": `${setting.name}, slider`, tabindex: "-1" });
+    const number = make("input", { type: "number", step: "any", min: String(setting.low), max: String(setting.high), id: `set-${id}`,
+      "aria-describedby": `note-${id}`, placeholder: setting.section === "safety" ? "device's" : "off" });
+    slider.oninput = () => (number.value = String(scale.from(Number(slider.value))));
+    slider.onchange = () => set(scale.from(Number(slider.value)));
+    number.onchange = () => {
+      if (number.value !== "") set(Number(number.value));
+    };
+    return make("div", { class: "setting", title: `${note} (${range})` },
+      make("label", { for: number.id }, setting.name), number, make("span", { class: "unit" }, setting.unit), slider,
+      make("small", { id: `note-${id}` }, `${note} (${range})`));
+  }
+
+  private fill(setting: Setting) {
+    const id = idOf(setting);
+    const field = get<HTMLInputElement>(`set-${id}`);
+    if (document.activeElement === field && field.type === "number") return;
+    if (setting.kind === "on-off") {
+      field.checked = setting.value !== null && setting.value !== 0;
+      return;
+    }
+    field.value = setting.value === null ? "" : String(Number(setting.value.toPrecision(6)));
+    const slider = get<HTMLInputElement>(`slide-${id}`);
+    slider.value = String(new Scale(setting).to(setting.value ?? setting.high));
+  }
+
+  showStatus(status: Status) {
+    const p = status.program;
+    const rows: [string, string][] = [
+      ["Loop", p.device_lost ? "device lost" : p.running ? "running" : "ended"],
+      ["Frames", String(p.frames ?? 0)],
+      ["Missed deadlines", String(p.missed_deadlines ?? 0)],
+      ["Late frames", String(p.late_frames ?? 0)],
+      ["Failed reads, writes", `${p.failed_reads ?? 0}, ${p.failed_writes ?? 0}`],
+      ["Samples lost on the way", `${(p.samples_dropped ?? 0) + status.samples_lost}`],
+      ["Pages that look", String(status.pages)],
+      ["Safety", p.safety || "nothing acts"],
+    ];
+    if (p.frame_us) {
+      const { mean, p99, p999, max } = p.frame_us;
+      rows.push(["Frame: mean", `${mean.toFixed(1)} µs`], ["p99, p99.9", `${p99.toFixed(0)}, ${p999.toFixed(0)} µs`], ["longest", `${max.toFixed(0)} µs`]);
+    }
+    const list = (entries: [string, string][]) => entries.flatMap(([name, value]) => [make("dt", {}, name), make("dd", {}, value)]);
+    this.health.replaceChildren(...list(rows), ...(p.remarks ?? []).map((remark) => make("p", { class: "quiet" }, remark)));
+    this.refused.replaceChildren(...list(Object.entries(status.refused).map(([name, count]) => [name, String(count)])));
+  }
+}

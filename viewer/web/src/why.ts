@@ -1,0 +1,171 @@
+// "Why do I feel this?" for now or for a moment that was picked: which pieces and features push, how much each gives, and
+// what every later stage made of it. Stages, channels and flags are those of the run's tables: a new one appears by itself.
+import { make } from "./dom";
+import type { Contact, Picture, Run } from "./protocol";
+import { pushesOf, type Push } from "./pushes";
+import type { Samples } from "./samples";
+import { withUnit } from "./units";
+
+const kinds = ["vertex", "edge", "face"];
+const mostRows = 12;
+
+const size = (v: number[]) => Math.hypot(v[0], v[1], v[2]);
+const dot = (a: number[], b: number[]) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+
+function direction(v: number[]): string {
+  const axes = ["along x", "along y", "upward (z)"];
+  const opposite = ["along −x", "along −y", "downward (−z)"];
+  const main = [0, 1, 2].sort((a, b) => Math.abs(v[b]) - Math.abs(v[a]))[0];
+  return v[main] > 0 ? axes[main] : opposite[main];
+}
+
+export class Why {
+  /** Of the chosen patch. */
+  chosen = -1;
+  onChoose: ((contact: Contact | null) => void) | null = null;
+  private run: Run | null = null;
+  private last = 0;
+  private readonly sentence = make("p", { class: "sentence", role: "status", "aria-live": "off" });
+  private readonly table = make("table", { class: "contacts" },
+    make("thead", {}, make("tr", {}, make("th", { scope: "col" }, "pieces and features"), make("th", { scope: "col" }, "force"),
+      make("th", { scope: "col" }, "distance, normal"))), make("tbody"));
+  private readonly more = make("p", { class: "quiet" });
+  private rows: Push[] = [];
+  private readonly ladder = make("table", { class: "ladder" });
+  private readonly flags = make("ul", { class: "flags" });
+  private readonly numbers = make("dl", { class: "numbers" });
+
+  constructor(root: HTMLElement) {
+    const more = make("details", {}, make("summary", {}, "Every number of this frame"), this.numbers);
+    root.append(this.sentence, make("h2", {}, "What pushes"), this.table, this.more, make("h2", {}, "From the contact to your hand"), this.ladder,
+      this.flags, more);
+  }
+
+  begin(run: Run) {
+    this.run = run;
+    this.chosen = -1;
+  }
+
+  update(samples: Samples, sample: number, picture: Picture | null, now = false) {
+    const time = performance.now();
+    if (!this.run || !picture || (!now && time - this.last < 120)) return;
+    this.last = time;
+    const pushes = pushesOf(picture, this.run.held).sort((a, b) => Number(b.onHeld) - Number(a.onHeld) || size(b.force) - size(a.force));
+    const felt = pushes.filter((push) => push.onHeld);
+    const sum = felt.reduce((total, push) => total.map((v, i) => v + push.force[i]), [0, 0, 0]);
+    this.showSentence(samples, sample, felt, sum);
+    this.showContacts(pushes, sum, picture);
+    this.showLadder(samples, sample);
+    this.showFlags(samples, sample);
+    this.showNumbers(samples, sample);
+  }
+
+  private name(body: number) {
+    return this.run?.bodies[body]?.name ?? "?";
+  }
+  private called(body: number) {
+    return `“${this.name(body)}”`;
+  }
+
+  private showSentence(samples: Samples, sample: number, felt: Push[], sum: number[]) {
+    const run = this.run as Run;
+    const shown = run.stages.length - 1;
+    const [force, torque] = [samples.length(shown, 0, sample), samples.length(shown, 3, sample)];
+    const wrench = `${withUnit(force, "N")} and ${withUnit(torque, "N m")}`;
+    const active = felt.filter((push) => size(push.force) > 0);
+    let text: string;
+    if (run.held < 0) text = "Nothing is held, so nothing is felt.";
+    else if (active.length === 0) text = `You feel ${wrench}. Nothing touches ${this.called(run.held)}: this is its own joint, inertia and damping.`;
+    else {
+      const others = [...new Set(active.map((push) => this.called(push.contact.bodies.find((b) => b !== run.held) ?? run.held)))];
+      text = `You feel ${wrench}: ${this.called(run.held)} touches ${others.join(" and ")} in ` +
+        `${active.length} ${active.length === 1 ? "place" : "places"}, together they push ${withUnit(size(sum), "N")} ${direction(sum)}.`;
+    }
+    this.sentence.textContent = `${samples.timeOf(sample).toFixed(3)} s. ${text}`;
+  }
+
+  private feature(contact: Contact, side: 0 | 1): string {
+    const run = this.run as Run;
+    const many = (run.bodies[contact.bodies[side]]?.pieces ?? 1) > 1;
+    const piece = many && contact.pieces[side] >= 0 ? ` piece ${contact.pieces[side]},` : "";
+    const kind = contact.features[side] >= 0 ? ` ${kinds[contact.kinds[side]]} ${contact.features[side]}` : "";
+    return `${this.name(contact.bodies[side])}:${piece}${kind}`;
+  }
+
+  /** Rows stay where they are and change their text: what is being pressed is never replaced under the press. */
+  private showContacts(pushes: Push[], sum: number[], picture: Picture) {
+    const total = size(sum);
+    const shown = pushes.slice(0, mostRows);
+    const body = this.table.tBodies[0];
+    while (body.rows.length < shown.length) body.append(this.contactRow(body.rows.length));
+    this.rows = shown;
+    [...body.rows].forEach((row, i) => {
+      const push = shown[i];
+      row.hidden = !push;
+      if (!push) return;
+      const share = push.onHeld && total > 1e-9 ? dot(push.force, sum) / (total * total) : Number.NaN;
+      const chosen = push.patch === this.chosen;
+      row.classList.toggle("chosen", chosen);
+      const [button, force, place] = [...row.cells].map((cell) => cell.firstElementChild as HTMLElement);
+      button.setAttribute("aria-pressed", String(chosen));
+      button.textContent = `${this.feature(push.contact, 0)}\n${this.feature(push.contact, 1)}`;
+      force.textContent = `${withUnit(size(push.force), "N")}\n${Number.isNaN(share) ? "to others" : `${Math.round(100 * share)} %`.replace("-", "−")}`;
+      (row.cells[1].lastElementChild as HTMLElement).style.width = `${Math.round(100 * Math.min(1, Math.max(0, share || 0)))}%`;
+      place.textContent = `${withUnit(push.distance, "m")}\n${push.contact.n.map((c) => c.toFixed(2).replace("-", "−")).join(" ")}`;
+    });
+    const hidden = pushes.length - shown.length + picture.leftOut;
+    this.more.textContent = shown.length === 0 ? "no contact" : hidden > 0 ? `and ${hidden} more` : "";
+  }
+
+  private contactRow(i: number) {
+    const choose = make("button", { class: "plain", title: "Show it in the scene" });
+    choose.onclick = () => {
+      const push = this.rows[i];
+      if (!push) return;
+      this.chosen = this.chosen === push.patch ? -1 : push.patch;
+      this.onChoose?.(this.chosen < 0 ? null : push.contact);
+    };
+    return make("tr", {}, make("td", {}, choose), make("td", { class: "number" }, make("span"), make("span", { class: "bar" })),
+      make("td", { class: "number" }, make("span")));
+  }
+
+  private showLadder(samples: Samples, sample: number) {
+    const run = this.run as Run;
+    const wrenches = run.stages.map((_stage, i) => samples.wrench(i, sample));
+    const most = Math.max(1e-9, ...wrenches.map((w) => size(w)));
+    const head = make("tr", {}, make("th", { scope: "col" }, "stage"), make("th", { scope: "col" }, "force"), make("th", { scope: "col" }, "torque"),
+      make("th", { scope: "col" }, "changed by"));
+    const rows = run.stages.map((stage, i) => {
+      const w = wrenches[i];
+      const before = i > 0 ? wrenches[i - 1] : null;
+      const change = before ? size(w.slice(0, 3).map((v, k) => v - before[k])) : Number.NaN;
+      const turn = before ? size(w.slice(3).map((v, k) => v - before[3 + k])) : Number.NaN;
+      const bar = make("span", { class: "bar" });
+      bar.style.width = `${Math.round((100 * size(w)) / most)}%`;
+      return make("tr", { title: stage.meaning },
+        make("td", {}, make("strong", {}, stage.name), make("small", {}, stage.meaning), bar),
+        make("td", { class: "number" }, withUnit(size(w), "N")),
+        make("td", { class: "number" }, withUnit(size(w.slice(3)), "N m")),
+        make("td", { class: "number" }, before ? `${withUnit(change, "N")}` : "", before ? make("br") : null, before ? withUnit(turn, "N m") : ""));
+    });
+    this.ladder.replaceChildren(head, ...rows);
+  }
+
+  private showFlags(samples: Samples, sample: number) {
+    const run = this.run as Run;
+    const bits = (key: string) => samples.at(samples.column(key), sample) || 0;
+    const on = [
+      ...run.flags.safety.filter((flag) => bits("safety_flags") & flag.flag).map((flag) => ({ ...flag, kind: flag.fault ? "fault" : "safety" })),
+      ...run.flags.frame.filter((flag) => bits("frame_flags") & flag.flag).map((flag) => ({ ...flag, kind: "frame" })),
+    ];
+    this.flags.replaceChildren(...on.map((flag) => make("li", { class: flag.kind }, flag.name)));
+  }
+
+  private showNumbers(samples: Samples, sample: number) {
+    const run = this.run as Run;
+    this.numbers.replaceChildren(...run.channels.filter((channel) => channel.group !== "flags").flatMap((channel) => [
+      make("dt", { title: channel.meaning }, channel.name),
+      make("dd", {}, withUnit(samples.at(samples.column(channel.key), sample), channel.unit)),
+    ]));
+  }
+}
