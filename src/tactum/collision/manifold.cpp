@@ -193,7 +193,7 @@ void face_outline(const Tangent& plane, const Polytope& P, int face_index, bool 
   }
 }
 
-Height face_height(const Tangent& plane, const Polytope& P, int face_index) noexcept {
+inline Height face_height(const Tangent& plane, const Polytope& P, int face_index) noexcept {
   const Polytope::Face& face = P.faces[face_index];
   const double per_up = 1.0 / face.normal.dot(plane.n);
   return {(face.offset - face.normal.dot(plane.origin)) * per_up,
@@ -387,7 +387,7 @@ GapRange gap_range(const Height& gap, const PatchPolygon& polygon) noexcept {
 }
 
 /// One of four points: B's surface is under A's, along the normal.
-void add_quarter(const Work& w, const Vec3& p_a, double gap) noexcept {
+inline void add_quarter(const Work& w, const Vec3& p_a, double gap) noexcept {
   w.out.points.push_back({p_a, p_a - w.tangent.n * gap, gap, 0.25, 0});
 }
 

@@ -137,7 +137,7 @@ class Ring {
 
 /// Corners of what a cut leaves of a convex polygon of `n` [Sutherland and Hodgman 1974], in one pass. Room
 /// for n + 2 corners is the caller's.
-std::size_t cut_off(const Vec2* from, std::size_t n, const Cut& cut, double snap, Vec2* to) noexcept {
+inline std::size_t cut_off(const Vec2* from, std::size_t n, const Cut& cut, double snap, Vec2* to) noexcept {
   // Numbers of its own, which stay in registers while corners are stored.
   const double out_x = cut.outward.x();
   const double out_y = cut.outward.y();
@@ -179,7 +179,7 @@ void clip_polygon(PatchPolygon& polygon, const Vec2& normal, double offset) noex
 
 void clip_polygon(PatchPolygon& polygon, const PatchPolygon& window) noexcept {
   constexpr std::size_t kFew = 6;  // corners of both up to which going around costs more than it saves
-  if (polygon.empty()) return;
+  if (polygon.empty() || window.empty()) return;
   const std::size_t sides = window.size();
   if (sides > kFew || polygon.size() > kFew) {
     Ring ring(polygon, side_of(window, 0));
@@ -189,16 +189,19 @@ void clip_polygon(PatchPolygon& polygon, const PatchPolygon& window) noexcept {
   }
   double most = 0.0;
   for (const Vec2& x : polygon) most = extent(most, x);
-  std::array<std::array<Vec2, 3 * kFew + 2>, 2>
-      rows;  // every cut of a convex polygon adds one corner, or two by rounding
+  const double snap = kSnap * most;
+  // Every cut of a convex polygon adds one corner, or two by rounding.
+  std::array<std::array<Vec2, 3 * kFew + 2>, 2> rows;
   const Vec2* from = polygon.begin();
   std::size_t n = polygon.size();
-  for (std::size_t i = 0; i < sides && n > 0; ++i) {
-    const Cut cut = side_of(window, i);
-    Vec2* to = rows[i & 1].data();
-    n = cut_off(from, n, cut, kSnap * most * cut.scale, to);
+  const Vec2* tail = window.end() - 1;
+  for (const Vec2* head = window.begin(); head != window.end() && n > 0; tail = head++) {
+    const Cut cut(*tail, *head);
+    Vec2* to = rows[from == rows[0].data() ? 1 : 0].data();
+    n = cut_off(from, n, cut, snap * cut.scale, to);
     from = to;
   }
+  // One number at a time: wider loads would wait for the stores of the last cut.
   polygon.clear();
   for (std::size_t i = 0; i < n; ++i) polygon.push_back(from[i]);
 }
