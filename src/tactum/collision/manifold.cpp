@@ -65,12 +65,15 @@ int level_edge(const Polytope& P, const Feature& f, int face, const Vec3& outwar
 /// The largest feature at `f` square to `outward` (unit, P's frame) within `angle`. Beside a face that leans
 /// as little the patch shrinks too, so that rolling from one face to the next passes through their edge.
 Facing facing_feature(const Polytope& P, const Feature& f, const Vec3& outward, double angle) noexcept {
+  constexpr double kSmall = 0.01;  // a squared sine below which the cosine has lost too many of its digits
   int face = -1;
   double lean = 9.0;  // squared sines
   double next = 9.0;
   for_faces_at(P, f, [&](int candidate) {
     const Vec3& normal = P.faces[candidate].normal;
-    const double sine_sq = normal.dot(outward) > 0.0 ? normal.cross(outward).squaredNorm() : 4.0;
+    const double cosine = normal.dot(outward);
+    double sine_sq = cosine > 0.0 ? 1.0 - cosine * cosine : 4.0;
+    if (sine_sq < kSmall) sine_sq = normal.cross(outward).squaredNorm();
     if (sine_sq < lean) {
       next = lean;
       lean = sine_sq;
@@ -86,6 +89,8 @@ Facing facing_feature(const Polytope& P, const Feature& f, const Vec3& outward, 
     if (lean >= angle * angle) facing.feature = {Kind::kVertex, vertex_of(P, f)};
     return facing;
   }
+  // Nearly level and alone: both shares of the face are one, whatever its edges do.
+  if (lean <= 0.25 * angle * angle && next >= 9.0 * lean) return facing;
   lean = std::sqrt(lean);
   next = std::sqrt(next);
   double slope = 0.0;
@@ -100,26 +105,16 @@ Facing facing_feature(const Polytope& P, const Feature& f, const Vec3& outward, 
   return facing;
 }
 
-/// The contact plane: coordinates x along e1, e2 and height along n, from a point near the contact.
+/// The contact plane, told in the frame of either piece: coordinates x along e1, e2 and height along n, from
+/// a point near the contact.
 struct Tangent {
   Vec3 origin, e1, e2, n;
 
-  Vec2 flat(const Vec3& p) const noexcept { return {e1.dot(p - origin), e2.dot(p - origin)}; }
-  Vec3 point(const Vec2& x, double z) const noexcept { return origin + e1 * x.x() + e2 * x.y() + n * z; }
-};
-
-/// The same plane as seen from a piece: its axes and where its origin is, in the piece's frame.
-struct Plan {
-  Vec3 origin, e1, e2, n;
-
-  static Plan of_a(const Tangent& t) noexcept { return {t.origin, t.e1, t.e2, t.n}; }
-  static Plan of_b(const Tangent& t, const Pose& X_BA) noexcept {
-    return {X_BA * t.origin, rotated(X_BA.R, t.e1), rotated(X_BA.R, t.e2), rotated(X_BA.R, t.n)};
-  }
   Vec2 flat(const Vec3& p) const noexcept {
     const Vec3 r = p - origin;
     return {e1.dot(r), e2.dot(r)};
   }
+  Vec3 point(const Vec2& x, double z) const noexcept { return origin + e1 * x.x() + e2 * x.y() + n * z; }
 };
 
 /// Height of a plane over the contact plane, linear in x.
@@ -129,40 +124,94 @@ struct Height {
   double operator()(const Vec2& x) const noexcept { return at_origin + slope.dot(x); }
 };
 
+/// The contact plane's first axis goes with A's feature, so that points keep their places while it stays.
+Tangent contact_plane(const Polytope& A, const Feature& a, const Vec3& origin, const Vec3& n) noexcept {
+  Tangent tangent{origin, Vec3::Zero(), Vec3::Zero(), n};
+  if (a.kind == Kind::kVertex) {
+    tangent.e1 = any_orthogonal(n);
+  } else {
+    const int edge = a.kind == Kind::kEdge ? a.index : A.face_edges[A.faces[a.index].first];
+    const Vec3& u = A.edges[edge].direction;
+    tangent.e1 = u - n * n.dot(u);
+    const double length_sq = tangent.e1.squaredNorm();
+    // Nearly square to n already, in the answers of the queries.
+    tangent.e1 = length_sq > 0.25 ? Vec3(tangent.e1 * (1.0 / std::sqrt(length_sq))) : any_orthogonal(n);
+  }
+  tangent.e2 = n.cross(tangent.e1);
+  return tangent;
+}
+
+/// What a handler works on. Built in place: copying vectors that have just been written makes the processor
+/// wait for them.
 struct Work {
-  const PairView& pair;
+  const Polytope& A;
+  const Polytope& B;
+  const Pose& X_AB;
   const PairDistance& closest;
   double tolerance;
   double angle;
-  Tangent tangent;
+  Vec3 n_B;  ///< the normal in B's frame
   Facing a, b;
+  Tangent tangent;
   Manifold& out;
+
+  Work(const Polytope& of_a, const Polytope& of_b, const Pose& X, const PairDistance& at, double below,
+       double within, Manifold& patch) noexcept
+      : A(of_a),
+        B(of_b),
+        X_AB(X),
+        closest(at),
+        tolerance(below),
+        angle(within),
+        n_B(rotated_back(X.R, at.normal)),
+        a(facing_feature(A, at.a, -at.normal, angle)),
+        b(facing_feature(B, at.b, n_B, angle)),
+        tangent(contact_plane(A, a.feature, at.p_b, at.normal)),
+        out(patch) {}
+
+  Vec3 vertex_b(int v) const noexcept { return X_AB * B.vertices[v]; }
+  /// The contact plane in B's frame.
+  Tangent tangent_B() const noexcept {
+    Tangent plane{rotated_back(X_AB.R, tangent.origin - X_AB.p), rotated_back(X_AB.R, tangent.e1), {}, n_B};
+    plane.e2 = plane.n.cross(plane.e1);
+    return plane;
+  }
 };
 
 /// The outline of a face, counter-clockwise in the contact plane: B's faces look along n, A's against it.
-void face_outline(const Plan& plan, const Polytope& P, int face_index, bool on_a,
+/// `plane` is in P's frame.
+void face_outline(const Tangent& plane, const Polytope& P, int face_index, bool on_a,
                   PatchPolygon& loop) noexcept {
   const Polytope::Face& face = P.faces[face_index];
   const int stride = (face.count + kPatchCorners - 1) / kPatchCorners;
+  const int* const corners = P.face_vertices.data() + face.first;
+  const Vec3* const vertices = P.vertices.data();
   loop.clear();
-  const int last = (face.count - 1) / stride * stride;
-  for (int i = 0; i <= last; i += stride)
-    loop.push_back(plan.flat(P.vertices[P.face_vertices[face.first + (on_a ? last - i : i)]]));
+  if (on_a) {
+    for (int i = face.count - 1; i >= 0; i -= stride) loop.push_back(plane.flat(vertices[corners[i]]));
+  } else {
+    for (int i = 0; i < face.count; i += stride) loop.push_back(plane.flat(vertices[corners[i]]));
+  }
 }
 
-Height face_height(const Plan& plan, const Polytope& P, int face_index) noexcept {
+inline Height face_height(const Tangent& plane, const Polytope& P, int face_index) noexcept {
   const Polytope::Face& face = P.faces[face_index];
-  const double per_up = 1.0 / face.normal.dot(plan.n);
-  return {(face.offset - face.normal.dot(plan.origin)) * per_up,
-          {-face.normal.dot(plan.e1) * per_up, -face.normal.dot(plan.e2) * per_up}};
+  const double per_up = 1.0 / face.normal.dot(plane.n);
+  return {(face.offset - face.normal.dot(plane.origin)) * per_up,
+          {-face.normal.dot(plane.e1) * per_up, -face.normal.dot(plane.e2) * per_up}};
+}
+
+/// How much of the gap's range is kept as the features lean.
+double gap_share(const Work& w) noexcept {
+  const auto share_of = [](const Facing& f) {
+    return f.feature.kind == Kind::kFace ? std::max(f.face_share, f.along_share) : f.along_share;
+  };
+  return std::min(share_of(w.a), share_of(w.b));
 }
 
 /// The gap above which the patch ends: the tolerance, or nearer the least gap when the features lean.
 double cut_level(const Work& w, double least_gap) noexcept {
-  const auto share_of = [](const Facing& f) {
-    return f.feature.kind == Kind::kFace ? std::max(f.face_share, f.along_share) : f.along_share;
-  };
-  const double share = std::min(share_of(w.a), share_of(w.b));
+  const double share = gap_share(w);
   return share >= 1.0 ? w.tolerance : least_gap + (w.tolerance - least_gap) * share;
 }
 
@@ -250,12 +299,12 @@ EdgeOverFace edge_over_face(const Work& w, const Polytope& E, int edge, const Po
   strip.edge1 = X_E * E.vertices[E.edges[edge].head];
   const Vec2 x0 = w.tangent.flat(strip.edge0);
   const Vec2 x1 = w.tangent.flat(strip.edge1);
-  const Plan plan = up > 0.0 ? Plan::of_a(w.tangent) : Plan::of_b(w.tangent, w.pair.X_BA);
-  const Height height = face_height(plan, F, face);
+  const Tangent plane = up > 0.0 ? w.tangent : w.tangent_B();
+  const Height height = face_height(plane, F, face);
   strip.face0 = w.tangent.point(x0, height(x0));
   strip.face1 = w.tangent.point(x1, height(x1));
   PatchPolygon window;
-  face_outline(plan, F, face, up > 0.0, window);
+  face_outline(plane, F, face, up > 0.0, window);
   strip.kept = clip_segment(x0, x1, window);
   if (facing.face_share < 1.0) {
     const Rise rise = rise_from_edge(w.tangent, F, facing.edge, X_F, up * height.slope);
@@ -265,12 +314,12 @@ EdgeOverFace edge_over_face(const Work& w, const Polytope& E, int edge, const Po
 }
 
 void edge_a_face_b(const Work& w) noexcept {
-  const EdgeOverFace x = edge_over_face(w, w.pair.A, w.a.feature.index, {}, w.pair.B, w.b, w.pair.X_AB, -1.0);
+  const EdgeOverFace x = edge_over_face(w, w.A, w.a.feature.index, {}, w.B, w.b, w.X_AB, -1.0);
   interval_contact(w, {x.edge0, x.edge1, x.face0, x.face1}, x.kept, x.cut);
 }
 
 void face_a_edge_b(const Work& w) noexcept {
-  const EdgeOverFace x = edge_over_face(w, w.pair.B, w.b.feature.index, w.pair.X_AB, w.pair.A, w.a, {}, 1.0);
+  const EdgeOverFace x = edge_over_face(w, w.B, w.b.feature.index, w.X_AB, w.A, w.a, {}, 1.0);
   interval_contact(w, {x.face0, x.face1, x.edge0, x.edge1}, x.kept, x.cut);
 }
 
@@ -278,12 +327,12 @@ void face_a_edge_b(const Work& w) noexcept {
 /// where they are no farther apart sideways than the tolerance; the larger the angle, the less, down to the
 /// crossing.
 void edge_edge_contact(const Work& w) noexcept {
-  const Polytope::Edge& ea = w.pair.A.edges[w.a.feature.index];
-  const Polytope::Edge& eb = w.pair.B.edges[w.b.feature.index];
-  const Vec3& a0 = w.pair.vertex_a(ea.tail);
-  const Vec3& a1 = w.pair.vertex_a(ea.head);
-  const Vec3 b_tail = w.pair.vertex_b(eb.tail);
-  const Vec3 b_head = w.pair.vertex_b(eb.head);
+  const Polytope::Edge& ea = w.A.edges[w.a.feature.index];
+  const Polytope::Edge& eb = w.B.edges[w.b.feature.index];
+  const Vec3& a0 = w.A.vertices[ea.tail];
+  const Vec3& a1 = w.A.vertices[ea.head];
+  const Vec3 b_tail = w.vertex_b(eb.tail);
+  const Vec3 b_head = w.vertex_b(eb.head);
   const Vec2 along = w.tangent.flat(a1) - w.tangent.flat(a0);
   const double length_sq = along.squaredNorm();
   // B's ends, in parts of A's length along A and across it.
@@ -323,51 +372,67 @@ void sliver_contact(const Work& w, const PatchPolygon& polygon, const Height& za
                    {});
 }
 
+struct GapRange {
+  double least = std::numeric_limits<double>::infinity();
+  double most = -std::numeric_limits<double>::infinity();
+};
+
+GapRange gap_range(const Height& gap, const PatchPolygon& polygon) noexcept {
+  GapRange range;
+  for (const Vec2& x : polygon) {
+    const double here = gap(x);
+    range.least = std::min(range.least, here);
+    range.most = std::max(range.most, here);
+  }
+  return range;
+}
+
+/// One of four points: B's surface is under A's, along the normal.
+inline void add_quarter(const Work& w, const Vec3& p_a, double gap) noexcept {
+  w.out.points.push_back({p_a, p_a - w.tangent.n * gap, gap, 0.25, 0});
+}
+
 void face_face_contact(const Work& w) noexcept {
-  const Plan plan_a = Plan::of_a(w.tangent);
-  const Plan plan_b = Plan::of_b(w.tangent, w.pair.X_BA);
+  const Tangent tangent_B = w.tangent_B();
+  const Height za = face_height(w.tangent, w.A, w.a.feature.index);
+  const Height zb = face_height(tangent_B, w.B, w.b.feature.index);
+  const Height gap{za.at_origin - zb.at_origin, za.slope - zb.slope};
   PatchPolygon polygon;
   PatchPolygon window;
-  face_outline(plan_a, w.pair.A, w.a.feature.index, true, polygon);
-  face_outline(plan_b, w.pair.B, w.b.feature.index, false, window);
-  const Height za = face_height(plan_a, w.pair.A, w.a.feature.index);
-  const Height zb = face_height(plan_b, w.pair.B, w.b.feature.index);
-  const Height gap{za.at_origin - zb.at_origin, za.slope - zb.slope};
+  face_outline(w.tangent, w.A, w.a.feature.index, true, polygon);
+  face_outline(tangent_B, w.B, w.b.feature.index, false, window);
+  const GapRange before = gap_range(gap, polygon);
   clip_polygon(polygon, window);
   if (polygon.empty()) return point_contact(w);
-  double least = std::numeric_limits<double>::infinity();
-  double most = -least;
-  for (const Vec2& x : polygon) {
-    least = std::min(least, gap(x));
-    most = std::max(most, gap(x));
+  // Where the whole face is within the tolerance the gap cuts nothing.
+  if (before.most > w.tolerance || gap_share(w) < 1.0) {
+    const GapRange range = gap_range(gap, polygon);
+    if (range.least >= w.tolerance) return point_contact(w);
+    if (const double level = cut_level(w, range.least); range.most > level)
+      clip_polygon(polygon, gap.slope, level - gap.at_origin);
   }
-  if (least >= w.tolerance) return point_contact(w);
-  if (const double level = cut_level(w, least); most > level)
-    clip_polygon(polygon, gap.slope, level - gap.at_origin);
   const auto cut_toward_edge = [&](const Rise& rise, double share) {
     double highest = 0.0;
     for (const Vec2& x : polygon) highest = std::max(highest, rise(x));
     clip_polygon(polygon, rise.slope, rise.offset + highest * share);
   };
   if (w.a.face_share < 1.0)
-    cut_toward_edge(rise_from_edge(w.tangent, w.pair.A, w.a.edge, {}, za.slope), w.a.face_share);
+    cut_toward_edge(rise_from_edge(w.tangent, w.A, w.a.edge, {}, za.slope), w.a.face_share);
   if (w.b.face_share < 1.0)
-    cut_toward_edge(rise_from_edge(w.tangent, w.pair.B, w.b.edge, w.pair.X_AB, -zb.slope), w.b.face_share);
+    cut_toward_edge(rise_from_edge(w.tangent, w.B, w.b.edge, w.X_AB, -zb.slope), w.b.face_share);
   if (polygon.empty()) return point_contact(w);
   const PatchMoments m = moments_of(polygon);
-  if (m.area <= tolerances::kPatchArea * w.pair.size * w.pair.size) return sliver_contact(w, polygon, za, zb);
+  const double size = std::max(w.A.size, w.B.size);
+  if (m.area <= tolerances::kPatchArea * size * size) return sliver_contact(w, polygon, za, zb);
   w.out.area = m.area;
   const PatchSpread arms = spread_of(m);
-  const Vec3 center_a = w.tangent.point(m.centroid, za(m.centroid));
-  const Vec3 center_b = w.tangent.point(m.centroid, zb(m.centroid));
+  const Vec3 center = w.tangent.point(m.centroid, za(m.centroid));
   const double center_gap = gap(m.centroid);
   for (const Vec2* arm : {&arms.u, &arms.v}) {
-    const Vec3 flat = w.tangent.e1 * arm->x() + w.tangent.e2 * arm->y();
-    const Vec3 to_a = flat + w.tangent.n * za.slope.dot(*arm);
-    const Vec3 to_b = flat + w.tangent.n * zb.slope.dot(*arm);
+    const Vec3 to_a = w.tangent.e1 * arm->x() + w.tangent.e2 * arm->y() + w.tangent.n * za.slope.dot(*arm);
     const double opens = gap.slope.dot(*arm);
-    w.out.points.push_back({center_a + to_a, center_b + to_b, center_gap + opens, 0.25, 0});
-    w.out.points.push_back({center_a - to_a, center_b - to_b, center_gap - opens, 0.25, 0});
+    add_quarter(w, center + to_a, center_gap + opens);
+    add_quarter(w, center - to_a, center_gap - opens);
   }
 }
 
@@ -393,23 +458,6 @@ void name_points(Manifold& patch) noexcept {
   for (std::size_t i = 0; i < points; ++i) patch.points[i].id = features | (first + i);
 }
 
-/// The contact plane's first axis goes with A's feature, so that points keep their places while it stays.
-Tangent contact_plane(const Polytope& A, const Feature& a, const Vec3& origin, const Vec3& n) noexcept {
-  Tangent tangent{origin, Vec3::Zero(), Vec3::Zero(), n};
-  if (a.kind == Kind::kVertex) {
-    tangent.e1 = any_orthogonal(n);
-  } else {
-    const int edge = a.kind == Kind::kEdge ? a.index : A.face_edges[A.faces[a.index].first];
-    const Vec3& u = A.edges[edge].direction;
-    tangent.e1 = u - n * n.dot(u);
-    const double length_sq = tangent.e1.squaredNorm();
-    // Nearly square to n already, in the answers of the queries.
-    tangent.e1 = length_sq > 0.25 ? Vec3(tangent.e1 / std::sqrt(length_sq)) : any_orthogonal(n);
-  }
-  tangent.e2 = n.cross(tangent.e1);
-  return tangent;
-}
-
 }  // namespace
 
 void contact_manifold_within(const Polytope& A, const Polytope& B, const Pose& X_AB,
@@ -420,14 +468,10 @@ void contact_manifold_within(const Polytope& A, const Polytope& B, const Pose& X
   out.normal = closest.normal;
   out.a = closest.a;
   out.b = closest.b;
-  if (!(closest.distance < tolerance) || closest.normal.isZero() || closest.a.index < 0 ||
+  if (!(closest.distance < tolerance) || !(closest.normal.squaredNorm() > 0.0) || closest.a.index < 0 ||
       closest.b.index < 0)
     return;
-  const PairView pair(A, B, X_AB);
-  const Vec3& n = closest.normal;
-  const Facing a = facing_feature(A, closest.a, -n, angle);
-  const Facing b = facing_feature(B, closest.b, rotated(pair.X_BA.R, n), angle);
-  const Work work{pair, closest, tolerance, angle, contact_plane(A, a.feature, closest.p_b, n), a, b, out};
+  const Work work(A, B, X_AB, closest, tolerance, angle, out);
   out.a = work.a.feature;
   out.b = work.b.feature;
   kHandlers[static_cast<std::size_t>(out.a.kind)][static_cast<std::size_t>(out.b.kind)](work);

@@ -137,22 +137,30 @@ class Ring {
 
 /// Corners of what a cut leaves of a convex polygon of `n` [Sutherland and Hodgman 1974], in one pass. Room
 /// for n + 2 corners is the caller's.
-std::size_t cut_off(const Vec2* from, std::size_t n, const Cut& cut, double snap, Vec2* to) noexcept {
-  std::size_t kept = 0;
-  const Vec2* last = from + n - 1;
-  double last_height = cut.height(*last);
-  for (const Vec2* x = from; x != from + n; ++x) {
-    const double height = cut.height(*x);
-    if ((last_height < -snap && height > snap) || (last_height > snap && height < -snap)) {
+inline std::size_t cut_off(const Vec2* from, std::size_t n, const Cut& cut, double snap, Vec2* to) noexcept {
+  // Numbers of its own, which stay in registers while corners are stored.
+  const double out_x = cut.outward.x();
+  const double out_y = cut.outward.y();
+  const double offset = cut.offset;
+  Vec2* end = to;
+  double last_x = from[n - 1].x();
+  double last_y = from[n - 1].y();
+  double last_height = cut.height(from[n - 1]);
+  for (std::size_t i = 0; i < n; ++i) {
+    const double x = from[i].x();
+    const double y = from[i].y();
+    const double height = out_x * x + out_y * y - offset;
+    const bool inside = height <= snap;
+    if (inside ? last_height > snap && height < -snap : last_height < -snap) {
       const double s = last_height / (last_height - height);
-      to[kept++] = *last + (*x - *last) * s;
+      *end++ = {last_x + (x - last_x) * s, last_y + (y - last_y) * s};
     }
-    to[kept] = *x;
-    kept += height <= snap ? 1 : 0;
-    last = x;
+    if (inside) *end++ = {x, y};
+    last_x = x;
+    last_y = y;
     last_height = height;
   }
-  return kept;
+  return static_cast<std::size_t>(end - to);
 }
 
 Cut side_of(const PatchPolygon& window, std::size_t i) noexcept {
@@ -171,7 +179,7 @@ void clip_polygon(PatchPolygon& polygon, const Vec2& normal, double offset) noex
 
 void clip_polygon(PatchPolygon& polygon, const PatchPolygon& window) noexcept {
   constexpr std::size_t kFew = 6;  // corners of both up to which going around costs more than it saves
-  if (polygon.empty()) return;
+  if (polygon.empty() || window.empty()) return;
   const std::size_t sides = window.size();
   if (sides > kFew || polygon.size() > kFew) {
     Ring ring(polygon, side_of(window, 0));
@@ -181,17 +189,21 @@ void clip_polygon(PatchPolygon& polygon, const PatchPolygon& window) noexcept {
   }
   double most = 0.0;
   for (const Vec2& x : polygon) most = extent(most, x);
-  std::array<std::array<Vec2, 3 * kFew + 2>, 2>
-      rows;  // every cut of a convex polygon adds one corner, or two by rounding
+  const double snap = kSnap * most;
+  // Every cut of a convex polygon adds one corner, or two by rounding.
+  std::array<std::array<Vec2, 3 * kFew + 2>, 2> rows;
   const Vec2* from = polygon.begin();
   std::size_t n = polygon.size();
-  for (std::size_t i = 0; i < sides && n > 0; ++i) {
-    const Cut cut = side_of(window, i);
-    Vec2* to = rows[i & 1].data();
-    n = cut_off(from, n, cut, kSnap * most * cut.scale, to);
+  const Vec2* tail = window.end() - 1;
+  for (const Vec2* head = window.begin(); head != window.end() && n > 0; tail = head++) {
+    const Cut cut(*tail, *head);
+    Vec2* to = rows[from == rows[0].data() ? 1 : 0].data();
+    n = cut_off(from, n, cut, snap * cut.scale, to);
     from = to;
   }
-  polygon.assign(from, n);
+  // One number at a time: wider loads would wait for the stores of the last cut.
+  polygon.clear();
+  for (std::size_t i = 0; i < n; ++i) polygon.push_back(from[i]);
 }
 
 double twice_area(const PatchPolygon& polygon) noexcept {
@@ -207,38 +219,43 @@ PatchMoments moments_of(const PatchPolygon& polygon) noexcept {
   if (n < 3) return m;
   // Sums over the triangles of a fan at corner 0, about corner 0.
   const Vec2* corners = polygon.begin();
-  const Vec2 origin = corners[0];
+  const double ox = corners[0].x();
+  const double oy = corners[0].y();
   double twice = 0.0;
   double fx = 0.0;
   double fy = 0.0;
   double xx = 0.0;
   double xy = 0.0;
   double yy = 0.0;
-  double ax = corners[1].x() - origin.x();
-  double ay = corners[1].y() - origin.y();
+  double ax = corners[1].x() - ox;
+  double ay = corners[1].y() - oy;
   for (std::size_t i = 2; i < n; ++i) {
-    const double bx = corners[i].x() - origin.x();
-    const double by = corners[i].y() - origin.y();
-    const double weight = ax * by - ay * bx;
+    const double bx = corners[i].x() - ox;
+    const double by = corners[i].y() - oy;
+    const double ax_by = ax * by;
+    const double ay_bx = ay * bx;
+    const double weight = ax_by - ay_bx;
     const double sx = ax + bx;
     const double sy = ay + by;
     twice += weight;
     fx += weight * sx;
     fy += weight * sy;
-    xx += weight * (ax * ax + bx * bx + sx * sx);
-    xy += weight * (ax * ay + bx * by + sx * sy);
-    yy += weight * (ay * ay + by * by + sy * sy);
+    xx += weight * (sx * sx - ax * bx);
+    xy += weight * (2.0 * sx * sy - ax_by - ay_bx);
+    yy += weight * (sy * sy - ay * by);
     ax = bx;
     ay = by;
   }
   m.area = 0.5 * twice;
   if (!(m.area > 0.0)) return m;
   const double share = 1.0 / twice;
-  const Vec2 c(fx * share / 3.0, fy * share / 3.0);
-  m.centroid = origin + c;
-  m.xx = std::max(0.0, xx * share / 12.0 - c.x() * c.x());
-  m.xy = xy * share / 12.0 - c.x() * c.y();
-  m.yy = std::max(0.0, yy * share / 12.0 - c.y() * c.y());
+  const double third = share * (1.0 / 3.0);
+  const double sixth = share * (1.0 / 6.0);
+  const Vec2 c(fx * third, fy * third);
+  m.centroid = {ox + c.x(), oy + c.y()};
+  m.xx = std::max(0.0, xx * sixth - c.x() * c.x());
+  m.xy = xy * 0.5 * sixth - c.x() * c.y();
+  m.yy = std::max(0.0, yy * sixth - c.y() * c.y());
   return m;
 }
 
