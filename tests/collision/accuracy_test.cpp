@@ -180,13 +180,15 @@ TEST(Accuracy, IsNotWorseThanItsPageSays) {
   const bool write = std::getenv("TACTUM_WRITE_ACCURACY") != nullptr;
   const auto list = shapes();
   const auto page = read_page();
-  Random random(2026);
   std::vector<std::pair<std::string, Worst>> rows;
   for (std::size_t i = 0; i < list.size(); ++i)
     for (std::size_t j = i; j < list.size(); ++j) {
       Worst worst;
+      // Streams of their own: a build that tries fewer poses tries the first of these.
+      Random random(2026 + 100 * i + j);
+      Random hand(52026 + 100 * i + j);
       measure_cold(random, list[i].shape, list[j].shape, cases::some_of(poses), worst);
-      measure_tracked(random, list[i].shape, list[j].shape, cases::some_of(approaches), worst);
+      measure_tracked(hand, list[i].shape, list[j].shape, cases::some_of(approaches), worst);
       rows.emplace_back(list[i].name + ", " + list[j].name, worst);
     }
   if (write) return write_page(rows, poses, approaches);
