@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "tactum/collision/manifold.h"
+#include "tactum/collision/steady_contact.h"
 
 namespace tactum::bench {
 namespace {
@@ -59,6 +60,8 @@ std::optional<Centres> centres_of(const Manifold& patch) {
 
 void measure_steadiness(const Shape& a, const Shape& b, const Recording& recording, ManifoldRow& row) {
   std::optional<Centres> last;
+  std::optional<Centres> last_shown;
+  SteadyContact memory;
   std::vector<double> steps;
   for (std::size_t i = 0; i < recording.poses.size(); ++i) {
     Manifold patch;
@@ -69,6 +72,11 @@ void measure_steadiness(const Shape& a, const Shape& b, const Recording& recordi
       row.pressure_max_m = std::max(row.pressure_max_m, (now->pressure - last->pressure).norm());
     }
     last = now;
+    steady_centroid(recording.poses[i], patch, memory);
+    const std::optional<Centres> shown = centres_of(patch);
+    if (shown && last_shown)
+      row.shown_max_m = std::max(row.shown_max_m, (shown->centroid - last_shown->centroid).norm());
+    last_shown = shown;
   }
   std::sort(steps.begin(), steps.end());
   if (steps.empty()) return;
@@ -118,13 +126,13 @@ Table table_of(const ManifoldReport& report) {
   Table table;
   table.left = 2;
   table.rows.push_back({"pair", "regime", "vertices", "median", "p99", "p99.9", "max", "missed",
-                        "centroid p99.9", "centroid max", "pressure max"});
+                        "centroid p99.9", "centroid max", "pressure max", "shown max"});
   for (const ManifoldRow& one : report.rows)
-    table.rows.push_back({one.row.shape_a + "/" + one.row.shape_b, one.row.regime,
-                          fmt::to_string(one.row.vertices), time_text(one.row.median_ns),
-                          time_text(one.row.p99_ns), time_text(one.row.p999_ns), time_text(one.row.max_ns),
-                          fmt::to_string(one.row.missed), length_text(one.centroid_p999_m),
-                          length_text(one.centroid_max_m), length_text(one.pressure_max_m)});
+    table.rows.push_back(
+        {one.row.shape_a + "/" + one.row.shape_b, one.row.regime, fmt::to_string(one.row.vertices),
+         time_text(one.row.median_ns), time_text(one.row.p99_ns), time_text(one.row.p999_ns),
+         time_text(one.row.max_ns), fmt::to_string(one.row.missed), length_text(one.centroid_p999_m),
+         length_text(one.centroid_max_m), length_text(one.pressure_max_m), length_text(one.shown_max_m)});
   return table;
 }
 
@@ -133,6 +141,7 @@ nlohmann::ordered_json to_json(const ManifoldRow& row) {
   json["centroid_p999_m"] = row.centroid_p999_m;
   json["centroid_max_m"] = row.centroid_max_m;
   json["pressure_max_m"] = row.pressure_max_m;
+  json["shown_max_m"] = row.shown_max_m;
   return json;
 }
 

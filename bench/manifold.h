@@ -12,6 +12,7 @@ struct ManifoldRow {
   double centroid_p999_m = 0.0;  ///< step of the centroid by the points' weights, in a frame [m]
   double centroid_max_m = 0.0;   ///< [m]
   double pressure_max_m = 0.0;   ///< ... by weight times how far the gap is below the tolerance [m]
+  double shown_max_m = 0.0;      ///< of the centroid as it is shown to a hand (steady_contact.h) [m]
 };
 
 struct ManifoldReport {

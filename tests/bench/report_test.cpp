@@ -32,7 +32,8 @@ const std::vector<Row> kRows = {row("tactum", 50.0, 0.0, 0), row("quick", 100.0,
                                 row("slow", 3000.0, 0.0, 0)};
 
 TEST(Report, RatiosAreToTheFastestPeerThatIsAccurate) {
-  const std::vector<std::string>& cells = against_peers(kRows).rows.at(1);
+  const Table table = against_peers(kRows);
+  const std::vector<std::string>& cells = table.rows.at(1);
   EXPECT_EQ(cells[9], "good");
   EXPECT_EQ(cells[12], "20");
 }
