@@ -366,6 +366,19 @@ const topics = {
     for (const id of ["stop", "scene", "canvas", "pause"]) check(await page.isVisible(`#${id}`), `${id} is there`);
     const stop = await page.locator("#stop").boundingBox();
     check(stop.y < 60 && stop.width > 60 && stop.height >= 40, "the stop is at hand and large");
+    for (const width of [390, 700, 1000]) {  // every chart is above what follows it
+      await page.setViewportSize({ width, height: 800 });
+      await pause(0.5);
+      const over = await page.evaluate(() => {
+        const below = document.querySelector("aside").getBoundingClientRect();
+        const strips = document.getElementById("strips").getBoundingClientRect();
+        const last = Math.max(...[...document.querySelectorAll("#strips canvas")].map((c) => c.getBoundingClientRect().bottom));
+        return last - (below.left < strips.right ? below.top : strips.bottom);
+      });
+      check(over <= 1, `at ${width} pixels the charts end ${over} pixels too low`);
+    }
+    await page.setViewportSize({ width: 390, height: 800 });
+    await pause(1);
     // A finger on the part moves it; the camera stays.
     const [x, y] = await heldAt(page);
     const session = await page.context().newCDPSession(page);

@@ -201,7 +201,7 @@ function showHint() {
   const held = run && run.held >= 0 ? run.bodies[run.held].name : "";
   const hinged = run && run.held >= 0 && run.bodies[run.held].joint === "hinge";
   get("hint").textContent = !run ? "" : !hand.canFeel ? "This device is not led by the mouse: look, or choose a simulated device in the settings."
-    : `Drag the orange part (${held}) to ${hinged ? "turn" : "move"} it and feel it push back. Drag beside it to look around.`;
+    : `Drag the orange part (${held}) to ${hinged || hand.turns ? "turn" : "move"} it and feel it push back; until you do, a scripted hand moves it. Drag beside it to look around.`;
 }
 function reset() {
   if (maySteer()) ask({ do: "reset" });
@@ -226,7 +226,7 @@ const actions: [string, string, () => void][] = [
   ["see-through", "x", () => view.bodies?.showThrough(toggle("see-through"))],
   ["trail", "t", () => (view.overlay.showsTrail = toggle("trail"))],
   ["picture", "", () => void view.png().then((png) => download(`tactum-${run?.scene ?? "scene"}.png`, png))],
-  ["mode", "m", () => (hand.turns = toggle("mode"))],
+  ["mode", "m", () => { hand.turns = toggle("mode"); showHint(); }],
   ["grasp", "g", grasp],
   ["pause", "c", () => charts.pause(!charts.paused)],
   ["csv", "", () => download(`tactum-${run?.scene ?? "run"}.csv`, new Blob([charts.csv()], { type: "text/csv" }))],
@@ -312,6 +312,7 @@ const helpRows: [string, string][] = [
   ["Drag the orange part", "take it by a spring; what it touches pushes back"],
   ["Shift + drag, or Turn", "turn it about its handle"],
   ["Wheel while dragging", "farther and nearer"],
+  ["Letting go", "the part stays where the hand was; R starts again with the scripted hand"],
   ["Arrows, page up and down", "fine steps (shift turns, alt is finer) when the scene has the focus"],
   ["G", "the device's button: grasp"],
   ["Drag beside it, wheel, right drag", "look around, zoom, shift the view"],
