@@ -3,15 +3,16 @@
 /// points of B less points of A: the pieces overlap where D holds the origin, and what lies between points of
 /// D is in D.
 ///
-///     by four vertices                         by a facet and the centres
-///          d2                                     ---facet---  x         the line from c = center_b -
-///          center_a
-///         / | \.                                    \     . /            through the origin leaves D's plane
-///         at x:
-///       d0--o---d3    o between the corners          \  o  /             x on the facet, so o between c and
-///       x
-///         \ | /                                       \ ./
-///          d1                                          c
+///     by four vertices              by a facet and the centres
+///
+///          d2                         ---facet---x---
+///         / | \                        \        /  /
+///       d0--o--d3                       \     o   /      o: the origin
+///         \ | /                          \   /   /       c: center_b - center_a, inside D
+///          d1                             \ /   /        x: where the line from c through o
+///                                          c                 leaves the plane of the facet
+///
+///     o between the corners         x on the facet, so o between c and x
 ///
 /// The first lasts while the pieces are deep inside each other, the second while they barely are. Either may
 /// fail for pieces that do overlap: then it says nothing. Cost: 15-25 ns each.
