@@ -221,4 +221,19 @@ inline std::string describe(const Pose& X) {
   return text;
 }
 
+/// The same piece `by` times as large.
+inline Polytope scaled(const Polytope& P, double by) {
+  std::vector<Vec3> corners = P.vertices;
+  for (Vec3& x : corners) x *= by;
+  return *convex_hull(corners);
+}
+
+/// The same piece with its vertices in another order.
+inline Polytope renamed(const Polytope& P, Random& random) {
+  std::vector<Vec3> corners = P.vertices;
+  for (std::size_t i = corners.size(); i > 1; --i)
+    std::swap(corners[i - 1], corners[std::size_t(random.index(int(i)))]);
+  return *convex_hull(corners);
+}
+
 }  // namespace tactum::cases

@@ -195,16 +195,10 @@ TEST(ClosestFeatures, FarFromTheWorldsOriginOnlyTheRoundingOfThePosesIsLost) {
 }
 
 TEST(ClosestFeatures, TheOrderOfTheVerticesDoesNotMatter) {
-  const auto shuffled = [](Random& random, const Polytope& P) {
-    std::vector<Vec3> points = P.vertices;
-    for (std::size_t i = points.size(); i > 1; --i)
-      std::swap(points[i - 1], points[std::size_t(random.index(int(i)))]);
-    return *convex_hull(points);
-  };
   for_cases(20269, 1000, [&](Random& random, const Case& c) {
     if (!small(c)) return;
-    const Polytope A = shuffled(random, c.a.polytope);
-    const Polytope B = shuffled(random, c.b.polytope);
+    const Polytope A = cases::renamed(c.a.polytope, random);
+    const Polytope B = cases::renamed(c.b.polytope, random);
     const PairDistance one = cold(c.a.polytope, c.b.polytope, c.X_AB);
     const PairDistance other = cold(A, B, c.X_AB);
     EXPECT_TRUE(other.certified());
@@ -213,17 +207,12 @@ TEST(ClosestFeatures, TheOrderOfTheVerticesDoesNotMatter) {
 }
 
 TEST(ClosestFeatures, ScalesWithThePieces) {
-  const auto scaled = [](const Polytope& P, double by) {
-    std::vector<Vec3> points;
-    for (const Vec3& v : P.vertices) points.push_back(v * by);
-    return *convex_hull(points);
-  };
   for_cases(20265, 600, [&](Random&, const Case& c) {
     if (!small(c)) return;
     for (double by : {1e-3, 1e3}) {
       const Pose X{c.X_AB.R, c.X_AB.p * by};
       const PairDistance one = cold(c.a.polytope, c.b.polytope, c.X_AB);
-      const PairDistance other = cold(scaled(c.a.polytope, by), scaled(c.b.polytope, by), X);
+      const PairDistance other = cold(cases::scaled(c.a.polytope, by), cases::scaled(c.b.polytope, by), X);
       EXPECT_NEAR(one.distance * by, other.distance, 4e-9 * c.size * by);
       EXPECT_TRUE(other.certified());
     }

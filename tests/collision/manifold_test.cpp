@@ -271,6 +271,39 @@ TEST(Manifold, SwappingAAndBTurnsTheNormalAndKeepsThePatch) {
   }
 }
 
+/// Where the patch is, how large and how it spreads: told the same whatever the vertices are called, a
+/// kilometre away (1e-12 m of the poses' own rounding), and for parts of 1 mm to 10 m.
+TEST(Manifold, NamesPlaceAndScaleDoNotMatter) {
+  const std::uint64_t seed = 33;
+  Random random(seed);
+  int patches = 0;
+  for (int i = 0; i < cases::some_of(1000); ++i) {
+    SCOPED_TRACE("seed " + std::to_string(seed) + ", case " + std::to_string(i));
+    const Polytope A = make_prism(3 + random.index(7), 0.02, 0.02);
+    const Polytope B = make_prism(3 + random.index(7), 0.02, 0.02);
+    const Pose X{
+        exp_rotation(cases::random_vector(random, 0.02)) * exp_rotation(Vec3(0, 0, random.uniform(-3, 3))),
+        {random.uniform(-0.02, 0.02), 0, -0.0202}};
+    const Contact here = contact(A, B, X, 5e-4);
+    if (here.patch.points.size() != 4) continue;
+    ++patches;
+    const auto expect_same = [&](const Contact& other, double by, double slack) {
+      EXPECT_LT((other.patch.normal - here.patch.normal).norm(), 1e-9);
+      EXPECT_NEAR(other.patch.area, here.patch.area * by * by, 0.02 * slack * by * by);
+      EXPECT_LT((centroid(other.patch) - by * centroid(here.patch)).norm(), slack * by);
+      const Vec3 u = any_orthogonal(here.patch.normal);
+      EXPECT_NEAR(second_moment(other.patch, u, u), by * by * second_moment(here.patch, u, u),
+                  0.02 * slack * by * by);
+    };
+    expect_same(contact(cases::renamed(A, random), cases::renamed(B, random), X, 5e-4), 1.0, 1e-9);
+    const Pose X_WA{cases::random_rotation(random), cases::random_unit(random) * 1000.0};
+    expect_same(contact(A, B, relative_pose(X_WA, X_WA * X), 5e-4), 1.0, 1e-8);
+    for (double by : {0.02, 200.0})
+      expect_same(contact(cases::scaled(A, by), cases::scaled(B, by), {X.R, X.p * by}, 5e-4 * by), by, 1e-9);
+  }
+  EXPECT_GT(patches, cases::some_of(100));
+}
+
 /// Largest step of the patch's centroid while a prism rocks through flat against a box, by 3.4 degrees to
 /// either side, in steps of `step` [rad], at a distance of half the tolerance.
 double largest_jump(std::uint64_t seed, double step) {

@@ -107,19 +107,6 @@ TEST(TrackedDepth, MissesFewGlobalMinimaUnderAHandsMotion) {
   EXPECT_LE(compact.missed, 0.003 * compact.frames) << "seed " << seed;
 }
 
-Polytope scaled(const Polytope& P, double by) {
-  std::vector<Vec3> corners = P.vertices;
-  for (Vec3& x : corners) x *= by;
-  return *convex_hull(corners);
-}
-
-Polytope renamed(const Polytope& P, Random& random) {
-  std::vector<Vec3> corners = P.vertices;
-  for (std::size_t i = corners.size(); i > 1; --i)
-    std::swap(corners[i - 1], corners[std::size_t(random.index(int(i)))]);
-  return *convex_hull(corners);
-}
-
 /// Cold, where small pieces give the global minimum: 2e-9 of the size, and 1e-12 m a kilometre away.
 TEST(TrackedDepth, NamesOrderPlaceAndScaleDoNotMatter) {
   const std::uint64_t seed = 62;
@@ -140,11 +127,12 @@ TEST(TrackedDepth, NamesOrderPlaceAndScaleDoNotMatter) {
     if (d >= 0.0) continue;
     SCOPED_TRACE("seed " + std::to_string(seed) + ", case " + std::to_string(i) + " " + cases::describe(X));
     EXPECT_NEAR(depth(B, A, X.inverse()), d, 2e-9 * size);
-    EXPECT_NEAR(depth(renamed(A, random), renamed(B, random), X), d, 2e-9 * size);
+    EXPECT_NEAR(depth(cases::renamed(A, random), cases::renamed(B, random), X), d, 2e-9 * size);
     const Pose X_WA{cases::random_rotation(random), cases::random_vector(random, 1000.0)};
     EXPECT_NEAR(depth(A, B, relative_pose(X_WA, X_WA * X)), d, 1e-11);
     for (double by : {1e-3 / size, 10.0 / size})
-      EXPECT_NEAR(depth(scaled(A, by), scaled(B, by), {X.R, X.p * by}), d * by, 2e-9 * size * by);
+      EXPECT_NEAR(depth(cases::scaled(A, by), cases::scaled(B, by), {X.R, X.p * by}), d * by,
+                  2e-9 * size * by);
   }
 }
 

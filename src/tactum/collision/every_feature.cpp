@@ -31,9 +31,9 @@ Feature along_edge(const Polytope& P, int e, double s) noexcept {
 }
 
 /// The vertex of P over the face of Q, when its foot is inside: the foot, in Q's frame.
-bool foot_on_face(const Polytope& Q, const Polytope::Face& face, const Vec3& p, Vec3& foot) noexcept {
-  for (int slot = face.first; slot < face.first + face.count; ++slot)
-    if (Q.sides[slot].normal.dot(p) > Q.sides[slot].offset) return false;
+bool foot_on_face(const Polytope& Q, int face_index, const Vec3& p, Vec3& foot) noexcept {
+  if (!in_column(Q, face_index, p)) return false;
+  const Polytope::Face& face = Q.faces[face_index];
   foot = p - face.normal * (face.normal.dot(p) - face.offset);
   return true;
 }
@@ -49,11 +49,11 @@ void closest_of_every_feature(const PairView& pair, PairDistance& x) noexcept {
   Vec3 foot;
   for (int f = 0; f < faces_a; ++f)
     for (int v = 0; v < static_cast<int>(pair.B.vertices.size()); ++v)
-      if (const Vec3 p = pair.vertex_b(v); foot_on_face(pair.A, pair.A.faces[f], p, foot))
+      if (const Vec3 p = pair.vertex_b(v); foot_on_face(pair.A, f, p, foot))
         nearest.take({Kind::kFace, f}, {Kind::kVertex, v}, foot, p);
   for (int f = 0; f < faces_b; ++f)
     for (int v = 0; v < static_cast<int>(pair.A.vertices.size()); ++v)
-      if (foot_on_face(pair.B, pair.B.faces[f], pair.X_BA * pair.vertex_a(v), foot))
+      if (foot_on_face(pair.B, f, pair.X_BA * pair.vertex_a(v), foot))
         nearest.take({Kind::kVertex, v}, {Kind::kFace, f}, pair.vertex_a(v), pair.X_AB * foot);
   for (int j = 0; j < edges_b; ++j) {
     const Polytope::Edge& eb = pair.B.edges[j];

@@ -6,140 +6,14 @@
 #include <limits>
 
 #include "tactum/base/tolerances.h"
+#include "tactum/collision/contact_plane.h"
+#include "tactum/collision/facing_feature.h"
 #include "tactum/collision/pair_view.h"
-#include "tactum/collision/planar_patch.h"
 
 namespace tactum {
 namespace {
 
 using Kind = FeatureKind;
-
-/// How much of the patch is kept when a feature leans by `lean` out of `most`: all up to half, then less, to
-/// none.
-double share_kept(double lean, double most) noexcept {
-  return std::clamp(2.0 * (most - lean) / most, 0.0, 1.0);
-}
-
-/// The feature of one piece that takes part, and how its leaning shrinks the patch: a face toward its edge,
-/// and where that leans too much itself, toward the nearest point.
-struct Facing {
-  Feature feature;
-  int edge = -1;             ///< the edge a leaning face shrinks to; -1: none, the face does not lean
-  double face_share = 1.0;   ///< how much of its rise from that edge is kept
-  double along_share = 1.0;  ///< how much of the rise along it
-};
-
-/// Calls visit(face) for the faces that hold feature `f`.
-template <class Visit>
-void for_faces_at(const Polytope& P, const Feature& f, const Visit& visit) noexcept {
-  if (f.kind == Kind::kFace) return visit(f.index);
-  if (f.kind == Kind::kEdge) {
-    visit(P.edges[f.index].left);
-    visit(P.edges[f.index].right);
-    return;
-  }
-  for (const Polytope::Ray& ray : P.rays_at(f.index)) {
-    const Polytope::Edge& edge = P.edges[ray.edge];
-    visit(edge.tail == f.index ? edge.left : edge.right);
-  }
-}
-
-/// Of the edges at feature `f`, that bound `face`, the one most square to `outward`; its slope in `slope`.
-int level_edge(const Polytope& P, const Feature& f, int face, const Vec3& outward, double& slope) noexcept {
-  if (f.kind == Kind::kEdge) {
-    slope = std::abs(P.edges[f.index].direction.dot(outward));
-    return f.index;
-  }
-  int best = -1;
-  slope = 2.0;
-  for (const Polytope::Ray& ray : P.rays_at(f.index)) {
-    if (P.edges[ray.edge].left != face && P.edges[ray.edge].right != face) continue;
-    if (const double rise = std::abs(ray.direction.dot(outward)); rise < slope) {
-      slope = rise;
-      best = ray.edge;
-    }
-  }
-  return best;
-}
-
-/// The largest feature at `f` square to `outward` (unit, P's frame) within `angle`. Beside a face that leans
-/// as little the patch shrinks too, so that rolling from one face to the next passes through their edge.
-Facing facing_feature(const Polytope& P, const Feature& f, const Vec3& outward, double angle) noexcept {
-  constexpr double kSmall = 0.01;  // a squared sine below which the cosine has lost too many of its digits
-  int face = -1;
-  double lean = 9.0;  // squared sines
-  double next = 9.0;
-  for_faces_at(P, f, [&](int candidate) {
-    const Vec3& normal = P.faces[candidate].normal;
-    const double cosine = normal.dot(outward);
-    double sine_sq = cosine > 0.0 ? 1.0 - cosine * cosine : 4.0;
-    if (sine_sq < kSmall) sine_sq = normal.cross(outward).squaredNorm();
-    if (sine_sq < lean) {
-      next = lean;
-      lean = sine_sq;
-      face = candidate;
-    } else {
-      next = std::min(next, sine_sq);
-    }
-  });
-  Facing facing;
-  facing.feature = {Kind::kFace, face};
-  if (f.kind == Kind::kFace) {
-    // Square to the normal; where it is not (an answer that is none of the queries'), a point.
-    if (lean >= angle * angle) facing.feature = {Kind::kVertex, vertex_of(P, f)};
-    return facing;
-  }
-  // Nearly level and alone: both shares of the face are one, whatever its edges do.
-  if (lean <= 0.25 * angle * angle && next >= 9.0 * lean) return facing;
-  lean = std::sqrt(lean);
-  next = std::sqrt(next);
-  double slope = 0.0;
-  facing.edge = level_edge(P, f, face, outward, slope);
-  // An edge shrinks at a quarter of the angle: where two edges of a leaning face slope alike, both are points
-  // by then.
-  facing.along_share = share_kept(slope, 0.25 * angle);
-  const double lead = next > lean ? 2.0 * (next - lean) / (next + lean) : 0.0;
-  facing.face_share = share_kept(lean, angle) * std::min(1.0, lead);
-  if (facing.face_share > 0.0) return facing;
-  facing.feature = facing.along_share > 0.0 ? Feature{Kind::kEdge, facing.edge} : f;
-  return facing;
-}
-
-/// The contact plane, told in the frame of either piece: coordinates x along e1, e2 and height along n, from
-/// a point near the contact.
-struct Tangent {
-  Vec3 origin, e1, e2, n;
-
-  Vec2 flat(const Vec3& p) const noexcept {
-    const Vec3 r = p - origin;
-    return {e1.dot(r), e2.dot(r)};
-  }
-  Vec3 point(const Vec2& x, double z) const noexcept { return origin + e1 * x.x() + e2 * x.y() + n * z; }
-};
-
-/// Height of a plane over the contact plane, linear in x.
-struct Height {
-  double at_origin = 0.0;
-  Vec2 slope = Vec2::Zero();
-  double operator()(const Vec2& x) const noexcept { return at_origin + slope.dot(x); }
-};
-
-/// The contact plane's first axis goes with A's feature, so that points keep their places while it stays.
-Tangent contact_plane(const Polytope& A, const Feature& a, const Vec3& origin, const Vec3& n) noexcept {
-  Tangent tangent{origin, Vec3::Zero(), Vec3::Zero(), n};
-  if (a.kind == Kind::kVertex) {
-    tangent.e1 = any_orthogonal(n);
-  } else {
-    const int edge = a.kind == Kind::kEdge ? a.index : A.face_edges[A.faces[a.index].first];
-    const Vec3& u = A.edges[edge].direction;
-    tangent.e1 = u - n * n.dot(u);
-    const double length_sq = tangent.e1.squaredNorm();
-    // Nearly square to n already, in the answers of the queries.
-    tangent.e1 = length_sq > 0.25 ? Vec3(tangent.e1 * (1.0 / std::sqrt(length_sq))) : any_orthogonal(n);
-  }
-  tangent.e2 = n.cross(tangent.e1);
-  return tangent;
-}
 
 /// What a handler works on. Built in place: copying vectors that have just been written makes the processor
 /// wait for them.
@@ -178,29 +52,6 @@ struct Work {
   }
 };
 
-/// The outline of a face, counter-clockwise in the contact plane: B's faces look along n, A's against it.
-/// `plane` is in P's frame.
-void face_outline(const Tangent& plane, const Polytope& P, int face_index, bool on_a,
-                  PatchPolygon& loop) noexcept {
-  const Polytope::Face& face = P.faces[face_index];
-  const int stride = (face.count + kPatchCorners - 1) / kPatchCorners;
-  const int* const corners = P.face_vertices.data() + face.first;
-  const Vec3* const vertices = P.vertices.data();
-  loop.clear();
-  if (on_a) {
-    for (int i = face.count - 1; i >= 0; i -= stride) loop.push_back(plane.flat(vertices[corners[i]]));
-  } else {
-    for (int i = 0; i < face.count; i += stride) loop.push_back(plane.flat(vertices[corners[i]]));
-  }
-}
-
-inline Height face_height(const Tangent& plane, const Polytope& P, int face_index) noexcept {
-  const Polytope::Face& face = P.faces[face_index];
-  const double per_up = 1.0 / face.normal.dot(plane.n);
-  return {(face.offset - face.normal.dot(plane.origin)) * per_up,
-          {-face.normal.dot(plane.e1) * per_up, -face.normal.dot(plane.e2) * per_up}};
-}
-
 /// How much of the gap's range is kept as the features lean.
 double gap_share(const Work& w) noexcept {
   const auto share_of = [](const Facing& f) {
@@ -213,21 +64,6 @@ double gap_share(const Work& w) noexcept {
 double cut_level(const Work& w, double least_gap) noexcept {
   const double share = gap_share(w);
   return share >= 1.0 ? w.tolerance : least_gap + (w.tolerance - least_gap) * share;
-}
-
-/// How far a leaning face has risen from the line of its edge: linear, zero on the line.
-struct Rise {
-  Vec2 slope = Vec2::Zero();
-  double offset = 0.0;
-  double operator()(const Vec2& x) const noexcept { return slope.dot(x) - offset; }
-};
-
-Rise rise_from_edge(const Tangent& tangent, const Polytope& P, int edge, const Pose& X,
-                    const Vec2& face_slope) noexcept {
-  const Vec2 on_line = tangent.flat(X * P.vertices[P.edges[edge].tail]);
-  const Vec2 along = (tangent.flat(X * P.vertices[P.edges[edge].head]) - on_line).normalized();
-  const Vec2 across = face_slope - along * along.dot(face_slope);
-  return {across, across.dot(on_line)};
 }
 
 void point_contact(const Work& w) noexcept {

@@ -7,13 +7,6 @@ namespace {
 
 using Kind = FeatureKind;
 
-bool inside_column(const Polytope& P, int face_index, const Vec3& point) noexcept {
-  const Polytope::Face& face = P.faces[face_index];
-  for (int slot = face.first; slot < face.first + face.count; ++slot)
-    if (P.sides[slot].normal.dot(point) > P.sides[slot].offset) return false;
-  return true;
-}
-
 bool inside_parallelogram(const PairView& pair, const Feature& a, const Feature& b, const Vec3& x) noexcept {
   const Polytope::Edge& ea = pair.A.edges[a.index];
   const Polytope::Edge& eb = pair.B.edges[b.index];
@@ -49,9 +42,9 @@ bool overlap_by_facet(const PairView& pair, const PairDistance& depth) noexcept 
   if (depth.distance >= 0.0 || behind <= 0.0) return false;
   const Vec3 x = c * (depth.distance / behind);
   if (depth.a.kind == Kind::kFace && depth.b.kind == Kind::kVertex)
-    return inside_column(pair.A, depth.a.index, pair.vertex_b(depth.b.index) - x);
+    return in_column(pair.A, depth.a.index, pair.vertex_b(depth.b.index) - x);
   if (depth.b.kind == Kind::kFace && depth.a.kind == Kind::kVertex)
-    return inside_column(pair.B, depth.b.index, pair.X_BA * (pair.vertex_a(depth.a.index) + x));
+    return in_column(pair.B, depth.b.index, pair.X_BA * (pair.vertex_a(depth.a.index) + x));
   return depth.a.kind == Kind::kEdge && depth.b.kind == Kind::kEdge &&
          inside_parallelogram(pair, depth.a, depth.b, x);
 }

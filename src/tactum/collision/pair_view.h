@@ -80,4 +80,12 @@ inline bool valid_feature(const Polytope& P, const Feature& f) noexcept {
   return f.index >= 0 && f.index < P.counts[static_cast<std::size_t>(f.kind)];
 }
 
+/// Is `point` (P's frame) over the face, above or below it?
+inline bool in_column(const Polytope& P, int face_index, const Vec3& point) noexcept {
+  const Polytope::Face& face = P.faces[face_index];
+  for (int slot = face.first; slot < face.first + face.count; ++slot)
+    if (P.sides[slot].normal.dot(point) > P.sides[slot].offset) return false;
+  return true;
+}
+
 }  // namespace tactum
