@@ -2,13 +2,9 @@
 /// up.
 
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <atomic>
 #include <chrono>
-#include <csignal>
 #include <cstdio>
-#include <cstdlib>
 #include <thread>
 
 #include "commands.h"
@@ -16,6 +12,7 @@
 #include "tactum/scene/builtin_scenes.h"
 #include "tactum/session/session.h"
 #include "viewer/server/viewer.h"
+#include "watch.h"
 
 namespace tactum {
 namespace {
@@ -32,46 +29,6 @@ struct FeelOptions {
   int port = 0;
 };
 
-// Set by the signal handler, read by the main thread; the loop then ramps the wrench to zero.
-std::atomic<bool> g_interrupted{false};
-static_assert(std::atomic<bool>::is_always_lock_free);
-
-void on_interrupt(int) { g_interrupted.store(true); }
-
-/// One line, overwritten in place, only where a person watches.
-class StatusLine {
- public:
-  void show(const Session& session, const SessionStatus& status) {
-    if (!on_terminal_) return;
-    fmt::print(stderr,
-               "\r{:>8.2f} s  force {:6.2f} N  torque {:7.1f} mN m  stretch {:6.3f} mm  contacts {:3}  "
-               "{:5.0f} Hz {}\033[K",
-               static_cast<double>(status.frame) / session.rate_Hz(), status.force_N, status.torque_Nm * 1e3,
-               status.stretch_m * 1e3, status.contact_points, rate(status.frame),
-               safety_flag_names(status.safety));
-    std::fflush(stderr);
-    shown_ = true;
-  }
-  ~StatusLine() {
-    if (shown_) fmt::print(stderr, "\n");
-  }
-
- private:
-  /// Frames a second since the last call.
-  double rate(std::uint64_t frame) {
-    const auto now = std::chrono::steady_clock::now();
-    const double seconds = std::chrono::duration<double>(now - last_).count();
-    const double frames = static_cast<double>(frame) - static_cast<double>(last_frame_);
-    last_ = now;
-    last_frame_ = frame;
-    return seconds > 0.0 ? frames / seconds : 0.0;
-  }
-  bool on_terminal_ = isatty(STDERR_FILENO) != 0;
-  bool shown_ = false;
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-  std::uint64_t last_frame_ = 0;
-};
-
 /// Times the frames of a virtual run, keeps the status line alive, and passes Ctrl-C on.
 class VirtualWatch final : public LoopObserver {
  public:
@@ -79,7 +36,7 @@ class VirtualWatch final : public LoopObserver {
   bool after_frame(const FrameRecord& record) noexcept override {
     frame_times.add(static_cast<std::int64_t>(record.frame_time_s * 1e9));
     if (record.tick.index % kFramesPerLook == 0) status_.show(session_, session_.poll());
-    return !g_interrupted.load();
+    return !interrupted();
   }
   DurationHistogram frame_times;
 
@@ -111,24 +68,13 @@ Summary feel_live(Session& session, std::uint64_t frames) {
   if (const Result<void> started = session.start(frames); !started) fail(started.error());
   for (const std::string& sentence : session.privileges().sentences) fmt::print(stderr, "{}\n", sentence);
   StatusLine status;
-  while (session.loop_status().running && !g_interrupted.load()) {
+  while (session.loop_status().running && !interrupted()) {
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
     status.show(session, session.poll());
   }
   session.stop();
   session.poll();
   return session.frame_times().summary();
-}
-
-/// Tells the address, and opens it where there is a screen.
-void open_page(std::FILE* out, const std::string& address) {
-  fmt::print(out, "see and feel it at {}\n", address);
-  std::fflush(out);
-  const bool screen = std::getenv("DISPLAY") != nullptr || std::getenv("WAYLAND_DISPLAY") != nullptr;
-  if (!screen) return;
-  // The address holds digits, letters and slashes only. Where there is no browser, it stays printed.
-  const std::string command = "xdg-open '" + address + "' >/dev/null 2>&1 &";
-  if (std::system(command.c_str()) != 0) fmt::print(stderr, "cannot start a browser; open the address\n");
 }
 
 /// Passes the frames of a virtual run on to the pages.
@@ -138,7 +84,7 @@ class ViewedVirtualWatch final : public LoopObserver {
   bool after_frame(const FrameRecord& record) noexcept override {
     frame_times.add(static_cast<std::int64_t>(record.frame_time_s * 1e9));
     viewer_.after_virtual_frame(record);
-    return !g_interrupted.load();
+    return !interrupted();
   }
   DurationHistogram frame_times;
 
@@ -151,34 +97,6 @@ Summary feel_viewed_virtually(Viewer& viewer, std::uint64_t frames) {
   const Result<VirtualRun> run = viewer.session().run_virtual(frames, &watch);
   if (!run) fail(run.error());
   return watch.frame_times.summary();
-}
-
-/// Until it is interrupted; or, where an end was asked for, until that is reached and no page is open any
-/// more.
-Summary feel_viewed(Viewer& viewer, std::uint64_t frames) {
-  constexpr double kReload_s = 2.0;  // a page that comes back within this was only loaded anew
-  if (const Result<void> started = viewer.start(); !started) fail(started.error());
-  for (const std::string& sentence : viewer.session().privileges().sentences)
-    fmt::print(stderr, "{}\n", sentence);
-  StatusLine status;
-  auto last_line = std::chrono::steady_clock::now();
-  std::uint64_t earlier = 0, last = 0;  // frames of runs that a page has ended
-  while (!g_interrupted.load()) {
-    viewer.poll(std::chrono::milliseconds(8));
-    const LoopStatus loop = viewer.session().loop_status();
-    if (!loop.running) break;
-    if (loop.frames < last) earlier += last;
-    last = loop.frames;
-    const bool page_was_here = viewer.server().status().pages_ever > 0;
-    if (frames > 0 && earlier + loop.frames >= frames && viewer.alone_s() > (page_was_here ? kReload_s : 0.0))
-      break;
-    if (std::chrono::steady_clock::now() - last_line < std::chrono::milliseconds(100)) continue;
-    last_line = std::chrono::steady_clock::now();
-    status.show(viewer.session(), viewer.status());
-  }
-  viewer.stop();
-  viewer.poll(std::chrono::microseconds(0));
-  return viewer.session().frame_times().summary();
 }
 
 void tell_what_is_felt(std::FILE* out, const Session& session, const std::string& grip) {
@@ -208,7 +126,7 @@ void feel_with_pages(const FeelOptions& options, Scene scene, std::FILE* out) {
                           : static_cast<std::uint64_t>(options.duration_s * viewer.session().rate_Hz());
   const Summary times = options.virtual_clock
                             ? feel_viewed_virtually(viewer, frames_asked_for(options, viewer.session()))
-                            : feel_viewed(viewer, asked);
+                            : run_viewed(viewer, asked);
   sum_up(out, options, viewer.session(), times, viewer.stages());
 }
 
@@ -216,8 +134,7 @@ void feel(const FeelOptions& options) {
   Result<Scene> scene = open_scene(options.scene);
   if (!scene) fail(scene.error());
   for (const std::string& remark : scene->remarks) fmt::print(stderr, "{}\n", remark);
-  std::signal(SIGINT, on_interrupt);
-  std::signal(SIGTERM, on_interrupt);
+  watch_for_interrupts();
   // With --json - the standard output is for machines alone.
   std::FILE* out = options.json == "-" ? stderr : stdout;
   if (options.view) return feel_with_pages(options, std::move(*scene), out);

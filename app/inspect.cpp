@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -7,6 +8,8 @@
 #include "commands.h"
 #include "tactum/geometry/mesh_import.h"
 #include "tactum/geometry/mesh_report.h"
+#include "tactum/geometry/part.h"
+#include "view_part.h"
 
 /// `tactum inspect FILE...`: what is in a mesh file, and what is wrong with it.
 
@@ -17,6 +20,8 @@ struct Options {
   std::vector<std::string> files;
   std::string json;    ///< file to write, "-" for stdout
   double scale = 1.0;  ///< metres per unit of the files [m]
+  bool view = false;
+  int port = 0;
 };
 
 struct Inspection {
@@ -90,6 +95,15 @@ nlohmann::json as_json(const Inspection& of) {
       {"remarks", of.mesh.report.remarks}};
 }
 
+void view(const Options& options) {
+  Result<ImportedMesh> mesh = import_mesh(options.files[0], {.scale = options.scale});
+  if (!mesh) fail(mesh.error());
+  const std::string name = std::filesystem::path(options.files[0]).filename().string();
+  const Result<Part> part = part_from_mesh(mesh->mesh, {.name = name});
+  if (!part) fail(part.error());
+  view_part(*part, options.port);
+}
+
 void run(const Options& options) {
   nlohmann::json all = nlohmann::json::array();
   bool failed = false;
@@ -115,6 +129,7 @@ void run(const Options& options) {
     }
   }
   if (failed) throw CLI::RuntimeError(1);
+  if (options.view) view(options);
 }
 
 }  // namespace
@@ -125,6 +140,10 @@ void add_inspect(CLI::App& app) {
   command->add_option("FILE", options->files, "Mesh files: OBJ, STL, PLY, OFF, glTF, GLB")->required();
   command->add_option("--json", options->json, "Write the reports to this file (- for stdout)");
   command->add_option("--scale", options->scale, "Metres per unit of the files")->check(CLI::PositiveNumber);
+  command->add_flag("--view", options->view, "Serve a page that shows the first of them, until interrupted");
+  command->add_option("--port", options->port, "Of the page; by default one that is free")
+      ->check(CLI::Range(1, 65535))
+      ->needs("--view");
   command->callback([options] { run(*options); });
 }
 

@@ -192,6 +192,7 @@ void write_shape(const Part& part, std::string& out) {
     wire::put(out, edge.tail);
     wire::put(out, edge.head);
   }
+  for (const DrawnEdge& edge : edges) wire::put(out, static_cast<std::uint32_t>(edge.kind));
 }
 
 /// Whether the pieces' faces are the surface's triangles, one after the other.

@@ -50,7 +50,7 @@ std::vector<DrawnEdge> edges_of_solids(const Part& part) {
       if (filled_by_another(part, boxes, i, middle + step) ||
           filled_by_another(part, boxes, i, middle - step))
         continue;
-      edges.push_back({tail, head});
+      edges.push_back({tail, head, EdgeKind::kSharp});
     }
   }
   return edges;
@@ -69,9 +69,17 @@ std::vector<DrawnEdge> edges_of_surface(const Part& part) {
   std::vector<DrawnEdge> edges;
   const std::vector<HalfEdge> sides = sorted_half_edges(mesh);
   for_each_edge(sides, [&](const HalfEdge* first, const HalfEdge* last) {
-    if (last - first == 2 && normal(first[0].triangle).dot(normal(first[1].triangle)) > flattest) return;
-    edges.push_back({mesh.vertices[static_cast<std::size_t>(first->low)],
-                     mesh.vertices[static_cast<std::size_t>(first->high)]});
+    const Vec3& tail = mesh.vertices[static_cast<std::size_t>(first->low)];
+    const Vec3& head = mesh.vertices[static_cast<std::size_t>(first->high)];
+    if (last - first != 2) {
+      edges.push_back({tail, head, last - first == 1 ? EdgeKind::kOpen : EdgeKind::kCrowded});
+      return;
+    }
+    const Vec3 here = normal(first[0].triangle);
+    if (here.dot(normal(first[1].triangle)) > flattest) return;
+    const Triangle& beyond = mesh.triangles[static_cast<std::size_t>(first[1].triangle)];
+    const Vec3& far = mesh.vertices[static_cast<std::size_t>(beyond[(first[1].corner + 2) % 3])];
+    edges.push_back({tail, head, here.dot(far - tail) > 0.0 ? EdgeKind::kReflex : EdgeKind::kSharp});
   });
   return edges;
 }

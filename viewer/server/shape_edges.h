@@ -8,17 +8,26 @@
 ///
 /// Cost: edges times pieces that are near, once a scene.
 
+#include <cstdint>
 #include <vector>
 
 #include "tactum/geometry/part.h"
 
 namespace tactum {
 
-struct DrawnEdge {
-  Vec3 tail, head;  ///< in the part's frame [m]
+enum class EdgeKind : std::uint32_t {
+  kSharp,    ///< bent outward
+  kReflex,   ///< bent inward
+  kOpen,     ///< of one triangle: the surface ends here
+  kCrowded,  ///< of more than two triangles
 };
 
-/// Edges that bend by more than kDrawnBend_rad.
+struct DrawnEdge {
+  Vec3 tail, head;  ///< in the part's frame [m]
+  EdgeKind kind = EdgeKind::kSharp;
+};
+
+/// Edges that bend by more than kDrawnBend_rad, and those that do not join two triangles.
 std::vector<DrawnEdge> edges_to_draw(const Part& part);
 
 /// Of each triangle of the part's surface, in order: whether another piece covers all of it.

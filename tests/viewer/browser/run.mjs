@@ -1,7 +1,8 @@
 // The viewer as people use it, in Debian's Chromium:  node run.mjs TOPIC TACTUM
 // A topic that fails says which sentence was not true. 77: nothing to run it with.
 import { createConnection } from "node:net";
-import { mkdirSync, writeFileSync } from "node:fs";
+import { mkdirSync, mkdtempSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { check, downloaded, drag, heldAt, inkOf, missing, openBrowser, openPage, Program, readCsv, root, shownForce, state, until } from "./support.mjs";
 
@@ -105,6 +106,30 @@ const topics = {
     await pause(0.3);
     await forcesAgree(page, program);
     check(page.complaints.length === 0, page.complaints.join("; "));
+  },
+
+  async inspect(browser) {
+    // An L without its lid: eight sharp edges and more, one reflex edge, six open ones around the lid.
+    const outline = [[0, 0], [40, 0], [40, 20], [20, 20], [20, 40], [0, 40]];
+    const corners = [...outline.map(([x, y]) => `v ${x} ${y} 0`), ...outline.map(([x, y]) => `v ${x} ${y} 15`)];
+    const walls = outline.map((_, i) => [i + 1, ((i + 1) % 6) + 1, ((i + 1) % 6) + 7, i + 7]);
+    const floor = [[1, 4, 3], [1, 3, 2], [1, 5, 4], [1, 6, 5]];
+    const file = join(mkdtempSync(join(tmpdir(), "tactum-part-")), "corner.obj");
+    writeFileSync(file, [...corners, ...[...walls, ...floor].map((face) => `f ${face.join(" ")}`), ""].join("\n"));
+    const program = await Program.command(tactum, ["inspect", file]);
+    const page = await openPage(browser, program);
+    check((await page.title()) === "Tactum: corner.obj", "the title names the part");
+    check((await page.textContent("#hint")).includes("look around"), "the page says what can be done");
+    check(!(await page.isVisible("#legend")), "no legend before it is asked for");
+    await page.keyboard.press("e");
+    const legend = await page.textContent("#legend");
+    check(legend.includes("reflex: 1") && legend.includes("open: 6") && legend.includes("sharp: 11"), `edges by kind: ${legend}`);
+    await page.keyboard.press("p");
+    const picture = await downloaded(page, "#picture");
+    check(picture.length > 5000 && picture.subarray(1, 4).toString() === "PNG", "the view is saved as a picture");
+    if (process.env.TACTUM_KEEP_PICTURES) await page.screenshot({ path: join(process.env.TACTUM_KEEP_PICTURES, "inspect.png") });
+    check(page.complaints.length === 0, page.complaints.join("; "));
+    await program.end();
   },
 
   async wall(browser) {

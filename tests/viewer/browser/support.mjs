@@ -32,10 +32,14 @@ process.on("exit", () => started.forEach((program) => program.kill("SIGKILL")));
 /** The program with its page, as a user starts it. */
 export class Program {
   static async start(tactum, scene, options = []) {
+    return await Program.command(tactum, ["feel", scene, ...options]);
+  }
+  /** Any command that serves a page and writes a summary. */
+  static async command(tactum, words) {
     const program = new Program();
     program.folder = mkdtempSync(join(tmpdir(), "tactum-browser-"));
     program.json = join(program.folder, "summary.json");
-    program.process = spawn(tactum, ["feel", scene, "--view", "--json", program.json, ...options], {
+    program.process = spawn(tactum, [...words, "--view", "--json", program.json], {
       stdio: ["ignore", "pipe", "pipe"], env: { ...process.env, DISPLAY: "", WAYLAND_DISPLAY: "" },
     });
     started.push(program.process);

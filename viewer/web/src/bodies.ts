@@ -1,7 +1,7 @@
 // The bodies: one instanced mesh a shape, however many bodies have it; far ones by a simplified copy.
 import * as THREE from "three";
 import { edgeGeometry, farGeometry, featureGeometry, nearGeometry } from "./geometry";
-import type { Look } from "./look";
+import { edgeKinds, type Look } from "./look";
 import type { Run, Shape } from "./protocol";
 
 const farPixels = 70; // a body smaller than this on the screen is far
@@ -24,11 +24,15 @@ export class Bodies {
     transparent: true, opacity: 0.55, depthTest: false, side: THREE.DoubleSide,
   });
   private pieces = false;
+  private kinds = false;
   private seeThrough = false;
 
   constructor(private readonly run: Run, private readonly shapes: Shape[], private look: Look) {
     this.matrices = run.bodies.map(() => new THREE.Matrix4());
-    this.material = new THREE.MeshStandardMaterial({ metalness: 0.35, roughness: 0.42 });
+    const open = shapes.some((shape) => shape.edgeKinds.includes(edgeKinds.findIndex((k) => k.name === "open")));
+    this.material = new THREE.MeshStandardMaterial({
+      metalness: 0.35, roughness: 0.42, side: open ? THREE.DoubleSide : THREE.FrontSide,
+    });
     this.glass = new THREE.MeshStandardMaterial({
       metalness: 0.1, roughness: 0.3, transparent: true, opacity: 0.2, depthWrite: false, side: THREE.DoubleSide,
     });
@@ -39,7 +43,7 @@ export class Bodies {
       const key = `${body.shape} ${body.moves}`;
       groups.set(key, [...(groups.get(key) ?? []), i]);
     });
-    const geometries = shapes.map((shape) => ({ near: nearGeometry(shape), far: farGeometry(shape), edges: edgeGeometry(shape) }));
+    const geometries = shapes.map((shape) => ({ near: nearGeometry(shape), far: farGeometry(shape), edges: edgeGeometry(shape, edgeKinds.map((k) => k.colour)) }));
     for (const bodies of groups.values()) {
       const which = run.bodies[bodies[0]].shape;
       const { near, far } = geometries[which];
@@ -78,8 +82,8 @@ export class Bodies {
 
   setLook(look: Look) {
     this.look = look;
-    this.edgeMaterial.color.set(look.edge);
-    this.edgeMaterial.opacity = look.edgeOpacity;
+    this.edgeMaterial.color.set(this.kinds ? 0xffffff : look.edge);
+    this.edgeMaterial.opacity = this.kinds ? 1 : look.edgeOpacity;
     this.markMaterial.color.set(look.chosen);
   }
 
@@ -87,6 +91,14 @@ export class Bodies {
     this.pieces = on;
     this.material.vertexColors = on;
     this.material.needsUpdate = true;
+  }
+
+  /** Colours the edges by their kind. */
+  showKinds(on: boolean) {
+    this.kinds = on;
+    this.edgeMaterial.vertexColors = on;
+    this.edgeMaterial.needsUpdate = true;
+    this.setLook(this.look);
   }
 
   showThrough(on: boolean) {

@@ -118,9 +118,13 @@ export function farGeometry(shape: Shape): THREE.BufferGeometry | null {
   return geometry;
 }
 
-export function edgeGeometry(shape: Shape): THREE.BufferGeometry {
+export function edgeGeometry(shape: Shape, kinds: readonly number[]): THREE.BufferGeometry {
   const geometry = new THREE.BufferGeometry();
   geometry.setAttribute("position", new THREE.BufferAttribute(shape.edges, 3));
+  const colours = new Float32Array(shape.edges.length);
+  const colour = new THREE.Color();
+  for (let end = 0; end < colours.length / 3; ++end) colour.set(kinds[shape.edgeKinds[end >> 1]]).toArray(colours, 3 * end);
+  geometry.setAttribute("color", new THREE.BufferAttribute(colours, 3));
   return geometry;
 }
 

@@ -17,6 +17,12 @@ export const light: Look = {
   torque: 0xa8327f, contact: 0x101820, trail: 0x0072b2, chosen: 0x8a7a00,
 };
 
+/** Colours and names of the kinds of edges, as the program numbers them. */
+export const edgeKinds: readonly { name: string; colour: number }[] = [
+  { name: "sharp", colour: 0xb9c4cf }, { name: "reflex", colour: 0x56b4e9 }, { name: "open", colour: 0xd55e00 },
+  { name: "of more than two triangles", colour: 0xf0e442 },
+];
+
 /** Colours of charts: x, y, z, magnitude, then others. */
 export const lines = {
   dark: ["#56b4e9", "#e69f00", "#3fc79a", "#f4f7fa", "#e08bc0", "#f0e442"],

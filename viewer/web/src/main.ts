@@ -4,6 +4,7 @@ import { Charts } from "./charts";
 import { Connection } from "./connection";
 import { download, get, make } from "./dom";
 import { Hand } from "./hand";
+import { edgeKinds } from "./look";
 import { Panel } from "./panel";
 import { readShapes, type Frames, type Picture, type Run, type Shape, type Status, type Told } from "./protocol";
 import { Samples } from "./samples";
@@ -70,6 +71,7 @@ async function begin(next: Run) {
   panel.begin(next);
   view.bodies?.showPieces(pressed("pieces"));
   view.bodies?.showThrough(pressed("see-through"));
+  showKinds(pressed("edges"));
   const choice = get<HTMLSelectElement>("scene");
   const known = next.scenes.some((scene) => scene.name === next.scene);
   choice.replaceChildren(
@@ -77,6 +79,7 @@ async function begin(next: Run) {
     ...next.scenes.map((scene) => new Option(`${scene.name}: ${scene.description}`, scene.name)));
   choice.value = next.scene;
   document.title = `Tactum: ${next.scene}`;
+  body.classList.toggle("only-looks", next.held < 0 && next.bodies.every((one) => !one.moves)); // a part alone
   showHint();
   back();
   for (const early of waitingFrames.splice(0)) frames(early);
@@ -200,7 +203,9 @@ function back() {
 function showHint() {
   const held = run && run.held >= 0 ? run.bodies[run.held].name : "";
   const hinged = run && run.held >= 0 && run.bodies[run.held].joint === "hinge";
-  get("hint").textContent = !run ? "" : !hand.canFeel ? "This device is not led by the mouse: look, or choose a simulated device in the settings."
+  get("hint").textContent = !run ? ""
+    : run.held < 0 ? "Drag to look around, wheel to zoom. Pieces and Edges colour what the part is made of."
+    : !hand.canFeel ? "This device is not led by the mouse: look, or choose a simulated device in the settings."
     : `Drag the orange part (${held}) to ${hinged || hand.turns ? "turn" : "move"} it and feel it push back; until you do, a scripted hand moves it. Drag beside it to look around.`;
 }
 function reset() {
@@ -208,6 +213,16 @@ function reset() {
 }
 function grasp() {
   hand.setButton(toggle("grasp"));
+}
+function showKinds(on: boolean) {
+  view.bodies?.showKinds(on);
+  const counts = edgeKinds.map((_, kind) => shapes.reduce((sum, shape) => sum + shape.edgeKinds.filter((k) => k === kind).length, 0));
+  get("legend").hidden = !on;
+  get("legend").replaceChildren(...edgeKinds.map(({ name, colour }, kind) => {
+    const swatch = make("i", {});
+    swatch.style.background = `#${colour.toString(16).padStart(6, "0")}`;
+    return make("span", {}, swatch, `${name}: ${counts[kind]}`);
+  }));
 }
 function theme(isDark: boolean) {
   document.documentElement.dataset.theme = isDark ? "dark" : "light";
@@ -223,6 +238,7 @@ const actions: [string, string, () => void][] = [
   ["theme", "", () => theme(document.documentElement.dataset.theme !== "dark")],
   ["help-button", "?", () => showHelp(get("help").hidden)],
   ["pieces", "p", () => view.bodies?.showPieces(toggle("pieces"))],
+  ["edges", "e", () => showKinds(toggle("edges"))],
   ["see-through", "x", () => view.bodies?.showThrough(toggle("see-through"))],
   ["trail", "t", () => (view.overlay.showsTrail = toggle("trail"))],
   ["picture", "", () => void view.png().then((png) => download(`tactum-${run?.scene ?? "scene"}.png`, png))],
@@ -317,7 +333,7 @@ const helpRows: [string, string][] = [
   ["G", "the device's button: grasp"],
   ["Drag beside it, wheel, right drag", "look around, zoom, shift the view"],
   ["1 2 3 4", "slanted, front, side, top"],
-  ["P, X, T", "pieces, glass, trail"],
+  ["P, E, X, T", "pieces, kinds of edges, glass, trail"],
   ["Space", "STOP: zero force and torque, at once led to nothing"],
   ["C, click on a chart", "pause; show that moment"],
   ["L, R", "back to now; start again"],

@@ -93,7 +93,8 @@ export function readFrames(buffer: ArrayBuffer): Frames {
 
 /** A part's surface. */
 export interface Shape {
-  vertices: Float32Array; triangles: Uint32Array; piece: Uint32Array; face: Uint32Array; covered: Uint8Array; edges: Float32Array;
+  vertices: Float32Array; triangles: Uint32Array; piece: Uint32Array; face: Uint32Array; covered: Uint8Array;
+  edges: Float32Array; edgeKinds: Uint32Array; // sharp, reflex, open, of more than two triangles
 }
 
 export function readShapes(buffer: ArrayBuffer): Shape[] {
@@ -114,7 +115,9 @@ export function readShapes(buffer: ArrayBuffer): Shape[] {
       covered[t] = words[at] >>> 31;
       face[t] = words[at++] & 0x7fffffff;
     }
-    shapes.push({ vertices, triangles, piece, face, covered, edges: floats.slice(at, (at += 6 * edgeCount)) });
+    const edges = floats.slice(at, (at += 6 * edgeCount));
+    const edgeKinds = words.slice(at, (at += edgeCount));
+    shapes.push({ vertices, triangles, piece, face, covered, edges, edgeKinds });
   }
   return shapes;
 }
