@@ -146,7 +146,9 @@ export class Overlay {
     this.trailColour.set(look.trail);
   }
 
+  /** Null when nothing is held: then there is no hand to show. */
   setGhost(mesh: THREE.Mesh | null) {
+    this.handle.visible = mesh !== null;
     if (this.ghost) this.root.parent?.remove(this.ghost);
     this.ghost = mesh;
     if (mesh) mesh.renderOrder = 3;

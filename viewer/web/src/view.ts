@@ -297,8 +297,9 @@ export class View {
     this.label(this.forceLabel, tips.force, force, "N", force * this.arrowForce > 0.03);
     this.label(this.torqueLabel, tips.torque, torque, "N m", tips.torque !== null);
     const newton = 1 / (this.arrowForce / this.scale);
-    this.scaleNote.textContent =
-      `grid ${withUnit(this.spacing, "m")} · arrow ${withUnit(newton * 0.01, "N")} per cm · arc ${withUnit(1 / this.arrowTorque * Math.PI, "N m")} per half turn`;
+    const arrows = this.run.held < 0 ? "" :
+      ` · arrow ${withUnit(newton * 0.01, "N")} per cm · arc ${withUnit(1 / this.arrowTorque * Math.PI, "N m")} per half turn`;
+    this.scaleNote.textContent = `grid ${withUnit(this.spacing, "m")}${arrows}`;
   }
 
   private label(element: HTMLElement, at: THREE.Vector3 | null, value: number, unit: string, visible: boolean) {
