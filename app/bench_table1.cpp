@@ -40,6 +40,7 @@ struct Table1 {
 std::unique_ptr<Session> open_gears(const Table1Options& options) {
   Result<Scene> scene = open_scene(options.scene);
   if (!scene) fail(scene.error());
+  scene->settings.response = ResponseModel::kPenalty;  // the published one
   Result<std::unique_ptr<Session>> session = Session::open(std::move(*scene), {});
   if (!session) fail(session.error());
   return std::move(*session);

@@ -10,6 +10,7 @@
 #include "tactum/collision/surface_distance.h"
 #include "tactum/devices/motion_file.h"
 #include "tactum/geometry/mesh_import.h"
+#include "tactum/geometry/part_file.h"
 
 /// `tactum clearance A B MOTION.csv`: exact distance of two surfaces for every row of a motion.
 
@@ -30,6 +31,11 @@ struct Row {
 };
 
 Surface read_surface(const std::string& path, double scale) {
+  if (is_part_file(path)) {
+    const Result<PartFile> part = load_part(path);
+    if (!part) fail(part.error());
+    return Surface(surface_in_mesh_frame(*part));  // in metres, as prepared
+  }
   const Result<ImportedMesh> mesh = import_mesh(path, {.scale = scale});
   if (!mesh) fail(mesh.error());
   for (const std::string& remark : mesh->report.remarks) fmt::print(stderr, "{}: {}\n", path, remark);

@@ -15,6 +15,7 @@ void add_devices(CLI::App& app);
 void add_distance(CLI::App& app);
 void add_feel(CLI::App& app);
 void add_inspect(CLI::App& app);
+void add_prepare(CLI::App& app);
 void add_scenes(CLI::App& app);
 
 /// Tells the error and ends the command with exit code 1.

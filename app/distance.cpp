@@ -1,8 +1,10 @@
-/// tactum distance CASES.json: signed distance, witness points and normal of pairs of convex vertex clouds.
+/// tactum distance CASES.json: signed distance, witness points and normal of pairs of convex vertex clouds or
+/// prepared parts of solid pieces.
 
 #include <fmt/format.h>
 
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -13,6 +15,7 @@
 #include "tactum/collision/closest_features.h"
 #include "tactum/collision/penetration.h"
 #include "tactum/geometry/hull.h"
+#include "tactum/geometry/part_file.h"
 #include "tactum/math/rotation.h"
 
 namespace tactum {
@@ -108,21 +111,50 @@ PairDistance signed_distance(const Polytope& A, const Polytope& B, const Pose& X
 
 Json vector(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
+/// Convex pieces and where they are.
+struct Solid {
+  std::vector<Polytope> pieces;
+  Pose X_WS;
+};
+
+/// {"vertices": [...]} or {"part": "file"}, which stands beside the cases.
+Solid read_solid(const Json& object, const Place& place) {
+  Solid solid{{}, read_pose(object, place)};
+  if (!object.contains("part")) {
+    solid.pieces.push_back(read_cloud(member(object, "vertices", place), place.at("vertices")));
+    return solid;
+  }
+  const Place here = place.at("part");
+  if (!object["part"].is_string())
+    here.refuse("wrong type", object["part"].type_name(), "the name of a file");
+  const std::filesystem::path beside = std::filesystem::path(place.file).parent_path();
+  Result<PartFile> file = load_part((beside / object["part"].get<std::string>()).string());
+  if (!file) here.refuse(file.error().message(), "", "");
+  if (file->part.pieces.empty() || file->part.pieces.front().flat)
+    here.refuse("the part has no solid pieces", "a surface", "a part of convex solids");
+  solid.pieces = std::move(file->part.pieces);
+  solid.X_WS.p = solid.X_WS * file->origin;  // the pieces are told from the centre of mass
+  return solid;
+}
+
 Json answer(const Json& item, const Json& id, const Place& place) {
-  const Json& a = member(item, "a", place);
-  const Json& b = member(item, "b", place);
-  const Polytope A = read_cloud(member(a, "vertices", place.at("a")), place.at("a.vertices"));
-  const Polytope B = read_cloud(member(b, "vertices", place.at("b")), place.at("b.vertices"));
-  const Pose X_WA = read_pose(a, place.at("a"));
-  const Pose X_WB = read_pose(b, place.at("b"));
-  const PairDistance found = signed_distance(A, B, relative_pose(X_WA, X_WB), place);
+  const Solid A = read_solid(member(item, "a", place), place.at("a"));
+  const Solid B = read_solid(member(item, "b", place), place.at("b"));
+  const Pose X_AB = relative_pose(A.X_WS, B.X_WS);
+  std::optional<PairDistance> found;  // of the nearest, or deepest, pieces
+  for (const Polytope& a : A.pieces) {
+    for (const Polytope& b : B.pieces) {
+      const PairDistance one = signed_distance(a, b, X_AB, place);
+      if (!found || one.distance < found->distance) found = one;
+    }
+  }
   return {{"id", id},
-          {"signed_distance", found.distance},
-          {"p_a", vector(X_WA * found.p_a)},
-          {"p_b", vector(X_WA * found.p_b)},
-          {"normal", vector(X_WA.R * found.normal)},
-          {"certified", found.certified()},
-          {"steps", found.steps}};
+          {"signed_distance", found->distance},
+          {"p_a", vector(A.X_WS * found->p_a)},
+          {"p_b", vector(A.X_WS * found->p_b)},
+          {"normal", vector(A.X_WS.R * found->normal)},
+          {"certified", found->certified()},
+          {"steps", found->steps}};
 }
 
 void distance(const std::string& path, const std::string& json) {
@@ -154,11 +186,12 @@ void add_distance(CLI::App& app) {
     std::string cases, json;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("distance", "Signed distance of pairs of convex vertex clouds");
+  CLI::App* command =
+      app.add_subcommand("distance", "Signed distance of pairs of convex vertex clouds or solid parts");
   command
       ->add_option(
           "CASES", options->cases,
-          R"({"cases":[{"id","a":{"vertices":[[x,y,z],...],"pose":[16 numbers, row-major]},"b":{...}}]})")
+          R"({"cases":[{"id","a":{"vertices":[[x,y,z],...],"pose":[16 numbers, row-major]},"b":{...}}]}; instead of vertices also "part": a prepared part of solid pieces, beside CASES)")
       ->required();
   command->add_option("--json", options->json, "write the results to this file instead of standard output");
   command->callback([options] { distance(options->cases, options->json); });

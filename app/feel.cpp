@@ -9,6 +9,7 @@
 
 #include "commands.h"
 #include "output.h"
+#include "tactum/haptics/coupling_gains.h"
 #include "tactum/scene/builtin_scenes.h"
 #include "tactum/session/session.h"
 #include "viewer/server/viewer.h"
@@ -102,6 +103,8 @@ Summary feel_viewed_virtually(Viewer& viewer, std::uint64_t frames) {
 void tell_what_is_felt(std::FILE* out, const Session& session, const std::string& grip) {
   fmt::print(out, "{}: {}\n{} at {:.0f} Hz, hand {}\n", session.scene().name, session.scene().description,
              session.device().name, session.rate_Hz(), grip.empty() ? session.scene().grip : grip);
+  fmt::print(out, "{}\n",
+             margin_sentence(session.scene().settings.coupling, session.device(), session.rate_Hz()));
   std::fflush(out);
 }
 

@@ -6,12 +6,14 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.h"
+#include "part_text.h"
 #include "tactum/geometry/mesh_import.h"
 #include "tactum/geometry/mesh_report.h"
 #include "tactum/geometry/part.h"
 #include "view_part.h"
 
-/// `tactum inspect FILE...`: what is in a mesh file, and what is wrong with it.
+/// `tactum inspect FILE...`: what is in a mesh file and what is wrong with it; what a prepared part is made
+/// of.
 
 namespace tactum {
 namespace {
@@ -83,6 +85,8 @@ nlohmann::json as_json(const Inspection& of) {
       {"boundary_edges_exact", of.exact_boundary_edges},
       {"non_manifold_edges", r.non_manifold_edges},
       {"misoriented_edges", r.misoriented_edges},
+      {"convex_edges", r.convex_edges},
+      {"reflex_edges", r.reflex_edges},
       {"degenerate_index", r.index_degenerate},
       {"degenerate_area", r.zero_area},
       {"duplicate_triangles", r.duplicate_triangles},
@@ -95,31 +99,53 @@ nlohmann::json as_json(const Inspection& of) {
       {"remarks", of.mesh.report.remarks}};
 }
 
+/// A prepared part as it is, or what a mesh would become without repairs.
+Result<Part> part_of(const Options& options) {
+  const std::string& file = options.files[0];
+  if (is_part_file(file)) {
+    Result<PartFile> part = load_part(file);
+    if (!part) return part.error();
+    return std::move(part->part);
+  }
+  const Result<ImportedMesh> mesh = import_mesh(file, {.scale = options.scale});
+  if (!mesh) return mesh.error();
+  return part_from_mesh(mesh->mesh, {.name = std::filesystem::path(file).filename().string()});
+}
+
 void view(const Options& options) {
-  Result<ImportedMesh> mesh = import_mesh(options.files[0], {.scale = options.scale});
-  if (!mesh) fail(mesh.error());
-  const std::string name = std::filesystem::path(options.files[0]).filename().string();
-  const Result<Part> part = part_from_mesh(mesh->mesh, {.name = name});
+  const Result<Part> part = part_of(options);
   if (!part) fail(part.error());
   view_part(*part, options.port);
 }
 
+/// Prints the file unless JSON goes to stdout.
+Result<nlohmann::ordered_json> inspect(const std::string& file, const Options& options) {
+  if (is_part_file(file)) {
+    const Result<PartFile> part = load_part(file);
+    if (!part) return part.error();
+    if (options.json != "-") fmt::print("{}\n", describe_part(file, *part));
+    return part_json(file, *part);
+  }
+  Result<ImportedMesh> mesh = import_mesh(file, {.scale = options.scale});
+  if (!mesh) return mesh.error();
+  const Inspection inspection = inspected(file, std::move(*mesh), options.scale);
+  if (options.json != "-") fmt::print("{}\n", as_text(inspection));
+  return nlohmann::ordered_json(as_json(inspection));
+}
+
 void run(const Options& options) {
-  nlohmann::json all = nlohmann::json::array();
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
   bool failed = false;
   for (const std::string& file : options.files) {
-    Result<ImportedMesh> mesh = import_mesh(file, {.scale = options.scale});
-    if (!mesh) {
+    Result<nlohmann::ordered_json> one = inspect(file, options);
+    if (!one) {
       failed = true;
-      fmt::print(stderr, "tactum: {}\n", mesh.error().message());
-      all.push_back({{"file", file}, {"error", mesh.error().message()}});
-      continue;
+      fmt::print(stderr, "tactum: {}\n", one.error().message());
     }
-    const Inspection inspection = inspected(file, std::move(*mesh), options.scale);
-    all.push_back(as_json(inspection));
-    if (options.json != "-") fmt::print("{}\n", as_text(inspection));
+    all.push_back(one ? std::move(*one)
+                      : nlohmann::ordered_json{{"file", file}, {"error", one.error().message()}});
   }
-  const std::string text = all.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  const std::string text = all.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
   if (options.json == "-") {
     fmt::print("{}", text);
   } else if (!options.json.empty()) {
@@ -135,9 +161,11 @@ void run(const Options& options) {
 }  // namespace
 
 void add_inspect(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("inspect", "What is in mesh files, and what is wrong with them.");
+  CLI::App* command = app.add_subcommand(
+      "inspect", "What is in mesh files and what is wrong with them; what prepared parts are.");
   auto options = std::make_shared<Options>();
-  command->add_option("FILE", options->files, "Mesh files: OBJ, STL, PLY, OFF, glTF, GLB")->required();
+  command->add_option("FILE", options->files, "Mesh files (OBJ, STL, PLY, OFF, glTF, GLB) and prepared parts")
+      ->required();
   command->add_option("--json", options->json, "Write the reports to this file (- for stdout)");
   command->add_option("--scale", options->scale, "Metres per unit of the files")->check(CLI::PositiveNumber);
   command->add_flag("--view", options->view, "Serve a page that shows the first of them, until interrupted");

@@ -4,9 +4,15 @@
 
 #include "commands.h"
 #include "tactum/devices/registry.h"
+#include "tactum/haptics/coupling_gains.h"
 #include "tactum/scene/builtin_scenes.h"
 
 namespace tactum {
+namespace {
+
+constexpr double kRate_Hz = 1000.0;  // for which the couplings are told
+
+}  // namespace
 
 void add_scenes(CLI::App& app) {
   app.add_subcommand("scenes", "List the scenes that come with the program")->callback([] {
@@ -16,8 +22,14 @@ void add_scenes(CLI::App& app) {
 
 void add_devices(CLI::App& app) {
   app.add_subcommand("devices", "List the devices that can be asked for")->callback([] {
-    for (const DeviceListing& device : list_devices())
-      fmt::print("{:<32}{}\n", device.name, device.description);
+    for (const DeviceListing& listing : list_devices()) {
+      fmt::print("{:<32}{}\n", listing.name, listing.description);
+      const Result<std::unique_ptr<Device>> device = make_device(listing.name, {});
+      if (device && (*device)->info().actuates_force)
+        fmt::print("{:<32}{}\n", "",
+                   margin_sentence(coupling_gains((*device)->info(), kRate_Hz).coupling, (*device)->info(),
+                                   kRate_Hz));
+    }
   });
 }
 

@@ -26,6 +26,8 @@ Svg::Svg(double width, double height)
                         "<rect width=\"{0}\" height=\"{1}\" fill=\"#fff\"/>\n",
                         width, height)) {}
 
+void Svg::group(double lower) { body_ += fmt::format("<g transform=\"translate(0 {:.1f})\">\n", lower); }
+
 void Svg::line(SheetPoint from, SheetPoint to, const std::string& style) {
   body_ += fmt::format("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" {}/>\n", from.x, from.y,
                        to.x, to.y, style);

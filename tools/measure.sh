@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Measures the contact queries anew and puts tables and picture into docs/benchmarks.md:  tools/measure.sh
-# Takes about five minutes; leave the machine alone meanwhile. Rows go to out/bench-*.json.
+# Takes about ten minutes; leave the machine alone meanwhile. Rows go to out/bench-*.json.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
@@ -11,3 +11,6 @@ mkdir -p "$root/out"
 "$tactum" bench penetration --referee-seconds 4 --json "$root/out/bench-penetration.json" --markdown "$page"
 "$tactum" bench manifold --json "$root/out/bench-manifold.json" --markdown "$page"
 "$tactum" bench impact --json "$root/out/bench-impact.json" --markdown "$page"
+# Real parts, where they are: see tests/support/real_data.h.
+data="${TACTUM_DATA:-$root/../shared/data}"
+"$tactum" bench surfaces --data "$data" --json "$root/out/bench-surfaces.json" --markdown "$page"

@@ -117,32 +117,6 @@ TEST(Penetration, FlatPiecesHaveTheDepthOfTheirPlane) {
   EXPECT_TRUE(coplanar.certified());
 }
 
-TEST(Penetration, OneSidedPushesOutOfTheSurface) {
-  const std::uint64_t seed = 44;
-  Random random(seed);
-  const Polytope triangle = *flat_polygon({{-0.03, -0.02, 0}, {0.03, -0.02, 0}, {0, 0.04, 0}});
-  const std::vector<Polytope> shapes = {make_box({0.01, 0.008, 0.012}), make_prism(6, 0.01, 0.02),
-                                        make_icosphere(2, 0.01)};
-  for (int i = 0; i < cases::some_of(3000); ++i) {
-    const Polytope& piece = shapes[std::size_t(i % 3)];
-    const Pose X{cases::random_rotation(random),
-                 cases::random_vector(random, 0.012)};  // the piece in the triangle
-    PairCache cache;
-    const OneSided sides{triangle.faces[0].normal, std::nullopt};
-    const PairDistance a = penetration_one_sided(triangle, piece, X, sides, cache);
-    EXPECT_LE(a.normal.dot(Vec3::UnitZ()), 1e-12) << "seed " << seed << " case " << i;
-    // Among all separating axes only allowed ones count, and the surface's own normal bounds the depth.
-    double low = 1e9;
-    for (const Vec3& v : piece.vertices) low = std::min(low, (X * v).z());
-    EXPECT_GE(a.distance, std::min(0.0, low) - 1e-12);
-    PairCache swapped_cache;
-    const PairDistance b =
-        penetration_one_sided(piece, triangle, X.inverse(), {std::nullopt, sides.outward_a}, swapped_cache);
-    EXPECT_NEAR(a.distance, b.distance, 1e-12);
-    EXPECT_LT((X.R * b.normal + a.normal).norm(), 1e-6) << "seed " << seed << " case " << i;
-  }
-}
-
 /// Depth along a direction against bisection by the distance query.
 TEST(Penetration, AlongADirectionAgreesWithBisection) {
   const std::uint64_t seed = 45;

@@ -30,6 +30,15 @@ TriangleMesh exploded(const TriangleMesh& mesh) {
   return soup;
 }
 
+TEST(MeshReport, CountsEdgesBentOutwardAndInward) {
+  const MeshReport box = report_mesh(testing::box_mesh({1, 2, 3}));
+  EXPECT_EQ(box.convex_edges, 12);  // the diagonals of its sides are flat
+  EXPECT_EQ(box.reflex_edges, 0);
+  TriangleMesh inside_out = testing::box_mesh({1, 2, 3});
+  for (Triangle& t : inside_out.triangles) std::swap(t[1], t[2]);
+  EXPECT_EQ(report_mesh(inside_out).reflex_edges, 12);
+}
+
 TEST(Weld, JoinsWhatWasExploded) {
   const TriangleMesh sphere = icosphere(3);
   const WeldedMesh welded = weld(exploded(sphere));

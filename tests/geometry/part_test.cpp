@@ -1,12 +1,15 @@
 #include "tactum/geometry/part.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <set>
 
 #include "support/real_data.h"
 #include "support/sample_meshes.h"
+#include "support/sample_solids.h"
 #include "tactum/geometry/hull.h"
+#include "tactum/geometry/mesh_report.h"
 #include "tactum/math/screw.h"
 
 namespace tactum {
@@ -36,27 +39,25 @@ TEST(Part, ConvexMeshIsOneSolidPiece) {
   const Result<Part> part = part_from_mesh(prism(12, 0.01, 0.02), {.name = "rod", .density_kg_per_m3 = 7800});
   ASSERT_TRUE(part);
   EXPECT_EQ(part->pieces.size(), 1u);
-  EXPECT_FALSE(part->one_sided);
+  EXPECT_FALSE(part->is_surface());
   EXPECT_EQ(part->pieces[0].faces.size(), 14u);
   EXPECT_NEAR(part->radius, std::hypot(0.01, 0.02), 1e-12);
   EXPECT_NEAR(part->mass.mass, 7800 * part->mass.volume, 1e-12);
   EXPECT_TRUE(part->remarks.empty());
 }
 
-TEST(Part, OtherMeshesGetAPiecePerTriangleFacingOutward) {
+TEST(Part, OtherMeshesAreFeltByTheirSurface) {
   TriangleMesh dented = icosphere(2);
   dented.vertices[40] *= 0.8;
-  const Result<Part> part = part_from_mesh(dented);
+  const Result<Part> part = part_from_mesh(dented, {.pieces = PieceSource::kSurface});
   ASSERT_TRUE(part);
-  EXPECT_TRUE(part->one_sided);
-  ASSERT_EQ(part->pieces.size(), dented.triangles.size());
-  ASSERT_EQ(part->piece_normal.size(), part->pieces.size());
-  for (std::size_t i = 0; i < part->pieces.size(); ++i) {
-    EXPECT_TRUE(part->pieces[i].flat);
-    EXPECT_GT(part->piece_normal[i].dot(part->pieces[i].center), 0.0);
-  }
-  EXPECT_EQ(part->group_count, static_cast<int>(part->pieces.size()));  // no two triangles of it are coplanar
-  EXPECT_EQ(part->hierarchy.order().size(), part->pieces.size());
+  EXPECT_TRUE(part->is_surface());
+  EXPECT_EQ(part->tree.triangle_count(), static_cast<int>(dented.triangles.size()));
+  for (std::size_t i = 0; i < part->surface.triangles.size(); ++i)
+    EXPECT_GT(triangle_normal(part->surface, i).dot(part->surface.vertices[part->surface.triangles[i][0]]),
+              0.0);
+  // No two triangles of it are coplanar.
+  EXPECT_EQ(part->group_count, static_cast<int>(part->surface.triangles.size()));
 }
 
 TEST(Part, GivenGroupsAreVerifiedConvex) {
@@ -98,6 +99,32 @@ TEST(Part, InwardSurfacesAreTurnedAndTold) {
   EXPECT_NEAR(part->mass.volume, 8.0, 1e-12);
 }
 
+TEST(Part, SaysWhichWayItWentAndWhy) {
+  const TriangleMesh star = testing::extruded_mesh(testing::star(5, 0.02, 0.05), 0.0, 0.03);
+  const Result<Part> solid = part_from_mesh(star);
+  ASSERT_TRUE(solid);
+  EXPECT_FALSE(solid->is_surface());
+  EXPECT_EQ(solid->way, fmt::format("solid: {} convex pieces from 5 reflex edges", solid->pieces.size()));
+  EXPECT_NEAR(solid->mass.volume, report_mesh(star).volume, 1e-12);
+  EXPECT_EQ(part_from_mesh(star, {.pieces = PieceSource::kSurface})->way, "surface: asked for");
+  EXPECT_EQ(part_from_mesh(box_mesh({1, 1, 1}))->way, "solid: convex as it is");
+  const TriangleMesh gear = testing::extruded_mesh(testing::star(60, 0.04, 0.05), 0.0, 0.03);
+  const Result<Part> many = part_from_mesh(gear);
+  ASSERT_TRUE(many);
+  EXPECT_TRUE(many->is_surface());
+  EXPECT_EQ(many->way, "surface: the solid does not fall into few convex pieces (60 reflex edges)");
+  EXPECT_FALSE(part_from_mesh(gear, {.pieces = PieceSource::kSolid})->is_surface());
+  TriangleMesh open = star;
+  open.triangles.pop_back();
+  EXPECT_TRUE(part_from_mesh(open)->is_surface());
+  const Result<Part> refused = part_from_mesh(open, {.name = "star", .pieces = PieceSource::kSolid});
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message().find("star: the part cannot be built: found 3 open edges at ("),
+            std::string::npos)
+      << refused.error().message();
+  EXPECT_FALSE(part_from_mesh(star, {.pieces = PieceSource::kGiven}));
+}
+
 TEST(CoplanarGroups, ASubdividedBoxHasSixHoweverTurnedAndRounded) {
   TriangleMesh fine = box_mesh({0.02, 0.03, 0.05});
   for (int level = 0; level < 3; ++level) {
@@ -119,7 +146,7 @@ TEST(CoplanarGroups, ASubdividedBoxHasSixHoweverTurnedAndRounded) {
   fine.triangles.pop_back();
   const Result<Part> part = part_from_mesh(fine);
   ASSERT_TRUE(part);
-  EXPECT_EQ(part->pieces.size(), 767u);
+  EXPECT_EQ(part->surface.triangles.size(), 767u);
   EXPECT_EQ(part->group_count, 6);
 }
 
@@ -138,10 +165,10 @@ TEST(Part, RealMeshesBecomeParts) {
     ASSERT_TRUE(mesh) << mesh.error().message();
     const Result<Part> part = part_from_mesh(mesh->mesh, {.name = name});
     ASSERT_TRUE(part) << part.error().message();
-    std::printf("%s: %zu pieces, %d patches, mass %.4g kg\n", name, part->pieces.size(), part->group_count,
-                part->mass.mass);
+    std::printf("%s: %zu triangles, %d facets, mass %.4g kg\n", name, part->surface.triangles.size(),
+                part->group_count, part->mass.mass);
     for (const std::string& remark : part->remarks) std::printf("  %s\n", remark.c_str());
-    EXPECT_LE(part->group_count, static_cast<int>(part->pieces.size()));
+    EXPECT_LE(part->group_count, static_cast<int>(part->surface.triangles.size()));
     EXPECT_GT(part->mass.mass, 0.0);
   }
 }

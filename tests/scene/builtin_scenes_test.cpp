@@ -71,7 +71,7 @@ TEST(BuiltinScenes, EveryOneBuildsIsHeldAndHasSomethingToReach) {
     for (const Body& body : world.bodies) {
       EXPECT_GT(body.mass_kg, 0.0) << source.name << " " << body.name;
       EXPECT_GT(body.inertia_B.determinant(), 0.0) << source.name << " " << body.name;
-      EXPECT_FALSE(body.part->pieces.empty());
+      EXPECT_FALSE(body.part->surface.triangles.empty());
     }
     EXPECT_FALSE(scene->goals.empty()) << source.name;
     EXPECT_FALSE(GoalRecord(world, scene->goals).all_met()) << source.name << ": done before it begins";

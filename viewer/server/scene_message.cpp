@@ -76,9 +76,9 @@ Json settings_json(const FrameSettings& frame, const SafetySettings& safety) {
   Json settings = Json::array();
   for (const SettingInfo& setting : setting_table()) {
     const double value = setting.get(frame, safety);
-    const char* kind = setting.kind == SettingKind::kOnOff     ? "on-off"
-                       : setting.kind == SettingKind::kInteger ? "integer"
-                                                               : "number";
+    const char* kind = setting.kind == SettingKind::kOnOff    ? "on-off"
+                       : setting.kind == SettingKind::kNumber ? "number"
+                                                              : "integer";  // a choice by its number
     settings.push_back({{"section", setting.section},
                         {"key", setting.key},
                         {"name", setting.name},
@@ -171,18 +171,22 @@ void write_shape(const Part& part, std::string& out) {
   wire::put(out, static_cast<std::uint32_t>(part.surface.vertices.size()));
   wire::put(out, static_cast<std::uint32_t>(part.surface.triangles.size()));
   wire::put(out, static_cast<std::uint32_t>(edges.size()));
-  wire::put(out, static_cast<std::uint32_t>(part.one_sided ? 1 : 0));
+  wire::put(out, static_cast<std::uint32_t>(part.is_surface() ? 1 : 0));
   for (const Vec3& vertex : part.surface.vertices) wire::put(out, vertex);
   for (const Triangle& triangle : part.surface.triangles)
     for (int corner : triangle) wire::put(out, static_cast<std::uint32_t>(corner));
   // Whose triangles: the surface of solid pieces is their faces in order, each a fan (geometry/part.h).
+  // Of a surface: its flat faces stand for pieces.
+  if (part.is_surface())
+    for (std::uint32_t i = 0; i < part.surface.triangles.size(); ++i) {
+      wire::put(out, static_cast<std::uint32_t>(part.tree.group_of(static_cast<int>(i))));
+      wire::put(out, i);
+    }
   std::size_t triangle = 0;
   for (std::size_t i = 0; i < part.pieces.size(); ++i) {
     const Polytope& piece = part.pieces[i];
-    const std::size_t faces = part.one_sided ? 1 : piece.faces.size();
-    for (std::size_t face = 0; face < faces; ++face) {
-      const int triangles = part.one_sided ? 1 : piece.faces[face].count - 2;
-      for (int t = 0; t < triangles; ++t, ++triangle) {
+    for (std::size_t face = 0; face < piece.faces.size(); ++face) {
+      for (int t = 0; t + 2 < piece.faces[face].count; ++t, ++triangle) {
         wire::put(out, static_cast<std::uint32_t>(i));
         wire::put(out, static_cast<std::uint32_t>(face) | (covered[triangle] ? kCovered : 0u));
       }
@@ -200,8 +204,7 @@ bool told_by_pieces(const Part& part) {
   std::size_t triangles = 0;
   for (const Polytope& piece : part.pieces)
     for (const Polytope::Face& face : piece.faces) triangles += static_cast<std::size_t>(face.count - 2);
-  return part.one_sided ? part.pieces.size() == part.surface.triangles.size()
-                        : triangles == part.surface.triangles.size();
+  return part.is_surface() || triangles == part.surface.triangles.size();
 }
 
 /// A part whose surface is not cut as its pieces are (a convex mesh): the pieces' own faces instead.

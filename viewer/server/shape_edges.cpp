@@ -58,13 +58,7 @@ std::vector<DrawnEdge> edges_of_solids(const Part& part) {
 
 std::vector<DrawnEdge> edges_of_surface(const Part& part) {
   const TriangleMesh& mesh = part.surface;
-  const auto normal = [&](int triangle) {
-    const Triangle& t = mesh.triangles[static_cast<std::size_t>(triangle)];
-    const Vec3& a = mesh.vertices[static_cast<std::size_t>(t[0])];
-    return (mesh.vertices[static_cast<std::size_t>(t[1])] - a)
-        .cross(mesh.vertices[static_cast<std::size_t>(t[2])] - a)
-        .normalized();
-  };
+  const auto normal = [&](int triangle) { return triangle_normal(mesh, static_cast<std::size_t>(triangle)); };
   const double flattest = std::cos(kDrawnBend_rad);
   std::vector<DrawnEdge> edges;
   const std::vector<HalfEdge> sides = sorted_half_edges(mesh);
@@ -88,12 +82,12 @@ std::vector<DrawnEdge> edges_of_surface(const Part& part) {
 
 std::vector<DrawnEdge> edges_to_draw(const Part& part) {
   if (part.surface.triangles.size() > kMostDrawn) return {};
-  return part.one_sided ? edges_of_surface(part) : edges_of_solids(part);
+  return part.is_surface() ? edges_of_surface(part) : edges_of_solids(part);
 }
 
 std::vector<bool> covered_triangles(const Part& part) {
   std::vector<bool> covered;
-  if (part.one_sided || part.pieces.size() < 2 || part.surface.triangles.size() > kMostDrawn) {
+  if (part.pieces.size() < 2 || part.surface.triangles.size() > kMostDrawn) {
     covered.resize(part.surface.triangles.size(), false);
     return covered;
   }

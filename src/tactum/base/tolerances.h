@@ -56,6 +56,15 @@ inline constexpr double kWeld = 1e-9;
 /// A triangle thinner than this (height over its longest edge) has no usable normal.
 inline constexpr double kDegenerateTriangle = 1e-10;
 
+/// A closed surface encloses nothing when its volume is below this share of its diagonal cubed: the rounding
+/// of a million tetrahedra that cancel is 1e-13; a sheet of paper, 0.1 mm in a metre square, has 3e-5.
+inline constexpr double kNoVolume = 1e-12;
+
+/// The pieces of a part lie on its mesh, and the mesh on the pieces, to this much of the size: what
+/// preparation is checked against. Above the dropping of zero areas (kDegenerateTriangle) and the planarity
+/// of merged faces, far below what a micrometre is to a metre.
+inline constexpr double kSurfaceDeviation = 1e-9;
+
 /// Edges of a mesh count as convex when the far vertex stays below the neighbour's plane by this share of the
 /// size.
 inline constexpr double kConvexMesh = 1e-9;
@@ -68,22 +77,44 @@ inline constexpr double kContactVelocity = 1e-6;
 /// are taken away, is none: a hinge's mobility is of rank one, but for rounding.
 inline constexpr double kNoMobility = 1e-12;
 
+/// A row of a quadratic program depends on those that hold when less than this share of it is left beside
+/// them: the corners of one face say the same thing up to rounding, and a row that differed from them by less
+/// could only be kept by forces that are as many times too large.
+inline constexpr double kDependentRow = 1e-7;
+
+/// A row of the contact problem is kept when it is missed by no more than this [m]: the forces are then right
+/// to 1e-9 N, and no gap is moved by what could be measured.
+inline constexpr double kRowKept_m = 1e-12;
+
+/// The gap at which the constraint response holds contacts apart, a share of the largest moving part's size.
+/// Some thousand times the certificate, so that a validated pose is open beyond doubt; a tenth of the
+/// tightest fit of engineering.
+inline constexpr double kSkin = 5e-6;
+
 /// A pair overlaps when its depth exceeds this share of the pieces' size: below it is the certificate's own
 /// doubt.
 inline constexpr double kPenetrating = 1e-9;
 
-/// A one-sided surface piece answers only contacts on its outer side; a normal may lean behind the surface by
-/// this sine before it counts as the inner side (contacts at convex edges lie at a right angle to it).
-inline constexpr double kOneSidedSine = 1e-6;
+/// The normal cones of features are widened by this angle [rad] when contacts are looked for, the most a part
+/// turns in a step: with the true cones only the lowest corner of a flat contact counts, and sliding over a
+/// plane of many pieces sticks.
+inline constexpr double kConeSlack = 0.004;
 
 /// Unit normals that differ by less than this are one: a corner's mean normal is then the face's own, to the
 /// bit.
 inline constexpr double kSameNormal = 1e-9;
 
-/// The area that a contact point or segment counts for when it shares a facet's stiffness with patches: small
-/// against any patch a hand can feel (a tenth of a millimetre squared is 1e-8), so it counts only where it is
-/// alone [m^2].
+/// The area that a contact point counts for when it shares a facet's stiffness with patches: small against
+/// any patch a hand can feel (a tenth of a millimetre squared is 1e-8), so it counts only where it is alone
+/// [m^2].
 inline constexpr double kPointArea_m2 = 1e-14;
+
+/// ... and the width of a segment, so that its stretches share by length: a millimetre counts as ten points
+/// [m].
+inline constexpr double kLineWidth_m = 1e-10;
+
+/// ... and what a segment without length counts for, so that shares can always be told [m^2].
+inline constexpr double kLeastClaim_m2 = 1e-24;
 
 /// A corner of a polygon face turns the wrong way only beyond this (cross product over the square of the
 /// polygon's extent): single-precision corners on a straight side turn by 1e-7 either way, and a fan over
@@ -106,6 +137,10 @@ inline constexpr double kStoredNoise = 1.2e-7;
 /// Box tests grow the boxes by this share of their size, so that rounding of the rotated axes never parts
 /// boxes that touch.
 inline constexpr double kBoxSlack = 1e-14;
+
+/// What rounding to single precision may do to bounds kept in it (6e-8 a number, a few in a row), as a share
+/// of the size for lengths and in radians for angles: such bounds are grown by this, so that no pair is lost.
+inline constexpr double kSingle = 1e-6;
 
 /// Squared angle [rad^2] below which sin(a)/a and its kin are taken from their series: exact to the last bit
 /// there.

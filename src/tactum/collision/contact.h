@@ -84,6 +84,14 @@ struct ContactPoint {
   std::uint64_t id = 0;  ///< the same from frame to frame while the features of the patch and its kind stay
 };
 
+/// The identity of a point: its two features, and its place (below eight) among the points they can have.
+constexpr std::uint64_t point_id(const Feature& a, const Feature& b, std::uint64_t place) noexcept {
+  const auto name = [](const Feature& f) {
+    return static_cast<std::uint64_t>(f.kind) | static_cast<std::uint64_t>(f.index) << 2;
+  };
+  return name(a) << 33 | name(b) << 3 | place;
+}
+
 /// Where two convex pieces touch or nearly touch: one normal and up to four points (quadrature of the clipped
 /// area).
 struct Manifold {

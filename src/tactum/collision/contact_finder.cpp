@@ -5,8 +5,9 @@
 #include <utility>
 
 #include "tactum/base/tolerances.h"
+#include "tactum/collision/closest_features.h"
 #include "tactum/collision/manifold.h"
-#include "tactum/collision/piece_distance.h"
+#include "tactum/collision/seams.h"
 
 namespace tactum {
 namespace {
@@ -46,11 +47,10 @@ ContactFinder::ContactFinder(std::vector<CollisionBody> bodies, std::span<const 
           const Part& part = *bodies_[i].part;
           double radius = 0.0;
           Aabb box;
-          for (const Polytope& piece : part.pieces)
-            for (const Vec3& vertex : piece.vertices) {
-              radius = std::max(radius, vertex.norm());
-              box.extend(vertex);
-            }
+          for (const Vec3& vertex : part.surface.vertices) {
+            radius = std::max(radius, vertex.norm());
+            box.extend(vertex);
+          }
           radius_.push_back(radius);
           part_box_.push_back(box);
           slack_.push_back(kSlack * radius);
@@ -64,6 +64,10 @@ ContactFinder::ContactFinder(std::vector<CollisionBody> bodies, std::span<const 
   renewed_.reserve(rooms.pairs);
   due_.reserve(rooms.pairs);
   patches_.reserve(rooms.patches);
+  candidates_.reserve(rooms.patches);
+  minima_.reserve(rooms.minima);
+  reduction_error_.reserve(rooms.minima);
+  kept_minima_ = rooms.kept_minima;
 }
 
 void ContactFinder::find_near_pairs(std::span<const Pose> X_WB, std::span<const double> reach,
@@ -83,8 +87,10 @@ void ContactFinder::find_near_pairs(std::span<const Pose> X_WB, std::span<const 
   work_.near_pairs = static_cast<int>(pairs_.size());
 }
 
-void ContactFinder::find_patches(std::span<const Pose> X_WB, int budget) noexcept {
+void ContactFinder::find_patches(std::span<const Pose> X_WB, int budget, PatchPoints points) noexcept {
+  points_ = points;
   patches_.clear();
+  candidates_.clear();
   due_.clear();
   for (Index i = 0; i < pairs_.size(); ++i) {
     Pair& pair = pairs_[i];
@@ -95,6 +101,9 @@ void ContactFinder::find_patches(std::span<const Pose> X_WB, int budget) noexcep
   const int checked = prioritise(due_, budget);
   work_.unchecked = static_cast<int>(due_.size()) - checked;
   for (int i = 0; i < checked; ++i) test(pairs_[Index(due_[Index(i)].pair)], X_WB);
+  if (!candidates_.empty()) work_.rooms_full |= !settle_seams(candidates_, X_WB, patches_);
+  for (const SweepAndPrune::Pair& near : sweep_.pairs())
+    if (meet_by_surfaces(near.a, near.b)) test_surfaces(near.a, near.b, X_WB);
   work_.patches = static_cast<int>(patches_.size());
 }
 
@@ -117,7 +126,8 @@ void ContactFinder::move_boxes(std::span<const Pose> X_WB) noexcept {
 }
 
 double ContactFinder::tolerance(int a, int b) const noexcept {
-  return std::max(min_tolerance_, reach_[Index(a)] + reach_[Index(b)]);
+  const auto reach_of = [&](int body) { return bodies_[Index(body)].moves ? reach_[Index(body)] : 0.0; };
+  return std::max(min_tolerance_, reach_of(a) + reach_of(b));
 }
 
 bool ContactFinder::list_holds(const BodyPair& list, int a, int b) const noexcept {
@@ -155,6 +165,7 @@ void ContactFinder::renew_lists(std::span<const Pose> X_WB) noexcept {
 
 /// False when the room did not suffice.
 bool ContactFinder::collect(int a, int b, const Pose& X_AB, double reach) noexcept {
+  if (meet_by_surfaces(a, b)) return true;
   const Index first = renewed_.size();
   const bool complete =
       for_each_pair_within(bodies_[Index(a)].part->hierarchy, bodies_[Index(b)].part->hierarchy, X_AB, reach,
@@ -191,7 +202,9 @@ void ContactFinder::test(Pair& pair, std::span<const Pose> X_WB) noexcept {
   const Part& part_a = *bodies_[Index(pair.body_a)].part;
   const Part& part_b = *bodies_[Index(pair.body_b)].part;
   const Pose X_AB = relative_pose(X_WB[Index(pair.body_a)], X_WB[Index(pair.body_b)]);
-  const PairDistance found = piece_distance(part_a, pair.piece_a, part_b, pair.piece_b, X_AB, pair.cache);
+  const Polytope& A = part_a.pieces[Index(pair.piece_a)];
+  const Polytope& B = part_b.pieces[Index(pair.piece_b)];
+  const PairDistance found = closest_features(A, B, X_AB, pair.cache);
   ++work_.exact_tests;
   work_.feature_steps += found.steps;
   if (!found.certified()) ++work_.uncertified;
@@ -200,14 +213,30 @@ void ContactFinder::test(Pair& pair, std::span<const Pose> X_WB) noexcept {
   pair.free_until = found.certified() ? odometers(pair.body_a, pair.body_b) + found.distance : kAlwaysDue;
 
   const double reach = tolerance(pair.body_a, pair.body_b);
-  pair.in_contact =
-      found.distance < reach && faces_outward(part_a, pair.piece_a, part_b, pair.piece_b, X_AB, found);
+  pair.in_contact = found.distance < reach;
   if (!pair.in_contact) {
     pair.shown = {};
     return;
   }
-  if (patches_.size() == patches_.capacity()) {
+  if (patches_.size() + candidates_.size() >= patches_.capacity()) {
     work_.rooms_full = true;
+    return;
+  }
+  const bool seams = !part_a.true_surface.alone() || !part_b.true_surface.alone();
+  const bool objected = seams && !is_true_contact(part_a, pair.piece_a, part_b, pair.piece_b, X_AB, found);
+  if (seams && points_ == PatchPoints::kQuadrature) {
+    SeamCandidate& candidate = candidates_.emplace_back();
+    candidate.body_a = pair.body_a;
+    candidate.body_b = pair.body_b;
+    candidate.piece_a = pair.piece_a;
+    candidate.piece_b = pair.piece_b;
+    candidate.pair = static_cast<int>(&pair - pairs_.data());
+    candidate.part_a = &part_a;
+    candidate.part_b = &part_b;
+    candidate.shown = &pair.shown;
+    candidate.reach = reach;
+    candidate.found = found;
+    candidate.objected = objected;
     return;
   }
   ContactPatch& patch = patches_.emplace_back();
@@ -215,15 +244,47 @@ void ContactFinder::test(Pair& pair, std::span<const Pose> X_WB) noexcept {
   patch.body_b = pair.body_b;
   patch.piece_a = pair.piece_a;
   patch.piece_b = pair.piece_b;
+  patch.pair = static_cast<int>(&pair - pairs_.data());
+  patch.facet_a = part_a.surface_group[Index(pair.piece_a)];
+  patch.facet_b = part_b.surface_group[Index(pair.piece_b)];
   patch.tolerance = reach;
-  const Polytope& A = part_a.pieces[Index(pair.piece_a)];
-  const Polytope& B = part_b.pieces[Index(pair.piece_b)];
-  // A surface may only push outward: its normal is not led over the ways between.
-  const bool solids = !part_a.one_sided && !part_b.one_sided;
-  const PairDistance shown = solids ? steady_depth(A, B, X_AB, found, pair.shown) : found;
+  if (points_ == PatchPoints::kClosest) {
+    patch.distance = found.distance;
+    patch.manifold.normal = found.normal;
+    patch.manifold.a = found.a;
+    patch.manifold.b = found.b;
+    // A neighbour across the seam is nearer and carries the force: this one, without a point, is only
+    // watched.
+    if (!objected || found.distance <= 0.0)
+      patch.manifold.points.push_back({found.p_a, found.p_b, found.distance, 1.0, 0});
+    return;
+  }
+  const PairDistance shown = steady_depth(A, B, X_AB, found, pair.shown);
   patch.distance = shown.distance;
   contact_manifold(A, B, X_AB, shown, reach, patch.manifold);
   steady_centroid(X_AB, patch.manifold, pair.shown);
+}
+
+void ContactFinder::distances_at(std::span<const Pose> X_WB, std::span<double> distance) noexcept {
+  for (Index i = 0; i < patches_.size();) {
+    const ContactPatch& patch = patches_[i];
+    if (!patch.of_surfaces) {
+      Pair& pair = pairs_[Index(patch.pair)];
+      const Pose X_AB = relative_pose(X_WB[Index(pair.body_a)], X_WB[Index(pair.body_b)]);
+      const PairDistance found =
+          closest_features(bodies_[Index(pair.body_a)].part->pieces[Index(pair.piece_a)],
+                           bodies_[Index(pair.body_b)].part->pieces[Index(pair.piece_b)], X_AB, pair.cache);
+      distance[i] = found.certified() ? found.distance : std::min(found.distance, 0.0);
+      ++i;
+      continue;
+    }
+    Index end = i;
+    while (end < patches_.size() && patches_[end].of_surfaces && patches_[end].body_a == patch.body_a &&
+           patches_[end].body_b == patch.body_b)
+      ++end;
+    surface_distances_at({patches_.data() + i, end - i}, X_WB, distance.subspan(i, end - i));
+    i = end;
+  }
 }
 
 }  // namespace tactum

@@ -4,12 +4,19 @@
 ///   bodies  --- sweep and prune --->  near bodies  --- hierarchies --->  near pieces  --- exact tests --->
 ///   patches
 ///
+/// Bodies made of convex pieces meet piece by piece, by tracked pairs. Where either has none, both meet by
+/// their surfaces: every local minimum of distance is a patch of one point (surface_minima.h). Which of the
+/// two is faster was measured: docs/algorithms/surface_minima.md.
+///
 /// What holds from frame to frame is kept: no step is repeated while a bound on the motion proves that its
 /// answer cannot have changed. Every body carries an odometer, `travel`: no point of it has moved farther
 /// than that since the start. A list of pairs made with reach R at the odometers' sum S0 holds all pairs
 /// within `tolerance` while  (S - S0) + tolerance <= R;  a pair found d apart at S0 needs no test while  d -
 /// (S - S0) > tolerance. Both are proofs, not guesses; they are what makes a frame with coherent motion
 /// cheap.
+///
+/// Pieces of one part share walls that nobody can touch, and true faces that were cut; what pairs of pieces
+/// answer is settled between them before it is handed on (seam_settler.h).
 ///
 /// What is handed on moves from frame to frame without a step (steady_contact.h): the normal of an overlap
 /// and the centroid of a patch follow the exact ones at a bounded rate.
@@ -19,8 +26,11 @@
 #include <vector>
 
 #include "tactum/collision/contact.h"
+#include "tactum/collision/contact_patch.h"
 #include "tactum/collision/schedule.h"
+#include "tactum/collision/seam_settler.h"
 #include "tactum/collision/steady_contact.h"
+#include "tactum/collision/surface_minima.h"
 #include "tactum/collision/sweep_and_prune.h"
 #include "tactum/geometry/part.h"
 
@@ -34,30 +44,33 @@ struct CollisionBody {
 
 /// Rooms reserved at load time; a full one sets a flag and drops the rest of that step.
 struct ContactFinderRooms {
-  std::size_t pairs = 1 << 16;  ///< near piece pairs
-  std::size_t patches = 4096;   ///< contact patches of a frame
+  std::size_t pairs = 1 << 16;     ///< near piece pairs
+  std::size_t patches = 4096;      ///< contact patches of a frame
+  std::size_t minima = 8192;       ///< local minima of two surfaces
+  std::size_t kept_minima = 1024;  ///< ... of which so many are handed on (contact_reduction.h)
 };
 
-/// Two pieces nearer than their tolerance. Manifold in A's body frame.
-struct ContactPatch {
-  int body_a = -1, body_b = -1;    ///< body_a < body_b
-  int piece_a = -1, piece_b = -1;  ///< within their parts
-  double distance = 0.0;           ///< of the pieces, negative when they overlap [m]
-  double tolerance = 0.0;          ///< delta of the pair of bodies [m]
-  Manifold manifold;
+/// What the points of a patch's manifold are.
+enum class PatchPoints {
+  kQuadrature,  ///< weighted, for forces over the area; they move without steps
+  kClosest      ///< the closest point alone, on the closest features, as they are
 };
 
 /// Counted work of one frame: N, K and M of the paper's T_h = N t_s + K t_c + M t_f, and what was left.
 struct ContactWork {
-  int broad_phase_runs = 0;  ///< 1 when boxes or lists had to be renewed, else 0 ("N-body tests")
-  int bodies = 0;            ///< N
-  int near_pairs = 0;        ///< pairs on the lists
-  int exact_tests = 0;       ///< K
-  int feature_steps = 0;     ///< feature pairs visited by the exact tests
-  int patches = 0;           ///< M
-  int uncertified = 0;       ///< answers without a certificate
-  int unchecked = 0;         ///< due pairs beyond the budget
-  bool rooms_full = false;   ///< something was dropped: raise the rooms
+  int broad_phase_runs = 0;    ///< 1 when boxes or lists had to be renewed, else 0 ("N-body tests")
+  int bodies = 0;              ///< N
+  int near_pairs = 0;          ///< pairs on the lists
+  int exact_tests = 0;         ///< K
+  int feature_steps = 0;       ///< feature pairs visited by the exact tests
+  int surface_queries = 0;     ///< pairs of bodies asked for the local minima of their surfaces
+  int minima = 0;              ///< found by them
+  int dropped_minima = 0;      ///< of these, left out for want of room
+  double dropped_error = 0.0;  ///< a dropped one can be overstepped by this at most [m]
+  int patches = 0;             ///< M
+  int uncertified = 0;         ///< answers without a certificate
+  int unchecked = 0;           ///< due pairs beyond the budget
+  bool rooms_full = false;     ///< something was dropped: raise the rooms
 };
 
 class ContactFinder {
@@ -72,9 +85,15 @@ class ContactFinder {
                        double min_tolerance) noexcept;
 
   /// Exact tests of the near pairs that could be within tolerance, at most `budget` of them, and manifolds.
-  void find_patches(std::span<const Pose> X_WB, int budget) noexcept;
+  void find_patches(std::span<const Pose> X_WB, int budget,
+                    PatchPoints points = PatchPoints::kQuadrature) noexcept;
 
   std::span<const ContactPatch> patches() const noexcept { return patches_; }
+  /// The exact signed distance of the pieces of every patch with the bodies at other poses, near those of
+  /// the patches: what a step has to keep positive. `distance` has an entry per patch [m]. A distance that
+  /// could not be certified counts as none. Between surfaces it is that of every local minimum there is at
+  /// the other poses, told by the patches of the same features; where there is none, by the nearest patch.
+  void distances_at(std::span<const Pose> X_WB, std::span<double> distance) noexcept;
   const ContactWork& work() const noexcept { return work_; }
   /// Largest distance of a point of body i from its origin [m].
   double radius(int i) const noexcept { return radius_[static_cast<std::size_t>(i)]; }
@@ -91,10 +110,11 @@ class ContactFinder {
   /// The pieces of two near bodies: pairs_[first, first + count), sorted by piece.
   struct BodyPair {
     std::int32_t first = 0, count = 0;
-    double odometers = 0.0;     ///< S0
-    double reach = 0.0;         ///< R
-    bool cut_short = false;     ///< the room was full: pairs are missing
-    std::int64_t renewal = -1;  ///< the renewal it was last part of
+    double odometers = 0.0;      ///< S0
+    double reach = 0.0;          ///< R
+    bool cut_short = false;      ///< the room was full: pairs are missing
+    std::int64_t renewal = -1;   ///< the renewal it was last part of
+    double free_until = -1e300;  ///< of two surfaces: as in Pair
   };
 
   void move_boxes(std::span<const Pose> X_WB) noexcept;
@@ -103,6 +123,13 @@ class ContactFinder {
   bool collect(int a, int b, const Pose& X_AB, double reach) noexcept;
   void inherit(const BodyPair& old, std::size_t first) noexcept;
   void test(Pair& pair, std::span<const Pose> X_WB) noexcept;
+  bool meet_by_surfaces(int a, int b) const noexcept {
+    return bodies_[std::size_t(a)].part->is_surface() || bodies_[std::size_t(b)].part->is_surface();
+  }
+  void test_surfaces(int a, int b, std::span<const Pose> X_WB) noexcept;
+  void add_surface_patch(int a, int b, const SurfaceMinimum& minimum, bool second_end, double reach) noexcept;
+  void surface_distances_at(std::span<const ContactPatch> patches, std::span<const Pose> X_WB,
+                            std::span<double> distance) noexcept;
   double odometers(int a, int b) const noexcept { return travel_[std::size_t(a)] + travel_[std::size_t(b)]; }
   double tolerance(int a, int b) const noexcept;
   BodyPair& list_of(int a, int b) noexcept {
@@ -121,7 +148,12 @@ class ContactFinder {
   std::vector<Pair> pairs_, renewed_;
   std::vector<DuePair> due_;
   std::vector<ContactPatch> patches_;
+  std::vector<SeamCandidate> candidates_;
+  std::vector<SurfaceMinimum> minima_;
+  std::vector<double> reduction_error_;  // scratch
+  std::size_t kept_minima_ = 0;
   std::span<const double> reach_;
+  PatchPoints points_ = PatchPoints::kQuadrature;
   double min_tolerance_ = 0.0;
   std::int64_t frame_ = 0;
   std::int64_t renewal_ = 0;

@@ -60,9 +60,11 @@ double gap_share(const Work& w) noexcept {
   return std::min(share_of(w.a), share_of(w.b));
 }
 
-/// The gap above which the patch ends: the tolerance, or nearer the least gap when the features lean.
+/// The gap above which the patch ends: the tolerance, or nearer the least gap when the features lean. That of
+/// a stretch (seam_settler.h) is the whole contact's, `closest` is where the least is.
 double cut_level(const Work& w, double least_gap) noexcept {
   const double share = gap_share(w);
+  least_gap = std::min(least_gap, w.closest.distance);
   return share >= 1.0 ? w.tolerance : least_gap + (w.tolerance - least_gap) * share;
 }
 
@@ -282,16 +284,12 @@ constexpr std::array<std::array<Handler, 3>, 3> kHandlers = {{
     {point_contact, face_a_edge_b, face_face_contact},  // A: face
 }};
 
-/// Identities: the two features, and the place among the four points of an area, two of a line, or the one.
-/// Arms and ends go with the features, so the places do.
+/// The places: among the four points of an area, two of a line, or the one. Arms and ends go with the
+/// features, so the places do.
 void name_points(Manifold& patch) noexcept {
-  const auto name = [](const Feature& f) {
-    return static_cast<std::uint64_t>(f.kind) | static_cast<std::uint64_t>(f.index) << 2;
-  };
   const std::size_t points = patch.points.size();
   const std::uint64_t first = points == 4 ? 0 : points == 2 ? 4 : 6;
-  const std::uint64_t features = name(patch.a) << 33 | name(patch.b) << 3;
-  for (std::size_t i = 0; i < points; ++i) patch.points[i].id = features | (first + i);
+  for (std::size_t i = 0; i < points; ++i) patch.points[i].id = point_id(patch.a, patch.b, first + i);
 }
 
 }  // namespace

@@ -315,34 +315,6 @@ PairDistance penetration_exhaustive(const Polytope& A, const Polytope& B, const 
   return shallowest.best();
 }
 
-PairDistance penetration_one_sided(const Polytope& A, const Polytope& B, const Pose& X_AB,
-                                   const OneSided& sides, PairCache& cache) noexcept {
-  const PairView pair(A, B, X_AB);
-  const auto allowed = [&](const Vec3& n) {
-    return (!sides.outward_a || n.dot(*sides.outward_a) <= 0.0) &&
-           (!sides.outward_b || (pair.X_BA.R * n).dot(*sides.outward_b) >= 0.0);
-  };
-  Shallowest shallowest(pair);
-  const auto take = [&](const MinkowskiFacet& seed) {
-    const MinkowskiWalk walk = walk_to_foot(pair, seed);
-    if (allowed(walk.facet.n)) shallowest.take(walk);
-  };
-  if (const auto facet = cached_facet(pair, {cache.a, cache.b})) take(*facet);
-  if (small_pair(pair)) {
-    from_every_facet(pair, shallowest, allowed);
-  } else {
-    take(facet_near(pair, line_of_centers(pair)));
-  }
-  if (!shallowest.any()) {  // the surface's own normal
-    if (sides.outward_a) shallowest.from(facet_near(pair, -*sides.outward_a));
-    if (sides.outward_b) shallowest.from(facet_near(pair, X_AB.R * *sides.outward_b));
-    if (!shallowest.any()) shallowest.from(facet_near(pair, line_of_centers(pair)));
-  }
-  const PairDistance result = shallowest.best();
-  remember(result, cache);
-  return result;
-}
-
 PairDistance depth_along(const Polytope& A, const Polytope& B, const Pose& X_AB,
                          const Vec3& direction) noexcept {
   const PairView pair(A, B, X_AB);

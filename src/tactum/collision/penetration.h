@@ -7,8 +7,6 @@
 /// minimum. That it is the global one is sure after penetration_exhaustive, and in a cold start when both
 /// pieces are small.
 
-#include <optional>
-
 #include "tactum/collision/pair_view.h"
 
 namespace tactum {
@@ -27,17 +25,6 @@ PairDistance tracked_depth(const PairView& pair, PairCache& cache) noexcept;
 /// The global minimum, over every facet of the Minkowski difference. Not for the frame: E_A E_B x 10 ns (two
 /// spheres of 642 vertices: 40 ms).
 PairDistance penetration_exhaustive(const Polytope& A, const Polytope& B, const Pose& X_AB) noexcept;
-
-/// Outward normals of pieces that are only the surface of a solid and must push out of it.
-struct OneSided {
-  std::optional<Vec3> outward_a;  ///< unit, A's frame: allows n . outward_a <= 0
-  std::optional<Vec3> outward_b;  ///< unit, B's frame: allows n . outward_b >= 0
-};
-
-/// The smallest depth among the axes that push out of the surface. The normal of a flat one-sided piece is
-/// itself always allowed, so there is always an answer. Over all axes for small pieces, else from the walk.
-PairDistance penetration_one_sided(const Polytope& A, const Polytope& B, const Pose& X_AB,
-                                   const OneSided& sides, PairCache& cache) noexcept;
 
 /// The paper's depth: how far A must move along unit `direction` (A's frame) until it is clear of B, exactly;
 /// as a negative distance, with the normal of the features that touch then, p_a and p_b touching after the

@@ -25,7 +25,9 @@ struct DeviceSample {
   Twist V_DH;  ///< of the handle's origin, axes of D [m/s, rad/s]; zero when the device has no estimate
   bool has_velocity = false;  ///< whether V_DH was measured or estimated by the device
   std::uint32_t buttons = 0;  ///< bit 0 is the primary button
-  bool valid = false;         ///< false: the read failed, everything else is the last known
+  bool motors_on = true;  ///< false: the device says that it does not push now: dead-man switch, brakes, no
+                          ///< power, its own watchdog
+  bool valid = false;     ///< false: the read failed, everything else is the last known
 };
 
 /// No device reaches farther than this; a handle reported beyond it is a driver's mistake.
@@ -38,6 +40,19 @@ inline bool plausible(const Pose& X_DH) noexcept {
          (X_DH.R * X_DH.R.transpose() - Mat3::Identity()).cwiseAbs().maxCoeff() < tolerances::kRotationNear;
 }
 
+/// How the handle moves, as far as anyone knows; 0: unknown.
+struct HandleDynamics {
+  double mass_kg = 0.0;              ///< apparent at the handle [kg]
+  double inertia_kg_m2 = 0.0;        ///< [kg m^2]
+  double damping_Ns_per_m = 0.0;     ///< viscous [N s/m]
+  double damping_Nms_per_rad = 0.0;  ///< [N m s/rad]
+  double friction_N = 0.0;           ///< Coulomb [N]
+  double friction_Nm = 0.0;          ///< [N m]
+  double encoder_step_m = 0.0;       ///< [m]
+  double encoder_step_rad = 0.0;     ///< [rad]
+  double delay_s = 0.0;              ///< from a write to the motors [s]
+};
+
 /// What a device can do; queried, never guessed from its name.
 struct DeviceInfo {
   std::string name;                       ///< "simulated premium-1.5-6dof"
@@ -49,7 +64,10 @@ struct DeviceInfo {
   double max_stiffness_N_per_m = 0.0;     ///< stiffest wall its maker or users hold stable at 1 kHz [N/m]
   double max_stiffness_Nm_per_rad = 0.0;  ///< the same for rotation [N m/rad]
   double workspace_radius_m = 0.0;        ///< largest sphere about the origin it reaches [m]
-  double rate_Hz = 1000.0;                ///< rate it wants to be served at [Hz]
+  double max_still_s =
+      0.0;  ///< no hand keeps its reading the same to the bit for longer; 0: cannot be told [s]
+  double rate_Hz = 1000.0;  ///< rate it wants to be served at [Hz]
+  HandleDynamics handle{};
 };
 
 class Device {

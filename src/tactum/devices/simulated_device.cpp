@@ -77,6 +77,10 @@ SimulatedDevice::SimulatedDevice(SimulatedDeviceModel model, HandModel hand,
   info_.max_stiffness_Nm_per_rad = model_.max_stiffness_Nm_per_rad;
   info_.workspace_radius_m = model_.workspace_radius_m;
   info_.rate_Hz = model_.rate_Hz;
+  info_.handle = {
+      model_.mass_kg,        model_.inertia_kg_m2, model_.damping_Ns_per_m, model_.damping_Nms_per_rad,
+      model_.friction_N,     model_.friction_Nm,   model_.encoder_step_m,   model_.encoder_step_rad,
+      model_.command_delay_s};
 }
 
 Result<void> SimulatedDevice::open() {
@@ -126,6 +130,7 @@ bool SimulatedDevice::read(double now_s, DeviceSample& sample) noexcept {
   sample.time_s = now_s;
   sample.X_DH = encoded();
   sample.buttons = intended_.buttons;
+  sample.motors_on = !(limp_ && watchdog_trips_ > 0);  // nothing written yet is no fault
   sample.valid = true;
   estimate_velocity(now_s, sample);
   return true;

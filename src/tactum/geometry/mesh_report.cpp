@@ -70,6 +70,31 @@ bool all_edges_convex(const TriangleMesh& mesh, const std::vector<HalfEdge>& sid
   return convex;
 }
 
+/// Edges of two triangles that agree, by the way they are bent.
+void count_bends(const TriangleMesh& mesh, const std::vector<HalfEdge>& sides, MeshReport& report) {
+  const auto unit_normal = [&](const Triangle& t) {
+    const Vec3& a = mesh.vertices[t[0]];
+    return (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a).normalized();
+  };
+  const auto flat = [&](const Triangle& t) {
+    return has_no_area(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
+  };
+  for_each_edge(sides, [&](const HalfEdge* first, const HalfEdge* last) {
+    if (last - first != 2 || first[0].forward == first[1].forward) return;
+    const HalfEdge& along = first[0].forward ? first[0] : first[1];
+    const HalfEdge& against = first[0].forward ? first[1] : first[0];
+    const Triangle& left = mesh.triangles[along.triangle];
+    const Triangle& right = mesh.triangles[against.triangle];
+    if (flat(left) || flat(right)) return;
+    const Vec3 direction = (mesh.vertices[first->high] - mesh.vertices[first->low]).normalized();
+    const Vec3 n = unit_normal(left);
+    const Vec3 m = unit_normal(right);
+    const double bend = std::atan2(direction.dot(n.cross(m)), n.dot(m));  // positive: bent outward
+    if (bend > tolerances::kCoplanarMeshSine) ++report.convex_edges;
+    if (bend < -tolerances::kCoplanarMeshSine) ++report.reflex_edges;
+  });
+}
+
 void measure(const TriangleMesh& mesh, MeshReport& report) {
   report.box = bounds(mesh.vertices);
   const Vec3 origin = report.box.empty() ? Vec3::Zero() : report.box.center();
@@ -98,6 +123,7 @@ MeshReport report_mesh(const TriangleMesh& mesh, double tolerance) {
   const std::vector<HalfEdge> sides = sorted_half_edges(welded.mesh);
   const int edges = count_edges(welded, sides, report);
   count_vertices(welded.mesh, report);
+  count_bends(welded.mesh, sides, report);
   report.euler = report.vertices - edges + static_cast<int>(welded.mesh.triangles.size());
   report.closed = !welded.mesh.triangles.empty() && report.boundary_edges == 0 && report.manifold();
   report.oriented = report.misoriented_edges == 0;
@@ -134,8 +160,9 @@ std::string describe(const MeshReport& report) {
                       report.vertices, report.components);
   text += fmt::format("closed {}, manifold {}, oriented {}, convex {}\n", yes(report.closed),
                       yes(report.manifold()), yes(report.oriented), yes(report.convex));
-  text += fmt::format("edges: {} boundary, {} non-manifold, {} misoriented\n", report.boundary_edges,
-                      report.non_manifold_edges, report.misoriented_edges);
+  text += fmt::format("edges: {} boundary, {} non-manifold, {} misoriented, {} convex, {} reflex\n",
+                      report.boundary_edges, report.non_manifold_edges, report.misoriented_edges,
+                      report.convex_edges, report.reflex_edges);
   text += fmt::format("degenerate triangles: {} with equal corners, {} without area, {} duplicates\n",
                       report.index_degenerate.size(), report.zero_area.size(), report.duplicate_triangles);
   text += fmt::format("volume {:.6g} m^3, area {:.6g} m^2\n", report.volume, report.area);

@@ -26,6 +26,8 @@ struct MeshReport {
   int boundary_edges = 0;       ///< edges with one triangle
   int non_manifold_edges = 0;   ///< edges with more than two
   int misoriented_edges = 0;    ///< edges that both triangles run the same way
+  int convex_edges = 0;         ///< of two triangles: bent outward by more than kCoplanarMeshSine
+  int reflex_edges = 0;         ///< ... bent inward by more than that; the rest is flat
   int euler = 0;                ///< V - E + F; 2 for each component without handles
   bool closed = false;          ///< every edge has exactly two triangles
   bool oriented = false;        ///< no misoriented edge

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "tactum/base/tolerances.h"
+#include "tactum/geometry/decomposition.h"
 #include "tactum/geometry/hull.h"
 #include "tactum/geometry/mesh_edges.h"
 #include "tactum/geometry/mesh_report.h"
@@ -61,6 +62,10 @@ void complete(Part& part) {
   boxes.reserve(part.pieces.size());
   for (const Polytope& piece : part.pieces) boxes.push_back(bounds(piece.vertices));
   part.hierarchy = Bvh(boxes);
+  const std::vector<int> groups = coplanar_groups(part.surface);
+  part.tree = SurfaceTree(part.surface, groups);
+  if (part.is_surface()) part.group_count = 1 + *std::max_element(groups.begin(), groups.end());
+  find_true_surface(part);
   if (!part.mass.approximation.empty()) part.remarks.push_back(part.mass.approximation);
 }
 
@@ -116,28 +121,45 @@ TriangleMesh group_mesh(const ImportedMesh& mesh, const MeshGroup& group, double
   return weld(part).mesh;
 }
 
-/// One flat piece for each triangle that has an area.
-void add_surface_pieces(Part& part) {
-  const std::vector<int> groups = coplanar_groups(part.surface);
-  part.one_sided = true;
-  std::vector<Triangle> kept;  // piece i is triangle i of the surface
-  const std::size_t given = part.surface.triangles.size();
-  for (std::size_t i = 0; i < part.surface.triangles.size(); ++i) {
-    const Triangle t = part.surface.triangles[i];
-    Result<Polytope> piece =
-        flat_polygon({part.surface.vertices[t[0]], part.surface.vertices[t[1]], part.surface.vertices[t[2]]});
-    if (!piece) continue;
-    kept.push_back(t);
-    part.piece_normal.push_back(piece->faces[0].normal);
-    part.surface_group.push_back(groups[i]);
-    part.pieces.push_back(std::move(*piece));
+/// So many pieces are few enough for the solid to be the better way, measured by the cost of near pairs ...
+constexpr int kFewPieces = 32;
+/// ... and so many are allowed when asked for.
+constexpr int kMostPieces = 512;
+
+void add_solid_pieces(std::vector<Polytope> pieces, Part& part) {
+  part.pieces = std::move(pieces);
+  part.group_count = static_cast<int>(part.pieces.size());
+  for (int i = 0; i < part.group_count; ++i) part.surface_group.push_back(i);
+}
+
+/// `closed` is the welded mesh, with all its triangles.
+Result<void> add_pieces(const TriangleMesh& closed, bool convex, const PartOptions& options, Part& part) {
+  const bool chosen_here = options.pieces == PieceSource::kAuto;
+  if (options.pieces == PieceSource::kGiven)
+    return unusable(options, "given pieces asked for, and a mesh without groups", "a group for each piece");
+  if (options.pieces != PieceSource::kSurface) {
+    if (convex) {
+      if (Result<Polytope> solid = convex_hull(part.surface.vertices); solid && !solid->flat) {
+        add_solid_pieces({std::move(*solid)}, part);
+        part.way = "solid: convex as it is";
+        return {};
+      }
+    }
+    const int few = chosen_here ? kFewPieces : kMostPieces;
+    Result<SolidPieces> solid =
+        solid_pieces(closed, options.most_solid_pieces > 0 ? options.most_solid_pieces : few);
+    if (solid) {
+      part.way = fmt::format("solid: {} convex pieces from {} reflex edges", solid->pieces.size(),
+                             solid->reflex_edges);
+      add_solid_pieces(std::move(solid->pieces), part);
+      return {};
+    }
+    if (!chosen_here) return unusable(options, solid.error().found, solid.error().expected);
+    part.way = fmt::format("surface: {} ({})", solid.error().what, solid.error().found);
+  } else {
+    part.way = "surface: asked for";
   }
-  part.surface.triangles = std::move(kept);
-  part.group_count = groups.empty() ? 0 : 1 + *std::max_element(groups.begin(), groups.end());
-  if (const std::size_t thin = given - part.pieces.size(); thin > 0) {
-    part.remarks.push_back(
-        fmt::format("{} triangles are too thin to be pieces; their neighbours' edges cover them.", thin));
-  }
+  return {};
 }
 
 void tell_repairs(const WeldReport& weld_report, const MeshReport& report, Part& part) {
@@ -153,12 +175,17 @@ void tell_repairs(const WeldReport& weld_report, const MeshReport& report, Part&
 
 }  // namespace
 
+void find_true_surface(Part& part) {
+  part.true_surface = true_surface(part.pieces, part.hierarchy, tolerances::kCoplanarMeshOffset * part.size);
+}
+
 Result<Part> part_from_clouds(const std::vector<std::vector<Vec3>>& clouds, const PartOptions& options) {
   if (Result<void> sound = check_options(options); !sound) return sound.error();
   if (clouds.empty()) return unusable(options, "no piece", "at least one");
   Part part;
   part.name = options.name;
   std::vector<MassProperties> masses;
+  std::vector<Polytope> pieces;
   for (std::size_t i = 0; i < clouds.size(); ++i) {
     std::vector<Vec3> points = clouds[i];
     for (Vec3& point : points) point *= options.scale;
@@ -173,10 +200,10 @@ Result<Part> part_from_clouds(const std::vector<std::vector<Vec3>>& clouds, cons
     append_faces(*piece, faces);
     masses.push_back(mass_properties_or_hull(faces, options.density_kg_per_m3));
     append_faces(*piece, part.surface);
-    part.surface_group.push_back(static_cast<int>(i));
-    part.pieces.push_back(std::move(*piece));
+    pieces.push_back(std::move(*piece));
   }
-  part.group_count = static_cast<int>(part.pieces.size());
+  part.way = fmt::format("given: {} convex pieces", pieces.size());
+  add_solid_pieces(std::move(pieces), part);
   part.mass = joined(masses);
   complete(part);
   return part;
@@ -211,15 +238,10 @@ Result<Part> part_from_mesh(const TriangleMesh& mesh, const PartOptions& options
   WeldedMesh welded = weld(scaled, {.drop_zero_area = true, .drop_duplicates = true});
   part.surface = std::move(welded.mesh);
   tell_repairs(welded.report, report, part);
-  if (report.convex) {
-    if (Result<Polytope> solid = convex_hull(part.surface.vertices); solid && !solid->flat) {
-      part.pieces.push_back(std::move(*solid));
-      part.surface_group.push_back(0);
-      part.group_count = 1;
-    }
-  }
-  if (part.pieces.empty()) add_surface_pieces(part);
-  if (part.pieces.empty()) return unusable(options, "no triangle with an area", "a surface");
+  const TriangleMesh closed =
+      weld(scaled).mesh;  // where triangles without area still hold the surface together
+  if (Result<void> made = add_pieces(closed, report.convex, options, part); !made) return made.error();
+  if (part.surface.triangles.empty()) return unusable(options, "no triangle with an area", "a surface");
   complete(part);
   return part;
 }

@@ -37,6 +37,15 @@ struct Aabb {
   }
 };
 
+/// Unit, outward; not a number for a triangle without an area.
+inline Vec3 triangle_normal(const TriangleMesh& mesh, std::size_t triangle) {
+  const Triangle& t = mesh.triangles[triangle];
+  const Vec3& a = mesh.vertices[static_cast<std::size_t>(t[0])];
+  const Vec3& b = mesh.vertices[static_cast<std::size_t>(t[1])];
+  const Vec3& c = mesh.vertices[static_cast<std::size_t>(t[2])];
+  return (b - a).cross(c - a).normalized();
+}
+
 inline Aabb bounds(const std::vector<Vec3>& points) {
   Aabb box;
   for (const Vec3& point : points) box.extend(point);

@@ -19,12 +19,8 @@ bool same_facet(const Facet& a, const Facet& b) {
          std::tie(b.body_a, b.body_b, b.group_a, b.group_b);
 }
 
-/// A patch's claim on its facet's stiffness: its area, or next to nothing for points and segments.
-double claim(const ContactPatch& patch) { return std::max(patch.manifold.area, tolerances::kPointArea_m2); }
-
 /// What the rows are made from.
 struct Source {
-  const World& world;
   std::span<const Pose> X_WB;
   std::span<const ContactPatch> patches;
   const std::vector<ShadingNormals>& shading;
@@ -34,19 +30,18 @@ struct Source {
 void gather_points(const Source& from, std::span<const Facet> facet, std::vector<FacetPoint>& points) {
   points.clear();
   double claims = 0.0;
-  for (const Facet& f : facet) claims += claim(from.patches[Index(f.patch)]);
+  for (const Facet& f : facet) claims += stiffness_claim(from.patches[Index(f.patch)].manifold);
   const Pose& X_WA = from.X_WB[Index(facet[0].body_a)];
   const Pose X_AB = relative_pose(X_WA, from.X_WB[Index(facet[0].body_b)]);
   const Pose X_BA = X_AB.inverse();
   for (const Facet& f : facet) {
     const ContactPatch& patch = from.patches[Index(f.patch)];
-    const double share = claim(patch) / claims;
+    const double share = stiffness_claim(patch.manifold) / claims;
     for (const ContactPoint& point : patch.manifold.points) {
       Vec3 normal_A = patch.manifold.normal;
       if (!from.shading.empty()) {
-        normal_A =
-            shaded_normal(from.shading[Index(patch.body_a)], patch.piece_a, from.shading[Index(patch.body_b)],
-                          patch.piece_b, X_AB, X_BA, patch.manifold, point);
+        normal_A = shaded_normal(from.shading[Index(patch.body_a)], from.shading[Index(patch.body_b)], X_AB,
+                                 X_BA, patch, point);
       }
       points.push_back(
           {X_WA * (0.5 * (point.p_a + point.p_b)), X_WA.R * normal_A, point.distance, share * point.weight});
@@ -97,7 +92,7 @@ void reduce_to_four(std::vector<FacetPoint>& points) {
 
 }  // namespace
 
-void make_contact_rows(const World& world, std::span<const Pose> X_WB, std::span<const ContactPatch> patches,
+void make_contact_rows(std::span<const Pose> X_WB, std::span<const ContactPatch> patches,
                        const std::vector<ShadingNormals>& shading, double stiffness_N_per_m,
                        ContactRows& out) noexcept {
   out.rows.clear();
@@ -105,15 +100,12 @@ void make_contact_rows(const World& world, std::span<const Pose> X_WB, std::span
   out.full = false;
   for (Index i = 0; i < patches.size() && i < out.facets.capacity(); ++i) {
     const ContactPatch& patch = patches[i];
-    out.facets.push_back({patch.body_a, patch.body_b,
-                          world.bodies[Index(patch.body_a)].part->surface_group[Index(patch.piece_a)],
-                          world.bodies[Index(patch.body_b)].part->surface_group[Index(patch.piece_b)],
-                          static_cast<int>(i)});
+    out.facets.push_back({patch.body_a, patch.body_b, patch.facet_a, patch.facet_b, static_cast<int>(i)});
   }
   std::sort(out.facets.begin(), out.facets.end(),
             [](const Facet& a, const Facet& b) { return key(a) < key(b); });
 
-  const Source source{world, X_WB, patches, shading};
+  const Source source{X_WB, patches, shading};
   for (auto first = out.facets.begin(); first != out.facets.end();) {
     const auto last =
         std::find_if(first, out.facets.end(), [&](const Facet& f) { return !same_facet(f, *first); });

@@ -3,10 +3,10 @@
 /// stiffly.
 ///
 /// A patch pushes with the paper's k_s as a whole; its points share it by their weights (quadrature of the
-/// area, see collision/manifold.h). The pieces of a one-sided surface are arbitrary triangles of larger
-/// facets, so patches on the same facet are one patch: their points are weighed by area and reduced to four
-/// that carry the same area integrals (mean, second moments, and the gap as a linear function). A wall feels
-/// the same however finely it was meshed.
+/// area, see collision/manifold.h). Pieces may be triangles, or cuts, of larger facets, so patches on the
+/// same facet are one patch: their points are weighed by area and reduced to four that carry the same area
+/// integrals (mean, second moments, and the gap as a linear function). A wall feels the same however finely
+/// it was meshed or cut.
 
 #include <vector>
 
@@ -42,7 +42,7 @@ struct ContactRows {
 };
 
 /// Fills `out.rows`. `shading` has one entry per body, or is empty for force directions without shading.
-void make_contact_rows(const World& world, std::span<const Pose> X_WB, std::span<const ContactPatch> patches,
+void make_contact_rows(std::span<const Pose> X_WB, std::span<const ContactPatch> patches,
                        const std::vector<ShadingNormals>& shading, double stiffness_N_per_m,
                        ContactRows& out) noexcept;
 

@@ -1,5 +1,6 @@
 #include "tactum/haptics/frame.h"
 
+#include "tactum/haptics/energy.h"
 #include "tactum/haptics/response.h"
 
 namespace tactum {
@@ -29,13 +30,13 @@ Wrench haptic_frame(const World& world, const FrameSettings& settings, const Dev
   if (state.hand.known) {
     // How fast does everything move, and how far may it come: delta = v_c dt.
     wanted_velocities(world, settings, dt, state);
-    tolerances_from_speed(dt, state);
+    tolerances_from_speed(settings, dt, state);
     state.ended(Stage::kVelocities);
 
     // Which pairs could touch, and where do they?
     state.finder.find_near_pairs(state.world.X_WB, state.reach, settings.penalty.min_tolerance_m);
     state.ended(Stage::kNearPairs);
-    state.finder.find_patches(state.world.X_WB, settings.budget.max_exact_tests);
+    state.finder.find_patches(state.world.X_WB, settings.budget.max_exact_tests, points_wanted(settings));
     report.work = state.finder.work();
     report.flags |= flags_of(report.work);
     state.ended(Stage::kExactTests);
@@ -52,11 +53,16 @@ Wrench haptic_frame(const World& world, const FrameSettings& settings, const Dev
   report.coupling = raw;
   report.smoothed = smooth_wrench(settings.smoothing, state.smoothing, to_device(state.hand, raw));
 
-  // Is it safe to send?
-  const SafetyInput input{.wanted = report.smoothed,
+  // Does it make energy? Is it safe to send?
+  const PortInput port = port_input(world, settings, state, report);
+  const Wrench passive = passive_wrench(settings.port, state.port, sample, port, report.port);
+  const SafetyInput input{.wanted = passive,
                           .X_DH = sample.X_DH,
                           .sample_valid = sample.valid,
                           .sample_age_s = tick.now_s - sample.time_s,
+                          .motors_on = sample.motors_on,
+                          .refused = tick.refused,
+                          .now_s = tick.now_s,
                           .period_s = tick.period_s,
                           .late = tick.late,
                           .stop = tick.stop};

@@ -7,6 +7,7 @@
 #include "tactum/base/hash.h"
 #include "tactum/collision/contact_finder.h"
 #include "tactum/dynamics/world.h"
+#include "tactum/haptics/passivity.h"
 #include "tactum/math/spatial.h"
 
 namespace tactum {
@@ -35,6 +36,7 @@ struct FrameReport {
       restoring;  ///< sum of the contact forces on the held part, at its centre of mass, world axes [N, N m]
   Wrench coupling;  ///< spring from hand to proxy, at the handle, world axes: the raw wrench [N, N m]
   Wrench smoothed;  ///< after smoothing, device axes [N, N m]
+  PortReport port;  ///< energy that passed between hand and scene, and what was done about it
   Wrench shown;     ///< after safety, device axes: what was sent [N, N m]
   double tolerance_m = 0.0;     ///< largest delta of a pair in contact; 0 without contact [m]
   double min_distance_m = 0.0;  ///< smallest signed distance of the pairs in contact; 0 without contact [m]
@@ -44,6 +46,9 @@ struct FrameReport {
   int contact_points = 0;       ///< rows of the contact problem
   int held_contact_points = 0;  ///< ... that push the held part
   int solver_iterations = 0;
+  int active_constraints = 0;  ///< rows that hold the bodies (constraint response)
+  int validation_tests = 0;    ///< exact tests of poses before they were taken
+  int validation_retries = 0;  ///< steps that were not taken as they came
   ContactWork work;
 
   bool in_contact() const { return work.patches > 0; }

@@ -21,7 +21,8 @@ FrameState::FrameState(const World& constant_world, const FrameSettings& setting
       mobility(constant_world.bodies.size(), Mobility::Zero()),
       X_WB_start(world.X_WB),
       reach(constant_world.bodies.size(), 0.0),
-      contacts(settings.budget.rooms.patches, static_cast<std::size_t>(settings.budget.max_contact_points)) {
+      contacts(settings.budget.rooms.patches, static_cast<std::size_t>(settings.budget.max_contact_points)),
+      constraint(constant_world, settings) {
   hand.X_WD = settings.workspace.X_WD;
   if (!settings.shading.on) return;
   for (const Body& body : constant_world.bodies)

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "tactum/collision/contact_finder.h"
+#include "tactum/haptics/constraint.h"
 #include "tactum/haptics/contact_force.h"
 #include "tactum/haptics/hand.h"
 #include "tactum/haptics/safety.h"
@@ -33,6 +34,7 @@ struct FrameState {
   ContactFinder finder;
   std::vector<ShadingNormals> shading;  ///< one per body; empty when shading is off
   SmoothingState smoothing;
+  PortState port;
   SafetyState safety;
   StageObserver* observer;  ///< may be null
 
@@ -42,6 +44,7 @@ struct FrameState {
   std::vector<Pose> X_WB_start;  ///< poses at the start of the frame
   std::vector<double> reach;
   ContactRows contacts;
+  ConstraintState constraint;
 
   void ended(Stage stage) noexcept {
     if (observer) observer->stage_ended(stage);

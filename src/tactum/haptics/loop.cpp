@@ -42,6 +42,7 @@ Result<VirtualRun> run_virtual(Device& device, HapticFrame& frame, double rate_H
       record.tick.stop = run.stopped_early = true;
       end = i + 1 + stop_frames;
     }
+    record.tick.refused = !record.written;
   }
   device.write({});
   device.close();

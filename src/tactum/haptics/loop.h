@@ -19,6 +19,7 @@ struct FrameTick {
   double now_s = 0.0;       ///< on the loop's clock, zero at the start [s]
   double period_s = 0.001;  ///< nominal time between frames [s]
   bool late = false;        ///< this frame comes later than the loop's late limit allows
+  bool refused = false;     ///< the device did not take the last frame's wrench
   bool stop = false;        ///< lead the wrench to zero; the loop ends when it is
 };
 

@@ -135,6 +135,7 @@ bool LoopThread::run_frame(Clock& clock, FrameTick& tick, DeviceSample& sample) 
     timing.missed_deadlines = static_cast<std::uint64_t>(missed);
   }
   if (!written) add(failed_writes_, 1);
+  tick.refused = !written;
   refused_in_a_row_ = written ? 0 : refused_in_a_row_ + 1;
   if (tick.late) add(late_frames_, 1);
   publish(timing);

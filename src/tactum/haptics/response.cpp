@@ -65,9 +65,9 @@ void undo_non_finite(FrameState& state, FrameReport& report) {
 /// Distances are those the frame found, before anything moved.
 void report_distances(const World& world, std::span<const ContactPatch> patches, FrameReport& report) {
   for (const ContactPatch& patch : patches) {
-    const Polytope& a = world.bodies[Index(patch.body_a)].part->pieces[Index(patch.piece_a)];
-    const Polytope& b = world.bodies[Index(patch.body_b)].part->pieces[Index(patch.piece_b)];
-    report.penetrating |= -patch.distance > tolerances::kPenetrating * (a.size + b.size);
+    const double size =
+        world.bodies[Index(patch.body_a)].part->size + world.bodies[Index(patch.body_b)].part->size;
+    report.penetrating |= -patch.distance > tolerances::kPenetrating * size;
     report.tolerance_m = std::max(report.tolerance_m, patch.tolerance);
     const bool first = &patch == patches.data();
     report.min_distance_m = first ? patch.distance : std::min(report.min_distance_m, patch.distance);
@@ -83,52 +83,13 @@ void report_contacts(const FrameState& state, double h, FrameReport& report) {
     report.restoring = contact_wrench(state.contacts.rows, held, state.world.X_WB[Index(held)].p, h);
 }
 
-}  // namespace
-
-void grasp(const FrameSettings& settings, FrameState& state) noexcept {
-  if (state.tool.body < 0) return;
-  const Pose& X_WB = state.world.X_WB[Index(state.tool.body)];
-  HandTracking& hand = state.hand;
-  hand.X_WD.p += X_WB * settings.tool.X_BH.p - hand.X_WH.p;
-  hand.X_WH.p = X_WB * settings.tool.X_BH.p;
-  state.tool.X_BH.R = X_WB.R.transpose() * hand.X_WH.R;
-}
-
-void wanted_velocities(const World& world, const FrameSettings& settings, double dt_s,
-                       FrameState& state) noexcept {
-  for (Index i = 0; i < world.bodies.size(); ++i) {
-    const Body& body = world.bodies[i];
-    if (!body.moves()) continue;
-    const Pose& X_WB = state.world.X_WB[i];
-    Twist& V_WB = state.world.V_WB[i];
-    state.resistance[i] = resistance_of(world, settings, state, i, dt_s);
-    if (static_cast<int>(i) == state.tool.body) {
-      V_WB = velocity_to_hand(state.tool, X_WB, state.hand.X_WH, dt_s);
-    } else {
-      V_WB.v += world.gravity_W * dt_s;
-    }
-    V_WB = constrained_velocity(body.joint, X_WB, state.resistance[i], V_WB);
-    state.mobility[i] = mobility(body.joint, X_WB, state.resistance[i]);
-  }
-  limit_held(settings, dt_s, state);
-}
-
-void tolerances_from_speed(double dt_s, FrameState& state) noexcept {
-  for (Index i = 0; i < state.reach.size(); ++i) {
-    const Twist& V = state.world.V_WB[i];
-    state.reach[i] = (V.v.norm() + V.w.norm() * state.finder.radius(static_cast<int>(i))) * dt_s;
-  }
-}
-
-void respond(const World& world, const FrameSettings& settings, double dt_s, FrameState& state,
-             FrameReport& report) noexcept {
+void respond_by_penalty(const World& world, const FrameSettings& settings, double dt_s, FrameState& state,
+                        FrameReport& report) {
   std::vector<Pose>& X_WB = state.world.X_WB;
   std::vector<Twist>& V_WB = state.world.V_WB;
   std::vector<ContactRow>& rows = state.contacts.rows;
-  state.X_WB_start = X_WB;  // same size: nothing is allocated
-  make_contact_rows(world, X_WB, state.finder.patches(), state.shading, settings.penalty.stiffness_N_per_m,
+  make_contact_rows(X_WB, state.finder.patches(), state.shading, settings.penalty.stiffness_N_per_m,
                     state.contacts);
-  report_distances(world, state.finder.patches(), report);
   const double impact = smallest_time_of_impact(rows, X_WB, V_WB, dt_s);
   const double rest = dt_s - impact;
   // The held part has no mass to be slowed before the impact: its friction acts where it is pulled.
@@ -149,9 +110,63 @@ void respond(const World& world, const FrameSettings& settings, double dt_s, Fra
   }
   for (Index i = 0; i < world.bodies.size(); ++i)
     if (world.bodies[i].moves()) X_WB[i] = constrained_pose(world.bodies[i], X_WB[i]);
+  report.time_of_impact_s = impact;
+}
+
+}  // namespace
+
+void grasp(const FrameSettings& settings, FrameState& state) noexcept {
+  if (state.tool.body < 0) return;
+  const Pose& X_WB = state.world.X_WB[Index(state.tool.body)];
+  HandTracking& hand = state.hand;
+  hand.X_WD.p += X_WB * settings.tool.X_BH.p - hand.X_WH.p;
+  hand.X_WH.p = X_WB * settings.tool.X_BH.p;
+  state.tool.X_BH.R = X_WB.R.transpose() * hand.X_WH.R;
+}
+
+void wanted_velocities(const World& world, const FrameSettings& settings, double dt_s,
+                       FrameState& state) noexcept {
+  if (settings.response == ResponseModel::kConstraint) return pull_free_bodies(world, dt_s, state);
+  for (Index i = 0; i < world.bodies.size(); ++i) {
+    const Body& body = world.bodies[i];
+    if (!body.moves()) continue;
+    const Pose& X_WB = state.world.X_WB[i];
+    Twist& V_WB = state.world.V_WB[i];
+    state.resistance[i] = resistance_of(world, settings, state, i, dt_s);
+    if (static_cast<int>(i) == state.tool.body) {
+      V_WB = velocity_to_hand(state.tool, X_WB, state.hand.X_WH, dt_s);
+    } else {
+      V_WB.v += world.gravity_W * dt_s;
+    }
+    V_WB = constrained_velocity(body.joint, X_WB, state.resistance[i], V_WB);
+    state.mobility[i] = mobility(body.joint, X_WB, state.resistance[i]);
+  }
+  limit_held(settings, dt_s, state);
+}
+
+void tolerances_from_speed(const FrameSettings& settings, double dt_s, FrameState& state) noexcept {
+  if (settings.response == ResponseModel::kConstraint) return trusted_reach(dt_s, state);
+  for (Index i = 0; i < state.reach.size(); ++i) {
+    const Twist& V = state.world.V_WB[i];
+    state.reach[i] = (V.v.norm() + V.w.norm() * state.finder.radius(static_cast<int>(i))) * dt_s;
+  }
+}
+
+PatchPoints points_wanted(const FrameSettings& settings) noexcept {
+  return settings.response == ResponseModel::kConstraint ? PatchPoints::kClosest : PatchPoints::kQuadrature;
+}
+
+void respond(const World& world, const FrameSettings& settings, double dt_s, FrameState& state,
+             FrameReport& report) noexcept {
+  state.X_WB_start = state.world.X_WB;  // same size: nothing is allocated
+  report_distances(world, state.finder.patches(), report);
+  if (settings.response == ResponseModel::kConstraint) {
+    respond_constrained(world, settings, dt_s, state, report);
+  } else {
+    respond_by_penalty(world, settings, dt_s, state, report);
+  }
   undo_non_finite(state, report);
   if (state.contacts.full) report.flags |= frame_flag::kPointsFull;
-  report.time_of_impact_s = impact;
 }
 
 Wrench felt_wrench(const FrameSettings& settings, FrameState& state, FrameReport& report) noexcept {
@@ -159,6 +174,7 @@ Wrench felt_wrench(const FrameSettings& settings, FrameState& state, FrameReport
   if (state.tool.body < 0) return {};
   const Pose& X_WB = state.world.X_WB[Index(state.tool.body)];
   report.X_WH_proxy = X_WB * state.tool.X_BH;
+  if (settings.response == ResponseModel::kConstraint) return state.constraint.felt;
   // The velocity that counts is the way of the whole frame, not the last part's after an impact.
   const Pose X_WH_before = state.X_WB_start[Index(state.tool.body)] * state.tool.X_BH;
   const Twist V_WH_proxy = twist_between(X_WH_before, report.X_WH_proxy, settings.dt_s);

@@ -1,5 +1,6 @@
 #pragma once
-/// The stages of the penalty response that frame.cpp strings together [Gregory 2000, 5.2, 6.1].
+/// The stages of the response that frame.cpp strings together: the penalty response as published [Gregory
+/// 2000, 5.2, 6.1], or the constraint response (constraint.h), as the settings say.
 
 #include "tactum/haptics/frame_report.h"
 #include "tactum/haptics/frame_state.h"
@@ -17,14 +18,19 @@ void wanted_velocities(const World& world, const FrameSettings& settings, double
                        FrameState& state) noexcept;
 
 /// v_c dt of every body: linear and angular speed bound [Gregory 2000, 5.2]. Fills state.reach.
-void tolerances_from_speed(double dt_s, FrameState& state) noexcept;
+void tolerances_from_speed(const FrameSettings& settings, double dt_s, FrameState& state) noexcept;
 
-/// Advances to the smallest time of impact, applies the contact forces, advances with the new velocities for
-/// the rest of the frame, and puts every transform back on its joint. Fills the report's response fields.
+/// What the response needs to know of a patch: points that carry its force, or its features.
+PatchPoints points_wanted(const FrameSettings& settings) noexcept;
+
+/// Penalty: advances to the smallest time of impact, applies the contact forces, advances with the new
+/// velocities for the rest of the frame, and puts every transform back on its joint. Constraint: moves
+/// everything as far as nothing is entered. Fills the report's response fields.
 void respond(const World& world, const FrameSettings& settings, double dt_s, FrameState& state,
              FrameReport& report) noexcept;
 
-/// The raw wrench at the handle: the coupling from the hand to the proxy. Zero when nothing is held.
+/// The raw wrench at the handle: the coupling from the hand to the proxy, or the sum of the constraint
+/// forces. Zero when nothing is held.
 Wrench felt_wrench(const FrameSettings& settings, FrameState& state, FrameReport& report) noexcept;
 
 }  // namespace tactum

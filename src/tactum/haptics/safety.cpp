@@ -3,12 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tactum/math/screw.h"
+
 namespace tactum {
 namespace {
 
 using namespace safety_flag;
 
 constexpr double kFullScaleTime_s = 0.005;
+
+/// A frozen pose matters when this share of the largest force (torque) would go on being sent.
+constexpr double kMatters = 0.01;
 
 /// Scales `v` to at most `limit`; true when it did. A limit of zero gives exactly zero.
 bool limit_length(Vec3& v, double limit) noexcept {
@@ -26,6 +31,31 @@ bool limit_step(const Vec3& from, Vec3& v, double step) noexcept {
   return true;
 }
 
+/// What is wrong with how the pose moves; remembers the pose.
+std::uint32_t faults_of_motion(const SafetyLimits& limits, SafetyState& state,
+                               const SafetyInput& input) noexcept {
+  if (!input.sample_valid || !plausible(input.X_DH)) return 0;
+  const double time_s = input.now_s - input.sample_age_s;
+  std::uint32_t flags = 0;
+  if (state.measured) {
+    // The first argument is kept when the second is NaN.
+    const double since_s = std::max(input.period_s, time_s - state.measured_s);
+    const Twist step = twist_between(state.X_DH, input.X_DH, 1.0);
+    if (step.v.norm() > limits.max_speed_m_per_s * since_s ||
+        step.w.norm() > limits.max_turn_rad_per_s * since_s)
+      flags |= kPoseLeapt;
+    const bool still = input.X_DH.p == state.X_DH.p && input.X_DH.R == state.X_DH.R;
+    state.still_s = still ? state.still_s + input.period_s : 0.0;
+    const bool matters = input.wanted.f.norm() > kMatters * limits.max_force_N ||
+                         input.wanted.t.norm() > kMatters * limits.max_torque_Nm;
+    if (state.still_s > limits.max_still_s && matters) flags |= kPoseFrozen;
+  }
+  state.X_DH = input.X_DH;
+  state.measured_s = time_s;
+  state.measured = true;
+  return flags;
+}
+
 std::uint32_t faults(const SafetyLimits& limits, SafetyState& state, const SafetyInput& input) noexcept {
   std::uint32_t flags = 0;
   if (!input.wanted.finite() || !std::isfinite(input.period_s) || input.period_s <= 0.0)
@@ -36,7 +66,9 @@ std::uint32_t faults(const SafetyLimits& limits, SafetyState& state, const Safet
   state.invalid_reads = input.sample_valid ? 0 : std::min(state.invalid_reads + 1, limits.max_invalid_reads);
   if (!input.sample_valid && state.invalid_reads >= limits.max_invalid_reads) flags |= kReadsFailing;
   if (input.late) flags |= kMissedDeadline;
-  return flags;
+  if (input.refused) flags |= kWrenchRefused;
+  if (!input.motors_on) flags |= kMotorsOff;
+  return flags | faults_of_motion(limits, state, input);
 }
 
 /// Moves the gain along its ramp. A ramp of no length is a step.
@@ -56,6 +88,7 @@ SafetyLimits safety_limits(const DeviceInfo& info) noexcept {
   limits.max_torque_Nm = std::max(0.0, info.max_torque_Nm);
   limits.max_force_slew_N_per_s = limits.max_force_N / kFullScaleTime_s;
   limits.max_torque_slew_Nm_per_s = limits.max_torque_Nm / kFullScaleTime_s;
+  if (info.max_still_s > 0.0) limits.max_still_s = info.max_still_s;
   return limits;
 }
 
@@ -121,6 +154,10 @@ std::string safety_flag_names(std::uint32_t flags) {
       {kStaleSample, "sample stale"},
       {kReadsFailing, "reads failing"},
       {kMissedDeadline, "deadline missed"},
+      {kPoseLeapt, "pose leapt"},
+      {kPoseFrozen, "pose frozen"},
+      {kWrenchRefused, "wrench refused"},
+      {kMotorsOff, "motors off"},
   };
   std::string text;
   for (const auto& entry : kNames) {

@@ -3,7 +3,8 @@
 /// hand or the motors. It stands on its own, cannot be switched off, only tightened.
 ///
 ///   fault? ---- yes -> zero, at once                     fault: wrench or pose not finite, sample stale,
-///     no                                                        reads failing, loop late
+///     no                                                        reads failing, pose leapt or frozen, loop
+///     |                                                         late, wrench refused, motors off
 ///   gain up (start ramp) or down (stop ramp)
 ///   gain * wanted -> magnitude limit -> slew limit -> magnitude limit
 ///
@@ -37,6 +38,10 @@ struct SafetyLimits {
   double stop_ramp_s = 0.1;               ///< from full to zero when asked to stop [s]
   double max_sample_age_s = 0.020;        ///< an older sample is stale [s]
   int max_invalid_reads = 5;              ///< so many reads in a row that fail are a fault
+  double max_speed_m_per_s = 5.0;         ///< a handle that moves faster has leapt, or is thrown [m/s]
+  double max_turn_rad_per_s = 60.0;       ///< ... or turns faster [rad/s]
+  double max_still_s =
+      std::numeric_limits<double>::infinity();  ///< a pose the same to the bit for longer is frozen [s]
 };
 
 /// What a user may ask for. Each can only make the limit tighter than the device's; anything else is ignored.
@@ -68,8 +73,13 @@ inline constexpr std::uint32_t kImplausiblePose = 1u << 8;  ///< fault
 inline constexpr std::uint32_t kStaleSample = 1u << 9;      ///< fault
 inline constexpr std::uint32_t kReadsFailing = 1u << 10;    ///< fault
 inline constexpr std::uint32_t kMissedDeadline = 1u << 11;  ///< fault
-inline constexpr std::uint32_t kFaults =
-    kNonFiniteWrench | kImplausiblePose | kStaleSample | kReadsFailing | kMissedDeadline;
+inline constexpr std::uint32_t kPoseLeapt = 1u << 12;       ///< fault: farther than a hand moves
+inline constexpr std::uint32_t kPoseFrozen = 1u << 13;      ///< fault: stiller than a hand can hold
+inline constexpr std::uint32_t kWrenchRefused = 1u << 14;   ///< fault: the last write failed
+inline constexpr std::uint32_t kMotorsOff = 1u << 15;       ///< fault: the device says so
+inline constexpr std::uint32_t kFaults = kNonFiniteWrench | kImplausiblePose | kStaleSample | kReadsFailing |
+                                         kMissedDeadline | kPoseLeapt | kPoseFrozen | kWrenchRefused |
+                                         kMotorsOff;
 }  // namespace safety_flag
 
 /// "force limited, starting": for displays and logs, not for the frame.
@@ -80,15 +90,22 @@ struct SafetyInput {
   Pose X_DH;                  ///< the pose it was computed from [m]
   bool sample_valid = false;  ///< the read succeeded
   double sample_age_s = 0.0;  ///< now minus the sample's time [s]
+  bool motors_on = true;      ///< as the sample says
+  bool refused = false;       ///< the device did not take the last wrench
+  double now_s = 0.0;         ///< on the loop's clock [s]
   double period_s = 0.001;    ///< nominal time between frames [s]
   bool late = false;          ///< the loop was late by more than it may
   bool stop = false;          ///< stop requested
 };
 
 struct SafetyState {
-  Wrench sent;            ///< last frame's answer [N, N m]
-  double gain = 0.0;      ///< of the ramps, 0 to 1
-  int invalid_reads = 0;  ///< in a row
+  Wrench sent;              ///< last frame's answer [N, N m]
+  double gain = 0.0;        ///< of the ramps, 0 to 1
+  int invalid_reads = 0;    ///< in a row
+  Pose X_DH;                ///< the last that was measured, whatever it was worth [m]
+  double measured_s = 0.0;  ///< when, on the loop's clock [s]
+  double still_s = 0.0;     ///< for so long it has been the same to the bit [s]
+  bool measured = false;    ///< there has been one
 };
 
 struct SafetyReport {

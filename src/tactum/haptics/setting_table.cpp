@@ -18,6 +18,8 @@ using Safety = SafetySettings;
 constexpr SettingKind kNumber = SettingKind::kNumber;
 constexpr SettingKind kInteger = SettingKind::kInteger;
 constexpr SettingKind kOnOff = SettingKind::kOnOff;
+constexpr SettingKind kChoice = SettingKind::kChoice;
+constexpr const char* kResponses[] = {"penalty", "constraint"};  // as in ResponseModel
 
 /// Reading and writing a member of a section of the frame's settings, and of what is asked of safety.
 template <auto Section, auto Member>
@@ -52,6 +54,20 @@ constexpr SettingInfo kSettings[] = {
   {"coupling", "damping_Nms_per_rad", "Turning damping", "N m s/rad", "the same against turning", 0, 0.05, kNumber, true,
    get_field<&Frame::coupling, &Coupling::damping_Nms_per_rad>,
    set_field<&Frame::coupling, &Coupling::damping_Nms_per_rad>},
+
+  {"", "response", "Response", "", "how contacts push: springs as published, or nothing is entered", 0, 1, kChoice, false,
+   [](const Frame& frame, const Safety&) { return static_cast<double>(frame.response); },
+   [](Frame& frame, Safety&, double value) { frame.response = value != 0.0 ? ResponseModel::kConstraint : ResponseModel::kPenalty; },
+   kResponses},
+  {"constraint", "max_step_m", "Longest step", "m", "how far the held part may travel in one frame", 0.05e-3, 0.005, kNumber, true,
+   get_field<&Frame::constraint, &Constraint::max_step_m>,
+   set_field<&Frame::constraint, &Constraint::max_step_m>},
+  {"constraint", "least_step_m", "First step", "m", "how far it may always try to travel; from there the step doubles", 0.01e-3, 0.001, kNumber, true,
+   get_field<&Frame::constraint, &Constraint::least_step_m>,
+   set_field<&Frame::constraint, &Constraint::least_step_m>},
+  {"constraint", "max_turn_deg", "Largest turn", "deg", "how far the held part may turn in one frame", 0.1, 5, kNumber, true,
+   [](const Frame& frame, const Safety&) { return degrees(frame.constraint.max_turn_rad); },
+   [](Frame& frame, Safety&, double value) { frame.constraint.max_turn_rad = radians(value); }},
 
   {"penalty", "stiffness_N_per_m", "Contact stiffness", "N/m", "how hard a wall pushes per metre it is entered", 50, 20000, kNumber, true,
    get_field<&Frame::penalty, &Penalty::stiffness_N_per_m>,
@@ -138,7 +154,9 @@ std::string settings_toml(const FrameSettings& frame, const SafetySettings& safe
   for (const SettingInfo& setting : kSettings) {
     const double value = setting.get(frame, safety);
     if (!std::isfinite(value)) continue;  // no limit: the key's absence says so
-    const std::string shown = setting.kind == SettingKind::kOnOff     ? (value != 0.0 ? "true" : "false")
+    const std::string shown = setting.kind == SettingKind::kOnOff ? (value != 0.0 ? "true" : "false")
+                              : setting.kind == SettingKind::kChoice
+                                  ? fmt::format("\"{}\"", setting.choices[static_cast<std::size_t>(value)])
                               : setting.kind == SettingKind::kInteger ? fmt::format("{:.0f}", value)
                                                                       : fmt::format("{}", value);
     const std::string unit = *setting.unit ? fmt::format(" [{}]", setting.unit) : "";

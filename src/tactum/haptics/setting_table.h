@@ -17,7 +17,12 @@ struct UserSettings {
   SafetySettings safety;
 };
 
-enum class SettingKind { kNumber, kInteger, kOnOff };
+enum class SettingKind {
+  kNumber,
+  kInteger,
+  kOnOff,
+  kChoice  ///< a word; its value is its place in SettingInfo::choices
+};
 
 struct SettingInfo {
   const char* section;  ///< of the scene file; "" for the file's top
@@ -30,6 +35,7 @@ struct SettingInfo {
   bool live;  ///< takes effect between two frames; else when the scene starts again
   double (*get)(const FrameSettings&, const SafetySettings&);  ///< infinite where there is no limit
   void (*set)(FrameSettings&, SafetySettings&, double);
+  std::span<const char* const> choices = {};  ///< the words of a kChoice
 };
 
 /// In the order in which people should meet them.

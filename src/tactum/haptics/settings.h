@@ -3,7 +3,10 @@
 /// the paper's value. Constant while frames run. [Gregory 2000]: "Six Degree-of-Freedom Haptic Display of
 /// Polygonal Models".
 
+#include <vector>
+
 #include "tactum/collision/contact_finder.h"
+#include "tactum/haptics/passivity.h"
 #include "tactum/haptics/safety.h"
 #include "tactum/haptics/smoothing.h"
 #include "tactum/math/spatial.h"
@@ -32,6 +35,32 @@ struct Penalty {
   double min_tolerance_m = 2e-5;  ///< smallest delta, so that a resting part keeps its contacts [m]
 };
 
+/// Which of the two responses moves the held part.
+enum class ResponseModel {
+  kPenalty,    ///< as published: contacts are springs, and are entered
+  kConstraint  ///< nothing is entered
+};
+
+/// The constraint response. The hand feels its coupling's stiffness and nothing else.
+struct Constraint {
+  double max_step_m = 1e-3;    ///< farthest that a point of the held part goes in a frame [m]
+  double least_step_m = 5e-5;  ///< as far it may always try to go; from there it doubles [m]
+  /// ... while surfaces without pieces touch: what can be met within a step, and the time to find it, grow
+  /// with the step.
+  double max_step_on_surfaces_m = 3e-5;  ///< [m]
+  double max_turn_rad = 0.020;           ///< farthest that the held part turns in a frame [rad]
+};
+
+/// Dry friction in the constraint response, told for pairs of bodies (scene files tell it for materials).
+struct FrictionSettings {
+  std::vector<double> coefficients;  ///< bodies x bodies, row after row; empty: none [-]
+  int bodies = 0;
+
+  double between(int a, int b) const noexcept {
+    return coefficients.empty() ? 0.0 : coefficients[static_cast<std::size_t>(a * bodies + b)];
+  }
+};
+
 /// Which part is held, and where.
 struct Tool {
   int body = -1;  ///< index into World::bodies; -1: nothing is held, the hand feels nothing
@@ -46,10 +75,10 @@ struct Shading {
 
 /// What the frame may spend; part of the recorded input, never a clock reading.
 struct WorkBudget {
-  int max_exact_tests = 4096;    ///< exact tests a frame (paper 4.2: the array of fixed length) [-]
-  int max_contact_points = 512;  ///< contact points a frame [-]
-  ContactFinderRooms rooms;      ///< near pairs and patches there is memory for
-  int solver_iterations = 60;    ///< sweeps of the contact solver over many rows, at most [-]
+  int max_exact_tests = 4096;     ///< exact tests a frame (paper 4.2: the array of fixed length) [-]
+  int max_contact_points = 2048;  ///< contact points a frame [-]
+  ContactFinderRooms rooms;       ///< near pairs and patches there is memory for
+  int solver_iterations = 60;     ///< sweeps of the contact solver over many rows, at most [-]
 };
 
 /// All of it.
@@ -58,9 +87,13 @@ struct FrameSettings {
   Workspace workspace;
   Tool tool;
   Coupling coupling;
+  ResponseModel response = ResponseModel::kConstraint;
   Penalty penalty;
+  Constraint constraint;
+  FrictionSettings friction;
   Shading shading;
   SmoothingSettings smoothing;
+  PortSettings port;
   SafetyLimits safety;
   WorkBudget budget;
 };

@@ -1,7 +1,9 @@
 #include "tactum/haptics/shading.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include "tactum/base/tolerances.h"
 
@@ -60,7 +62,8 @@ ShadingNormals::ShadingNormals(const Part& part, double crease_rad) : part_(&par
     first_face_.push_back(static_cast<int>(curved_face_.size()));
     shade_polytope(piece, cosine);
   }
-  if (part.one_sided) shade_surface(part, cosine);
+  shade_surface(cosine);
+  if (!part.true_surface.alone()) shade_over_seams(part, cosine);
   for (Index p = 0; p < part.pieces.size(); ++p) {
     const Polytope& piece = part.pieces[p];
     for (Index f = 0; f < piece.faces.size(); ++f) {
@@ -95,27 +98,59 @@ void ShadingNormals::shade_polytope(const Polytope& piece, double cosine) {
     }
 }
 
-/// The pieces of a surface are single triangles: what meets at a corner is known by the mesh alone.
-void ShadingNormals::shade_surface(const Part& part, double cosine) {
-  std::vector<std::vector<int>> around(part.surface.vertices.size());
-  for (Index t = 0; t < part.surface.triangles.size(); ++t)
-    for (int v : part.surface.triangles[t]) around[Index(v)].push_back(static_cast<int>(t));
-  for (Index t = 0; t < part.pieces.size(); ++t) {
-    const Polytope& piece = part.pieces[t];
-    const Vec3& own = part.piece_normal[t];
-    const Index front = piece.faces[0].normal.dot(own) > 0.0 ? 0 : 1;
-    for (int v : part.surface.triangles[t]) {
-      Vec3 sum = Vec3::Zero();
-      for (int other : around[Index(v)])
-        if (part.piece_normal[Index(other)].dot(own) >= cosine) sum += part.piece_normal[Index(other)];
-      const Vec3 normal = sum.normalized();
-      if ((normal - own).norm() < tolerances::kSameNormal) continue;
-      const Polytope::Face& face = piece.faces[front];
-      for (int slot = face.first; slot < face.first + face.count; ++slot)
-        if (piece.vertices[Index(piece.face_vertices[Index(slot)])] == part.surface.vertices[Index(v)])
-          corners_[Index(first_slot_[t] + slot)].normal = normal;
+/// True faces around a corner, of the piece and of those that touch it there, each true face once.
+void ShadingNormals::shade_over_seams(const Part& part, double cosine) {
+  const TrueSurface& surface = part.true_surface;
+  const double noise = tolerances::kCoplanarMeshOffset * part.size;
+  std::vector<std::pair<int, Vec3>> around;  // group and normal
+  const auto gather = [&](int piece, const Vec3& corner) {
+    const Polytope& P = part.pieces[Index(piece)];
+    for (int f = 0; f < P.counts[2]; ++f) {
+      const int group = surface.group_of(piece, 2, f);
+      const Polytope::Face& face = P.faces[Index(f)];
+      if (group < 0 || std::abs(face.normal.dot(corner) - face.offset) > noise) continue;
+      const bool known =
+          std::any_of(around.begin(), around.end(), [&](const auto& one) { return one.first == group; });
+      if (!known) around.emplace_back(group, face.normal);
+    }
+  };
+  for (Index p = 0; p < part.pieces.size(); ++p) {
+    const Polytope& piece = part.pieces[p];
+    for (int v = 0; v < piece.counts[0]; ++v) {
+      around.clear();
+      gather(static_cast<int>(p), piece.vertices[Index(v)]);
+      for (int neighbour : surface.neighbours(surface.number(static_cast<int>(p), 0, v)))
+        gather(neighbour, piece.vertices[Index(v)]);
+      for (const Polytope::Face& face : piece.faces)
+        for (int slot = face.first; slot < face.first + face.count; ++slot) {
+          if (piece.face_vertices[Index(slot)] != v) continue;
+          Vec3 sum = Vec3::Zero();
+          for (const auto& [group, normal] : around)
+            if (normal.dot(face.normal) >= cosine) sum += normal;
+          const bool alone = (sum.normalized() - face.normal).norm() < tolerances::kSameNormal;
+          corners_[Index(first_slot_[p] + slot)].normal = alone ? face.normal : Vec3(sum.normalized());
+        }
     }
   }
+}
+
+void ShadingNormals::shade_surface(double cosine) {
+  const TriangleMesh& mesh = part_->surface;
+  std::vector<Vec3> own(mesh.triangles.size());
+  std::vector<std::vector<int>> around(mesh.vertices.size());
+  for (Index t = 0; t < mesh.triangles.size(); ++t) {
+    own[t] = triangle_normal(mesh, t);
+    for (int v : mesh.triangles[t]) around[Index(v)].push_back(static_cast<int>(t));
+  }
+  triangle_normals_.resize(mesh.triangles.size());
+  for (Index t = 0; t < mesh.triangles.size(); ++t)
+    for (Index k = 0; k < 3; ++k) {
+      Vec3 sum = Vec3::Zero();
+      for (int other : around[Index(mesh.triangles[t][k])])
+        if (own[Index(other)].dot(own[t]) >= cosine) sum += own[Index(other)];
+      const Vec3 mean = sum.normalized();
+      triangle_normals_[t][k] = (mean - own[t]).norm() < tolerances::kSameNormal ? own[t] : mean;
+    }
 }
 
 Vec3 ShadingNormals::deviation(int piece, const Feature& feature, const Vec3& point) const noexcept {
@@ -127,11 +162,30 @@ Vec3 ShadingNormals::deviation(int piece, const Feature& feature, const Vec3& po
          face.normal;
 }
 
-Vec3 shaded_normal(const ShadingNormals& a, int piece_a, const ShadingNormals& b, int piece_b,
-                   const Pose& X_AB, const Pose& X_BA, const Manifold& manifold,
-                   const ContactPoint& point) noexcept {
-  const Vec3 from_a = a.deviation(piece_a, manifold.a, point.p_a);
-  const Vec3 from_b = b.deviation(piece_b, manifold.b, X_BA * point.p_b);
+/// Barycentric coordinates weigh the corners of a triangle.
+Vec3 ShadingNormals::deviation_on_surface(const Feature& feature, const Vec3& point) const noexcept {
+  if (feature.kind != FeatureKind::kFace) return Vec3::Zero();
+  const Index t = Index(feature.index);
+  const TriangleMesh& mesh = part_->surface;
+  const Vec3 own = triangle_normal(mesh, t);
+  Vec3 sum = Vec3::Zero();
+  for (Index k = 0; k < 3; ++k) {
+    const Vec3 from = mesh.vertices[Index(mesh.triangles[t][(k + 1) % 3])] - point;
+    const Vec3 to = mesh.vertices[Index(mesh.triangles[t][(k + 2) % 3])] - point;
+    sum += std::max(0.0, own.dot(from.cross(to))) * triangle_normals_[t][k];
+  }
+  const double length = sum.norm();
+  return length > 0.0 ? Vec3(sum / length - own) : Vec3::Zero();
+}
+
+Vec3 shaded_normal(const ShadingNormals& a, const ShadingNormals& b, const Pose& X_AB, const Pose& X_BA,
+                   const ContactPatch& patch, const ContactPoint& point) noexcept {
+  const Manifold& manifold = patch.manifold;
+  const Vec3 p_b = X_BA * point.p_b;
+  const Vec3 from_a = patch.of_surfaces ? a.deviation_on_surface(manifold.a, point.p_a)
+                                        : a.deviation(patch.piece_a, manifold.a, point.p_a);
+  const Vec3 from_b = patch.of_surfaces ? b.deviation_on_surface(manifold.b, p_b)
+                                        : b.deviation(patch.piece_b, manifold.b, p_b);
   return (manifold.normal + rotated(X_AB.R, from_b) - from_a).normalized();
 }
 

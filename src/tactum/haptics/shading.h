@@ -6,11 +6,13 @@
 /// A corner's normal on a face is the mean of the normals of the faces around the corner that meet that face
 /// at less than the crease angle; at a sharp edge it is the face's own. Inside a face, Wachspress coordinates
 /// of the polygon weigh the corners: linear on its edges, so that the direction is continuous from face to
-/// face.
+/// face. Faces around a corner are those of the part's true surface, of whatever piece; a facet that was cut
+/// across is shaded stretch by stretch.
 
+#include <array>
 #include <vector>
 
-#include "tactum/collision/contact.h"
+#include "tactum/collision/contact_finder.h"
 #include "tactum/geometry/part.h"
 #include "tactum/haptics/settings.h"
 
@@ -30,22 +32,25 @@ class ShadingNormals {
   /// How much the interpolated normal at `point` (part's frame) differs from the face's own; zero for
   /// features that are no faces, and on faces whose edges are all sharp.
   Vec3 deviation(int piece, const Feature& feature, const Vec3& point) const noexcept;
+  /// The same for a feature of the part's surface (surface_tree.h).
+  Vec3 deviation_on_surface(const Feature& feature, const Vec3& point) const noexcept;
 
  private:
   void shade_polytope(const Polytope& piece, double cosine);
-  void shade_surface(const Part& part, double cosine);
+  void shade_over_seams(const Part& part, double cosine);
+  void shade_surface(double cosine);
 
   const Part* part_;
   std::vector<int> first_slot_;        // per piece, into corners_; slots as in Polytope::face_vertices
   std::vector<ShadedCorner> corners_;  // per slot
   std::vector<char> curved_face_;      // per piece and face: whether any corner deviates
   std::vector<int> first_face_;        // per piece, into curved_face_
+  std::vector<std::array<Vec3, 3>> triangle_normals_;  // at the corners of the surface's triangles
 };
 
-/// The manifold's normal, turned by the deviations of the faces it lies on; told in A's frame. `p_a` and
-/// `p_b` as in ContactPoint, X_AB the pose of body B in A and X_BA its inverse.
-Vec3 shaded_normal(const ShadingNormals& a, int piece_a, const ShadingNormals& b, int piece_b,
-                   const Pose& X_AB, const Pose& X_BA, const Manifold& manifold,
-                   const ContactPoint& point) noexcept;
+/// The patch's normal, turned by the deviations of the faces it lies on; told in A's frame. X_AB is the pose
+/// of body B in A and X_BA its inverse.
+Vec3 shaded_normal(const ShadingNormals& a, const ShadingNormals& b, const Pose& X_AB, const Pose& X_BA,
+                   const ContactPatch& patch, const ContactPoint& point) noexcept;
 
 }  // namespace tactum

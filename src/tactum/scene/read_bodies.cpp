@@ -71,14 +71,15 @@ void read_body(const TomlReader& reader, const SearchFolders& folders, Scene& sc
   for (const std::string& remark : body.part->remarks)
     scene.remarks.push_back(fmt::format("{} ({}): {}", body.name, shape.file, remark));
   scene.p_BP.push_back(p_BP);
+  scene.materials.push_back(reader.text("material", ""));
   scene.world.bodies.push_back(std::move(body));
 }
 
 }  // namespace
 
 void read_bodies(const TomlReader& root, const SearchFolders& folders, Scene& scene) {
-  const auto readers = root.tables(
-      "body", {"name", "part", "pos_m", "quat_wxyz", "rpy_deg", "mass_kg", "density_kg_per_m3", "joint"});
+  const auto readers = root.tables("body", {"name", "part", "pos_m", "quat_wxyz", "rpy_deg", "mass_kg",
+                                            "density_kg_per_m3", "joint", "material"});
   if (readers.empty()) root.fail(nullptr, "the scene has no [[body]]", "none", "at least one");
   for (const TomlReader& reader : readers) read_body(reader, folders, scene);
 }

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -28,6 +29,46 @@ void read_penalty(const TomlReader& root, Penalty& penalty) {
   penalty.stiffness_N_per_m = table.number("stiffness_N_per_m", penalty.stiffness_N_per_m, kPositive);
   penalty.max_step_m = table.number("max_step_m", penalty.max_step_m, kPositive);
   penalty.min_tolerance_m = table.number("min_tolerance_m", penalty.min_tolerance_m, kNotNegative);
+}
+
+void read_constraint(const TomlReader& root, Constraint& constraint) {
+  const TomlReader table = root.table("constraint", {"max_step_m", "least_step_m", "max_turn_deg"});
+  constraint.max_step_m = table.number("max_step_m", constraint.max_step_m, kPositive);
+  constraint.least_step_m = table.number("least_step_m", constraint.least_step_m, kPositive);
+  if (table.has("max_turn_deg"))
+    constraint.max_turn_rad = radians(table.number("max_turn_deg", {}, kPositive));
+}
+
+ResponseModel response_of(const TomlReader& root) {
+  return root.choice("response", "constraint", {"constraint", "penalty"}) == "penalty"
+             ? ResponseModel::kPenalty
+             : ResponseModel::kConstraint;
+}
+
+/// `[[friction]]`: a coefficient for every pair of bodies of two materials.
+void read_friction(const TomlReader& root, Scene& scene) {
+  const auto pairs = root.tables("friction", {"material_a", "material_b", "coefficient"});
+  if (pairs.empty()) return;
+  const std::size_t bodies = scene.world.bodies.size();
+  FrictionSettings& friction = scene.settings.friction;
+  friction.bodies = static_cast<int>(bodies);
+  friction.coefficients.assign(bodies * bodies, 0.0);
+  for (const TomlReader& pair : pairs) {
+    const double coefficient = pair.number("coefficient", {}, kNotNegative);
+    std::string material[2];
+    for (int side = 0; side < 2; ++side) {
+      const char* const key = side == 0 ? "material_a" : "material_b";
+      material[side] = pair.text(key);
+      const auto& known = scene.materials;
+      if (std::find(known.begin(), known.end(), material[side]) == known.end())
+        pair.fail(key, "no body is of this material", fmt::format("\"{}\"", material[side]),
+                  "the material of a [[body]]");
+    }
+    for (std::size_t a = 0; a < bodies; ++a)
+      for (std::size_t b = 0; b < bodies; ++b)
+        if (scene.materials[a] == material[0] && scene.materials[b] == material[1])
+          friction.coefficients[a * bodies + b] = friction.coefficients[b * bodies + a] = coefficient;
+  }
 }
 
 void read_feel(const TomlReader& root, Shading& shading, SmoothingSettings& smoothing) {
@@ -140,7 +181,10 @@ void read_tool(const TomlReader& root, Scene& scene) {
 void read_settings(const TomlReader& root, Scene& scene) {
   scene.settings.dt_s = root.number("dt_s", 0.001, {kShortestStep_s, kLongestStep_s});
   read_coupling(root, scene.settings.coupling);
+  scene.settings.response = response_of(root);
   read_penalty(root, scene.settings.penalty);
+  read_constraint(root, scene.settings.constraint);
+  read_friction(root, scene);
   read_feel(root, scene.settings.shading, scene.settings.smoothing);
   read_safety(root, scene.safety);
   read_budget(root, scene.settings.budget);

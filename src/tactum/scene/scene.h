@@ -20,10 +20,11 @@ struct Scene {
   World world;
   std::vector<Vec3>
       p_BP;  ///< of each body: the origin of its part's own frame P (that of its file); axes of B are P's [m]
-  FrameSettings settings;  ///< its safety limits are the device's, see `safety`
-  SafetySettings safety;   ///< what the scene tightens; the session applies it to the device's limits
-  std::string device;      ///< preset of the simulated device the hand motion was made for
-  std::string grip;        ///< hand model of the simulated hand
+  std::vector<std::string> materials;  ///< of each body; empty when none is told
+  FrameSettings settings;              ///< its safety limits are the device's, see `safety`
+  SafetySettings safety;  ///< what the scene tightens; the session applies it to the device's limits
+  std::string device;     ///< preset of the simulated device the hand motion was made for
+  std::string grip;       ///< hand model of the simulated hand
   std::shared_ptr<const HandMotion> hand;  ///< what the simulated hand does; it starts at the handle's pose
   std::vector<Goal> goals;
   std::vector<std::string> remarks;  ///< what was not taken as it stood, as sentences

@@ -17,6 +17,12 @@ using SearchFolders = std::vector<std::string>;
 /// `part = { gear = {...} }` and its kin, of the body's table.
 Shape read_shape(const TomlReader& body, const SearchFolders& folders);
 
+/// The keys of `part` whose shapes are made by rule.
+const std::vector<std::string>& made_shapes();
+
+/// The shape under the key `kind`, one of made_shapes(), of the table `part`.
+Shape read_made_shape(const TomlReader& part, const std::string& kind);
+
 /// Every `[[body]]`, into scene.world.bodies, p_BP and remarks.
 void read_bodies(const TomlReader& root, const SearchFolders& folders, Scene& scene);
 

@@ -1,7 +1,7 @@
 #pragma once
-/// What a body is made of before it becomes a part: convex pieces made by rule, or a mesh from a file, both
-/// told in the part's own frame P. The part that comes out has its origin at the centre of mass, as bodies
-/// want it.
+/// What a body is made of before it becomes a part: convex pieces made by rule, a mesh from a file or made by
+/// rule, or a part that `tactum prepare` made, all told in the part's own frame P. The part that comes out
+/// has its origin at the centre of mass, as bodies want it.
 
 #include <memory>
 #include <string>
@@ -10,21 +10,24 @@
 #include "tactum/base/result.h"
 #include "tactum/geometry/mesh_import.h"
 #include "tactum/geometry/part.h"
+#include "tactum/geometry/part_file.h"
 #include "tactum/geometry/polytope.h"
 
 namespace tactum {
 
 struct Shape {
-  std::vector<Polytope> pieces;  ///< made by rule; empty for a mesh
-  std::string file;              ///< where the mesh came from; empty for pieces
-  ImportedMesh mesh;             ///< of the file, in metres
-  bool given = false;            ///< the mesh's groups are the convex pieces
+  std::vector<Polytope> pieces;              ///< made by rule; empty for a mesh
+  std::string file;                          ///< where the mesh came from; empty when made by rule
+  ImportedMesh mesh;                         ///< in metres
+  bool given = false;                        ///< the mesh's groups are the convex pieces
+  PieceSource way = PieceSource::kAuto;      ///< from a mesh that is not given in pieces
+  std::shared_ptr<const PartFile> prepared;  ///< instead of a mesh
 };
 
 /// In P [m].
 Result<Vec3> centre_of_mass(const Shape& shape);
 
-/// The part seen from `origin` [m].
+/// The part seen from `origin` [m]; a prepared one can only be seen from its centre of mass.
 Result<std::shared_ptr<const Part>> part_about(const Vec3& origin, const Shape& shape,
                                                double density_kg_per_m3);
 

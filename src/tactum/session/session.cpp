@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "tactum/devices/registry.h"
+#include "tactum/haptics/coupling_gains.h"
 #include "tactum/haptics/setting_table.h"
 
 namespace tactum {
@@ -13,8 +14,8 @@ constexpr std::size_t kGlances = 4096;  // four seconds at 1 kHz between two pol
 /// Scene files cannot say these things; programs that build a scene of their own can.
 Result<void> check(const Scene& scene) {
   for (const Body& body : scene.world.bodies) {
-    if (!body.part || body.part->pieces.empty())
-      return Error{"a body has no part", "none", "convex pieces", body.name};
+    if (!body.part || body.part->surface.triangles.empty())
+      return Error{"a body has no part", "none", "convex pieces or a surface", body.name};
     if (body.moves() && !(body.mass_kg > 0.0 && body.inertia_B.allFinite() && body.inertia_B.trace() > 0.0))
       return Error{"a body that moves has no mass or inertia", std::to_string(body.mass_kg) + " kg", "more",
                    body.name};
@@ -56,6 +57,7 @@ Session::Session(Scene scene, std::unique_ptr<Device> device)
       goals_(scene_.world, scene_.goals),
       glances_(kGlances) {
   scene_.settings.safety = tightened(device_limits_, scene_.safety);
+  scene_.settings.port = port_settings(device_->info(), rate_Hz());
 }
 
 Result<VirtualRun> Session::run_virtual(std::uint64_t frames, LoopObserver* observer) {

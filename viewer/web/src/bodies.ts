@@ -169,7 +169,9 @@ export class Bodies {
       (child as THREE.Mesh).geometry.dispose();
     }
     if (body === null || piece < 0) return;
-    const mesh = new THREE.Mesh(featureGeometry(this.shapes[this.run.bodies[body].shape], piece, face), this.markMaterial);
+    const shape = this.shapes[this.run.bodies[body].shape];
+    const marked = shape.felt_by_surface ? shape.piece[piece] : piece; // there a contact names a triangle
+    const mesh = new THREE.Mesh(featureGeometry(shape, marked, face), this.markMaterial);
     mesh.renderOrder = 5;
     this.mark.userData.body = body;
     this.mark.add(mesh);

@@ -91,8 +91,9 @@ export function readFrames(buffer: ArrayBuffer): Frames {
   };
 }
 
-/** A part's surface. */
+/** A part's surface; `piece` of each triangle is its flat face where the part is felt by its surface. */
 export interface Shape {
+  felt_by_surface: boolean;
   vertices: Float32Array; triangles: Uint32Array; piece: Uint32Array; face: Uint32Array; covered: Uint8Array;
   edges: Float32Array; edgeKinds: Uint32Array; // sharp, reflex, open, of more than two triangles
 }
@@ -104,6 +105,7 @@ export function readShapes(buffer: ArrayBuffer): Shape[] {
   let at = 1;
   for (let i = 0; i < words[0]; ++i) {
     const [vertexCount, triangleCount, edgeCount] = [words[at], words[at + 1], words[at + 2]];
+    const felt_by_surface = words[at + 3] === 1;
     at += 4;
     const vertices = floats.slice(at, (at += 3 * vertexCount));
     const triangles = words.slice(at, (at += 3 * triangleCount));
@@ -117,7 +119,7 @@ export function readShapes(buffer: ArrayBuffer): Shape[] {
     }
     const edges = floats.slice(at, (at += 6 * edgeCount));
     const edgeKinds = words.slice(at, (at += edgeCount));
-    shapes.push({ vertices, triangles, piece, face, covered, edges, edgeKinds });
+    shapes.push({ felt_by_surface, vertices, triangles, piece, face, covered, edges, edgeKinds });
   }
   return shapes;
 }

@@ -1,0 +1,56 @@
+/// tactum bench stability: the stiffest walls that the simulated devices hold. What is measured, and how, is
+/// in bench/stability.h.
+
+#include <fmt/format.h>
+
+#include "bench/pairs_plot.h"
+#include "bench/report.h"
+#include "bench/stability.h"
+#include "bench_commands.h"
+#include "output.h"
+
+namespace tactum {
+namespace {
+
+struct Job {
+  bench::StabilityOptions options;
+  std::string json, svg;
+};
+
+void run(const Job& job) {
+  const Result<std::vector<bench::WallRow>> rows =
+      bench_stability(job.options, [](const std::string& device) { fmt::print(stderr, "{}\n", device); });
+  if (!rows) fail(rows.error());
+  if (job.json != "-") {
+    fmt::print("{:<17}{:<8}{:<9}{:>7}{:>9}{:>12}{:>12}{:>12}{:>12}\n", "device", "hand", "wall", "kHz",
+               "delay ms", "alone", "bound", "no energy", "at rest");
+    for (const bench::WallRow& row : *rows)
+      fmt::print("{:<17}{:<8}{:<9}{:>7g}{:>9g}{:>12.4g}{:>12.4g}{:>12.4g}{:>12.4g}\n", row.device, row.hand,
+                 row.turning ? "turning" : "plane", row.rate_Hz / 1000, row.delay_s * 1000, row.alone,
+                 row.bound, row.passive, row.held);
+  }
+  if (!job.json.empty()) {
+    nlohmann::ordered_json json = nlohmann::ordered_json::array();
+    for (const bench::WallRow& row : *rows) json.push_back(to_json(row));
+    write_json(job.json, json);
+  }
+  if (!job.svg.empty() && !bench::write_text(job.svg, bench::z_width_plot(*rows)))
+    fail({"cannot write the file", "", "", job.svg});
+}
+
+}  // namespace
+
+void add_bench_stability(CLI::App& parent) {
+  auto job = std::make_shared<Job>();
+  CLI::App* command = parent.add_subcommand(
+      "stability", "The stiffest walls that simulated devices hold in a hand, beside the passivity bound");
+  command->add_option("--device", job->options.devices, "a preset, several times; by default all");
+  command->add_option("--rate", job->options.rates_Hz, "of the loop [Hz]")->check(CLI::Range(100.0, 10000.0));
+  command->add_option("--delay", job->options.delays_s, "from command to motor [s]")
+      ->check(CLI::Range(0.0, SimulatedDevice::kMaxDelay_s));
+  command->add_option("--json", job->json, "write the rows to this file (- for standard output)");
+  command->add_option("--svg", job->svg, "draw them into this file");
+  command->callback([job] { run(*job); });
+}
+
+}  // namespace tactum

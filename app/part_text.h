@@ -1,0 +1,17 @@
+#pragma once
+/// A part file for people and for machines: what `tactum prepare` and `tactum inspect` print of it.
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tactum/geometry/part_file.h"
+
+namespace tactum {
+
+/// Lines of text: unit, repair, pieces, mass, verification.
+std::string describe_part(const std::string& path, const PartFile& file);
+
+/// The report kept in the file, with the file's name and size.
+nlohmann::ordered_json part_json(const std::string& path, const PartFile& file);
+
+}  // namespace tactum

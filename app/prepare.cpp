@@ -1,0 +1,154 @@
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "commands.h"
+#include "output.h"
+#include "part_cache.h"
+#include "part_text.h"
+#include "tactum/geometry/mapped_file.h"
+#include "tactum/geometry/prepare_part.h"
+
+/// `tactum prepare MESH... -o PART`: meshes read, repaired, cut into pieces, verified and written as a part.
+
+namespace tactum {
+namespace {
+
+struct Options {
+  std::vector<std::string> meshes;
+  std::string part;
+  std::string json;   ///< file to write, "-" for stdout
+  std::string cache;  ///< folder; empty: the user's
+  bool no_cache = false;
+  PrepareOptions prepare;
+};
+
+/// A bar on stderr, when that is a terminal.
+class Bar {
+ public:
+  void show(const char* stage, double share) const {
+    constexpr int kWidth = 30;
+    if (!on_) return;
+    const int full = static_cast<int>(share * kWidth);
+    fmt::print(stderr, "\r[{:=<{}}{: <{}}] {: <24}", "", full, "", kWidth - full, stage);
+    std::fflush(stderr);
+  }
+  void clear() const {
+    if (on_) fmt::print(stderr, "\r{: <60}\r", "");
+  }
+
+ private:
+  bool on_ = ::isatty(STDERR_FILENO) == 1;
+};
+
+/// The meshes as one; when there are several, each is a group.
+Result<ImportedMesh> import_all(const std::vector<std::string>& paths) {
+  ImportedMesh all;
+  for (const std::string& path : paths) {
+    Result<ImportedMesh> one = import_mesh(path);
+    if (!one) return one.error();
+    if (paths.size() == 1) return one;
+    const int vertices = static_cast<int>(all.mesh.vertices.size());
+    const int triangles = static_cast<int>(all.mesh.triangles.size());
+    for (Triangle t : one->mesh.triangles) {
+      for (int& corner : t) corner += vertices;
+      all.mesh.triangles.push_back(t);
+    }
+    all.mesh.vertices.insert(all.mesh.vertices.end(), one->mesh.vertices.begin(), one->mesh.vertices.end());
+    all.groups.push_back({path, triangles, static_cast<int>(one->mesh.triangles.size())});
+    all.report.format = one->report.format;
+    for (const std::string& remark : one->report.remarks) all.report.remarks.push_back(path + ": " + remark);
+  }
+  return all;
+}
+
+Result<PartFile> prepared(const Options& options, const Bar& bar) {
+  bar.show("reading", 0.0);
+  const Result<ImportedMesh> mesh = import_all(options.meshes);
+  if (!mesh) return mesh.error();
+  Result<PartFile> part =
+      prepare_part(*mesh, options.prepare, [&](const char* stage, double share) { bar.show(stage, share); });
+  if (part)
+    part->part.remarks.insert(part->part.remarks.begin(), mesh->report.remarks.begin(),
+                              mesh->report.remarks.end());
+  return part;
+}
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+double peak_memory_MB() {
+  struct rusage usage {};
+  ::getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+void run(const Options& options) {
+  const auto start = std::chrono::steady_clock::now();
+  const Bar bar;
+  const PartCache cache = options.no_cache ? PartCache() : PartCache(options.cache);
+  const std::string key = cache.key_of(options.meshes, options.prepare);
+  Result<PartFile> part = cache.find(key);
+  const bool known = static_cast<bool>(part);
+  if (!known) part = prepared(options, bar);
+  bar.clear();
+  if (!part) fail(part.error());
+  if (Result<void> saved = save_part(options.part, *part); !saved) fail(saved.error());
+  if (!known) cache.keep(key, *part);
+
+  const double bytes = static_cast<double>(std::filesystem::file_size(options.part));
+  const double seconds = seconds_since(start);
+  if (options.json != "-") {
+    fmt::print("{}", describe_part(options.part, *part));
+    fmt::print("written     {:.3g} MB in {:.2f} s, {:.0f} MB of memory at most\n", bytes / 1e6, seconds,
+               peak_memory_MB());
+    if (known) fmt::print("prepared before: taken from {}\n", cache.folder());
+  }
+  if (options.json.empty()) return;
+  nlohmann::ordered_json json = part_json(options.part, *part);
+  json["bytes"] = bytes;
+  json["seconds"] = seconds;
+  json["peak_memory_MB"] = peak_memory_MB();
+  json["from_cache"] = known;
+  write_json(options.json, json);
+}
+
+}  // namespace
+
+void add_prepare(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("prepare", "Make a verified part of meshes, ready to be felt.");
+  auto options = std::make_shared<Options>();
+  std::vector<std::string> ways = pieces_ways();
+  ways.insert(ways.begin(), "auto");
+  command
+      ->add_option("MESH", options->meshes, "OBJ, STL, PLY, OFF, glTF, GLB; several are pieces of one part")
+      ->required();
+  command->add_option("-o,--output", options->part, "The part file to write")->required();
+  command
+      ->add_option("--units", options->prepare.unit, "Unit of the mesh's numbers; auto guesses and says why")
+      ->check(CLI::IsMember({"auto", "m", "cm", "mm", "inch"}));
+  command->add_option("--pieces", options->prepare.pieces, "How to cut; auto chooses and says why")
+      ->check(CLI::IsMember(ways));
+  command->add_option("--close-holes", options->prepare.close_holes, "Close holes of at most so many edges")
+      ->check(CLI::Range(0, 256));
+  command->add_option("--density", options->prepare.density_kg_per_m3, "[kg/m^3]")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--name", options->prepare.name, "Of the part; otherwise the file's");
+  command->add_option("--cache", options->cache,
+                      "Folder of parts prepared before; otherwise ~/.cache/tactum");
+  command->add_flag("--no-cache", options->no_cache, "Neither look there nor keep the part there");
+  command->add_option("--json", options->json, "Write the report to this file (- for stdout)");
+  command->callback([options] {
+    if (options->prepare.name.empty())
+      options->prepare.name = std::filesystem::path(options->meshes.front()).stem().string();
+    run(*options);
+  });
+}
+
+}  // namespace tactum

@@ -1,0 +1,79 @@
+#pragma once
+/// How stiff a wall does a device hold in a hand? Found by simulation, beside the passivity bound of
+/// [Colgate and Schenkel 1994] (haptics/coupling_gains.h).
+///
+///   wall: a plane with a spring (or a stop with a torsion spring) right at the device, F = - K depth,
+///         on the encoder's readings, nothing else in the loop: no proxy, smoothing, ramp
+///   hand: taps it twice, then presses and stays                          2.4 s of virtual time
+///
+/// A wall is *held* when the handle comes to rest: in the last third of the pressing it moves by less than it
+/// did in the third before, or by less than a hand can feel. It is *passive* when the ledger of the port
+/// (haptics/passivity.h), with the damping of device and hand and no credit but what the spring has stored,
+/// never falls 0.01 mJ below zero: no energy was made. The stiffest of each kind
+/// is found by bisection.
+
+#include <array>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tactum/base/result.h"
+#include "tactum/devices/simulated_device.h"
+
+namespace tactum::bench {
+
+/// One experiment: a device in a hand at a wall.
+struct WallSetup {
+  SimulatedDeviceModel device;  ///< its command_delay_s is the delay
+  HandModel hand;
+  double rate_Hz = 1000.0;  ///< [Hz]
+  bool turning = false;     ///< a stop for rotation
+};
+
+/// The bound with all the damping there is: (b_device + b_hand) / (T / 2 + delay) [N/m or N m/rad].
+double wall_bound(const WallSetup& setup);
+/// ... and for a handle that nobody holds.
+double wall_bound_alone(const WallSetup& setup);
+
+struct WallTrial {
+  bool held = false;
+  bool passive = false;
+  double rest_speed = 0.0;  ///< fastest in the last third [m/s or rad/s]
+  double lowest_J = 0.0;    ///< of the ledger [J]
+  double pressed = 0.0;     ///< mean force (torque) in the last third [N or N m]
+};
+
+/// Taps and presses a wall of this stiffness for `seconds` of virtual time.
+WallTrial try_wall(const WallSetup& setup, double stiffness, double seconds = 2.4);
+
+struct WallRow {
+  std::string device, hand;
+  bool turning = false;
+  double rate_Hz = 0.0;
+  double delay_s = 0.0;
+  double alone = 0.0;    ///< bound, nobody holds it [N/m or N m/rad]
+  double bound = 0.0;    ///< bound, with the hand's damping
+  double passive = 0.0;  ///< stiffest that made no energy
+  double held = 0.0;     ///< stiffest that came to rest
+};
+
+/// The stiffest walls of one set-up, to 1 %.
+WallRow stiffest_wall(const WallSetup& setup);
+
+struct StabilityOptions {
+  std::vector<double> rates_Hz = {1000.0, 2000.0, 4000.0, 10000.0};
+  std::vector<double> delays_s = {0.0, 0.5e-3, 1e-3, 2e-3};
+  std::vector<std::string> devices;  ///< empty: all presets
+};
+
+/// Every preset, hand, rate and delay; turning where there is torque. `progress` is told each device.
+Result<std::vector<WallRow>> bench_stability(const StabilityOptions& options,
+                                             const std::function<void(const std::string&)>& progress);
+
+nlohmann::ordered_json to_json(const WallRow& row);
+
+/// Stiffness against rate and against delay, simulated and bound: an SVG file's text.
+std::string z_width_plot(const std::vector<WallRow>& rows);
+
+}  // namespace tactum::bench

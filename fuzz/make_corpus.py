@@ -1,0 +1,99 @@
+#!/usr/bin/env python3
+"""Writes the seeds of the fuzzers' corpora:  fuzz/make_corpus.py [TACTUM]
+
+Small files of every format, sound and broken, made here. With the program given, the seeds of the part files too are
+made anew, by `tactum prepare`.
+"""
+import pathlib
+import struct
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).parent / "corpus"
+ENDINGS = ("obj", "stl", "ply", "off", "gltf", "glb")  # the first byte of a seed is the number of its ending
+CORNERS = [(x, y, z) for z in (0, 1) for y in (0, 1) for x in (0, 1)]
+FACES = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+TRIANGLES = [(f[0], f[i], f[i + 1]) for f in FACES for i in (1, 2)]
+
+
+def obj():
+    lines = ["# a cube", "o cube"] + ["v %g %g %g" % c for c in CORNERS]
+    yield "\n".join(lines + ["f " + " ".join(str(i + 1) for i in f) for f in FACES])
+    yield "\n".join(lines + ["f " + " ".join("%d//1" % (i - 8) for i in f) for f in FACES])
+    yield "v 0 0 0\nv 4 0 0\nv 1 1 0\nv 0 4 0\ng a\nf 1 2 3 4\ng b\nf 1 2 \\\n 3\np 1\nl 1 2\n"
+    yield "v 1 2\nf 1 2 3\n"
+
+
+def stl():
+    text = ["solid cube"]
+    binary = b""
+    for t in TRIANGLES:
+        points = [CORNERS[i] for i in t]
+        text += ["facet normal 0 0 0", "outer loop"] + ["vertex %g %g %g" % p for p in points] + ["endloop", "endfacet"]
+        binary += struct.pack("<12fH", 0, 0, 0, *(c for p in points for c in p), 0)
+    yield "\n".join(text + ["endsolid cube"])
+    yield b"\0" * 80 + struct.pack("<I", len(TRIANGLES)) + binary
+    yield b"ten million triangles".ljust(80) + struct.pack("<I", 10_000_000) + binary  # and twelve are there
+
+
+def ply():
+    head = "ply\nformat %s 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty double z\n"
+    head += "element face 6\nproperty list uchar int vertex_indices\nend_header\n"
+    rows = ["%g %g %g" % c for c in CORNERS] + ["4 " + " ".join(map(str, f)) for f in FACES]
+    yield (head % "ascii") + "\n".join(rows) + "\n"
+    for name, order in (("binary_little_endian", "<"), ("binary_big_endian", ">")):
+        data = b"".join(struct.pack(order + "ffd", *c) for c in CORNERS)
+        data += b"".join(struct.pack(order + "B4i", 4, *f) for f in FACES)
+        yield (head % name).encode() + data
+    yield (head % "ascii").replace("face 6", "face 4000000000")
+
+
+def off():
+    yield "OFF\n8 6 0\n" + "\n".join("%g %g %g" % c for c in CORNERS) + "\n" + "\n".join("4 %d %d %d %d" % f for f in FACES)
+    yield "OFF 3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"
+
+
+def gltf():
+    uri = "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"
+    yield ('{"asset":{"version":"2.0"},"buffers":[{"byteLength":36,"uri":"%s"}],"bufferViews":[{"buffer":0,'
+           '"byteLength":36}],"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],'
+           '"max":[1,1,0]}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"nodes":[{"mesh":0}],'
+           '"scenes":[{"nodes":[0]}],"scene":0}' % uri)
+    yield '{"asset":{"version":"2.0"},"nodes":[{"children":[0]}],"scenes":[{"nodes":[0]}]}'
+
+
+def prepare():
+    box = bytes(16 * c for p in CORNERS for c in p)
+    faces = bytes(i for t in TRIANGLES for i in t)
+    yield bytes([5, 0]) + box + faces                     # a cube
+    yield bytes([5, 4]) + box + faces[:-6]                # without a side, to be closed
+    yield bytes([5, 0]) + box + faces[:18] + faces[:9] + faces[9:]  # sides that stand twice
+    yield bytes([13, 6]) + box + bytes(8 * c + 4 for p in CORNERS for c in p) + faces + bytes(i + 8 for i in faces)
+
+
+def write(folder, name, data, first=b""):
+    (ROOT / folder).mkdir(parents=True, exist_ok=True)
+    (ROOT / folder / (name + ".bin")).write_bytes(first + (data.encode() if isinstance(data, str) else data))
+
+
+def main(arguments):
+    for number, (ending, make) in enumerate(zip(ENDINGS, (obj, stl, ply, off, gltf))):
+        for i, data in enumerate(make()):
+            write("mesh", "seed-%s-%d" % (ending, i), data, bytes([number]))
+    for i, data in enumerate(prepare()):
+        write("prepare", "seed-%d" % i, data)
+    if not arguments:
+        return
+    tetrahedron = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"
+    with tempfile.TemporaryDirectory() as folder:
+        for name, mesh in (("solid", tetrahedron), ("surface", tetrahedron[:-8])):
+            source = pathlib.Path(folder) / (name + ".obj")
+            source.write_text(mesh)
+            part = ROOT / "part" / ("seed-" + name + ".bin")
+            part.parent.mkdir(parents=True, exist_ok=True)
+            subprocess.run([arguments[0], "prepare", source, "-o", part, "--no-cache"], check=True)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

@@ -1,0 +1,34 @@
+#pragma once
+/// A contact patch of two bodies, as the contact finder hands it on.
+
+#include <algorithm>
+
+#include "tactum/base/tolerances.h"
+#include "tactum/collision/contact.h"
+
+namespace tactum {
+
+/// Two pieces nearer than their tolerance, or two triangles of surfaces with a local minimum of their
+/// distance. Manifold in A's body frame.
+struct ContactPatch {
+  int body_a = -1, body_b = -1;    ///< body_a < body_b
+  int piece_a = -1, piece_b = -1;  ///< within their parts; triangles where two surfaces meet
+  int pair = -1;                   ///< of pieces, in the finder's list
+  bool of_surfaces = false;        ///< the features of the manifold are those of SurfaceTree
+  /// Patches of the same bodies and facets share one stiffness: they are stretches of one true contact.
+  int facet_a = -1, facet_b = -1;
+  double distance = 0.0;   ///< of the pieces, negative when they overlap [m]
+  double tolerance = 0.0;  ///< delta of the pair of bodies [m]
+  Manifold manifold;
+};
+
+/// A patch's claim on its facet's stiffness: its area; for a segment, next to that, its length times a
+/// hair's breadth; for a point next to nothing [m^2].
+inline double stiffness_claim(const Manifold& manifold) noexcept {
+  if (manifold.area > 0.0) return manifold.area;
+  if (manifold.points.size() < 2) return tolerances::kPointArea_m2;
+  const double length = (manifold.points[1].p_a - manifold.points[0].p_a).norm();
+  return std::max(length * tolerances::kLineWidth_m, tolerances::kLeastClaim_m2);
+}
+
+}  // namespace tactum

@@ -1,0 +1,33 @@
+#pragma once
+/// Every corner of a contact patch, each with its gap: what a response needs in which nothing may penetrate.
+///
+///        A  /.........../        seen along the normal, A's face and B's face overlap in a polygon; the gap
+///    ------c-----------c---      between them is linear over it, so that no point of the polygon comes
+///    B     `-----------'         nearer than its corners do
+///
+/// The four weighted points of a manifold (manifold.h) carry a force as well as the whole area does, but lie
+/// inside it: held apart there, the corners overlap. Here the polygon is cut only where the gap exceeds the
+/// tolerance, never by how the faces lean. An edge or vertex that touches is taken as the border of its most
+/// level face. Where no face is near level the manifold's own points stand in.
+///
+/// Cost: 0.1 us for boxes.
+
+#include "tactum/collision/contact.h"
+#include "tactum/collision/planar_patch.h"
+#include "tactum/geometry/polytope.h"
+
+namespace tactum {
+
+struct PatchCorner {
+  Vec3 p_A = Vec3::Zero();  ///< halfway between the two surfaces, A's frame [m]
+  double distance = 0.0;    ///< across the patch's normal [m]
+};
+
+using PatchCorners = StaticVector<PatchCorner, PatchPolygon::capacity() + 4>;
+
+/// The corners of `patch`, found at distance `distance` [m], whose gap is at most `tolerance` [m]. The least
+/// gap is among them.
+void patch_corners(const Polytope& A, const Polytope& B, const Pose& X_AB, const Manifold& patch,
+                   double distance, double tolerance, PatchCorners& corners) noexcept;
+
+}  // namespace tactum

@@ -1,0 +1,259 @@
+#include "tactum/collision/seam_settler.h"
+
+#include <algorithm>
+#include <tuple>
+
+#include "tactum/base/tolerances.h"
+#include "tactum/collision/manifold.h"
+#include "tactum/collision/seams.h"
+
+namespace tactum {
+namespace {
+
+using Index = std::size_t;
+
+/// The candidates of two bodies.
+class TwoBodies {
+ public:
+  TwoBodies(std::span<SeamCandidate> candidates, const Pose& X_AB,
+            std::vector<ContactPatch>& patches) noexcept
+      : candidates_(candidates), X_AB_(X_AB), patches_(patches) {}
+
+  void settle() noexcept {
+    for (SeamCandidate& candidate : candidates_)
+      if (!candidate.settled && !candidate.objected) lead(candidate);
+    for (SeamCandidate& candidate : candidates_)
+      if (!candidate.settled && !answered(candidate)) tell_again(candidate);
+    while (SeamCandidate* nearest = shallowest())
+      if (!answered(*nearest)) lead(*nearest);
+    for (SeamCandidate& candidate : candidates_)
+      if (!candidate.settled) *candidate.shown = {};
+  }
+  bool full() const noexcept { return full_; }
+
+ private:
+  static const Polytope& piece_a(const SeamCandidate& c) noexcept {
+    return c.part_a->pieces[Index(c.piece_a)];
+  }
+  static const Polytope& piece_b(const SeamCandidate& c) noexcept {
+    return c.part_b->pieces[Index(c.piece_b)];
+  }
+
+  /// Whether a leader answers for the candidate, which is then settled.
+  bool answered(SeamCandidate& candidate) noexcept {
+    const PairView pair(piece_a(candidate), piece_b(candidate), X_AB_);
+    for (const SeamCandidate& other : candidates_) {
+      if (other.patch < 0) continue;
+      const ContactPatch& patch = patches_[Index(other.patch)];
+      if (!answered_by(pair, candidate.found, patch.manifold.normal, patch.distance)) continue;
+      settle_as(candidate, other);
+      return true;
+    }
+    return false;
+  }
+
+  /// What is objected to, as what it is on the whole part. Where that is nothing it may still follow.
+  void tell_again(SeamCandidate& candidate) noexcept {
+    const std::optional<PairDistance> depth =
+        depth_under_true_faces(*candidate.part_a, candidate.piece_a, *candidate.part_b, candidate.piece_b,
+                               X_AB_, candidate.found, candidate.reach);
+    if (!depth || depth->distance >= candidate.reach) return;
+    if (candidate.found.distance >= 0.0 && depth->distance < 0.0) return;  // apart, and beside the face
+    candidate.found = *depth;
+    candidate.objected = false;
+  }
+
+  SeamCandidate* shallowest() noexcept {
+    SeamCandidate* best = nullptr;
+    for (SeamCandidate& candidate : candidates_)
+      if (!candidate.settled && !candidate.objected &&
+          (best == nullptr || candidate.found.distance > best->found.distance))
+        best = &candidate;
+    return best;
+  }
+
+  static void settle_as(SeamCandidate& candidate, const SeamCandidate& leader) noexcept {
+    candidate.settled = true;
+    *candidate.shown = *leader.shown;
+  }
+
+  ContactPatch* new_patch(const SeamCandidate& candidate) noexcept {
+    if (patches_.size() == patches_.capacity()) {
+      full_ = true;
+      return nullptr;
+    }
+    ContactPatch& patch = patches_.emplace_back();
+    patch.body_a = candidate.body_a;
+    patch.body_b = candidate.body_b;
+    patch.piece_a = candidate.piece_a;
+    patch.piece_b = candidate.piece_b;
+    patch.pair = candidate.pair;
+    patch.tolerance = candidate.reach;
+    return &patch;
+  }
+
+  /// Makes the patch of a true contact, and those of its followers.
+  void lead(SeamCandidate& nearest) noexcept {
+    const PairDistance shown =
+        steady_depth(piece_a(nearest), piece_b(nearest), X_AB_, nearest.found, *nearest.shown);
+    const Index first = patches_.size();
+    ContactPatch* patch = new_patch(nearest);
+    if (patch == nullptr) return;
+    contact_manifold(piece_a(nearest), piece_b(nearest), X_AB_, shown, nearest.reach, patch->manifold);
+    patch->distance = shown.distance;
+    SeamCandidate& leader = widest(nearest, shown, *patch);
+    *leader.shown = *nearest.shown;
+    patch->facet_a = leader.part_a->surface_group[Index(leader.piece_a)];
+    patch->facet_b = leader.part_b->surface_group[Index(leader.piece_b)];
+    leader.patch = static_cast<int>(first);
+    for (SeamCandidate* own : {&nearest, &leader}) {
+      own->settled = true;
+      own->led_by = leader.patch;
+    }
+    for (SeamCandidate& other : candidates_)
+      if (!other.settled && !follow(other, leader, nearest, shown)) share(other, nearest, leader.patch);
+    hold_centroid(first, *leader.shown);
+    for (SeamCandidate& other : candidates_)
+      if (other.led_by == leader.patch) *other.shown = *leader.shown;
+  }
+
+  /// Where the nearest touches at a true edge that others have too, the one of them with the largest features
+  /// square to the normal; its patch is put in place.
+  SeamCandidate& widest(SeamCandidate& nearest, const PairDistance& shown, ContactPatch& patch) noexcept {
+    const auto size_of = [](const Manifold& manifold) {
+      return static_cast<int>(manifold.a.kind) + static_cast<int>(manifold.b.kind);
+    };
+    SeamCandidate* best = &nearest;
+    if (shown.a.kind != FeatureKind::kEdge && shown.b.kind != FeatureKind::kEdge) return *best;
+    for (SeamCandidate& other : candidates_) {
+      if (other.settled || &other == &nearest) continue;
+      PairDistance mapped = shown;
+      if (!map_features(shown.a, shown.b, nearest, other, mapped)) continue;
+      Manifold manifold;
+      contact_manifold(piece_a(other), piece_b(other), X_AB_, mapped, other.reach, manifold);
+      if (size_of(manifold) <= size_of(patch.manifold) || !is_true_stretch(other, manifold)) continue;
+      patch.manifold = manifold;
+      patch.piece_a = other.piece_a;
+      patch.piece_b = other.piece_b;
+      patch.pair = other.pair;
+      best = &other;
+    }
+    return *best;
+  }
+
+  /// The stretches that `other` has of features of `of`; false when it has none.
+  static bool map_features(const Feature& a, const Feature& b, const SeamCandidate& of,
+                           const SeamCandidate& other, PairDistance& out) noexcept {
+    out.a = same_feature(*other.part_a, of.piece_a, a, other.piece_a);
+    out.b = same_feature(*other.part_b, of.piece_b, b, other.piece_b);
+    return out.a.index >= 0 && out.b.index >= 0;
+  }
+
+  /// Settles `other` when it touches where the nearest does, with nothing to add.
+  static void share(SeamCandidate& other, const SeamCandidate& nearest, int patch) noexcept {
+    PairDistance mapped;
+    if (!map_features(nearest.found.a, nearest.found.b, nearest, other, mapped)) return;
+    if (mapped.a != other.found.a || mapped.b != other.found.b) return;
+    other.settled = true;
+    other.led_by = patch;
+  }
+
+  /// Gives `other` its stretch of the leader's contact; false when it has none.
+  bool follow(SeamCandidate& other, const SeamCandidate& leader, const SeamCandidate& nearest,
+              const PairDistance& shown) noexcept {
+    const Index led_by = Index(leader.patch);
+    const Feature a = patches_[led_by].manifold.a;
+    const Feature b = patches_[led_by].manifold.b;
+    PairDistance mapped = shown;
+    if (!map_features(a, b, leader, other, mapped)) return false;
+    // On the nearest's own pieces the point itself is known: a face that leans shrinks toward it.
+    if (other.piece_a == nearest.piece_a) mapped.a = shown.a;
+    if (other.piece_b == nearest.piece_b) mapped.b = shown.b;
+    other.settled = true;
+    other.led_by = leader.patch;
+    ContactPatch* patch = new_patch(other);
+    if (patch == nullptr) return true;
+    contact_manifold(piece_a(other), piece_b(other), X_AB_, mapped, other.reach, patch->manifold);
+    const bool stretch = patch->manifold.points.size() > 1 && is_true_stretch(other, patch->manifold);
+    if (!stretch) {
+      patches_.pop_back();
+      return true;
+    }
+    patch->distance = patch->manifold.points[0].distance;
+    for (const ContactPoint& point : patch->manifold.points)
+      patch->distance = std::min(patch->distance, point.distance);
+    patch->facet_a = patches_[led_by].facet_a;
+    patch->facet_b = patches_[led_by].facet_b;
+    return true;
+  }
+
+  /// Whether the middle of the patch is on the true surface of both parts.
+  bool is_true_stretch(const SeamCandidate& candidate, const Manifold& manifold) const noexcept {
+    PairDistance middle;
+    middle.normal = manifold.normal;
+    middle.a = manifold.a;
+    middle.b = manifold.b;
+    for (const ContactPoint& point : manifold.points) {
+      middle.p_a += point.weight * point.p_a;
+      middle.p_b += point.weight * point.p_b;
+    }
+    return is_true_contact(*candidate.part_a, candidate.piece_a, *candidate.part_b, candidate.piece_b, X_AB_,
+                           middle);
+  }
+
+  /// Keeps the pressure's centre of the patches from `first` on from a step, all together.
+  void hold_centroid(Index first, SteadyContact& memory) noexcept {
+    double claims = 0.0;
+    Vec3 centroid = Vec3::Zero();
+    for (Index i = first; i < patches_.size(); ++i) {
+      const double claim = stiffness_claim(patches_[i].manifold);
+      claims += claim;
+      for (const ContactPoint& point : patches_[i].manifold.points)
+        centroid += 0.5 * claim * point.weight * (point.p_a + point.p_b);
+    }
+    Manifold whole;
+    whole.normal = patches_[first].manifold.normal;
+    if (claims > 0.0 && !patches_[first].manifold.points.empty()) {
+      centroid /= claims;
+      whole.points.push_back({centroid, centroid, 0.0, 1.0, 0});
+    }
+    steady_centroid(X_AB_, whole, memory);
+    if (whole.points.empty()) return;
+    const Vec3 shift = whole.points[0].p_a - centroid;
+    if (shift.isZero()) return;
+    for (Index i = first; i < patches_.size(); ++i)
+      for (ContactPoint& point : patches_[i].manifold.points) {
+        point.p_a += shift;
+        point.p_b += shift;
+      }
+  }
+
+  std::span<SeamCandidate> candidates_;
+  const Pose& X_AB_;
+  std::vector<ContactPatch>& patches_;
+  bool full_ = false;
+};
+
+}  // namespace
+
+bool settle_seams(std::span<SeamCandidate> candidates, std::span<const Pose> X_WB,
+                  std::vector<ContactPatch>& patches) noexcept {
+  std::sort(candidates.begin(), candidates.end(), [](const SeamCandidate& p, const SeamCandidate& q) {
+    return std::tie(p.body_a, p.body_b, p.objected, p.found.distance, p.piece_a, p.piece_b) <
+           std::tie(q.body_a, q.body_b, q.objected, q.found.distance, q.piece_a, q.piece_b);
+  });
+  bool complete = true;
+  for (auto first = candidates.begin(); first != candidates.end();) {
+    const auto last = std::find_if(first, candidates.end(), [&](const SeamCandidate& c) {
+      return c.body_a != first->body_a || c.body_b != first->body_b;
+    });
+    const Pose X_AB = relative_pose(X_WB[Index(first->body_a)], X_WB[Index(first->body_b)]);
+    TwoBodies bodies({first, last}, X_AB, patches);
+    bodies.settle();
+    complete = complete && !bodies.full();
+    first = last;
+  }
+  return complete;
+}
+
+}  // namespace tactum

@@ -1,0 +1,46 @@
+#pragma once
+/// From the answers of pairs of pieces, where parts have seams, to contact patches: who leads, who follows,
+/// and who is answered for (the rules are in seams.h).
+///
+///   for each two bodies, nearest first:   a true contact leads: its patch is made. Every other pair with a
+///                                         stretch of the same true faces (or edges) follows: its patch, cut
+///                                         out of its own stretch, has the leader's normal and shares the
+///                                         leader's stiffness, so together they are the patch of the uncut
+///                                         part.
+///   then the objected:                    dropped when they are apart or a leader answers for them, else
+///   they
+///                                         lead by the least depth under a true face.
+///
+/// The memory of what was shown goes from the leader to all it answers for, so that a contact slides over a
+/// seam without forgetting. Cost: what the patches cost, and a look-up for each leader and pair.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "tactum/collision/contact_patch.h"
+#include "tactum/collision/steady_contact.h"
+#include "tactum/geometry/part.h"
+
+namespace tactum {
+
+/// A pair within reach, as tested.
+struct SeamCandidate {
+  std::int32_t body_a = -1, body_b = -1, piece_a = -1, piece_b = -1;
+  int pair = -1;  ///< in the finder's list
+  const Part* part_a = nullptr;
+  const Part* part_b = nullptr;
+  SteadyContact* shown = nullptr;  ///< the pair's memory
+  double reach = 0.0;              ///< tolerance of the pair [m]
+  PairDistance found;
+  bool objected = false;
+  bool settled = false;
+  int patch = -1;   ///< of a leader
+  int led_by = -1;  ///< a leader's patch
+};
+
+/// Appends the patches of `candidates`; reorders and settles them. False when `patches` is full.
+bool settle_seams(std::span<SeamCandidate> candidates, std::span<const Pose> X_WB,
+                  std::vector<ContactPatch>& patches) noexcept;
+
+}  // namespace tactum

@@ -1,0 +1,49 @@
+#pragma once
+/// Seams that cannot be felt. A part of solid pieces that share walls must feel like the part uncut, so the
+/// answers of its pairs of pieces are not taken one by one:
+///
+///         ___A___              1  |: A's side and the wall between the pieces. No such contact exists on the
+///        |       |                   part: at that point the normal is not one that all pieces there allow.
+///     ___|_1_____|___             It is *objected* to, and its neighbour answers for it.
+///    |     |2    |   |         2  both pieces' tops belong to one true face: one contact, led by the
+///    nearest; |     |     |   |            the other follows with its part of the face.
+///    |_____|_____|___|
+///
+/// What is objected to, and no neighbour answers for (a part deep in a small piece; a wall touched where it
+/// meets the floor), is told again along the true face with the least depth. What is asked here is told by
+/// the pieces that touch each feature: geometry/true_surface.h. Features that no other piece touches cost one
+/// look-up.
+
+#include <optional>
+
+#include "tactum/collision/contact.h"
+#include "tactum/collision/pair_view.h"
+#include "tactum/geometry/part.h"
+
+namespace tactum {
+
+/// Whether the whole part could be touched at `p` on `feature` of `piece`, outward along unit `outward`; both
+/// in the part's frame. Cost: 2 ns, and 30-60 ns for each piece that touches the feature.
+bool allowed_by_neighbours(const Part& part, int piece, const Feature& feature, const Vec3& p,
+                           const Vec3& outward) noexcept;
+
+/// Whether the whole parts could touch as two of their pieces do.
+bool is_true_contact(const Part& part_a, int piece_a, const Part& part_b, int piece_b, const Pose& X_AB,
+                     const PairDistance& found) noexcept;
+
+/// The feature of `piece` that is one with `feature` of `of_piece`: itself, or the stretch of the same true
+/// face or edge. Index -1: none.
+Feature same_feature(const Part& part, int of_piece, const Feature& feature, int piece) noexcept;
+
+/// The least depth (or distance) along the normal of a true face that has the other piece's deepest point
+/// under it, within `slack` [m]: the point may lie in a neighbour, as in the corner of a floor and a wall.
+/// None when no face has.
+std::optional<PairDistance> depth_under_true_faces(const Part& part_a, int piece_a, const Part& part_b,
+                                                   int piece_b, const Pose& X_AB, const PairDistance& found,
+                                                   double slack) noexcept;
+
+/// Whether moving A along unit `n` by -`distance` would part these pieces too: another contact, with this
+/// normal and distance, answers for them.
+bool answered_by(const PairView& pair, const PairDistance& found, const Vec3& n, double distance) noexcept;
+
+}  // namespace tactum

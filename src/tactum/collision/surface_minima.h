@@ -1,0 +1,75 @@
+#pragma once
+/// Surface against surface: all local minima of distance within a tolerance. A contact needs no more than
+/// them: of the tens of thousands of triangle pairs near each other on a nut and a bolt, some thousand pairs
+/// of features are minima.
+///
+/// A pair of features is a minimum where the segment between its nearest points lies in both normal cones
+/// (surface_tree.h): moved a little along either surface, it only gets longer.
+///
+///        \  A  /         vertex - face        __A__/  \__        edge - edge: n is square to both
+///         \ | /          n is the face's           |n           and inside both cones
+///          \|/           own normal           ____/ \____
+///           * p_a                                 B
+///           | n                               vertex - edge, vertex - vertex: n is along p_a - p_b
+///      -----*-----  B
+///           p_b
+///
+/// Distances of vertex - face and edge - edge pairs are signed: a vertex slightly behind a face, or two edges
+/// that have slightly crossed, is a minimum below zero, down to `depth`. Surfaces without a negative minimum
+/// do not cross, as long as they have moved by less than `depth` since they did not; `depth` must be smaller
+/// than the thinnest wall.
+///
+/// Cones are inflated by `cone_slack`, the largest rotation of a step. Without it only the lowest corner of a
+/// flat contact is a minimum, and the contact sticks; with it, all corners of either that face the other, and
+/// the crossings of their outlines. `strict` tells which minima hold without it: validate with those alone.
+/// An edge pair that is not strict is no constraint below about a micrometre, for its sign means nothing
+/// outside its true cone.
+///
+/// Edges parallel to within the slack touch along an interval: the two ends of it are two minima of the same
+/// features.
+///
+/// Stateless: the same bits for the same poses whatever was asked before. No allocation, no locks. Cost and
+/// what was tried: docs/algorithms/surface_minima.md.
+
+#include <vector>
+
+#include "tactum/collision/contact.h"
+#include "tactum/geometry/surface_tree.h"
+#include "tactum/math/pose.h"
+
+namespace tactum {
+
+/// One local minimum, in A's frame: n points from B to A and distance = n . (p_a - p_b), as everywhere.
+struct SurfaceMinimum {
+  double distance = 0.0;       ///< signed [m]
+  Vec3 p_a = Vec3::Zero();     ///< on A [m]
+  Vec3 p_b = Vec3::Zero();     ///< on B [m]
+  Vec3 normal = Vec3::Zero();  ///< n_BA_A, unit [-]
+  Feature a, b;                ///< as SurfaceTree names them: vertex, edge 3 t + k, or triangle
+  int triangle_a = -1;         ///< the triangle that owns the feature of A, for pictures and group_of()
+  int triangle_b = -1;         ///< ... and of B
+  bool strict = false;         ///< the normal lies in both true cones, not only in the inflated ones
+};
+
+struct MinimaQuery {
+  double reach = 0.0;       ///< minima up to this distance [m]
+  double depth = 0.0;       ///< ... and down to minus this one [m]
+  double cone_slack = 0.0;  ///< inflation of the cones, at most 0.1 [rad]
+};
+
+/// Counted work of a query.
+struct MinimaWork {
+  int box_tests = 0;      ///< pairs of boxes
+  int leaf_pairs = 0;     ///< pairs of leaves reached
+  int feature_pairs = 0;  ///< pairs of features whose nearest points were computed
+  int minima = 0;         ///< found, whether they had room or not
+  bool full = false;      ///< more were found than had room: the nearest were kept
+};
+
+/// The minima of A and B with B at X_AB, sorted by the features of A, then of B. `minima` is cleared and
+/// filled up to its capacity, which is never raised: reserve it at load time. When more are found the nearest
+/// are kept.
+MinimaWork surface_minima(const SurfaceTree& a, const SurfaceTree& b, const Pose& X_AB,
+                          const MinimaQuery& query, std::vector<SurfaceMinimum>& minima) noexcept;
+
+}  // namespace tactum

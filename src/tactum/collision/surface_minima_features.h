@@ -1,0 +1,75 @@
+#pragma once
+/// The exact half of surface_minima.h: which pairs of features are minima.
+
+#include <vector>
+
+#include "tactum/collision/surface_minima.h"
+
+namespace tactum {
+
+/// Where a direction lies to a normal cone.
+enum class InCone : std::uint8_t { kOutside, kInflated, kStrict };
+
+class FeatureComparison {
+ public:
+  FeatureComparison(const SurfaceTree& a, const SurfaceTree& b, const Pose& X_AB, const MinimaQuery& query,
+                    std::vector<SurfaceMinimum>& minima) noexcept;
+
+  /// A vertex of the first with a feature of the second, the first being A unless `swapped`. Features are
+  /// told by corners, as in SurfaceTree::Leaf.
+  void vertex_face(bool swapped, std::int32_t vertex, std::int32_t face) noexcept;
+  void vertex_edge(bool swapped, std::int32_t vertex, std::int32_t edge) noexcept;
+  void vertex_vertex(std::int32_t a, std::int32_t b) noexcept;
+  void edge_edge(std::int32_t a, std::int32_t b) noexcept;
+  /// Sorts what was found.
+  void finish() noexcept;
+
+  MinimaWork work;
+
+ private:
+  /// One of the two surfaces, and its pose in A.
+  struct Side {
+    const SurfaceTree& tree;
+    Mat3 R;
+    Vec3 p;
+    Vec3 told(int vertex) const noexcept { return rotated(R, tree.vertex(vertex)) + p; }
+  };
+  /// A feature in A's frame: the corners of its triangle, its own first, and the triangle's normal.
+  struct Placed {
+    std::int32_t corner = -1;
+    std::array<Vec3, 3> point;
+    Vec3 normal;  ///< unit, outward [-]
+    int triangle() const noexcept { return corner / 3; }
+  };
+  struct Touch {
+    Vec3 p_a, p_b, normal;
+    double distance;
+    Feature a, b;
+    InCone cone;
+  };
+
+  Placed placed(const Side& side, std::int32_t corner) const noexcept;
+  const Side& side(bool swapped) const noexcept { return swapped ? b_ : a_; }
+  /// Takes a pair of edges with these nearest points if n or -n is in both cones; distance = n . (p_a - p_b).
+  void take_edges(const Placed& a, const Placed& b, const Vec3& p_a, const Vec3& p_b, const Vec3& n,
+                  double distance) noexcept;
+  void parallel_edges(const Placed& a, const Placed& b) noexcept;
+
+  /// Of  e . u <= 0,  where `value` is e . u and `length_sq` the square of e's length.
+  InCone falls_away(double value, double length_sq) const noexcept;
+  InCone in_edge_cone(const Side& side, const Placed& edge, const Vec3& u) const noexcept;
+  InCone in_vertex_cone(const Side& side, const Placed& vertex, const Vec3& u) const noexcept;
+  void take(const Touch& touch, int triangle_a, int triangle_b) noexcept;
+  bool in_range(double distance) const noexcept {
+    return distance <= query_.reach && distance >= -query_.depth;
+  }
+
+  Side a_, b_;
+  const MinimaQuery& query_;
+  std::vector<SurfaceMinimum>& minima_;
+  double touching_;  // below this points have no direction between them [m]
+  double slack_sq_;
+  double parallel_sq_;  // square of the sine below which edges touch along an interval
+};
+
+}  // namespace tactum

@@ -1,0 +1,35 @@
+#pragma once
+/// Holes of a surface closed with triangles between the corners of their rims; no new vertex.
+///
+///     o-----o          The rim is a loop of open edges. Among all its triangulations the one of least area
+///     is
+///    / hole  \         taken [Barequet and Sharir 1995]: exact for flat holes, sensible for bent ones, and a
+///    crack
+///   o         o        (a rim that encloses nothing) gets triangles without area, which repair then gives
+///    \-------/         to their neighbours. O(n^3) for a rim of n edges.
+///
+/// A rim that touches itself, or that no triangulation closes without an edge that is there already, is left
+/// open.
+
+#include <vector>
+
+#include "tactum/geometry/triangle_mesh.h"
+
+namespace tactum {
+
+inline constexpr int kMostRimEdges = 256;  ///< longer rims are never closed: 256^3 / 6 areas are 3 million
+
+struct Rim {
+  std::vector<int> vertices;  ///< in the order that a triangle closing it would run
+  int triangle = -1;          ///< at its first edge
+  bool simple = true;         ///< no vertex twice
+  bool closed = false;        ///< filled
+};
+
+/// The rims of the mesh's holes, in the order of their lowest edges. Triangles must agree in orientation.
+std::vector<Rim> rims_of(const TriangleMesh& mesh);
+
+/// Closes rims of at most `most_edges` edges. New triangles are appended; the rims tell which were closed.
+std::vector<Rim> close_holes(TriangleMesh& mesh, int most_edges);
+
+}  // namespace tactum

@@ -1,0 +1,50 @@
+#pragma once
+/// Which way the triangles of a mesh face, set right by component.
+///
+/// A component is what hangs together over edges of two triangles; edges of more part it, since no two of
+/// their triangles are neighbours for sure. Within a component all triangles are made to agree with the
+/// first; then the component as a whole is turned or left:
+///
+///        +-------------+
+///        |  +-------+  |     closed:  outward, by the sign of the enclosed volume; inside an odd number of
+///        |  | depth |  |              others it is a cavity and faces inward, so that the solid is always
+///        |  |   1   |  |              behind the triangles
+///        |  +-------+  |     open:    as most of its area faced in the file
+///        |   depth 0   |     one-sided bands (Moebius) cannot be set right; they are told
+///        +-------------+
+///
+/// Inside is asked by winding numbers along rays of a tree of boxes (surface_crossings.h). Components that
+/// cut through each other are left facing outward, and told. n log n.
+
+#include <vector>
+
+#include "tactum/geometry/triangle_mesh.h"
+
+namespace tactum {
+
+struct MeshComponent {
+  int first_triangle = 0;   ///< its lowest number
+  int triangles = 0;        ///< how many
+  bool closed = false;      ///< every edge has an even number of its triangles
+  int twisted_edges = 0;    ///< edges where its triangles cannot agree
+  int depth = 0;            ///< closed components around it, when closed
+  bool cuts_other = false;  ///< it lies partly inside another closed component
+  bool turned = false;      ///< as a whole, against most of it in the file (told by repair_mesh)
+  double volume = 0.0;      ///< signed, as it faces at last; of closed ones [m^3]
+  double area = 0.0;        ///< [m^2]
+  Aabb box;                 ///< [m]
+
+  /// Closed and yet without an inside worth the name: tolerances::kNoVolume of its size cubed.
+  bool empty_inside() const;
+};
+
+struct OrientedMesh {
+  std::vector<MeshComponent> components;  ///< in the order of their first triangles
+  std::vector<int> component;             ///< of each triangle
+  std::vector<int> flipped;               ///< triangles that were turned round
+};
+
+/// Turns triangles in place. They must have three different corners each.
+OrientedMesh orient_components(TriangleMesh& mesh);
+
+}  // namespace tactum

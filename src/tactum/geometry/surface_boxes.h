@@ -1,0 +1,49 @@
+#pragma once
+/// The trees of oriented boxes over the features of a surface: how surface_tree.h's nodes and leaves are
+/// made.
+
+#include <utility>
+#include <vector>
+
+#include "tactum/geometry/surface_cones.h"
+#include "tactum/geometry/surface_tree.h"
+
+namespace tactum {
+
+/// Leaves hold eight features each but the last, nodes as many children as fill them: a node of n leaves has
+/// children of the largest power of eight below n. Features that stay together lie near each other and look
+/// the same way.
+class SurfaceBoxes {
+ public:
+  SurfaceBoxes(const TriangleMesh& mesh, const SurfaceCones& cones, const Vec3& center);
+
+  std::vector<SurfaceTree::Node> nodes;
+  std::vector<SurfaceTree::Leaf> leaves;
+  std::array<std::int32_t, 3> root{-1, -1, -1};  ///< SurfaceTree::root
+
+ private:
+  using Range = std::pair<std::size_t, std::size_t>;  ///< of order_
+
+  std::int32_t make_tree();
+  std::int32_t make_leaf(Range range);
+  std::int32_t make_node(Range range);
+  void make_box(SurfaceTree::Node& node, std::size_t lane, Range range);
+  void split(Range range, std::size_t unit, std::vector<Range>& parts);
+  void sort_halves(Range range, std::size_t halfway);
+
+  std::size_t points() const { return std::size_t(kind_) + 1; }  ///< of a feature of the kind at hand
+  Vec3 point(const ConedFeature& feature, std::size_t i) const {
+    const Triangle& t = mesh_.triangles[feature.corner / 3];
+    return mesh_.vertices[t[(std::size_t(feature.corner) + i) % 3]] - center_;
+  }
+  Vec3 middle(const ConedFeature& feature) const;
+
+  const TriangleMesh& mesh_;
+  Vec3 center_;
+  double grown_;  // by what rounding to single precision may move a point [m]
+  SurfaceTree::Kind kind_ = SurfaceTree::kVertices;
+  std::vector<ConedFeature> order_;  // of the kind at hand
+  std::vector<std::pair<double, ConedFeature>> keyed_;
+};
+
+}  // namespace tactum

@@ -1,0 +1,34 @@
+#pragma once
+/// Which features of a triangle surface have a normal cone, who owns them, and how wide they are: the
+/// topology under surface_tree.h.
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "tactum/geometry/triangle_mesh.h"
+
+namespace tactum {
+
+/// A feature that can be nearest to something, with the cone around its normal cone.
+struct ConedFeature {
+  std::int32_t corner = -1;  ///< as in SurfaceTree::Leaf
+  Vec3 axis;                 ///< unit [-]
+  double width = 0.0;        ///< largest angle from the axis to a direction of the cone [rad]
+};
+
+struct SurfaceCones {
+  std::array<std::vector<ConedFeature>, 3> features;  ///< by SurfaceTree::Kind
+  std::vector<Vec3> normal;                           ///< of each triangle, unit, outward [-]
+  std::vector<std::array<std::int32_t, 3>> beyond;    ///< SurfaceTree::beyond
+  std::vector<std::uint8_t> narrow;                   ///< SurfaceTree::narrow_edge, narrow_vertex
+  std::vector<std::int32_t> first_around, around;     ///< SurfaceTree::around
+};
+
+SurfaceCones surface_cones(const TriangleMesh& mesh, const std::vector<int>& group);
+
+/// The directions u with e . u <= 0 for all `edges`: rays whose hull they are; none when the cone has no
+/// inside.
+std::vector<Vec3> polar_cone(const std::vector<Vec3>& edges);
+
+}  // namespace tactum

@@ -1,0 +1,82 @@
+#include "tactum/geometry/surface_tree.h"
+
+#include <algorithm>
+
+#include "tactum/geometry/part.h"
+#include "tactum/geometry/surface_boxes.h"
+#include "tactum/geometry/surface_cones.h"
+
+namespace tactum {
+
+SurfaceTree::SurfaceTree(const TriangleMesh& welded) : SurfaceTree(welded, coplanar_groups(welded)) {}
+
+SurfaceTree::SurfaceTree(const TriangleMesh& welded, const std::vector<int>& group)
+    : vertices_(welded.vertices), triangles_(welded.triangles), group_(group.begin(), group.end()) {
+  const Aabb box = bounds(vertices_);
+  scalars_.size = box.diagonal();
+  if (empty()) return;
+  const Vec3 center = box.center();
+  scalars_.center = {center.x(), center.y(), center.z()};
+  SurfaceCones cones = surface_cones(welded, group);
+  SurfaceBoxes boxes(welded, cones, center);
+  beyond_ = std::move(cones.beyond);
+  narrow_ = std::move(cones.narrow);
+  normal_.reserve(triangles_.size());
+  for (const Vec3& n : cones.normal)
+    normal_.push_back({static_cast<float>(n.x()), static_cast<float>(n.y()), static_cast<float>(n.z())});
+  first_around_ = std::move(cones.first_around);
+  around_ = std::move(cones.around);
+  nodes_ = std::move(boxes.nodes);
+  leaves_ = std::move(boxes.leaves);
+  nodes_.shrink_to_fit();
+  scalars_.root = boxes.root;
+}
+
+std::size_t SurfaceTree::memory() const noexcept {
+  std::size_t bytes = sizeof(*this);
+  for_each_array([&](const auto& array) { bytes += array.capacity() * sizeof(array[0]); });
+  return bytes;
+}
+
+bool SurfaceTree::sound() const noexcept {
+  if (empty()) return nodes_.empty() && leaves_.empty();
+  const int triangles = triangle_count();
+  const int vertices = vertex_count();
+  const auto is_triangle = [&](std::int32_t t) { return t >= 0 && t < triangles; };
+  const auto is_vertex = [&](std::int32_t v) { return v >= 0 && v < vertices; };
+  const std::size_t count = triangles_.size();
+  if (group_.size() != count || beyond_.size() != count || narrow_.size() != count || normal_.size() != count)
+    return false;
+  if (first_around_.size() != vertices_.size() + 1) return false;
+  if (first_around_.front() != 0 || std::size_t(first_around_.back()) != around_.size()) return false;
+  if (!std::is_sorted(first_around_.begin(), first_around_.end())) return false;
+  if (!std::all_of(around_.begin(), around_.end(),
+                   [&](std::int32_t w) { return w >= 0 ? is_vertex(w) : is_triangle(~w); }))
+    return false;
+  for (std::size_t t = 0; t < count; ++t) {
+    if (!std::all_of(triangles_[t].begin(), triangles_[t].end(), is_vertex)) return false;
+    if (!std::all_of(beyond_[t].begin(), beyond_[t].end(),
+                     [&](std::int32_t w) { return w == kWall || is_vertex(w); }))
+      return false;
+  }
+  for (const Leaf& leaf : leaves_) {
+    for (std::int32_t corner : leaf.corner) {
+      if (corner != -1 && (corner < 0 || !is_triangle(corner / 3))) return false;
+    }
+  }
+  for (std::int32_t root : scalars_.root) {
+    if (root < -1 || root >= static_cast<std::int32_t>(nodes_.size())) return false;
+  }
+  // Children stand behind their parents, so no walk goes round.
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    for (std::int32_t child : nodes_[i].child) {
+      const bool fine = child > 0   ? std::size_t(child) > i && std::size_t(child) < nodes_.size()
+                        : child < 0 ? std::size_t(~child) < leaves_.size()
+                                    : true;
+      if (!fine) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace tactum

@@ -1,0 +1,382 @@
+#include "tactum/haptics/constraint.h"
+
+#include <algorithm>
+
+#include "tactum/base/tolerances.h"
+#include "tactum/collision/patch_corners.h"
+#include "tactum/haptics/frame_state.h"
+#include "tactum/math/screw.h"
+
+namespace tactum {
+namespace {
+
+using Index = std::size_t;
+
+// How a step is brought to a pose where everything is open: exact gaps are fed back so often, then the step
+// is halved so often.
+constexpr int kFeedbacks = 2;
+constexpr int kHalvings = 3;
+/// How often patches that slid are let slip further: what is left of the error is mu^2 a round.
+constexpr int kSlipRounds = 6;
+/// The trusted length after a step, in lengths of that step.
+constexpr double kTrustGrowth = 2.0;
+/// The tolerance of contact determination is so much more than the trusted length, in skins.
+constexpr double kReachMargin = 4.0;
+
+Push push_of(const ContactRow& row) { return {row.p_W, row.n_BA_W, Vec3::Zero()}; }
+
+/// A name that a row keeps from frame to frame while the pair's patch has as many corners.
+std::uint64_t name_of(const ContactPatch& patch, Index corner) {
+  if (patch.of_surfaces) return patch.manifold.points[0].id;
+  const auto pieces =
+      static_cast<std::uint64_t>(patch.piece_a) << 20 ^ static_cast<std::uint64_t>(patch.piece_b);
+  const auto bodies =
+      static_cast<std::uint64_t>(patch.body_a) << 6 ^ static_cast<std::uint64_t>(patch.body_b);
+  return (bodies << 40 ^ pieces) << 8 ^ corner;
+}
+
+/// The rows of one frame: all corners of all patches.
+void make_rows(const World& world, FrameState& state) {
+  ConstraintState& c = state.constraint;
+  ContactRows& out = state.contacts;
+  out.rows.clear();
+  out.full = false;
+  c.names.clear();
+  PatchCorners corners;
+  const std::span<const ContactPatch> patches = state.finder.patches();
+  Pose X_AB;
+  for (Index p = 0; p < patches.size(); ++p) {
+    const ContactPatch& patch = patches[p];
+    const Pose& X_WA = state.world.X_WB[Index(patch.body_a)];
+    if (p == 0 || patch.body_a != patches[p - 1].body_a || patch.body_b != patches[p - 1].body_b)
+      X_AB = relative_pose(X_WA, state.world.X_WB[Index(patch.body_b)]);
+    if (patch.manifold.points.empty()) continue;  // only watched
+    if (patch.of_surfaces) {
+      const ContactPoint& point = patch.manifold.points[0];
+      corners.clear();
+      corners.push_back({0.5 * (point.p_a + point.p_b), point.distance});
+    } else {
+      patch_corners(world.bodies[Index(patch.body_a)].part->pieces[Index(patch.piece_a)],
+                    world.bodies[Index(patch.body_b)].part->pieces[Index(patch.piece_b)], X_AB,
+                    patch.manifold, patch.distance, patch.tolerance, corners);
+    }
+    const Vec3 normal_W = X_WA.R * patch.manifold.normal;
+    for (Index i = 0; i < corners.size(); ++i) {
+      if (out.rows.size() == out.rows.capacity()) {
+        out.full = true;
+        return;
+      }
+      ContactRow& row = out.rows.emplace_back();
+      row.body_a = patch.body_a;
+      row.body_b = patch.body_b;
+      row.patch = static_cast<int>(p);
+      row.n_BA_W = normal_W;
+      row.p_W = X_WA * corners[i].p_A;
+      row.distance = corners[i].distance;
+      row.tolerance = patch.tolerance;
+      c.names.push_back(name_of(patch, i));
+    }
+  }
+}
+
+/// The displacement of the handle that the coupling asks for.
+Vec6 wanted_by_hand(const FrameSettings& settings, double dt_s, const FrameState& state) {
+  const Pose X_WH_proxy = state.world.X_WB[Index(state.tool.body)] * state.tool.X_BH;
+  return balanced_step(settings.coupling, dt_s, X_WH_proxy, state.hand.X_WH, state.hand.V_WH);
+}
+
+/// The bodies and what each wants: to the hand, on along its way; or, `at_rest`, nothing.
+void add_bodies(const World& world, const FrameSettings& settings, double dt_s, bool at_rest,
+                FrameState& state, FrameReport& report) {
+  ConstraintProblem& problem = state.constraint.problem;
+  problem.clear();
+  const int held = state.tool.body;
+  bool room = true;
+  if (held >= 0) {
+    const Pose& X_WB = state.world.X_WB[Index(held)];
+    state.constraint.wanted = at_rest ? Vec6(Vec6::Zero()) : wanted_by_hand(settings, dt_s, state);
+    room &= problem.add_held(held, world.bodies[Index(held)].joint, X_WB, X_WB * state.tool.X_BH.p,
+                             held_metric(settings.coupling, dt_s), state.constraint.wanted);
+  }
+  for (Index i = 0; i < world.bodies.size(); ++i) {
+    const int b = static_cast<int>(i);
+    if (b == held || !world.bodies[i].moves()) continue;
+    const Vec6 on = at_rest ? Vec6(Vec6::Zero()) : to_vector(state.world.V_WB[i] * dt_s);
+    room &= problem.add_free(b, world.bodies[i], state.world.X_WB[i], on, dt_s);
+  }
+  if (!room) report.flags |= frame_flag::kSolverBounded;
+  problem.add_brakes();
+}
+
+/// The rows of the contacts. Where a gap is below the skin, `opening` asks
+/// for the skin, for which there may be no room; else only that it closes no further, which staying keeps.
+void add_contact_rows(bool opening, FrameState& state) {
+  ConstraintState& c = state.constraint;
+  c.first_row = c.problem.rows();
+  for (const ContactRow& row : state.contacts.rows) {
+    const double offset = c.skin_m - row.distance;
+    c.problem.add_row(row.body_a, row.body_b, push_of(row), opening ? offset : std::min(0.0, offset));
+  }
+  c.feedback.assign(state.contacts.rows.size(), 0.0);
+}
+
+bool solve_from(std::span<const int> first, const FrameSettings& settings, ConstraintState& c,
+                FrameReport& report) {
+  const QpAnswer& answer = c.problem.solve(first, settings.budget.solver_iterations);
+  report.solver_iterations += answer.iterations;
+  if (answer.status == QpStatus::kBounded) report.flags |= frame_flag::kSolverBounded;
+  return answer.status == QpStatus::kSolved;
+}
+
+/// Solves, from the rows that held in the last frame. False when there is no solution.
+bool solve(const FrameSettings& settings, ConstraintState& c, FrameReport& report) {
+  StaticVector<int, kMostUnknowns> first;
+  for (Index row = 0; row < c.names.size(); ++row)
+    for (const std::uint64_t name : c.held)
+      if (name == c.names[row]) first.push_back(static_cast<int>(c.first_row + row));
+  return solve_from({first.begin(), first.end()}, settings, c, report);
+}
+
+/// Solves again, from the rows that hold now.
+bool solve_on(const FrameSettings& settings, ConstraintState& c, FrameReport& report) {
+  StaticVector<int, kMostUnknowns> first;
+  for (const QpActive& active : c.problem.answer().active)
+    if (Index(active.row) < c.problem.rows()) first.push_back(active.row);
+  return solve_from({first.begin(), first.end()}, settings, c, report);
+}
+
+/// Lets every patch stick, then slip where it must, until none slips further. Where no answer keeps the
+/// anchors they are taken off; where there is none at all, friction.
+bool solve_sliding(const FrameSettings& settings, Index friction_row, ConstraintState& c,
+                   FrameReport& report) {
+  for (int round = 0; round <= kSlipRounds; ++round) {
+    bool solved = solve_on(settings, c, report);
+    if (!solved) {
+      c.friction.forget_anchors(c.problem);
+      solved = solve_on(settings, c, report);
+    }
+    if (!solved) {
+      c.friction.clear();
+      c.problem.keep_rows(friction_row);
+      return solve_on(settings, c, report);
+    }
+    if (!c.friction.let_slip(c.skin_m, c.problem)) break;
+  }
+  return true;
+}
+
+/// Keeps what the answer says of forces: impulses, the rows that hold, the wrench at the handle.
+void keep_forces(const FrameSettings& settings, double dt_s, FrameState& state, FrameReport& report) {
+  ConstraintState& c = state.constraint;
+  c.held.clear();
+  for (ContactRow& row : state.contacts.rows) row.impulse = 0.0;
+  for (const QpActive& active : c.problem.answer().active) {
+    const Index row = Index(active.row) - c.first_row;
+    if (Index(active.row) < c.first_row || row >= c.names.size()) continue;
+    state.contacts.rows[row].impulse = active.multiplier * dt_s;
+    c.held.push_back(c.names[row]);
+  }
+  report.active_constraints = static_cast<int>(c.held.size());
+  if (state.tool.body < 0) return;
+  // M (x - x*) at the handle: with a free held part, exactly the sum of the contact forces.
+  const HeldMetric metric = held_metric(settings.coupling, dt_s);
+  const Mover& held = c.problem.movers().front();
+  const Vec6 off = c.problem.displacement_at_centre(held) - c.wanted;
+  c.felt = {metric.stiffness_N_per_m * off.head<3>(), metric.stiffness_Nm_per_rad * off.tail<3>()};
+}
+
+/// The farthest way of a point of the body in the last answer [m].
+double way_of(const FrameState& state, const Mover& mover) {
+  const Vec6 x = state.constraint.problem.displacement(mover.body);
+  return x.head<3>().norm() + x.tail<3>().norm() * state.finder.radius(mover.body);
+}
+
+/// The share of the answer's step that is trusted.
+double trusted_share(const FrameSettings& settings, const FrameState& state) {
+  const ConstraintState& c = state.constraint;
+  double share = 1.0;
+  for (const Mover& mover : c.problem.movers()) {
+    const double way = way_of(state, mover);
+    const double trusted = state.reach[Index(mover.body)] - kReachMargin * c.skin_m;
+    if (way * share > trusted) share = trusted / way;
+    if (mover.body != state.tool.body) continue;
+    const double turn = c.problem.displacement(mover.body).tail<3>().norm();
+    if (turn * share > settings.constraint.max_turn_rad) share = settings.constraint.max_turn_rad / turn;
+  }
+  return share;
+}
+
+/// Whether a gap may become `then` after `now`: open, and if it must shrink below half the skin, then by no
+/// more than half. Held to the exact last gap, a part that is a rounding too near could never move again.
+bool may_become(double now, double then, double skin) {
+  return then >= std::min(0.5 * skin, now > 0.0 ? 0.5 * now : now);
+}
+
+/// Moves everything by `share` of the answer's step, on trial, and looks at every gap there.
+bool open_after(const World& world, double share, FrameState& state, FrameReport& report) {
+  ConstraintState& c = state.constraint;
+  c.X_WB_trial = state.world.X_WB;  // same size: nothing is allocated
+  for (const Mover& mover : c.problem.movers()) {
+    const Index i = Index(mover.body);
+    const Twist step = to_twist(c.problem.displacement(mover.body) * share);
+    c.X_WB_trial[i] = constrained_pose(world.bodies[i], advanced(state.world.X_WB[i], step, 1.0));
+    if (!c.X_WB_trial[i].finite()) return false;
+  }
+  state.finder.distances_at(c.X_WB_trial, c.gap_trial);
+  report.validation_tests += static_cast<int>(c.gap_trial.size());
+  for (Index p = 0; p < c.gap.size(); ++p)
+    if (!may_become(c.gap[p], c.gap_trial[p], c.skin_m)) return false;
+  return true;
+}
+
+/// The gap of a row at the trial: its points go with their bodies, its normal with the face that makes it.
+double gap_at_trial(const ContactRow& row, const FrameState& state) {
+  const ConstraintState& c = state.constraint;
+  const Manifold& patch = state.finder.patches()[Index(row.patch)].manifold;
+  const auto carried = [&](int body, const Vec3& p_W) {
+    const Pose& before = state.world.X_WB[Index(body)];
+    return c.X_WB_trial[Index(body)] * rotated_back(before.R, p_W - before.p);
+  };
+  const int owner =
+      patch.b.kind != FeatureKind::kFace && patch.a.kind == FeatureKind::kFace ? row.body_a : row.body_b;
+  const Vec3 half = 0.5 * row.distance * row.n_BA_W;
+  const Vec3 normal =
+      c.X_WB_trial[Index(owner)].R * rotated_back(state.world.X_WB[Index(owner)].R, row.n_BA_W);
+  return normal.dot(carried(row.body_a, row.p_W + half) - carried(row.body_b, row.p_W - half));
+}
+
+/// Second-order correction: what the trial's gaps differ from what the rows said is added to the rows.
+void feed_back(double share, FrameState& state) {
+  ConstraintState& c = state.constraint;
+  for (Index r = 0; r < state.contacts.rows.size(); ++r) {
+    const ContactRow& row = state.contacts.rows[r];
+    const double linear = c.problem.opening(row.body_a, row.body_b, push_of(row));
+    const double missing = (row.distance + share * linear - gap_at_trial(row, state)) / share;
+    c.problem.tighten(c.first_row + r, missing - c.feedback[r]);
+    c.feedback[r] = missing;
+  }
+}
+
+void take_trial(FrameState& state) {
+  ConstraintState& c = state.constraint;
+  state.world.X_WB.swap(c.X_WB_trial);
+  c.gap.swap(c.gap_trial);
+}
+
+/// Contacts nearer than half the skin are opened first, as far as there is room.
+void restore(const World& world, const FrameSettings& settings, double dt_s, FrameState& state,
+             FrameReport& report) {
+  ConstraintState& c = state.constraint;
+  if (std::all_of(c.gap.begin(), c.gap.end(), [&](double gap) { return gap >= 0.5 * c.skin_m; })) return;
+  add_bodies(world, settings, dt_s, true, state, report);
+  add_contact_rows(true, state);
+  if (!solve(settings, c, report)) return;
+  if (!open_after(world, trusted_share(settings, state), state, report)) return;
+  for (ContactRow& row : state.contacts.rows) row.distance = gap_at_trial(row, state);
+  take_trial(state);
+}
+
+/// Goes where the hand wants as far as everything stays open; returns the share of the answer that was taken.
+double advance(const World& world, const FrameSettings& settings, double dt_s, FrameState& state,
+               FrameReport& report) {
+  ConstraintState& c = state.constraint;
+  add_bodies(world, settings, dt_s, false, state, report);
+  add_contact_rows(false, state);
+  const Index friction_row = c.problem.rows();
+  c.friction.clear();
+  double share = 0.0;
+  for (int round = 0; round <= kFeedbacks; ++round) {
+    if (round > 0) {
+      ++report.validation_retries;
+      feed_back(share, state);
+    }
+    const bool solved =
+        c.friction.acts() ? solve_sliding(settings, friction_row, c, report) : solve(settings, c, report);
+    if (!solved) break;
+    if (round == 0 && c.friction.begin(world, settings.friction, state.contacts.rows, state.finder.patches(),
+                                       state.world.X_WB, c.skin_m, c.first_row, c.problem))
+      solve_sliding(settings, friction_row, c, report);
+    keep_forces(settings, dt_s, state, report);
+    share = trusted_share(settings, state);
+    if (open_after(world, share, state, report)) return share;
+  }
+  for (int halving = 0; halving < kHalvings; ++halving) {
+    ++report.validation_retries;
+    share *= 0.5;
+    if (open_after(world, share, state, report)) return share;
+  }
+  return 0.0;
+}
+
+/// The contacts as they push: normal forces of corners, and of friction the edges of its cones.
+void report_rows(double dt_s, FrameState& state, FrameReport& report) {
+  const int held = state.tool.body;
+  report.contact_points = static_cast<int>(state.contacts.rows.size());
+  for (const ContactRow& row : state.contacts.rows)
+    report.held_contact_points += row.impulse > 0.0 && (row.body_a == held || row.body_b == held) ? 1 : 0;
+  const ConstraintState& c = state.constraint;
+  const Vec3 torque = c.friction.add_forces(held, dt_s, c.problem, state.contacts.rows);
+  if (held < 0) return;
+  report.restoring = contact_wrench(state.contacts.rows, held, c.problem.movers().front().origin, dt_s);
+  report.restoring.t += torque;
+}
+
+}  // namespace
+
+ConstraintState::ConstraintState(const World& world, const FrameSettings& settings)
+    : problem(static_cast<Index>(settings.budget.max_contact_points) +
+              Friction::kMostPatches * Friction::kRowsAPatch),
+      trust_m(settings.constraint.least_step_m),
+      X_WB_trial(world.bodies.size()) {
+  double size = 0.0;
+  for (const Body& body : world.bodies)
+    if (body.moves()) size = std::max(size, body.part->size);
+  skin_m = tolerances::kSkin * size;
+  const Index rows = static_cast<Index>(settings.budget.max_contact_points);
+  names.reserve(rows);
+  feedback.reserve(rows);
+  gap.reserve(settings.budget.rooms.patches);
+  gap_trial.reserve(settings.budget.rooms.patches);
+}
+
+void pull_free_bodies(const World& world, double dt_s, FrameState& state) noexcept {
+  for (Index i = 0; i < world.bodies.size(); ++i)
+    if (world.bodies[i].moves()) state.world.V_WB[i].v += world.gravity_W * dt_s;
+}
+
+void trusted_reach(double dt_s, FrameState& state) noexcept {
+  const ConstraintState& c = state.constraint;
+  for (Index i = 0; i < state.reach.size(); ++i) {
+    const Twist& V = state.world.V_WB[i];
+    const bool held = static_cast<int>(i) == state.tool.body;
+    const double own =
+        held ? 0.0 : (V.v.norm() + V.w.norm() * state.finder.radius(static_cast<int>(i))) * dt_s;
+    state.reach[i] = own + c.trust_m + kReachMargin * c.skin_m;
+  }
+}
+
+void respond_constrained(const World& world, const FrameSettings& settings, double dt_s, FrameState& state,
+                         FrameReport& report) noexcept {
+  ConstraintState& c = state.constraint;
+  make_rows(world, state);
+  const std::span<const ContactPatch> patches = state.finder.patches();
+  c.gap.clear();
+  for (const ContactPatch& patch : patches) c.gap.push_back(patch.distance);
+  c.gap_trial.resize(c.gap.size());
+
+  restore(world, settings, dt_s, state, report);
+  const double share = advance(world, settings, dt_s, state, report);
+  double way = 0.0;
+  for (const Mover& mover : c.problem.movers()) way = std::max(way, share * way_of(state, mover));
+  if (share > 0.0) take_trial(state);
+  c.friction.end(share, state.contacts.rows, c.first_row, c.problem, state.world.X_WB);
+  const Constraint& limits = settings.constraint;
+  const double most = state.finder.work().minima > 0 ? limits.max_step_on_surfaces_m : limits.max_step_m;
+  c.trust_m = std::clamp(kTrustGrowth * way, std::min(limits.least_step_m, most), most);
+  for (Index i = 0; i < world.bodies.size(); ++i)
+    if (world.bodies[i].moves())
+      state.world.V_WB[i] = twist_between(state.X_WB_start[i], state.world.X_WB[i], dt_s);
+  report_rows(dt_s, state, report);
+}
+
+}  // namespace tactum

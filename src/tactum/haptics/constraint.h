@@ -1,0 +1,56 @@
+#pragma once
+/// The `constraint` response: the held part is a god-object with six degrees of freedom that goes where the
+/// hand wants it as far as nothing is entered [Zilles 1995; Ortega 2007].
+///
+///     rows: every corner of every patch   ->   nearest displacement   ->   scaled to the trusted length
+///        ^                                                                        |
+///        '--- exact gaps at the new pose are fed back, the step halved  <---  is every gap open there?  -->
+///        go
+///
+/// A pose is only taken when the exact distance of every near pair of pieces has been computed there and is
+/// open: linear rows alone would let a turning part in. Each remedy here was a failure first, see
+/// docs/algorithms/constraint_response.md. Cost: 1-2 us for a peg in its hole.
+
+#include <vector>
+
+#include "tactum/haptics/constraint_problem.h"
+#include "tactum/haptics/frame_report.h"
+#include "tactum/haptics/friction.h"
+
+namespace tactum {
+
+struct FrameState;
+
+/// What the response keeps from frame to frame, and its scratch, allocated at load time.
+struct ConstraintState {
+  ConstraintState(const World& world, const FrameSettings& settings);
+
+  ConstraintProblem problem;
+  Friction friction;
+  double skin_m;   ///< the gap contacts are held at [m]
+  double trust_m;  ///< how far a point of a body may move in the next frame [m]
+  Vec6 wanted;     ///< what the coupling asked of the handle [m, rad]
+  Wrench felt;     ///< of the contact forces, at the handle, world axes [N, N m]
+  /// Names of the rows that held last.
+  StaticVector<std::uint64_t, kMostUnknowns> held;
+
+  // Scratch of one frame.
+  std::size_t first_row = 0;         ///< of the contacts, in the problem
+  std::vector<std::uint64_t> names;  ///< of the rows
+  std::vector<double> feedback;      ///< what exact gaps have added to the rows [m]
+  std::vector<Pose> X_WB_trial;
+  std::vector<double> gap, gap_trial;  ///< of the patches: now, and at the trial [m]
+};
+
+/// Gravity on free bodies; the held part and the hinges are the contact problem's.
+void pull_free_bodies(const World& world, double dt_s, FrameState& state) noexcept;
+
+/// How far points may move in the frame: the trusted length for the held part, and what it may push, for the
+/// others on top of their own way. Fills state.reach.
+void trusted_reach(double dt_s, FrameState& state) noexcept;
+
+/// Moves everything that moves. Fills state.contacts.rows, the felt wrench and the report's response fields.
+void respond_constrained(const World& world, const FrameSettings& settings, double dt_s, FrameState& state,
+                         FrameReport& report) noexcept;
+
+}  // namespace tactum

@@ -1,0 +1,118 @@
+#pragma once
+/// The contact problem of the `constraint` response: which displacements of the bodies over one frame are
+/// nearest to the wanted ones while no contact closes beyond its skin.
+///
+///     least  sum over bodies |x - x*|^2_M / 2     with   n . (x_a(p) - x_b(p)) >= skin - distance
+///
+/// x is a body's displacement over the frame at its origin, axes of W: (way [m], turn [rad]). Its metric M is
+/// what resists it: for the held part the coupling itself, spring and damper over one frame, told at the
+/// handle; for a free body its inertia over the square of the frame's time. So the multipliers are the
+/// contact forces in newtons, and M (x - x*) is their sum: what the hand feels, and nothing else.
+///
+/// With x = x* + B z and M^-1 = B B^T it is the nearest point to the origin in a polyhedron (small_qp.h): six
+/// unknowns for a free body, one for a hinged one. A hinge with dry friction has a brake, one more unknown t
+/// that may not be less than the angle turned, either way, and that the friction's torque pulls down:
+///
+///     t >= a,  t >= -a,   energy  T t + e t^2 / 2      so |T_a| <= T + e t, with e t a thousandth of T
+
+#include <vector>
+
+#include "tactum/dynamics/contact_solver.h"
+#include "tactum/haptics/settings.h"
+#include "tactum/math/small_qp.h"
+
+namespace tactum {
+
+/// The coupling as the proxy feels it over one frame: F = M (x - x*) at the handle, diagonal.
+struct HeldMetric {
+  double stiffness_N_per_m = 0.0;     ///< k_t + b_t / dt [N/m]
+  double stiffness_Nm_per_rad = 0.0;  ///< k_r + b_r / dt [N m/rad]
+};
+
+HeldMetric held_metric(const Coupling& coupling, double dt_s) noexcept;
+
+/// The displacement of the handle, (m, rad), at which the coupling's spring and damper are in balance.
+Vec6 balanced_step(const Coupling& coupling, double dt_s, const Pose& X_WH_proxy, const Pose& X_WH,
+                   const Twist& V_WH) noexcept;
+
+/// A body whose displacement is unknown. Its six unknowns are the way of `centre`, each times `per_way`, and
+/// the turn, the columns of `turns`; or the one unknown of a hinge is the motion `hinge`.
+struct Mover {
+  int body = -1;
+  std::size_t first = 0, rank = 0;  ///< its unknowns
+  Vec3 origin = Vec3::Zero();       ///< of the body, in W [m]
+  Vec3 centre = Vec3::Zero();       ///< in W: the handle of the held body, the origin of others [m]
+  Vec6 wanted = Vec6::Zero();       ///< x* at the centre [m, rad]
+  double per_way = 0.0;
+  Mat3 turns = Mat3::Zero();
+  Vec6 hinge = Vec6::Zero();
+};
+
+/// What a row pushes with, per unit of its multiplier: a force at a point, and a torque beside it.
+struct Push {
+  Vec3 p_W = Vec3::Zero();     ///< [m]
+  Vec3 force = Vec3::Zero();   ///< [-]
+  Vec3 torque = Vec3::Zero();  ///< [m]
+};
+
+class ConstraintProblem {
+ public:
+  /// Room for `most_rows` rows beside those of brakes.
+  explicit ConstraintProblem(std::size_t most_rows);
+
+  /// Forgets everything; then the bodies are added, then the rows.
+  void clear() noexcept;
+  /// The held part. `wanted` is told at the handle p_WH. False, and the body stays where it is, when there is
+  /// no room for its unknowns.
+  bool add_held(int body, const Joint& joint, const Pose& X_WB, const Vec3& p_WH, const HeldMetric& metric,
+                const Vec6& wanted) noexcept;
+  /// A body that resists with its inertia; `wanted` is where it goes when nothing touches it.
+  bool add_free(int body, const Body& what, const Pose& X_WB, const Vec6& wanted, double dt_s) noexcept;
+  /// The rows of the brakes: after the bodies, before other rows.
+  void add_brakes() noexcept;
+
+  /// Adds the row  push . (x_a - x_b) >= offset. A body that was not added does not move. False when full.
+  bool add_row(int body_a, int body_b, const Push& push, double offset) noexcept;
+  /// The left side of that row in the last answer [m].
+  double opening(int body_a, int body_b, const Push& push) const noexcept;
+  std::size_t rows() const noexcept { return offsets_.size(); }
+  /// Forgets the rows from `count` on.
+  void keep_rows(std::size_t count) noexcept {
+    offsets_.resize(count);
+    normals_.resize(count * unknowns_);
+  }
+  /// Makes a row ask for `by` more.
+  void tighten(std::size_t row, double by) noexcept { offsets_[row] += by; }
+
+  /// Solves, looking at the rows in `first` first; the answer keeps until the next call.
+  const QpAnswer& solve(std::span<const int> first, int max_iterations) noexcept;
+
+  const QpAnswer& answer() const noexcept { return answer_; }
+  std::span<const Mover> movers() const noexcept { return {movers_, mover_count_}; }
+  /// Displacement of a body's origin in the last answer; zero when it was not added [m, rad].
+  Vec6 displacement(int body) const noexcept;
+  /// The same at the mover's centre.
+  Vec6 displacement_at_centre(const Mover& mover) const noexcept;
+
+ private:
+  struct Brake {
+    const Mover* hinged;
+    double friction_Nm;
+    std::size_t unknown;
+  };
+  static constexpr std::size_t kMostMovers = kMostUnknowns;
+
+  const Mover* mover_of(int body) const noexcept;
+  Mover* next_mover(int body, std::size_t rank, const Vec3& origin, const Vec3& centre) noexcept;
+  void add_brake(const Mover& hinged, double friction_Nm) noexcept;
+
+  Mover movers_[kMostMovers];
+  std::size_t mover_count_ = 0;
+  std::size_t unknowns_ = 0;
+  StaticVector<Brake, kMostMovers> brakes_;
+  std::vector<double> normals_, offsets_;
+  std::size_t most_rows_;
+  QpAnswer answer_;
+};
+
+}  // namespace tactum

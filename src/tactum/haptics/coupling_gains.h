@@ -1,0 +1,58 @@
+#pragma once
+/// How stiff may the virtual coupling be on this device, at this rate? A spring K and damper B that are
+/// sampled every T and act after a delay of tau look to the hand like a thing that makes energy, and the
+/// device's own damping b must eat it:
+///
+///   b > K (T / 2 + tau) + |B|            [Colgate and Schenkel 1994], with delay [Gil 2009]
+///
+/// With it the port is passive whatever the hand does, letting go included. Devices are built to have as
+/// little damping as possible, so few walls people use every day meet it (a Premium: 0.05 N s/m, 100 N/m at 1
+/// kHz). A hand that holds the handle adds its damping, 3 N s/m when it is loose: with that the same law says
+/// what does not buzz in a hand. Both are told; the gains are chosen for the hand, and the observer
+/// (passivity.h) watches for the rest.
+///
+/// A coarse encoder makes a stiff spring chatter by one step and back, which friction stops when
+///
+///   friction > K step / 2                [Abbott and Okamura 2005]
+///
+/// On a device that cannot turn the handle there is no loop around the turning spring, so no bound. It is
+/// never felt, only decides where the proxy gives way: chosen stiff, so that the rotation follows the hand
+/// and what the contact does against it is felt as force, the only thing that can be.
+
+#include <string>
+
+#include "tactum/devices/device.h"
+#include "tactum/haptics/passivity.h"
+#include "tactum/haptics/settings.h"
+
+namespace tactum {
+
+/// The damping that a coupling asks for: K (T / 2 + tau) + |B|. The same for rotation.
+double damping_needed(double stiffness, double damping, double period_s, double delay_s) noexcept;
+
+/// The stiffest spring that `device_damping` can bear beside a damper B; 0 when B alone is too much.
+double stiffness_allowed(double device_damping, double damping, double period_s, double delay_s) noexcept;
+
+/// What bounds the coupling in one of its halves, translation or rotation (then N m/rad).
+struct GainBounds {
+  double alone = 0.0;    ///< nobody holds the handle: passive [N/m]
+  double held = 0.0;     ///< in a loose hand [N/m]
+  double encoder = 0.0;  ///< friction stops the chatter; infinite where friction or step is unknown [N/m]
+};
+
+struct CouplingGains {
+  Coupling coupling;  ///< chosen
+  GainBounds translation, rotation;
+};
+
+/// The gains for a device served at `rate_Hz`: half of what a loose hand allows, no more than the encoder and
+/// the device's makers do, with a tenth of that hand's damping as its damper.
+CouplingGains coupling_gains(const DeviceInfo& info, double rate_Hz);
+
+/// What the passivity stage should know of this device.
+PortSettings port_settings(const DeviceInfo& info, double rate_Hz);
+
+/// How much of the bounds a coupling uses, in a sentence for people.
+std::string margin_sentence(const Coupling& coupling, const DeviceInfo& info, double rate_Hz);
+
+}  // namespace tactum

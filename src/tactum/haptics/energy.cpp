@@ -1,0 +1,36 @@
+#include "tactum/haptics/energy.h"
+
+#include "tactum/math/screw.h"
+
+namespace tactum {
+
+double bodies_energy(const World& world, const WorldState& state, int held) noexcept {
+  double energy_J = 0.0;
+  for (std::size_t i = 0; i < world.bodies.size(); ++i) {
+    const Body& body = world.bodies[i];
+    if (!body.moves() || static_cast<int>(i) == held) continue;
+    const Twist& V_WB = state.V_WB[i];
+    const Pose& X_WB = state.X_WB[i];
+    const Vec3 w_B = X_WB.R.transpose() * V_WB.w;
+    energy_J += 0.5 * body.mass_kg * V_WB.v.squaredNorm() + 0.5 * w_B.dot(body.inertia_B * w_B) -
+                body.mass_kg * world.gravity_W.dot(X_WB.p);
+  }
+  return energy_J;
+}
+
+PortInput port_input(const World& world, const FrameSettings& settings, const FrameState& state,
+                     const FrameReport& report) noexcept {
+  PortInput input;
+  input.wanted = report.smoothed;
+  input.sent = state.safety.sent;
+  input.bodies_J = bodies_energy(world, state.world, state.tool.body);
+  input.dt_s = settings.dt_s;
+  if (state.tool.body >= 0) {
+    const Twist stretch = twist_between(report.X_WH, report.X_WH_proxy, 1.0);
+    input.spring_J = 0.5 * settings.coupling.stiffness_N_per_m * stretch.v.squaredNorm();
+    input.spring_turning_J = 0.5 * settings.coupling.stiffness_Nm_per_rad * stretch.w.squaredNorm();
+  }
+  return input;
+}
+
+}  // namespace tactum

@@ -1,0 +1,212 @@
+#include "tactum/haptics/friction.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactum {
+namespace {
+
+using Index = std::size_t;
+
+/// What a patch slides by in the step of an answer, from its anchor, and turns by about its normal.
+struct Slide {
+  Vec3 way = Vec3::Zero();
+  double turn = 0.0;
+  double lift = 0.0;  // off the other surface
+};
+
+Slide slide_of(const FrictionPatch& patch, const ConstraintProblem& problem) {
+  Slide slide;
+  for (int i = 0; i < 3; ++i)
+    slide.way[i] =
+        problem.opening(patch.key.body_a, patch.key.body_b, {patch.centre_W, Vec3::Unit(i), Vec3::Zero()});
+  slide.lift = patch.n_BA_W.dot(slide.way) + patch.gap_m;
+  slide.way += patch.apart_W;
+  slide.way -= patch.n_BA_W * patch.n_BA_W.dot(slide.way);
+  slide.turn =
+      problem.opening(patch.key.body_a, patch.key.body_b, {patch.centre_W, Vec3::Zero(), patch.n_BA_W});
+  return slide;
+}
+
+/// Edge k of the cone: directions around the normal, then the two senses of turning.
+Push edge_of(const FrictionPatch& patch, Index k) {
+  Push push{patch.centre_W, patch.n_BA_W, Vec3::Zero()};
+  if (k >= Friction::kDirections) {
+    const double sense = k == Friction::kDirections ? 1.0 : -1.0;
+    push.torque = -sense * patch.coefficient * patch.radius_m * patch.n_BA_W;
+    return push;
+  }
+  const double angle = 2.0 * kPi * static_cast<double>(k) / static_cast<double>(Friction::kDirections);
+  const Vec3 across = patch.n_BA_W.cross(patch.along_W);
+  push.force -= patch.coefficient * (std::cos(angle) * patch.along_W + std::sin(angle) * across);
+  return push;
+}
+
+/// How much less than the gap a row asks for, by the slip allowed and the anchor's distance.
+double allowance(const FrictionPatch& patch, Index k) {
+  if (k >= Friction::kDirections) return patch.coefficient * patch.radius_m * patch.slip_rad;
+  return patch.coefficient * patch.slip_m + (edge_of(patch, k).force - patch.n_BA_W).dot(patch.apart_W);
+}
+
+}  // namespace
+
+bool Friction::begin(const World& world, const FrictionSettings& settings, std::span<const ContactRow> rows,
+                     std::span<const ContactPatch> patches, std::span<const Pose> X_WB, double skin_m,
+                     std::size_t first_row, ConstraintProblem& problem) noexcept {
+  patches_.clear();
+  if (settings.coefficients.empty()) return false;
+  const auto for_pushing_rows = [&](const auto& visit) {
+    for (const QpActive& active : problem.answer().active) {
+      const Index i = Index(active.row) - first_row;
+      if (Index(active.row) < first_row || i >= rows.size()) continue;
+      const ContactPatch& patch = patches[Index(rows[i].patch)];
+      const Body& a = world.bodies[Index(patch.body_a)];
+      const Body& b = world.bodies[Index(patch.body_b)];
+      const PatchKey key{patch.body_a, patch.body_b, a.part->surface_group[Index(patch.piece_a)],
+                         b.part->surface_group[Index(patch.piece_b)]};
+      FrictionPatch* found = std::find_if(patches_.begin(), patches_.end(),
+                                          [&](const FrictionPatch& other) { return other.key == key; });
+      if (found == patches_.end()) {
+        FrictionPatch next;
+        next.key = key;
+        next.finder_patch = rows[i].patch;
+        next.coefficient = settings.between(patch.body_a, patch.body_b);
+        if (!(next.coefficient > 0.0) || !patches_.push_back(next)) continue;
+        found = &patches_.back();
+      }
+      visit(*found, rows[i], active.multiplier);
+    }
+  };
+  for_pushing_rows([](FrictionPatch& patch, const ContactRow& row, double force) {
+    patch.load_N += force;
+    patch.centre_W += force * row.p_W;
+    patch.n_BA_W += force * row.n_BA_W;
+    patch.gap_m += force * row.distance;
+  });
+  for (FrictionPatch& patch : patches_) {
+    if (!(patch.load_N > 0.0)) continue;
+    patch.centre_W /= patch.load_N;
+    patch.gap_m = std::max(0.0, patch.gap_m / patch.load_N - skin_m);
+    patch.n_BA_W.normalize();
+  }
+  for_pushing_rows([](FrictionPatch& patch, const ContactRow& row, double force) {
+    if (patch.load_N > 0.0) patch.radius_m += force / patch.load_N * (row.p_W - patch.centre_W).norm();
+  });
+  for (FrictionPatch& patch : patches_) {
+    if (!(patch.load_N > 0.0)) continue;
+    anchor(patch, X_WB);
+    const Slide free = slide_of(patch, problem);
+    const double length = free.way.norm();
+    patch.along_W = length > 0.0 ? Vec3(free.way / length) : any_orthogonal(patch.n_BA_W);
+    add_rows(patch, problem);
+  }
+  return acts();
+}
+
+/// The anchor and the centre of the patch's last frame, if it had one.
+void Friction::anchor(FrictionPatch& patch, std::span<const Pose> X_WB) noexcept {
+  for (const Anchor& last : anchors_) {
+    if (!(last.key == patch.key)) continue;
+    const Pose& X_WA = X_WB[Index(patch.key.body_a)];
+    const Pose& X_W_B = X_WB[Index(patch.key.body_b)];
+    patch.apart_W = X_WA * last.on_A - X_W_B * last.on_B;
+    patch.apart_W -= patch.n_BA_W * patch.n_BA_W.dot(patch.apart_W);
+    const Vec3 centre = X_WA * last.centre_A;
+    patch.centre_W = centre + patch.n_BA_W * patch.n_BA_W.dot(patch.centre_W - centre);
+  }
+}
+
+void Friction::add_rows(FrictionPatch& patch, ConstraintProblem& problem) noexcept {
+  patch.first_row = problem.rows();
+  for (Index k = 0; k < kRowsAPatch; ++k)
+    problem.add_row(patch.key.body_a, patch.key.body_b, edge_of(patch, k),
+                    -patch.gap_m - allowance(patch, k));
+}
+
+bool Friction::let_slip(double skin_m, ConstraintProblem& problem) noexcept {
+  // A lift of less than this share of the skin is none. What slides without lifting (on the way to a wall
+  // that it has not reached) needs no leave: of a wedged part, every leave would lead to another.
+  constexpr double kSettled = 0.25;
+  const double settled = kSettled * skin_m;
+  bool changed = false;
+  for (FrictionPatch& patch : patches_) {
+    if (!(patch.load_N > 0.0)) continue;
+    const Slide slide = slide_of(patch, problem);
+    const double arm = patch.coefficient * patch.radius_m;
+    double further = std::min(slide.lift, patch.coefficient * (slide.way.norm() - patch.slip_m));
+    double turned = std::min(slide.lift, arm * (std::abs(slide.turn) - patch.slip_rad));
+    if (further <= settled) further = 0.0;
+    if (turned <= settled) turned = 0.0;
+    if (further == 0.0 && turned == 0.0) continue;
+    for (Index k = 0; k < kDirections; ++k) problem.tighten(patch.first_row + k, -further);
+    for (Index k = kDirections; k < kRowsAPatch; ++k) problem.tighten(patch.first_row + k, -turned);
+    patch.slip_m += further / patch.coefficient;
+    if (turned > 0.0) patch.slip_rad += turned / arm;
+    changed = true;
+  }
+  return changed;
+}
+
+void Friction::forget_anchors(ConstraintProblem& problem) noexcept {
+  for (FrictionPatch& patch : patches_) {
+    if (!(patch.load_N > 0.0)) continue;
+    const Vec3 apart = patch.apart_W;
+    for (Index k = 0; k < kDirections; ++k)
+      problem.tighten(patch.first_row + k, (edge_of(patch, k).force - patch.n_BA_W).dot(apart));
+    patch.apart_W.setZero();
+  }
+}
+
+void Friction::end(double share, std::span<const ContactRow> rows, std::size_t first_row,
+                   const ConstraintProblem& problem, std::span<const Pose> X_WB) noexcept {
+  anchors_.clear();
+  for (const FrictionPatch& patch : patches_) {
+    if (!(patch.load_N > 0.0)) continue;
+    // The centre of all forces of the patch: its corners', and the cone's at the centre so far.
+    double load = 0.0;
+    Vec3 moment = Vec3::Zero();
+    for (const QpActive& active : problem.answer().active) {
+      const Index row = Index(active.row);
+      if (row >= patch.first_row && row < patch.first_row + kRowsAPatch) {
+        load += active.multiplier;
+        moment += active.multiplier * patch.centre_W;
+      } else if (row >= first_row && row - first_row < rows.size() &&
+                 rows[row - first_row].patch == patch.finder_patch) {
+        load += active.multiplier;
+        moment += active.multiplier * rows[row - first_row].p_W;
+      }
+    }
+    const Vec3 centre = load > 0.0 ? Vec3(moment / load) : patch.centre_W;
+    const bool slid = patch.slip_m > 0.0;
+    const Vec3 apart = slid ? Vec3(Vec3::Zero())
+                            : Vec3(patch.apart_W + share * (slide_of(patch, problem).way - patch.apart_W));
+    const Pose X_AW = X_WB[Index(patch.key.body_a)].inverse();
+    const Pose X_BW = X_WB[Index(patch.key.body_b)].inverse();
+    anchors_.push_back({patch.key, X_AW * (centre + apart), X_BW * centre, X_AW * centre});
+  }
+}
+
+Vec3 Friction::add_forces(int body, double dt_s, const ConstraintProblem& problem,
+                          std::vector<ContactRow>& rows) const noexcept {
+  Vec3 torque = Vec3::Zero();
+  for (const QpActive& active : problem.answer().active)
+    for (const FrictionPatch& patch : patches_) {
+      const Index row = Index(active.row);
+      if (row < patch.first_row || row >= patch.first_row + kRowsAPatch || !(patch.load_N > 0.0)) continue;
+      const Push push = edge_of(patch, row - patch.first_row);
+      if (patch.key.body_a == body) torque += active.multiplier * push.torque;
+      if (patch.key.body_b == body) torque -= active.multiplier * push.torque;
+      if (rows.size() == rows.capacity()) continue;
+      ContactRow& force = rows.emplace_back();
+      force.body_a = patch.key.body_a;
+      force.body_b = patch.key.body_b;
+      force.patch = patch.finder_patch;
+      force.p_W = patch.centre_W;
+      force.n_BA_W = push.force.normalized();
+      force.distance = patch.gap_m;
+      force.impulse = active.multiplier * push.force.norm() * dt_s;
+    }
+  return torque;
+}
+
+}  // namespace tactum

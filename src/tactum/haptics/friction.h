@@ -1,0 +1,91 @@
+#pragma once
+/// Dry friction in the constraint response: one cone per patch of contact, at its centre of pressure.
+///
+///        \  |n /       a row per direction d:   n . s - mu d . (s_t + a) >= -(gap) - mu slip
+///         \ | /        its force on A is along  n - mu d:  the edges of the cone
+///     A    \|/
+///     -----(c)-----    s  displacement of A's point at c against B's,  s_t  its part in the plane
+///     B                a  how far the anchor, a point of each body, has come apart in the plane
+///
+/// With slip = 0 these rows let the point move sideways only if it lifts by mu times as much, so no force
+/// within the cone moves it: it sticks, and goes back to its anchor if rounding took it off. Where the force
+/// lies on the cone, it lifts; slip is then set to the sideways motion it made and the problem solved again,
+/// which ends with no lift, sliding, and the force mu N against the motion [Anitescu and Potra 1997; De Saxce
+/// and Feng 1998]. A patch that slid is anchored where it came to rest. The forces of a patch's corners count
+/// to N, as c is the centre of them all; found from the last frame's, it settles within a few.
+///
+/// Turning about the normal has two rows of the same kind, with the torque mu N r of the patch's mean radius
+/// r; force and torque share the cone linearly, a diamond inside the ellipse that an area has.
+///
+/// Only patches that would push without friction have a cone. A part held by nothing but its own wedging
+/// comes free when the hand stops pressing it there.
+
+#include "tactum/dynamics/contact_solver.h"
+#include "tactum/haptics/constraint_problem.h"
+#include "tactum/haptics/settings.h"
+
+namespace tactum {
+
+/// Which surfaces touch.
+struct PatchKey {
+  int body_a = -1, body_b = -1, group_a = -1, group_b = -1;
+  bool operator==(const PatchKey&) const = default;
+};
+
+/// A patch that pushes, in this frame.
+struct FrictionPatch {
+  PatchKey key;
+  int finder_patch = -1;         ///< one of the finder's patches that make it up
+  double coefficient = 0.0;      ///< mu [-]
+  double load_N = 0.0;           ///< N [N]
+  double radius_m = 0.0;         ///< r, of the forces about their centre [m]
+  double gap_m = 0.0;            ///< at the centre, beyond the skin [m]
+  Vec3 n_BA_W = Vec3::Zero();    ///< [-]
+  Vec3 centre_W = Vec3::Zero();  ///< c [m]
+  Vec3 apart_W = Vec3::Zero();   ///< a [m]
+  Vec3 along_W = Vec3::Zero();   ///< the first direction d, unit [-]
+  double slip_m = 0.0;           ///< allowed without lifting [m]
+  double slip_rad = 0.0;         ///< of turning about the normal [rad]
+  std::size_t first_row = 0;
+};
+
+class Friction {
+ public:
+  static constexpr std::size_t kMostPatches = 16;
+  static constexpr std::size_t kDirections = 12;
+  static constexpr std::size_t kRowsAPatch = kDirections + 2;
+
+  /// The patches that push in the last answer, whose contact rows begin at `first_row`; their rows are added
+  /// to the problem. False when there is none.
+  bool begin(const World& world, const FrictionSettings& settings, std::span<const ContactRow> rows,
+             std::span<const ContactPatch> patches, std::span<const Pose> X_WB, double skin_m,
+             std::size_t first_row, ConstraintProblem& problem) noexcept;
+  /// Lets patches slip by what they slid in the last answer. True when that changed a row.
+  bool let_slip(double skin_m, ConstraintProblem& problem) noexcept;
+  /// Takes the anchors off, when they ask for what cannot be.
+  void forget_anchors(ConstraintProblem& problem) noexcept;
+  /// Remembers anchors and centres: `share` of the last answer was taken, which led to X_WB.
+  void end(double share, std::span<const ContactRow> rows, std::size_t first_row,
+           const ConstraintProblem& problem, std::span<const Pose> X_WB) noexcept;
+  /// Appends a row per cone edge that pushes; returns the torques about normals on `body`.
+  Vec3 add_forces(int body, double dt_s, const ConstraintProblem& problem,
+                  std::vector<ContactRow>& rows) const noexcept;
+
+  bool acts() const noexcept { return !patches_.empty(); }
+  /// Nothing acts.
+  void clear() noexcept { patches_.clear(); }
+
+ private:
+  /// Of a patch, from frame to frame: its anchor on either body, and the centre as A carries it.
+  struct Anchor {
+    PatchKey key;
+    Vec3 on_A = Vec3::Zero(), on_B = Vec3::Zero(), centre_A = Vec3::Zero();  // [m]
+  };
+  void add_rows(FrictionPatch& patch, ConstraintProblem& problem) noexcept;
+  void anchor(FrictionPatch& patch, std::span<const Pose> X_WB) noexcept;
+
+  StaticVector<FrictionPatch, kMostPatches> patches_;
+  StaticVector<Anchor, kMostPatches> anchors_;
+};
+
+}  // namespace tactum

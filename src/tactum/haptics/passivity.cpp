@@ -1,0 +1,62 @@
+#include "tactum/haptics/passivity.h"
+
+#include <algorithm>
+
+#include "tactum/math/screw.h"
+
+namespace tactum {
+namespace {
+
+/// One of the two ledgers over one step.
+struct Step {
+  Vec3 way;          // made since the last frame
+  Vec3 sent;         // force (torque) held meanwhile
+  double damping;    // the device's own
+  double given_J;    // by the scene's bodies
+  double highest_J;  // the ledger may become
+  double credit_J;
+  double max_injected;
+  double dt_s;
+};
+
+/// Books the step and returns the damping to add.
+double book(const Step& step, double& ledger_J) noexcept {
+  const double way_sq = step.way.squaredNorm();
+  const double passed_J = -step.sent.dot(step.way) + step.damping * way_sq / step.dt_s + step.given_J;
+  ledger_J = std::clamp(ledger_J + passed_J, -step.credit_J, step.highest_J);
+  if (!(ledger_J < 0.0) || way_sq == 0.0) return 0.0;
+  // a |V|^2 dt = - ledger, with V = way / dt; a huge quotient is cut to what is allowed
+  return std::min(-ledger_J * step.dt_s / way_sq, step.max_injected);
+}
+
+}  // namespace
+
+Wrench passive_wrench(const PortSettings& settings, PortState& state, const DeviceSample& sample,
+                      const PortInput& input, PortReport& report) noexcept {
+  Wrench F = input.wanted;
+  if (!settings.actuates_torque) F.t.setZero();
+  report = {};
+  if (sample.valid && plausible(sample.X_DH) && input.dt_s > 0.0) {
+    const Twist way = state.known ? twist_between(state.X_DH, sample.X_DH, 1.0) : Twist{};
+    const double given_J = state.known ? std::max(0.0, state.bodies_J - input.bodies_J) : 0.0;
+    report.injected_Ns_per_m =
+        book({way.v, input.sent.f, settings.damping_Ns_per_m, given_J, settings.credit_J + input.spring_J,
+              settings.credit_J, settings.max_injected_Ns_per_m, input.dt_s},
+             state.ledger_J);
+    report.injected_Nms_per_rad =
+        book({way.w, input.sent.t, settings.damping_Nms_per_rad, given_J,
+              settings.credit_turning_J + input.spring_turning_J, settings.credit_turning_J,
+              settings.actuates_torque ? settings.max_injected_Nms_per_rad : 0.0, input.dt_s},
+             state.ledger_turning_J);
+    F.f -= report.injected_Ns_per_m / input.dt_s * way.v;
+    F.t -= report.injected_Nms_per_rad / input.dt_s * way.w;
+    state.X_DH = sample.X_DH;
+    state.bodies_J = input.bodies_J;
+    state.known = true;
+  }
+  report.ledger_J = state.ledger_J;
+  report.ledger_turning_J = state.ledger_turning_J;
+  return F;
+}
+
+}  // namespace tactum

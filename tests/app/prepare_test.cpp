@@ -1,0 +1,124 @@
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "app/program.h"
+
+namespace tactum {
+namespace {
+
+using testing::ProgramRun;
+using testing::run_tactum;
+using testing::ScratchFolder;
+using Json = nlohmann::json;
+
+const char* const kCube =
+    "v 0 0 0\nv 10 0 0\nv 10 10 0\nv 0 10 0\nv 0 0 10\nv 10 0 10\nv 10 10 10\nv 0 10 10\n"
+    "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 1 5 8 4\n";
+
+/// A folder with the cube and a cache of its own.
+struct Workshop {
+  ScratchFolder folder;
+  std::string cube = folder / "cube.obj";
+  std::string part = folder / "cube.tactum";
+  Workshop() { testing::write(cube, kCube); }
+  ProgramRun prepare(const std::string& more = "") const {
+    return run_tactum("prepare " + cube + " -o " + part + " --cache " + (folder / "cache") + " " + more);
+  }
+};
+
+TEST(PrepareCommand, WritesAPartAndTellsWhatItIs) {
+  const Workshop shop;
+  const ProgramRun run = shop.prepare();
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NE(run.out.find("millimetres"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("verified"), std::string::npos);
+  EXPECT_EQ(run.out.find("prepared before"), std::string::npos);
+  EXPECT_EQ(run.err, "");  // the bar is for terminals
+  const ProgramRun inspected = run_tactum("inspect --json - " + shop.part);
+  ASSERT_EQ(inspected.exit_code, 0) << inspected.err;
+  const Json json = Json::parse(inspected.out);
+  EXPECT_NEAR(json[0]["report"]["mass"]["volume_m3"].get<double>(), 1e-6, 1e-15);
+  EXPECT_EQ(json[0]["report"]["mesh"]["convex_edges"], 12);
+  EXPECT_EQ(json[0]["report"]["mesh"]["reflex_edges"], 0);
+}
+
+TEST(PrepareCommand, ASecondTimeComesFromTheCacheUnlessSomethingChanged) {
+  const Workshop shop;
+  ASSERT_EQ(shop.prepare().exit_code, 0);
+  const std::string first = testing::content(shop.part);
+  const ProgramRun again = shop.prepare();
+  EXPECT_NE(again.out.find("prepared before"), std::string::npos);
+  EXPECT_EQ(testing::content(shop.part), first);
+  EXPECT_EQ(shop.prepare("--no-cache").out.find("prepared before"), std::string::npos);
+  EXPECT_EQ(testing::content(shop.part), first);
+  EXPECT_EQ(shop.prepare("--units mm").out.find("prepared before"), std::string::npos);
+  testing::write(shop.cube, std::string(kCube) + "# another byte\n");
+  EXPECT_EQ(shop.prepare().out.find("prepared before"), std::string::npos);
+}
+
+TEST(PrepareCommand, RefusesInOneLineOnStderr) {
+  const ScratchFolder folder;
+  std::string stl(1000, '\0');
+  const std::uint32_t ten_million = 10'000'000;
+  std::memcpy(stl.data() + 80, &ten_million, sizeof ten_million);
+  testing::write(folder / "huge.stl", stl);
+  const ProgramRun run =
+      run_tactum("prepare " + (folder / "huge.stl") + " -o " + (folder / "huge.tactum") + " --no-cache");
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_NE(run.err.find("huge.stl"), std::string::npos) << run.err;
+  EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1);
+  EXPECT_FALSE(std::filesystem::exists(folder / "huge.tactum"));
+}
+
+TEST(PrepareCommand, SeveralMeshesArePiecesOfOnePart) {
+  const Workshop shop;
+  std::string beside = kCube;
+  for (std::size_t at = beside.find("v 0"); at != std::string::npos; at = beside.find("v 0", at + 1))
+    beside.replace(at, 3, "v 20");  // mirrored about the wall x = 10; hulls do not mind
+  testing::write(shop.folder / "beside.obj", beside);
+  const ProgramRun run = run_tactum("prepare " + shop.cube + " " + (shop.folder / "beside.obj") +
+                                    " --no-cache --json - -o " + shop.part);
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const Json json = Json::parse(run.out);
+  EXPECT_EQ(json["report"]["pieces"]["way"], "given");
+  EXPECT_EQ(json["report"]["pieces"]["count"], 2);
+}
+
+TEST(PrepareCommand, ClearanceAndDistanceTakePreparedParts) {
+  const Workshop shop;
+  ASSERT_EQ(shop.prepare().exit_code, 0);
+  testing::write(shop.folder / "motion.csv",
+                 "frame,time_s,a_px,a_py,a_pz,a_m00,a_m01,a_m02,a_m10,a_m11,a_m12,a_m20,a_m21,a_m22,"
+                 "b_px,b_py,b_pz,b_m00,b_m01,b_m02,b_m10,b_m11,b_m12,b_m20,b_m21,b_m22\n"
+                 "0,0,0,0,0,1,0,0,0,1,0,0,0,1,0.0125,0,0,1,0,0,0,1,0,0,0,1\n");
+  const ProgramRun clearance =
+      run_tactum("clearance " + shop.part + " " + shop.part + " " + (shop.folder / "motion.csv"));
+  ASSERT_EQ(clearance.exit_code, 0) << clearance.err;
+  EXPECT_NE(clearance.out.find("\n0,0,0.0025"), std::string::npos) << clearance.out;
+
+  const Json side = {{"part", "cube.tactum"}};
+  Json moved = side;
+  moved["pose"] = {1, 0, 0, 0.0125, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+  testing::write(shop.folder / "cases.json", Json({{"cases", {{{"a", side}, {"b", moved}}}}}).dump());
+  const ProgramRun distance = run_tactum("distance " + (shop.folder / "cases.json"));
+  ASSERT_EQ(distance.exit_code, 0) << distance.err;
+  const Json answer = Json::parse(distance.out)["results"][0];
+  EXPECT_NEAR(answer["signed_distance"].get<double>(), 0.0025, 1e-12);
+  EXPECT_NEAR(answer["p_a"][0].get<double>(), 0.01, 1e-12);  // in the frame of the mesh, as for vertices
+}
+
+TEST(PrepareCommand, ADamagedPartIsRefusedWithItsReason) {
+  const Workshop shop;
+  ASSERT_EQ(shop.prepare().exit_code, 0);
+  std::string bytes = testing::content(shop.part);
+  bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] + 1);
+  testing::write(shop.part, bytes);
+  const ProgramRun run = run_tactum("inspect " + shop.part);
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_NE(run.err.find("bytes were changed"), std::string::npos) << run.err;
+}
+
+}  // namespace
+}  // namespace tactum

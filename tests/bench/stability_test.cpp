@@ -1,0 +1,92 @@
+#include "bench/stability.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+namespace tactum::bench {
+namespace {
+
+bool full() { return std::getenv("TACTUM_FULL") != nullptr; }
+
+std::vector<WallSetup> every_setup(bool turning) {
+  std::vector<WallSetup> setups;
+  for (const SimulatedDeviceModel& model : simulated_device_presets())
+    for (const char* grip : {"loose", "medium", "firm"})
+      if (!turning || model.max_torque_Nm > 0.0)
+        setups.push_back({model, *hand_model(grip), 1000.0, turning});
+  return setups;
+}
+
+std::string named(const WallSetup& setup) {
+  return setup.device.name + ", " + setup.hand.name + (setup.turning ? ", turning" : "");
+}
+
+TEST(Stability, NearlyTheWholeBoundMakesNoEnergy) {
+  const double seconds = full() ? 60.0 : 2.4;
+  for (const bool turning : {false, true})
+    for (const WallSetup& setup : every_setup(turning)) {
+      const WallTrial trial = try_wall(setup, 0.95 * wall_bound(setup), seconds);
+      EXPECT_TRUE(trial.passive) << named(setup) << " " << trial.lowest_J;
+      EXPECT_GT(trial.pressed, 0.0) << named(setup);
+    }
+}
+
+TEST(Stability, NearlyTheWholeBoundComesToRestWhereFrictionStopsTheEncodersChatter) {
+  for (const bool turning : {false, true})
+    for (WallSetup setup : every_setup(turning)) {
+      if (!(setup.device.max_torque_Nm > 0.0)) continue;
+      // The Premium's friction holds against half an encoder step of 2.7 N/mm, no more.
+      if (setup.device.name == "premium-1.5-6dof") {
+        setup.device.encoder_step_m /= 20;
+        setup.device.encoder_step_rad /= 20;
+      }
+      EXPECT_TRUE(try_wall(setup, 0.95 * wall_bound(setup)).held) << named(setup);
+    }
+}
+
+TEST(Stability, ACoarseEncoderChattersWithoutMakingEnergy) {
+  WallSetup setup{*simulated_device_preset("premium-1.5-6dof"), *hand_model("firm"), 1000.0, false};
+  const WallTrial trial = try_wall(setup, 0.95 * wall_bound(setup));
+  EXPECT_FALSE(trial.held);
+  EXPECT_TRUE(trial.passive);
+}
+
+TEST(Stability, ThePublishedStiffnessAndOneNewtonAMillimetreAreHeldByAll) {
+  for (const WallSetup& setup : every_setup(false))
+    for (const double stiffness : {600.0, 1000.0}) {
+      const WallTrial trial = try_wall(setup, stiffness);
+      EXPECT_TRUE(trial.held && trial.passive) << named(setup) << " " << stiffness;
+    }
+}
+
+TEST(Stability, BeyondTheBoundEnergyIsMade) {
+  for (const char* name : {"sigma.7", "omega.6"}) {
+    const WallSetup setup{*simulated_device_preset(name), *hand_model("medium"), 1000.0, false};
+    EXPECT_FALSE(try_wall(setup, 1.5 * wall_bound(setup)).passive) << name;
+  }
+}
+
+TEST(Stability, TheStiffestWallWithoutEnergyIsThatOfTheBoundAtEveryRate) {
+  for (const double rate_Hz :
+       full() ? std::vector<double>{1000, 2000, 4000, 10000} : std::vector<double>{1000}) {
+    const WallRow row =
+        stiffest_wall({*simulated_device_preset("sigma.7"), *hand_model("medium"), rate_Hz, false});
+    EXPECT_GT(row.passive, 0.95 * row.bound) << rate_Hz;
+    EXPECT_LT(row.passive, 1.3 * row.bound) << rate_Hz;
+  }
+}
+
+TEST(Stability, ThePictureHasACurveForEveryRate) {
+  const std::vector<WallRow> rows = {{"a", "medium", false, 1000, 0.0, 1, 2000, 2100, 2500},
+                                     {"a", "medium", false, 1000, 1e-3, 1, 700, 750, 800},
+                                     {"a", "medium", false, 4000, 0.0, 1, 8000, 8100, 9000},
+                                     {"a", "medium", false, 4000, 1e-3, 1, 900, 950, 1000}};
+  const std::string svg = z_width_plot(rows);
+  EXPECT_NE(svg.find("a, pressed"), std::string::npos);
+  EXPECT_NE(svg.find("4 kHz"), std::string::npos);
+  EXPECT_EQ(svg.find("nan"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace tactum::bench

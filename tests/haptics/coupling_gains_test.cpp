@@ -1,0 +1,121 @@
+#include "tactum/haptics/coupling_gains.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <complex>
+
+#include "tactum/devices/simulated_device.h"
+
+namespace tactum {
+namespace {
+
+DeviceInfo info_of(const std::string& preset) {
+  return SimulatedDevice(*simulated_device_preset(preset), no_hand(), nullptr).info();
+}
+
+/// The damping that [Colgate and Schenkel 1994] ask for, frequency by frequency:
+///   b > T/2 / (1 - cos wT)  Re{ (1 - z^-1) H(z) },   z = exp(j w T),   H = (K + B (1 - z^-1) / T) z^-d
+double damping_by_frequencies(double K, double B, double T, int delay_periods) {
+  double most = 0.0;
+  for (int i = 1; i <= 20000; ++i) {
+    const double angle = kPi * i / 20000;
+    const std::complex<double> z = std::polar(1.0, angle);
+    const std::complex<double> H = (K + B * (1.0 - 1.0 / z) / T) * std::pow(z, -delay_periods);
+    most = std::max(most, 0.5 * T / (1.0 - std::cos(angle)) * ((1.0 - 1.0 / z) * H).real());
+  }
+  return most;
+}
+
+TEST(CouplingGains, TheBoundIsThatOfEveryFrequency) {
+  for (const double T : {1e-3, 2.5e-4})
+    for (const int delay : {0, 1, 2, 8}) {
+      const double bound = damping_needed(800.0, 0.0, T, delay * T);
+      EXPECT_NEAR(damping_by_frequencies(800.0, 0.0, T, delay), bound, 1e-3 * bound) << T << " " << delay;
+      for (const double B : {0.2, 1.0, 5.0}) {
+        const double needed = damping_by_frequencies(800.0, B, T, delay);
+        EXPECT_LE(needed, damping_needed(800.0, B, T, delay * T) * (1 + 1e-12))
+            << T << " " << delay << " " << B;
+        if (delay == 0) {
+          EXPECT_NEAR(needed, damping_needed(800.0, B, T, 0.0), 1e-3 * needed) << T << " " << B;
+        }
+      }
+    }
+}
+
+TEST(CouplingGains, TheStiffestSpringNeedsAllTheDampingThereIs) {
+  EXPECT_DOUBLE_EQ(stiffness_allowed(0.05, 0.0, 1e-3, 0.0), 100.0);
+  EXPECT_DOUBLE_EQ(stiffness_allowed(0.05, 0.0, 1e-3, 0.5e-3), 50.0);
+  EXPECT_DOUBLE_EQ(damping_needed(stiffness_allowed(3.0, -0.5, 1e-3, 2e-3), 0.5, 1e-3, 2e-3), 3.0);
+  EXPECT_EQ(stiffness_allowed(0.05, 0.06, 1e-3, 0.0), 0.0);
+}
+
+TEST(CouplingGains, EveryPresetGetsWhatALooseHandAllows) {
+  for (const SimulatedDeviceModel& model : simulated_device_presets())
+    for (const double rate_Hz : {1000.0, 4000.0}) {
+      const DeviceInfo info = info_of(model.name);
+      const CouplingGains gains = coupling_gains(info, rate_Hz);
+      const Coupling& c = gains.coupling;
+      SCOPED_TRACE(model.name + " " + std::to_string(rate_Hz));
+      const double hand = hand_model("loose")->damping_Ns_per_m;
+      EXPECT_LE(2.0 * c.stiffness_N_per_m,
+                (model.damping_Ns_per_m + hand - c.damping_Ns_per_m) * 2 * rate_Hz);
+      EXPECT_LE(c.stiffness_N_per_m, model.max_stiffness_N_per_m);
+      EXPECT_LE(c.stiffness_N_per_m * model.encoder_step_m / 2, model.friction_N);
+      EXPECT_DOUBLE_EQ(gains.translation.alone, model.damping_Ns_per_m * 2 * rate_Hz);
+      EXPECT_GE(c.stiffness_N_per_m, 400.0) << "something to feel";
+      if (model.max_torque_Nm > 0.0) {
+        EXPECT_LE(c.stiffness_Nm_per_rad, model.max_stiffness_Nm_per_rad);
+        EXPECT_LE(c.stiffness_Nm_per_rad, gains.rotation.held);
+      } else {
+        EXPECT_TRUE(std::isinf(gains.rotation.alone)) << "there is no loop around it";
+        EXPECT_EQ(c.damping_Nms_per_rad, 0.0);
+        EXPECT_GT(c.stiffness_Nm_per_rad, 0.03 * c.stiffness_N_per_m);
+      }
+    }
+}
+
+TEST(CouplingGains, DelayCostsStiffness) {
+  DeviceInfo info = info_of("virtuose-6d");
+  info.max_stiffness_N_per_m = info.max_stiffness_Nm_per_rad = 0.0;  // nobody has said
+  const CouplingGains prompt = coupling_gains(info, 1000.0);
+  info.handle.delay_s = 0.5e-3;
+  const CouplingGains delayed = coupling_gains(info, 1000.0);
+  EXPECT_NEAR(prompt.coupling.stiffness_N_per_m, 2 * delayed.coupling.stiffness_N_per_m, 1e-9);
+  EXPECT_NEAR(prompt.coupling.stiffness_Nm_per_rad, 2 * delayed.coupling.stiffness_Nm_per_rad, 1e-9);
+}
+
+TEST(CouplingGains, ADeviceNobodyKnowsAnythingOfGetsWhatTheHandAloneAllows) {
+  DeviceInfo info;
+  info.actuates_force = info.actuates_torque = true;
+  info.max_force_N = 10.0;
+  const CouplingGains gains = coupling_gains(info, 1000.0);
+  EXPECT_EQ(gains.translation.alone, 0.0);
+  EXPECT_NEAR(gains.coupling.stiffness_N_per_m, 0.5 * (3.0 - 0.3) * 2000, 1e-9);
+  const PortSettings port = port_settings(info, 1000.0);
+  EXPECT_GT(port.max_injected_Ns_per_m, 0.0);
+  EXPECT_LT(port.max_injected_Ns_per_m, 10.0);
+}
+
+TEST(CouplingGains, TheMarginIsToldInWords) {
+  const std::string premium = margin_sentence(Coupling{}, info_of("premium-1.5-6dof"), 1000.0);
+  EXPECT_NE(premium.find("600 N/m: 15 % of 4.1e+03 N/m in a loose hand, 600 % of 100 N/m alone"),
+            std::string::npos)
+      << premium;
+  const std::string touch = margin_sentence(Coupling{}, info_of("touch"), 1000.0);
+  EXPECT_NE(touch.find("no torque is sent"), std::string::npos) << touch;
+}
+
+TEST(PortSettings, OneEncoderStepNeverInjectsMoreThanATwentiethOfTheLimit) {
+  for (const SimulatedDeviceModel& model : simulated_device_presets())
+    for (const double rate_Hz : {1000.0, 10000.0}) {
+      const PortSettings port = port_settings(info_of(model.name), rate_Hz);
+      EXPECT_GT(port.max_injected_Ns_per_m, 0.0);
+      EXPECT_LE(port.max_injected_Ns_per_m * model.encoder_step_m * rate_Hz, 0.0501 * model.max_force_N);
+      EXPECT_LE(port.max_injected_Ns_per_m, 0.1001 * model.mass_kg * rate_Hz);
+      EXPECT_EQ(port.actuates_torque, model.max_torque_Nm > 0.0);
+    }
+}
+
+}  // namespace
+}  // namespace tactum

@@ -1,0 +1,233 @@
+#include "tactum/math/small_qp.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Dense>
+#include <iostream>
+#include <optional>
+#include <vector>
+
+#include "tactum/base/random.h"
+
+namespace tactum {
+namespace {
+
+using Vector = Eigen::VectorXd;
+
+struct Rows {
+  std::size_t unknowns = 0;
+  std::vector<double> normals, offsets;
+
+  void add(const Vector& g, double b) {
+    normals.insert(normals.end(), g.data(), g.data() + g.size());
+    offsets.push_back(b);
+  }
+  Vector normal(std::size_t row) const {
+    return Eigen::Map<const Vector>(normals.data() + row * unknowns, static_cast<Eigen::Index>(unknowns));
+  }
+  QpAnswer solve(const std::vector<int>& first = {}, int max_iterations = 1000) const {
+    QpAnswer answer;
+    solve_small_qp({unknowns, normals, offsets, 1e-12}, first, max_iterations, answer);
+    return answer;
+  }
+};
+
+Vector point(const Rows& rows, const QpAnswer& answer) {
+  return Eigen::Map<const Vector>(answer.z.data(), static_cast<Eigen::Index>(rows.unknowns));
+}
+
+/// The optimality conditions, which prove an answer by themselves.
+void expect_optimal(const Rows& rows, const QpAnswer& answer) {
+  ASSERT_EQ(answer.status, QpStatus::kSolved);
+  const Vector z = point(rows, answer);
+  Vector sum = Vector::Zero(z.size());
+  for (std::size_t row = 0; row < rows.offsets.size(); ++row)
+    EXPECT_GE(rows.normal(row).dot(z) - rows.offsets[row], -1e-10);
+  for (const QpActive& held : answer.active) {
+    const std::size_t row = static_cast<std::size_t>(held.row);
+    EXPECT_GE(held.multiplier, 0.0);
+    EXPECT_NEAR(rows.normal(row).dot(z), rows.offsets[row], 1e-10);
+    sum += held.multiplier * rows.normal(row);
+  }
+  EXPECT_LT((sum - z).norm(), 1e-10 * (1.0 + z.norm()));
+}
+
+/// The nearest point by trying every set of up to `unknowns` rows as equations; none when nothing is
+/// feasible.
+std::optional<Vector> by_enumeration(const Rows& rows) {
+  std::optional<Vector> best;
+  const std::size_t m = rows.offsets.size();
+  for (unsigned set = 0; set < 1u << m; ++set) {
+    std::vector<std::size_t> chosen;
+    for (std::size_t row = 0; row < m; ++row)
+      if (set >> row & 1u) chosen.push_back(row);
+    if (chosen.size() > rows.unknowns) continue;
+    Eigen::MatrixXd G(chosen.size(), rows.unknowns);
+    Vector b(chosen.size());
+    for (std::size_t i = 0; i < chosen.size(); ++i) {
+      G.row(static_cast<Eigen::Index>(i)) = rows.normal(chosen[i]).transpose();
+      b[static_cast<Eigen::Index>(i)] = rows.offsets[chosen[i]];
+    }
+    Vector z = Vector::Zero(static_cast<Eigen::Index>(rows.unknowns));
+    if (!chosen.empty()) {
+      const Eigen::FullPivLU<Eigen::MatrixXd> lu(G * G.transpose());
+      if (lu.rank() < static_cast<Eigen::Index>(chosen.size())) continue;
+      z = G.transpose() * lu.solve(b);
+    }
+    bool feasible = true;
+    for (std::size_t row = 0; row < m && feasible; ++row)
+      feasible = rows.normal(row).dot(z) >= rows.offsets[row] - 1e-9;
+    if (feasible && (!best || z.norm() < best->norm())) best = z;
+  }
+  return best;
+}
+
+Rows random_rows(Random& random, std::size_t unknowns, int count, double low, double high) {
+  Rows rows;
+  rows.unknowns = unknowns;
+  for (int i = 0; i < count; ++i) {
+    Vector g(unknowns);
+    for (double& x : g) x = random.uniform(-1.0, 1.0);
+    rows.add(g, random.uniform(low, high));
+  }
+  return rows;
+}
+
+TEST(SmallQp, WithoutRowsTheOriginIsNearest) {
+  Rows rows;
+  rows.unknowns = 6;
+  const QpAnswer answer = rows.solve();
+  EXPECT_EQ(answer.status, QpStatus::kSolved);
+  EXPECT_EQ(point(rows, answer).norm(), 0.0);
+  EXPECT_EQ(answer.active.size(), 0u);
+}
+
+TEST(SmallQp, AgreesWithTryingEverySetOfRows) {
+  constexpr std::uint64_t kSeed = 20261121;
+  std::cout << "seed " << kSeed << "\n";
+  Random random(kSeed);
+  int solved = 0, infeasible = 0;
+  for (int trial = 0; trial < 600; ++trial) {
+    const std::size_t unknowns = 1 + std::size_t(random.index(6));
+    const Rows rows = random_rows(random, unknowns, 1 + random.index(9), -0.5, 1.0);
+    const QpAnswer answer = rows.solve();
+    const std::optional<Vector> expected = by_enumeration(rows);
+    if (!expected) {
+      EXPECT_EQ(answer.status, QpStatus::kInfeasible) << trial;
+      ++infeasible;
+      continue;
+    }
+    expect_optimal(rows, answer);
+    EXPECT_LT((point(rows, answer) - *expected).norm(), 1e-8 * (1.0 + expected->norm())) << trial;
+    ++solved;
+  }
+  EXPECT_GT(solved, 200);
+  EXPECT_GT(infeasible, 20);
+}
+
+TEST(SmallQp, RowsThatRepeatEachOtherHoldOnce) {
+  constexpr std::uint64_t kSeed = 7;
+  std::cout << "seed " << kSeed << "\n";
+  Random random(kSeed);
+  for (int trial = 0; trial < 200; ++trial) {
+    Rows rows = random_rows(random, 6, 5, 0.0, 1.0);
+    const Rows once = rows;
+    for (std::size_t row = 0; row < 5; ++row) {
+      rows.add(once.normal(row), once.offsets[row]);
+      rows.add(2.0 * once.normal(row), 2.0 * once.offsets[row]);
+    }
+    // The corner between two rows, and a sum of them that only touches it.
+    rows.add(once.normal(0) + once.normal(1), once.offsets[0] + once.offsets[1]);
+    const QpAnswer answer = rows.solve();
+    expect_optimal(rows, answer);
+    EXPECT_LT((point(rows, answer) - point(once, once.solve())).norm(), 1e-9);
+  }
+}
+
+TEST(SmallQp, FourCornersOfAPlaneHoldABlockAsThreeDo) {
+  // Rows of a flat contact: normal z, corners at (+-1, +-1); any three of the four decide.
+  Rows rows;
+  rows.unknowns = 6;
+  for (double x : {-1.0, 1.0})
+    for (double y : {-1.0, 1.0}) {
+      Vector g(6);
+      g << 0, 0, 1, y, -x, 0;
+      rows.add(g, 0.5);
+    }
+  const QpAnswer answer = rows.solve();
+  expect_optimal(rows, answer);
+  EXPECT_NEAR(answer.z[2], 0.5, 1e-14);
+  EXPECT_LE(answer.active.size(), 3u);
+}
+
+TEST(SmallQp, OpposedRowsAreInfeasibleOnlyWhenTheyOverlap) {
+  for (double gap : {-0.1, 0.0, 0.1}) {
+    Rows rows;
+    rows.unknowns = 6;
+    Vector g = Vector::Zero(6);
+    g[1] = 1.0;
+    rows.add(g, 0.3);
+    rows.add(-g, -0.3 - gap);
+    EXPECT_EQ(rows.solve().status, gap < 0.0 ? QpStatus::kInfeasible : QpStatus::kSolved) << gap;
+  }
+}
+
+TEST(SmallQp, TheRowsThatHeldBeforeAreTheWholeWork) {
+  constexpr std::uint64_t kSeed = 11;
+  std::cout << "seed " << kSeed << "\n";
+  Random random(kSeed);
+  int cold_work = 0, warm_work = 0;
+  for (int trial = 0; trial < 100; ++trial) {
+    Rows rows = random_rows(random, 6, 40, 0.01, 0.5);
+    for (std::size_t row = 0; row < rows.offsets.size(); ++row)
+      rows.offsets[row] = rows.normal(row).sum() - rows.offsets[row];  // all ones keep them
+    const QpAnswer cold = rows.solve();
+    std::vector<int> held;
+    for (const QpActive& row : cold.active) held.push_back(row.row);
+    for (double& b : rows.offsets) b += random.uniform(-1e-4, 1e-4);
+    const QpAnswer again = rows.solve();
+    const QpAnswer warm = rows.solve(held);
+    expect_optimal(rows, warm);
+    EXPECT_LT((point(rows, warm) - point(rows, again)).norm(), 1e-9);
+    cold_work += again.iterations;
+    warm_work += warm.iterations;
+    EXPECT_GE(warm.iterations, static_cast<int>(warm.active.size()));
+  }
+  EXPECT_LT(warm_work, cold_work);
+}
+
+TEST(SmallQp, AThousandRowsInSixAndInTwentyFourUnknowns) {
+  constexpr std::uint64_t kSeed = 13;
+  std::cout << "seed " << kSeed << "\n";
+  Random random(kSeed);
+  for (std::size_t unknowns : {std::size_t(6), kMostUnknowns})
+    for (int trial = 0; trial < 20; ++trial) {
+      // Half-spaces that all hold the point (1, ..., 1) times 0.1.
+      Rows rows = random_rows(random, unknowns, 1500, 0.0, 0.2);
+      for (std::size_t row = 0; row < rows.offsets.size(); ++row)
+        rows.offsets[row] = 0.1 * rows.normal(row).sum() - rows.offsets[row];
+      expect_optimal(rows, rows.solve());
+    }
+}
+
+TEST(SmallQp, StopsWhenItsIterationsAreSpentAndSaysSo) {
+  Random random(17);
+  Rows rows = random_rows(random, 6, 12, 0.5, 1.0);
+  for (std::size_t row = 0; row < rows.offsets.size(); ++row)
+    rows.offsets[row] = rows.normal(row).sum() - 0.01;  // feasible: all ones
+  EXPECT_EQ(rows.solve({}, 2).status, QpStatus::kBounded);
+  EXPECT_EQ(rows.solve({}, 2).iterations, 2);
+  expect_optimal(rows, rows.solve());
+}
+
+TEST(SmallQp, TheSameRowsGiveTheSameBits) {
+  Random random(19);
+  const Rows rows = random_rows(random, 6, 30, -1.0, 0.1);
+  const QpAnswer one = rows.solve();
+  const QpAnswer two = rows.solve();
+  EXPECT_EQ(one.z, two.z);
+}
+
+}  // namespace
+}  // namespace tactum

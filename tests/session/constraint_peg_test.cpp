@@ -1,0 +1,181 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+
+#include "tactum/base/random.h"
+#include "tactum/math/screw.h"
+#include "tactum/scene/builtin_scenes.h"
+#include "tactum/session/session.h"
+
+namespace tactum {
+namespace {
+
+bool full() { return std::getenv("TACTUM_FULL") != nullptr; }
+#ifdef TACTUM_SANITIZED
+constexpr int kSlowness = 10;
+#else
+constexpr int kSlowness = 1;
+#endif
+
+Vec3 random_vector(Random& random, double size) {
+  const double x = random.uniform(-size, size);
+  const double y = random.uniform(-size, size);
+  const double z = random.uniform(-size, size);
+  return {x, y, z};
+}
+
+constexpr double kDegree = kPi / 180.0;
+
+/// A hand that cannot aim: wherever it is sent it is off by up to 3 mm and 3 degrees, and it pushes hard. It
+/// starts over the hole, tries to put the peg in for most of its time, holds it in once in good aim, and
+/// draws it out at the end.
+std::shared_ptr<const HandMotion> clumsy_hand(const Pose& X_start, const Vec3& to_hole, double duration_s,
+                                              std::uint64_t seed) {
+  Random random(seed);
+  auto motion = std::make_shared<ScriptedMotion>(X_start);
+  const auto go = [&](const Vec3& offset, double wobble, double time_s) {
+    const Pose X{exp_rotation(random_vector(random, 3.0 * kDegree * wobble)) * X_start.R,
+                 X_start.p + to_hole + offset + random_vector(random, 0.003 * wobble)};
+    motion->move_to(time_s, X);
+  };
+  while (motion->duration_s() < duration_s - 4.5) {
+    // Mostly far too deep: 12 mm into the floor is 5 N.
+    const double depth = random.uniform(-0.047, -0.004);
+    go({0, 0, depth}, 1.0, random.uniform(0.1, 0.8));
+  }
+  go({0, 0, -0.004}, 0.0, 1.0);
+  go({0, 0, -0.037}, 0.0, 1.5);
+  motion->hold(0.5);
+  go({0, 0, 0.010}, 0.0, 1.5);
+  return motion;
+}
+
+/// Whether some plane has all corners on either side: by the faces of both, then by all pairs of edges.
+/// Written for this test, from the definition.
+bool separated(const Polytope& A, const Pose& X_WA, const Polytope& B, const Pose& X_WB) {
+  std::vector<Vec3> a, b;
+  for (const Vec3& v : A.vertices) a.push_back(X_WA * v);
+  for (const Vec3& v : B.vertices) b.push_back(X_WB * v);
+  const auto parts = [&](const Vec3& n) {
+    double lowest_a = 1e9, highest_a = -1e9, lowest_b = 1e9, highest_b = -1e9;
+    for (const Vec3& p : a) {
+      lowest_a = std::min(lowest_a, n.dot(p));
+      highest_a = std::max(highest_a, n.dot(p));
+    }
+    for (const Vec3& p : b) {
+      lowest_b = std::min(lowest_b, n.dot(p));
+      highest_b = std::max(highest_b, n.dot(p));
+    }
+    return lowest_a >= highest_b || lowest_b >= highest_a;
+  };
+  for (const auto& face : B.faces)
+    if (parts(X_WB.R * face.normal)) return true;
+  for (const auto& face : A.faces)
+    if (parts(X_WA.R * face.normal)) return true;
+  for (const auto& ea : A.edges)
+    for (const auto& eb : B.edges)
+      if (parts((X_WA.R * ea.direction).cross(X_WB.R * eb.direction))) return true;
+  return false;
+}
+
+/// Looks at every frame: whether any two pieces overlap, how far the peg has come, what the sum of forces is.
+class Referee final : public LoopObserver {
+ public:
+  explicit Referee(Session& session) : session_(session) {}
+  bool after_frame(const FrameRecord&) noexcept override {
+    const World& world = session_.scene().world;
+    const WorldState& state = session_.state().world;
+    const FrameReport& report = session_.last_report();
+    for (const Polytope& wall : world.bodies[0].part->pieces)
+      for (const Polytope& piece : world.bodies[1].part->pieces)
+        penetrating += separated(piece, state.X_WB[1], wall, state.X_WB[0]) ? 0 : 1;
+    deepest_m = std::min(deepest_m, state.X_WB[1].p.z());
+    retries += report.validation_retries;
+    worst_iterations = std::max(worst_iterations, report.solver_iterations);
+    return true;
+  }
+  int penetrating = 0, retries = 0, worst_iterations = 0;
+  double deepest_m = 1.0;
+
+ private:
+  Session& session_;
+};
+
+std::unique_ptr<Session> peg_session(const std::string& name, std::uint64_t seed, double duration_s,
+                                     double mu) {
+  Result<Scene> scene = open_scene(name);
+  EXPECT_TRUE(scene) << scene.error().message();
+  const Vec3 p_start = scene->world.bodies[1].X_WB.p;
+  scene->hand =
+      clumsy_hand(scene->hand->at(-1.0).X_DH, Vec3(-p_start.x(), -p_start.y(), 0.0), duration_s, seed);
+  if (mu > 0.0) scene->settings.friction = {{0.0, mu, mu, 0.0}, 2};
+  Result<std::unique_ptr<Session>> session = Session::open(std::move(*scene), {});
+  EXPECT_TRUE(session);
+  return std::move(*session);
+}
+
+struct Case {
+  std::string scene;
+  double mu;
+};
+
+class PegInItsHole : public ::testing::TestWithParam<Case> {};
+
+TEST_P(PegInItsHole, IsInsertedByAnyHandAndNeverEntersNorSticks) {
+  const auto& [scene, mu] = GetParam();
+  const int hands = full() ? 20 : 1;
+  const double duration_s = full() ? 20.0 : 4.0 / kSlowness + 4.5;
+  for (int hand = 0; hand < hands; ++hand) {
+    const std::uint64_t seed = 100 + static_cast<std::uint64_t>(hand);
+    const std::unique_ptr<Session> session = peg_session(scene, seed, duration_s, mu);
+    Referee referee(*session);
+    const auto frames = static_cast<std::uint64_t>(frames_of_motion(session->scene())) + 300;
+    ASSERT_TRUE(session->run_virtual(frames, &referee));
+    const RunRecord& record = session->record();
+    std::printf(
+        "%s, friction %.1f, hand %llu: in contact %llu of %llu frames, retries %d, most iterations %d\n",
+        scene.c_str(), mu, static_cast<unsigned long long>(seed),
+        static_cast<unsigned long long>(record.held_contact_frames), static_cast<unsigned long long>(frames),
+        referee.retries, referee.worst_iterations);
+    EXPECT_EQ(referee.penetrating, 0) << seed;
+    EXPECT_EQ(record.penetrating_frames, 0u) << seed;
+    EXPECT_EQ(record.flags, 0u) << seed;
+    EXPECT_GT(record.held_contact_frames, frames / 10);
+    // The peg's centre of mass stands 30 mm over its tip: on the floor, and out of the hole at the end.
+    EXPECT_LT(referee.deepest_m, 0.0301) << seed << ": it was never inserted";
+    EXPECT_GT(session->state().world.X_WB[1].p.z(), 0.069) << seed << ": it is stuck";
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Constraint, PegInItsHole,
+                         ::testing::Values(Case{"peg-1mm", 0.0}, Case{"peg-100um", 0.0},
+                                           Case{"peg-20um", 0.0}, Case{"peg-7um", 0.0}, Case{"peg-1mm", 0.3},
+                                           Case{"peg-100um", 0.1}, Case{"peg-20um", 0.3},
+                                           Case{"peg-7um", 0.1}, Case{"peg-7um", 0.3}),
+                         [](const ::testing::TestParamInfo<Case>& peg) {
+                           std::string name = peg.param.scene + (peg.param.mu > 0.2   ? "_rough"
+                                                                 : peg.param.mu > 0.0 ? "_smooth"
+                                                                                      : "_frictionless");
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
+
+TEST(Constraint, ScenesOfThePenaltyResponseReachTheirGoalsWithoutEntering) {
+  for (const char* name : {"gears", "gears-rim", "block-on-plate", "peg-in-hole"}) {
+    Result<Scene> scene = open_scene(name);
+    ASSERT_TRUE(scene) << scene.error().message();
+    scene->settings.response = ResponseModel::kConstraint;
+    Result<std::unique_ptr<Session>> session = Session::open(std::move(*scene), {});
+    ASSERT_TRUE(session);
+    ASSERT_TRUE(
+        (*session)->run_virtual(static_cast<std::uint64_t>(frames_of_motion((*session)->scene())), nullptr));
+    EXPECT_TRUE((*session)->goals().all_met()) << name;
+    EXPECT_EQ((*session)->record().penetrating_frames, 0u) << name;
+    EXPECT_EQ((*session)->record().flags, 0u) << name;
+  }
+}
+
+}  // namespace
+}  // namespace tactum

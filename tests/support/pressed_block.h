@@ -1,0 +1,49 @@
+#pragma once
+/// A held block of 20 x 14 x 10 mm over a fixed plate, and a hand that brings it down and presses: a running
+/// loop with real contact force, for tests of what happens to it.
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <vector>
+
+#include "tactum/devices/hand_motion.h"
+#include "tactum/haptics/frame.h"
+#include "tactum/math/screw.h"
+
+namespace tactum {
+
+inline std::shared_ptr<const Part> solid_box(const Vec3& half) {
+  std::vector<Vec3> corners;
+  for (int i = 0; i < 8; ++i)
+    corners.emplace_back(i & 1 ? half.x() : -half.x(), i & 2 ? half.y() : -half.y(),
+                         i & 4 ? half.z() : -half.z());
+  Result<Part> part = part_from_clouds({corners});
+  EXPECT_TRUE(part);
+  return std::make_shared<const Part>(std::move(*part));
+}
+
+inline constexpr double kBlockGap_m = 0.003;  ///< between block and plate at the start [m]
+
+/// Body 0 is the block, body 1 the plate, whose top is at z = 0.
+inline World block_over_plate() {
+  World world;
+  world.bodies.resize(2);
+  world.bodies[0].part = solid_box({0.010, 0.007, 0.005});
+  world.bodies[0].mass_kg = 0.05;
+  world.bodies[0].inertia_B = 1e-5 /* kg m^2 */ * Mat3::Identity();
+  world.bodies[0].X_WB = {Mat3::Identity(), {0, 0, 0.005 + kBlockGap_m}};
+  world.bodies[1].part = solid_box({0.05, 0.05, 0.01});
+  world.bodies[1].X_WB = {Mat3::Identity(), {0, 0, -0.01}};
+  world.bodies[1].joint.kind = JointKind::kFixed;
+  return world;
+}
+
+/// Down in 0.5 s to `pressed_m` below touching, tilted and slid a little, and there for good.
+inline std::shared_ptr<const HandMotion> pressing_hand(double pressed_m) {
+  auto motion = std::make_shared<ScriptedMotion>();
+  motion->move_to(0.5, {exp_rotation({0.05, 0.03, 0.1}), {0.004, -0.002, -kBlockGap_m - pressed_m}});
+  return motion;
+}
+
+}  // namespace tactum
