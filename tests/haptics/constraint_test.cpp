@@ -4,6 +4,7 @@
 
 #include <iostream>
 
+#include "support/pressed_block.h"
 #include "tactum/base/random.h"
 #include "tactum/haptics/frame.h"
 #include "tactum/math/screw.h"
@@ -13,16 +14,6 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 const Vec3 kHalf(0.010, 0.007, 0.005);  // of the held block [m]
-
-std::shared_ptr<const Part> box_part(const Vec3& half) {
-  std::vector<Vec3> corners;
-  for (int i = 0; i < 8; ++i)
-    corners.emplace_back(i & 1 ? half.x() : -half.x(), i & 2 ? half.y() : -half.y(),
-                         i & 4 ? half.z() : -half.z());
-  Result<Part> part = part_from_clouds({corners});
-  EXPECT_TRUE(part);
-  return std::make_shared<const Part>(std::move(*part));
-}
 
 /// A held block of 20 x 14 x 10 mm, 3 mm over a fixed plate whose top is at z = 0, and an ideal device.
 struct Bench {
@@ -35,11 +26,11 @@ struct Bench {
 
   explicit Bench(double mu = 0.0) {
     world.bodies.resize(2);
-    world.bodies[0].part = box_part(kHalf);
+    world.bodies[0].part = solid_box(kHalf);
     world.bodies[0].mass_kg = 0.05;
     world.bodies[0].inertia_B = 1e-5 * Mat3::Identity();
     world.bodies[0].X_WB.p.z() = 0.008;
-    world.bodies[1].part = box_part({0.05, 0.05, 0.01});
+    world.bodies[1].part = solid_box({0.05, 0.05, 0.01});
     world.bodies[1].X_WB.p.z() = -0.01;
     world.bodies[1].joint.kind = JointKind::kFixed;
     settings.tool.body = 0;

@@ -2,22 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include "support/pressed_block.h"
 #include "tactum/math/screw.h"
 
 namespace tactum {
 namespace {
 
 constexpr double kPlateTop = 0.0;  // z of the plate's upper face [m]
-
-std::shared_ptr<const Part> box_part(const Vec3& half) {
-  std::vector<Vec3> corners;
-  for (int i = 0; i < 8; ++i)
-    corners.emplace_back(i & 1 ? half.x() : -half.x(), i & 2 ? half.y() : -half.y(),
-                         i & 4 ? half.z() : -half.z());
-  Result<Part> part = part_from_clouds({corners});
-  EXPECT_TRUE(part);
-  return std::make_shared<const Part>(std::move(*part));
-}
 
 /// An open square of 0.1 m at height zero facing up, divided n by n: a surface.
 std::shared_ptr<const Part> grid_part(int n) {
@@ -43,10 +34,10 @@ struct Bench {
   FrameSettings settings;
   Pose X_WU;  // the whole set-up in the world
 
-  explicit Bench(const Pose& X = {}, std::shared_ptr<const Part> plate = box_part({0.05, 0.05, 0.01}))
+  explicit Bench(const Pose& X = {}, std::shared_ptr<const Part> plate = solid_box({0.05, 0.05, 0.01}))
       : X_WU(X) {
     world.bodies.resize(2);
-    world.bodies[0].part = box_part({0.010, 0.007, 0.005});
+    world.bodies[0].part = solid_box({0.010, 0.007, 0.005});
     world.bodies[0].mass_kg = 0.05;
     world.bodies[0].inertia_B = 1e-5 * Mat3::Identity();
     world.bodies[0].X_WB = X * Pose{Mat3::Identity(), {0, 0, 0.008}};
@@ -139,7 +130,7 @@ TEST(Frame, AWallFeelsTheSameHoweverFinelyItIsMeshed) {
         1200.0;  // twice the coupling's: held off while the hand is near
     return bench.press({Mat3::Identity(), {0.0012, 0.0007, -0.003 - depth}});
   };
-  const std::shared_ptr<const Part> solid = box_part({0.05, 0.05, 0.01});
+  const std::shared_ptr<const Part> solid = solid_box({0.05, 0.05, 0.01});
   for (double depth : {0.0003, 0.002}) {
     const FrameReport expected = pressed(solid, depth);
     EXPECT_EQ(expected.penetrating, depth > 0.001);

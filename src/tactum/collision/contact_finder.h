@@ -5,8 +5,7 @@
 ///   patches
 ///
 /// Bodies made of convex pieces meet piece by piece, by tracked pairs. Where either has none, both meet by
-/// their surfaces: every local minimum of distance is a patch of one point (surface_minima.h). Which of the
-/// two is faster was measured: docs/algorithms/surface_minima.md.
+/// their surfaces: every local minimum of distance is a patch of one point (surface_minima.h).
 ///
 /// What holds from frame to frame is kept: no step is repeated while a bound on the motion proves that its
 /// answer cannot have changed. Every body carries an odometer, `travel`: no point of it has moved farther

@@ -157,22 +157,21 @@ void from_many_directions(const PairView& pair, Shallowest& shallowest) noexcept
     if (walked++ < kWalked || !shallowest.best().certified()) shallowest.from(seed);
 }
 
-/// Every facet that `allowed(n)` lets pass: the walk from the shallowest finds witness points inside its
-/// features, or they are inside those of another facet as shallow.
-template <class Allowed>
-void from_every_facet(const PairView& pair, Shallowest& shallowest, const Allowed& allowed) noexcept {
+/// Every facet: the walk from the shallowest finds witness points inside its features, or they are inside
+/// those of another facet as shallow.
+void from_every_facet(const PairView& pair, Shallowest& shallowest) noexcept {
   MinkowskiFacet best;
   best.height = std::numeric_limits<double>::infinity();
   for_every_facet(pair, [&](const MinkowskiFacet& facet) {
-    if (facet.height < best.height && allowed(facet.n)) best = facet;
+    if (facet.height < best.height) best = facet;
   });
   if (best.a.index < 0) return;
   const MinkowskiWalk walk = walk_to_foot(pair, best);
-  if (allowed(walk.facet.n)) shallowest.take(walk);
-  if (shallowest.any() && shallowest.best().certified()) return;
+  shallowest.take(walk);
+  if (shallowest.best().certified()) return;
   const double level = best.height + tolerances::kCertificate * pair.size;
   for_every_facet(pair, [&](const MinkowskiFacet& facet) {
-    if (facet.height <= level && allowed(facet.n)) shallowest.take(stand_on(pair, facet));
+    if (facet.height <= level) shallowest.take(stand_on(pair, facet));
   });
 }
 
@@ -299,7 +298,7 @@ PairDistance penetration_depth(const Polytope& A, const Polytope& B, const Pose&
   }
   Shallowest shallowest(pair);
   if (small_pair(pair)) {
-    from_every_facet(pair, shallowest, [](const Vec3&) { return true; });
+    from_every_facet(pair, shallowest);
   } else {
     from_many_directions(pair, shallowest);
   }
@@ -311,7 +310,7 @@ PairDistance penetration_depth(const Polytope& A, const Polytope& B, const Pose&
 PairDistance penetration_exhaustive(const Polytope& A, const Polytope& B, const Pose& X_AB) noexcept {
   const PairView pair(A, B, X_AB);
   Shallowest shallowest(pair);
-  from_every_facet(pair, shallowest, [](const Vec3&) { return true; });
+  from_every_facet(pair, shallowest);
   return shallowest.best();
 }
 

@@ -32,9 +32,12 @@ void read_penalty(const TomlReader& root, Penalty& penalty) {
 }
 
 void read_constraint(const TomlReader& root, Constraint& constraint) {
-  const TomlReader table = root.table("constraint", {"max_step_m", "least_step_m", "max_turn_deg"});
+  const TomlReader table =
+      root.table("constraint", {"max_step_m", "least_step_m", "max_step_on_surfaces_m", "max_turn_deg"});
   constraint.max_step_m = table.number("max_step_m", constraint.max_step_m, kPositive);
   constraint.least_step_m = table.number("least_step_m", constraint.least_step_m, kPositive);
+  constraint.max_step_on_surfaces_m =
+      table.number("max_step_on_surfaces_m", constraint.max_step_on_surfaces_m, kPositive);
   if (table.has("max_turn_deg"))
     constraint.max_turn_rad = radians(table.number("max_turn_deg", {}, kPositive));
 }
