@@ -1,5 +1,5 @@
 #pragma once
-/// Runs the program as its users do: the built `tactum` that lies beside the test programs.
+/// Runs the programs as their users do: the built ones that lie beside the test programs.
 
 #include <sys/wait.h>
 
@@ -49,10 +49,10 @@ inline void write(const std::string& path, const std::string& text) {
   std::ofstream(path, std::ios::binary) << text;
 }
 
-/// `tactum ARGUMENTS` through the shell.
-inline ProgramRun run_tactum(const std::string& arguments) {
+/// `NAME ARGUMENTS` through the shell; the program lies beside the tests' folder.
+inline ProgramRun run_program(const std::string& name, const std::string& arguments) {
   const std::filesystem::path program =
-      std::filesystem::read_symlink("/proc/self/exe").parent_path().parent_path() / "tactum";
+      std::filesystem::read_symlink("/proc/self/exe").parent_path().parent_path() / name;
   const ScratchFolder folder;
   const std::string out = folder / "out";
   const std::string err = folder / "err";
@@ -60,5 +60,7 @@ inline ProgramRun run_tactum(const std::string& arguments) {
       std::system(("'" + program.string() + "' " + arguments + " >" + out + " 2>" + err).c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content(out), content(err)};
 }
+
+inline ProgramRun run_tactum(const std::string& arguments) { return run_program("tactum", arguments); }
 
 }  // namespace tactum::testing
