@@ -23,6 +23,8 @@
 /// [Gregory 2000, 4.1] in 3 and 4: the bare corners of the clipped polygon come and go, and their mean with
 /// them. Cost: see docs/algorithms/manifold.md.
 
+#include <span>
+
 #include "tactum/collision/contact.h"
 #include "tactum/geometry/polytope.h"
 
@@ -37,5 +39,19 @@ void contact_manifold(const Polytope& A, const Polytope& B, const Pose& X_AB, co
 void contact_manifold_within(const Polytope& A, const Polytope& B, const Pose& X_AB,
                              const PairDistance& closest, double tolerance, double angle,
                              Manifold& out) noexcept;
+
+/// Features of two other pieces in the plane (or line) of a contact's: together they are one true face, or
+/// edge, that was cut (seams.h). Of the same kinds as the contact's.
+struct Stretch {
+  const Polytope* A = nullptr;
+  const Polytope* B = nullptr;
+  Feature a, b;
+};
+
+/// The patch of A and B and of all `others` as one: the points are those of the features uncut. Cost: that of
+/// a patch for each stretch, up to four times as they lean.
+void contact_manifold_over(const Polytope& A, const Polytope& B, const Pose& X_AB,
+                           const PairDistance& closest, double tolerance, std::span<const Stretch> others,
+                           Manifold& out) noexcept;
 
 }  // namespace tactum

@@ -259,6 +259,22 @@ PatchMoments moments_of(const PatchPolygon& polygon) noexcept {
   return m;
 }
 
+PatchMoments together(const PatchMoments& a, const PatchMoments& b) noexcept {
+  PatchMoments m;
+  m.area = a.area + b.area;
+  if (!(m.area > 0.0)) return m;
+  const double of_a = a.area / m.area;
+  const double of_b = b.area / m.area;
+  m.centroid = of_a * a.centroid + of_b * b.centroid;
+  // Steiner: the distance of the two centroids adds what it weighs.
+  const Vec2 apart = b.centroid - a.centroid;
+  const double both = of_a * of_b;
+  m.xx = of_a * a.xx + of_b * b.xx + both * apart.x() * apart.x();
+  m.xy = of_a * a.xy + of_b * b.xy + both * apart.x() * apart.y();
+  m.yy = of_a * a.yy + of_b * b.yy + both * apart.y() * apart.y();
+  return m;
+}
+
 PatchSpread spread_of(const PatchMoments& m) noexcept {
   const double root = std::sqrt(std::max(0.0, m.xx * m.yy - m.xy * m.xy));
   const double trace = m.xx + m.yy + 2.0 * root;

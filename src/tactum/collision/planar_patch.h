@@ -31,6 +31,8 @@ struct PatchMoments {
 };
 
 PatchMoments moments_of(const PatchPolygon& polygon) noexcept;
+/// Of two figures that do not overlap, as one.
+PatchMoments together(const PatchMoments& a, const PatchMoments& b) noexcept;
 
 /// Two arms u, v with u u' + v v' = 2 [xx xy; xy yy]: points at centroid +- u and +- v, a quarter of the
 /// weight each, have the polygon's moments. The symmetric root of the matrix: unlike its axes it is

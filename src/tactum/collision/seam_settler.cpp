@@ -55,8 +55,8 @@ class TwoBodies {
   /// What is objected to, as what it is on the whole part. Where that is nothing it may still follow.
   void tell_again(SeamCandidate& candidate) noexcept {
     const std::optional<PairDistance> depth =
-        depth_under_true_faces(*candidate.part_a, candidate.piece_a, *candidate.part_b, candidate.piece_b,
-                               X_AB_, candidate.found, candidate.reach);
+        depth_on_true_surface(*candidate.part_a, candidate.piece_a, *candidate.part_b, candidate.piece_b,
+                              X_AB_, candidate.found, candidate.reach);
     if (!depth || depth->distance >= candidate.reach) return;
     if (candidate.found.distance >= 0.0 && depth->distance < 0.0) return;  // apart, and beside the face
     candidate.found = *depth;
@@ -92,34 +92,42 @@ class TwoBodies {
     return &patch;
   }
 
-  /// Makes the patch of a true contact, and those of its followers.
+  /// Makes the patch of a true contact: its own stretch and those of its followers, as one.
   void lead(SeamCandidate& nearest) noexcept {
-    const PairDistance shown =
+    PairDistance shown =
         steady_depth(piece_a(nearest), piece_b(nearest), X_AB_, nearest.found, *nearest.shown);
-    const Index first = patches_.size();
+    shown.a = true_feature(*nearest.part_a, nearest.piece_a, shown.a, shown.p_a);
+    shown.b =
+        true_feature(*nearest.part_b, nearest.piece_b, shown.b, rotated_back(X_AB_.R, shown.p_b - X_AB_.p));
     ContactPatch* patch = new_patch(nearest);
     if (patch == nullptr) return;
     contact_manifold(piece_a(nearest), piece_b(nearest), X_AB_, shown, nearest.reach, patch->manifold);
     patch->distance = shown.distance;
-    SeamCandidate& leader = widest(nearest, shown, *patch);
+    PairDistance led = shown;
+    SeamCandidate& leader = widest(nearest, shown, *patch, led);
     *leader.shown = *nearest.shown;
     patch->facet_a = leader.part_a->surface_group[Index(leader.piece_a)];
     patch->facet_b = leader.part_b->surface_group[Index(leader.piece_b)];
-    leader.patch = static_cast<int>(first);
+    leader.patch = static_cast<int>(patches_.size()) - 1;
     for (SeamCandidate* own : {&nearest, &leader}) {
       own->settled = true;
       own->led_by = leader.patch;
     }
+    stretches_.clear();
     for (SeamCandidate& other : candidates_)
-      if (!other.settled && !follow(other, leader, nearest, shown)) share(other, nearest, leader.patch);
-    hold_centroid(first, *leader.shown);
+      if (!other.settled && !follow(other, leader, shown, *patch)) share(other, nearest, leader.patch);
+    if (!stretches_.empty())
+      contact_manifold_over(piece_a(leader), piece_b(leader), X_AB_, led, leader.reach,
+                            {stretches_.begin(), stretches_.size()}, patch->manifold);
+    steady_centroid(X_AB_, patch->manifold, *leader.shown);
     for (SeamCandidate& other : candidates_)
       if (other.led_by == leader.patch) *other.shown = *leader.shown;
   }
 
   /// Where the nearest touches at a true edge that others have too, the one of them with the largest features
-  /// square to the normal; its patch is put in place.
-  SeamCandidate& widest(SeamCandidate& nearest, const PairDistance& shown, ContactPatch& patch) noexcept {
+  /// square to the normal; its patch is put in place, and in `led` the contact as it has it.
+  SeamCandidate& widest(SeamCandidate& nearest, const PairDistance& shown, ContactPatch& patch,
+                        PairDistance& led) noexcept {
     const auto size_of = [](const Manifold& manifold) {
       return static_cast<int>(manifold.a.kind) + static_cast<int>(manifold.b.kind);
     };
@@ -136,6 +144,7 @@ class TwoBodies {
       patch.piece_a = other.piece_a;
       patch.piece_b = other.piece_b;
       patch.pair = other.pair;
+      led = mapped;
       best = &other;
     }
     return *best;
@@ -149,41 +158,35 @@ class TwoBodies {
     return out.a.index >= 0 && out.b.index >= 0;
   }
 
-  /// Settles `other` when it touches where the nearest does, with nothing to add.
+  /// Settles `other` when it touches where the nearest does, with nothing to add: on the same features, or at
+  /// a corner that both have.
   static void share(SeamCandidate& other, const SeamCandidate& nearest, int patch) noexcept {
+    const double noise =
+        tolerances::kCoplanarMeshOffset * std::max(piece_a(nearest).size, piece_b(nearest).size);
+    const bool same_place =
+        (other.found.p_a - nearest.found.p_a).norm() <= noise &&
+        (other.found.p_b - nearest.found.p_b).norm() <= noise &&
+        (other.found.normal - nearest.found.normal).norm() <= tolerances::kCoplanarMeshSine;
     PairDistance mapped;
-    if (!map_features(nearest.found.a, nearest.found.b, nearest, other, mapped)) return;
-    if (mapped.a != other.found.a || mapped.b != other.found.b) return;
+    const bool same_features = map_features(nearest.found.a, nearest.found.b, nearest, other, mapped) &&
+                               mapped.a == other.found.a && mapped.b == other.found.b;
+    if (!same_place && !same_features) return;
     other.settled = true;
     other.led_by = patch;
   }
 
-  /// Gives `other` its stretch of the leader's contact; false when it has none.
-  bool follow(SeamCandidate& other, const SeamCandidate& leader, const SeamCandidate& nearest,
-              const PairDistance& shown) noexcept {
-    const Index led_by = Index(leader.patch);
-    const Feature a = patches_[led_by].manifold.a;
-    const Feature b = patches_[led_by].manifold.b;
+  /// Takes the stretch that `other` has of the leader's contact into it; false when it has none.
+  bool follow(SeamCandidate& other, const SeamCandidate& leader, const PairDistance& shown,
+              const ContactPatch& patch) noexcept {
     PairDistance mapped = shown;
-    if (!map_features(a, b, leader, other, mapped)) return false;
-    // On the nearest's own pieces the point itself is known: a face that leans shrinks toward it.
-    if (other.piece_a == nearest.piece_a) mapped.a = shown.a;
-    if (other.piece_b == nearest.piece_b) mapped.b = shown.b;
+    if (!map_features(patch.manifold.a, patch.manifold.b, leader, other, mapped)) return false;
     other.settled = true;
     other.led_by = leader.patch;
-    ContactPatch* patch = new_patch(other);
-    if (patch == nullptr) return true;
-    contact_manifold(piece_a(other), piece_b(other), X_AB_, mapped, other.reach, patch->manifold);
-    const bool stretch = patch->manifold.points.size() > 1 && is_true_stretch(other, patch->manifold);
-    if (!stretch) {
-      patches_.pop_back();
-      return true;
-    }
-    patch->distance = patch->manifold.points[0].distance;
-    for (const ContactPoint& point : patch->manifold.points)
-      patch->distance = std::min(patch->distance, point.distance);
-    patch->facet_a = patches_[led_by].facet_a;
-    patch->facet_b = patches_[led_by].facet_b;
+    Manifold own;
+    contact_manifold(piece_a(other), piece_b(other), X_AB_, mapped, other.reach, own);
+    if (own.points.size() > 1 && is_true_stretch(other, own) &&
+        !stretches_.push_back({&piece_a(other), &piece_b(other), mapped.a, mapped.b}))
+      full_ = true;
     return true;
   }
 
@@ -201,36 +204,10 @@ class TwoBodies {
                            middle);
   }
 
-  /// Keeps the pressure's centre of the patches from `first` on from a step, all together.
-  void hold_centroid(Index first, SteadyContact& memory) noexcept {
-    double claims = 0.0;
-    Vec3 centroid = Vec3::Zero();
-    for (Index i = first; i < patches_.size(); ++i) {
-      const double claim = stiffness_claim(patches_[i].manifold);
-      claims += claim;
-      for (const ContactPoint& point : patches_[i].manifold.points)
-        centroid += 0.5 * claim * point.weight * (point.p_a + point.p_b);
-    }
-    Manifold whole;
-    whole.normal = patches_[first].manifold.normal;
-    if (claims > 0.0 && !patches_[first].manifold.points.empty()) {
-      centroid /= claims;
-      whole.points.push_back({centroid, centroid, 0.0, 1.0, 0});
-    }
-    steady_centroid(X_AB_, whole, memory);
-    if (whole.points.empty()) return;
-    const Vec3 shift = whole.points[0].p_a - centroid;
-    if (shift.isZero()) return;
-    for (Index i = first; i < patches_.size(); ++i)
-      for (ContactPoint& point : patches_[i].manifold.points) {
-        point.p_a += shift;
-        point.p_b += shift;
-      }
-  }
-
   std::span<SeamCandidate> candidates_;
   const Pose& X_AB_;
   std::vector<ContactPatch>& patches_;
+  StaticVector<Stretch, 512> stretches_;  // of the patch in work
   bool full_ = false;
 };
 

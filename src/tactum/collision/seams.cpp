@@ -9,6 +9,10 @@ namespace {
 
 using Index = std::size_t;
 
+/// How far a normal is leant over an edge to see whether the surface bends there [rad, small]: less than
+/// that is flat to a patch, whose features lean by as much anyway.
+constexpr double kLeanOver = 0.05 * tolerances::kPatchAngle;
+
 double noise_of(const Part& part) noexcept { return tolerances::kCoplanarMeshOffset * part.size; }
 
 int number_of(const Part& part, int piece, const Feature& feature) noexcept {
@@ -40,6 +44,87 @@ void for_true_faces(const Part& part, int piece, const Polytope& S, const Pose& 
   }
 }
 
+/// The side of `face` at its edge `edge`: unit, in its plane, outward.
+const Vec3& side_at(const Polytope& P, int face, int edge) noexcept {
+  const Polytope::Edge& e = P.edges[edge];
+  return P.sides[face == e.left ? e.left_slot : e.right_slot].normal;
+}
+
+/// Whether the surface bends at `edge` of `piece`, at point `p` on `at`: a normal that leans over the edge a
+/// little is one of the whole part's.
+bool is_true_edge(const Part& part, int piece, int edge, const Feature& at, const Vec3& p) noexcept {
+  const Polytope& P = part.pieces[Index(piece)];
+  for (const int face : {P.edges[edge].left, P.edges[edge].right}) {
+    if (part.true_surface.group_of(piece, 2, face) < 0) continue;
+    const Vec3 over = P.faces[face].normal + kLeanOver * side_at(P, face, edge);
+    if (allowed_by_neighbours(part, piece, at, p, over.normalized())) return true;
+  }
+  return false;
+}
+
+/// The face at `edge` that can be touched; where none can, `otherwise`.
+Feature exposed_face(const Part& part, int piece, int edge, const Feature& otherwise) noexcept {
+  const Polytope& P = part.pieces[Index(piece)];
+  for (const int face : {P.edges[edge].left, P.edges[edge].right})
+    if (part.true_surface.group_of(piece, 2, face) >= 0) return {FeatureKind::kFace, face};
+  return otherwise;
+}
+
+/// Pairs of true edges up to which all are tried.
+constexpr std::size_t kMostEdgePairs = 16384;
+using EdgeList = StaticVector<int, 1024>;
+
+/// The edges of `piece` where the surface bends, told at their middles; no more than there is room for.
+void true_edges(const Part& part, int piece, EdgeList& edges) noexcept {
+  const Polytope& P = part.pieces[Index(piece)];
+  for (int e = 0; e < P.counts[1]; ++e) {
+    const Feature edge{FeatureKind::kEdge, e};
+    const bool bends =
+        part.true_surface.alone() || part.true_surface.neighbours(number_of(part, piece, edge)).empty() ||
+        is_true_edge(part, piece, e, edge, 0.5 * (P.vertices[P.edges[e].tail] + P.vertices[P.edges[e].head]));
+    if (bends && !edges.push_back(e)) return;
+  }
+}
+
+/// Whether `outward` (square to the edge) is a normal of `P` at `edge`, by the sign: +1, or -1 for its
+/// opposite; 0 when neither is.
+double cone_sign(const Polytope& P, int edge, const Vec3& outward) noexcept {
+  const double left = side_at(P, P.edges[edge].left, edge).dot(outward);
+  const double right = side_at(P, P.edges[edge].right, edge).dot(outward);
+  return left >= 0.0 && right >= 0.0 ? 1.0 : left <= 0.0 && right <= 0.0 ? -1.0 : 0.0;
+}
+
+/// Two edges whose common normal both pieces have, where they cross.
+std::optional<PairDistance> crossing_edges(const Polytope& A, int edge_a, const Polytope& B, int edge_b,
+                                           const Pose& X_AB) noexcept {
+  const Polytope::Edge& a = A.edges[edge_a];
+  const Polytope::Edge& b = B.edges[edge_b];
+  const Vec3 along_b = X_AB.R * b.direction;
+  Vec3 n = a.direction.cross(along_b);
+  const double sine = n.norm();
+  if (!(sine > tolerances::kSamePlane)) return std::nullopt;  // parallel: the faces have told them
+  n /= sine;
+  const double sign = cone_sign(A, edge_a, -n);
+  if (sign == 0.0 || cone_sign(B, edge_b, sign * rotated_back(X_AB.R, n)) != 1.0) return std::nullopt;
+  n *= sign;
+  const Vec3& a0 = A.vertices[a.tail];
+  const Vec3 b0 = X_AB * B.vertices[b.tail];
+  // Where the lines cross, seen along n: in metres from their tails.
+  const Vec3 between = b0 - a0;
+  const double on_a = sign / sine * between.cross(along_b).dot(n);
+  const double on_b = sign / sine * between.cross(a.direction).dot(n);
+  if (on_a < 0.0 || on_a > a.length || on_b < 0.0 || on_b > b.length) return std::nullopt;
+  const Vec3 p_a = a0 + on_a * a.direction;
+  const Vec3 p_b = b0 + on_b * along_b;
+  return PairDistance{.distance = n.dot(p_a - p_b),
+                      .p_a = p_a,
+                      .p_b = p_b,
+                      .normal = n,
+                      .a = {FeatureKind::kEdge, edge_a},
+                      .b = {FeatureKind::kEdge, edge_b},
+                      .stop = Stop::kFallback};
+}
+
 }  // namespace
 
 bool allowed_by_neighbours(const Part& part, int piece, const Feature& feature, const Vec3& p,
@@ -65,6 +150,30 @@ bool is_true_contact(const Part& part_a, int piece_a, const Part& part_b, int pi
                                 rotated_back(X_AB.R, found.normal)));
 }
 
+Feature true_feature(const Part& part, int piece, const Feature& feature, const Vec3& p) noexcept {
+  if (feature.kind == FeatureKind::kFace || part.true_surface.alone() ||
+      part.true_surface.neighbours(number_of(part, piece, feature)).empty())
+    return feature;
+  const Polytope& P = part.pieces[Index(piece)];
+  if (feature.kind == FeatureKind::kEdge)
+    return is_true_edge(part, piece, feature.index, feature, p)
+               ? feature
+               : exposed_face(part, piece, feature.index, feature);
+  int edges = 0;
+  Feature edge = feature;
+  for (const Polytope::Ray& ray : P.rays_at(feature.index))
+    if (is_true_edge(part, piece, ray.edge, feature, p)) {
+      ++edges;
+      edge = {FeatureKind::kEdge, ray.edge};
+    }
+  if (edges == 1) return edge;
+  if (edges > 1) return feature;
+  for (const Polytope::Ray& ray : P.rays_at(feature.index))
+    if (const Feature face = exposed_face(part, piece, ray.edge, feature); face.kind == FeatureKind::kFace)
+      return face;
+  return feature;
+}
+
 Feature same_feature(const Part& part, int of_piece, const Feature& feature, int piece) noexcept {
   if (piece == of_piece) return feature;
   if (part.true_surface.alone() || feature.kind == FeatureKind::kVertex) return {feature.kind, -1};
@@ -77,9 +186,9 @@ Feature same_feature(const Part& part, int of_piece, const Feature& feature, int
   return {feature.kind, -1};
 }
 
-std::optional<PairDistance> depth_under_true_faces(const Part& part_a, int piece_a, const Part& part_b,
-                                                   int piece_b, const Pose& X_AB, const PairDistance& found,
-                                                   double slack) noexcept {
+std::optional<PairDistance> depth_on_true_surface(const Part& part_a, int piece_a, const Part& part_b,
+                                                  int piece_b, const Pose& X_AB, const PairDistance& found,
+                                                  double slack) noexcept {
   const Polytope& A = part_a.pieces[Index(piece_a)];
   const Polytope& B = part_b.pieces[Index(piece_b)];
   const Pose X_BA = X_AB.inverse();
@@ -113,6 +222,16 @@ std::optional<PairDistance> depth_under_true_faces(const Part& part_a, int piece
           .b = {FeatureKind::kVertex, vertex},
           .stop = Stop::kFallback});
   });
+  EdgeList edges_a;
+  EdgeList edges_b;
+  true_edges(part_a, piece_a, edges_a);
+  true_edges(part_b, piece_b, edges_b);
+  if (edges_a.size() * edges_b.size() > kMostEdgePairs) return best;
+  for (const int a : edges_a)
+    for (const int b : edges_b)
+      if (const std::optional<PairDistance> crossing = crossing_edges(A, a, B, b, X_AB);
+          crossing && nearer(crossing->distance))
+        take(*crossing);
   return best;
 }
 

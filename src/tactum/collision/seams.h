@@ -10,7 +10,7 @@
 ///    |_____|_____|___|
 ///
 /// What is objected to, and no neighbour answers for (a part deep in a small piece; a wall touched where it
-/// meets the floor), is told again along the true face with the least depth. What is asked here is told by
+/// meets the floor), is told again on the true surface by the least depth. What is asked here is told by
 /// the pieces that touch each feature: geometry/true_surface.h. Features that no other piece touches cost one
 /// look-up.
 
@@ -31,16 +31,23 @@ bool allowed_by_neighbours(const Part& part, int piece, const Feature& feature, 
 bool is_true_contact(const Part& part_a, int piece_a, const Part& part_b, int piece_b, const Pose& X_AB,
                      const PairDistance& found) noexcept;
 
+/// The feature of the whole part that `p` (part's frame) on `feature` of `piece` is in the middle of, by its
+/// name on the piece: a corner that cuts made is in the middle of an edge or of a face. Cost: as above, for
+/// each edge at it.
+Feature true_feature(const Part& part, int piece, const Feature& feature, const Vec3& p) noexcept;
+
 /// The feature of `piece` that is one with `feature` of `of_piece`: itself, or the stretch of the same true
 /// face or edge. Index -1: none.
 Feature same_feature(const Part& part, int of_piece, const Feature& feature, int piece) noexcept;
 
-/// The least depth (or distance) along the normal of a true face that has the other piece's deepest point
-/// under it, within `slack` [m]: the point may lie in a neighbour, as in the corner of a floor and a wall.
-/// None when no face has.
-std::optional<PairDistance> depth_under_true_faces(const Part& part_a, int piece_a, const Part& part_b,
-                                                   int piece_b, const Pose& X_AB, const PairDistance& found,
-                                                   double slack) noexcept;
+/// The least depth (or distance) on the true surface: along the normal of a true face that has the other
+/// piece's deepest point under it, within `slack` [m], since the point may lie in a neighbour, as in the
+/// corner of a floor and a wall; or square to two true edges that cross. None when there is none. Pieces with
+/// more than 16384 pairs of true edges are asked for faces alone. Cost: the faces and pairs of edges, 10 ns
+/// each.
+std::optional<PairDistance> depth_on_true_surface(const Part& part_a, int piece_a, const Part& part_b,
+                                                  int piece_b, const Pose& X_AB, const PairDistance& found,
+                                                  double slack) noexcept;
 
 /// Whether moving A along unit `n` by -`distance` would part these pieces too: another contact, with this
 /// normal and distance, answers for them.

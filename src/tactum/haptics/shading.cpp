@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <utility>
 
 #include "tactum/base/tolerances.h"
+#include "tactum/geometry/hull.h"
+#include "tactum/geometry/polygon_clip.h"
 
 namespace tactum {
 namespace {
@@ -15,25 +18,15 @@ using Index = std::size_t;
 /// Faces with more corners are flat ends, not parts of curved surfaces.
 constexpr int kMostCorners = 16;
 
-/// A corner's part of its Wachspress weight that does not depend on the point: A(i-1,i,i+1).
-double corner_area(const Polytope& piece, const Polytope::Face& face, int i) {
-  const auto corner = [&](int k) -> const Vec3& {
-    return piece.vertices[Index(piece.face_vertices[Index(face.first + (k + face.count) % face.count)])];
-  };
-  return face.normal.dot((corner(i) - corner(i - 1)).cross(corner(i + 1) - corner(i)));
-}
-
 /// The interpolated normal inside a convex polygon: w_i = A(i-1,i,i+1) prod_{j != i-1,i} A(j,j+1,p), the
 /// product as that of all before times that of all behind.
-Vec3 interpolated(const Polytope& piece, const Polytope::Face& face, const ShadedCorner* corners,
-                  const Vec3& point) {
+Vec3 interpolated(const ShadedFace& face, const ShadedCorner* corners, const Vec3& point) {
   const int n = face.count;
-  const int* vertex = &piece.face_vertices[Index(face.first)];
   double area[kMostCorners];
-  Vec3 from_point = piece.vertices[Index(vertex[0])] - point;
+  Vec3 from_point = corners[0].p - point;
   const Vec3 first = from_point;
   for (int i = 0; i < n; ++i) {
-    const Vec3 next = i + 1 < n ? Vec3(piece.vertices[Index(vertex[i + 1])] - point) : first;
+    const Vec3 next = i + 1 < n ? Vec3(corners[i + 1].p - point) : first;
     area[i] = std::max(0.0, face.normal.dot(from_point.cross(next)));
     from_point = next;
   }
@@ -53,84 +46,149 @@ Vec3 interpolated(const Polytope& piece, const Polytope::Face& face, const Shade
   return length > 0.0 ? Vec3(sum / length) : face.normal;
 }
 
+/// A corner by its name on one of the pieces that have it.
+struct CornerName {
+  int piece = -1, vertex = -1;
+};
+
+/// Normals of the true faces around corners, each true face once.
+class NormalsAround {
+ public:
+  explicit NormalsAround(const Part& part) : part_(part) {}
+
+  const std::vector<Vec3>& of(const CornerName& corner) {
+    known_.clear();
+    normals_.clear();
+    const Polytope& P = part_.pieces[Index(corner.piece)];
+    for (const Polytope::Ray& ray : P.rays_at(corner.vertex))
+      for (int face : {P.edges[Index(ray.edge)].left, P.edges[Index(ray.edge)].right})
+        add(corner.piece, face);
+    const TrueSurface& surface = part_.true_surface;
+    if (surface.alone()) return normals_;
+    const double noise = tolerances::kCoplanarMeshOffset * part_.size;
+    const Vec3& p = P.vertices[Index(corner.vertex)];
+    for (int neighbour : surface.neighbours(surface.number(corner.piece, 0, corner.vertex))) {
+      const Polytope& N = part_.pieces[Index(neighbour)];
+      for (int face = 0; face < N.counts[2]; ++face) {
+        const Polytope::Face& plane = N.faces[Index(face)];
+        if (std::abs(plane.normal.dot(p) - plane.offset) <= noise) add(neighbour, face);
+      }
+    }
+    return normals_;
+  }
+
+ private:
+  void add(int piece, int face) {
+    const TrueSurface& surface = part_.true_surface;
+    const int name = surface.alone() ? face : surface.group_of(piece, 2, face);
+    if (name < 0 || std::find(known_.begin(), known_.end(), name) != known_.end()) return;
+    known_.push_back(name);
+    normals_.push_back(part_.pieces[Index(piece)].faces[Index(face)].normal);
+  }
+
+  const Part& part_;
+  std::vector<int> known_;
+  std::vector<Vec3> normals_;
+};
+
+std::vector<CornerName> corners_of(const Part& part, int piece, int face) {
+  const Polytope& P = part.pieces[Index(piece)];
+  const Polytope::Face& loop = P.faces[Index(face)];
+  std::vector<CornerName> corners;
+  for (int slot = loop.first; slot < loop.first + loop.count; ++slot)
+    corners.push_back({piece, P.face_vertices[Index(slot)]});
+  return corners;
+}
+
+const Vec3& place_of(const Part& part, const CornerName& corner) {
+  return part.pieces[Index(corner.piece)].vertices[Index(corner.vertex)];
+}
+
+/// The corners of faces in one plane as those of one face; none when they are not convex as one.
+std::vector<CornerName> corners_as_one(const Part& part, const std::vector<std::pair<int, int>>& faces) {
+  const auto [first_piece, first_face] = faces.front();
+  const Vec3& normal = part.pieces[Index(first_piece)].faces[Index(first_face)].normal;
+  std::vector<CornerName> all;
+  std::vector<Vec3> cloud;
+  double area = 0.0;
+  for (const auto& [piece, face] : faces) {
+    area += polygon_area(face_corners(part.pieces[Index(piece)], face), normal);
+    for (const CornerName& corner : corners_of(part, piece, face)) {
+      all.push_back(corner);
+      cloud.push_back(place_of(part, corner));
+    }
+  }
+  const Result<Polytope> hull = convex_hull(cloud);
+  if (!hull || !hull->flat) return {};
+  const std::vector<Vec3> outline = face_corners(*hull, hull->faces[0].normal.dot(normal) > 0.0 ? 0 : 1);
+  const double slack = tolerances::kCoplanarMeshOffset * part.size * part.size;
+  if (polygon_area(outline, normal) > area + slack) return {};
+  std::vector<CornerName> corners;
+  for (const Vec3& p : outline)
+    corners.push_back(
+        *std::min_element(all.begin(), all.end(), [&](const CornerName& a, const CornerName& b) {
+          return (place_of(part, a) - p).squaredNorm() < (place_of(part, b) - p).squaredNorm();
+        }));
+  return corners;
+}
+
+/// The corners' share of the shading; none when all have the face's own normal, or the face is a flat end.
+std::vector<ShadedCorner> shaded(const Part& part, const std::vector<CornerName>& names, const Vec3& normal,
+                                 double cosine, NormalsAround& around) {
+  if (names.size() > Index(kMostCorners)) return {};
+  std::vector<ShadedCorner> corners;
+  bool curved = false;
+  for (Index i = 0; i < names.size(); ++i) {
+    Vec3 sum = Vec3::Zero();
+    for (const Vec3& other : around.of(names[i]))
+      if (other.dot(normal) >= cosine) sum += other;
+    const Vec3 mean = sum.normalized();
+    const bool own = (mean - normal).norm() < tolerances::kSameNormal;
+    curved |= !own;
+    const Vec3& p = place_of(part, names[i]);
+    const Vec3& last = place_of(part, names[(i + names.size() - 1) % names.size()]);
+    const Vec3& next = place_of(part, names[(i + 1) % names.size()]);
+    corners.push_back({p, own ? normal : mean, normal.dot((p - last).cross(next - p))});
+  }
+  if (!curved) corners.clear();
+  return corners;
+}
+
 }  // namespace
 
 ShadingNormals::ShadingNormals(const Part& part, double crease_rad) : part_(&part) {
   const double cosine = std::cos(crease_rad);
-  for (const Polytope& piece : part.pieces) {
-    first_slot_.push_back(static_cast<int>(corners_.size()));
-    first_face_.push_back(static_cast<int>(curved_face_.size()));
-    shade_polytope(piece, cosine);
-  }
+  shade_pieces(cosine);
   shade_surface(cosine);
-  if (!part.true_surface.alone()) shade_over_seams(part, cosine);
+}
+
+void ShadingNormals::shade_pieces(double cosine) {
+  const Part& part = *part_;
+  NormalsAround around(part);
+  const auto add_face = [&](const std::vector<CornerName>& names, const Vec3& normal) {
+    const std::vector<ShadedCorner> corners = shaded(part, names, normal, cosine, around);
+    faces_.push_back({normal, static_cast<int>(corners_.size()), static_cast<int>(corners.size())});
+    corners_.insert(corners_.end(), corners.begin(), corners.end());
+    return static_cast<int>(faces_.size()) - 1;
+  };
+  std::map<int, std::vector<std::pair<int, int>>> groups;  // of true faces that were cut
   for (Index p = 0; p < part.pieces.size(); ++p) {
-    const Polytope& piece = part.pieces[p];
-    for (Index f = 0; f < piece.faces.size(); ++f) {
-      const Polytope::Face& face = piece.faces[f];
-      const ShadedCorner* corners = &corners_[Index(first_slot_[p] + face.first)];
-      const bool curved = std::any_of(corners, corners + face.count, [&](const ShadedCorner& corner) {
-        return corner.normal != face.normal;
-      });
-      curved_face_[Index(first_face_[p]) + f] = curved && face.count <= kMostCorners;
+    const int piece = static_cast<int>(p);
+    first_face_.push_back(static_cast<int>(face_of_.size()));
+    for (int face = 0; face < part.pieces[p].counts[2]; ++face) {
+      face_of_.push_back(add_face(corners_of(part, piece, face), part.pieces[p].faces[Index(face)].normal));
+      if (part.true_surface.alone()) continue;
+      if (const int group = part.true_surface.group_of(piece, 2, face); group >= 0)
+        groups[group].emplace_back(piece, face);
     }
   }
-}
-
-void ShadingNormals::shade_polytope(const Polytope& piece, double cosine) {
-  const Index first = corners_.size();
-  corners_.resize(first + piece.face_vertices.size());
-  curved_face_.resize(curved_face_.size() + piece.faces.size());
-  for (const Polytope::Face& face : piece.faces)
-    for (int slot = face.first; slot < face.first + face.count; ++slot) {
-      Vec3 sum = Vec3::Zero();
-      for (const Polytope::Ray& ray : piece.rays_at(piece.face_vertices[Index(slot)])) {
-        // Every face around the corner is on the left or the right of two of its edges: counted twice, all
-        // alike.
-        for (int f : {piece.edges[Index(ray.edge)].left, piece.edges[Index(ray.edge)].right}) {
-          const Vec3& normal = piece.faces[Index(f)].normal;
-          if (normal.dot(face.normal) >= cosine) sum += normal;
-        }
-      }
-      const bool alone = (sum.normalized() - face.normal).norm() < tolerances::kSameNormal;
-      corners_[first + Index(slot)] = {alone ? face.normal : Vec3(sum.normalized()),
-                                       corner_area(piece, face, slot - face.first)};
-    }
-}
-
-/// True faces around a corner, of the piece and of those that touch it there, each true face once.
-void ShadingNormals::shade_over_seams(const Part& part, double cosine) {
-  const TrueSurface& surface = part.true_surface;
-  const double noise = tolerances::kCoplanarMeshOffset * part.size;
-  std::vector<std::pair<int, Vec3>> around;  // group and normal
-  const auto gather = [&](int piece, const Vec3& corner) {
-    const Polytope& P = part.pieces[Index(piece)];
-    for (int f = 0; f < P.counts[2]; ++f) {
-      const int group = surface.group_of(piece, 2, f);
-      const Polytope::Face& face = P.faces[Index(f)];
-      if (group < 0 || std::abs(face.normal.dot(corner) - face.offset) > noise) continue;
-      const bool known =
-          std::any_of(around.begin(), around.end(), [&](const auto& one) { return one.first == group; });
-      if (!known) around.emplace_back(group, face.normal);
-    }
-  };
-  for (Index p = 0; p < part.pieces.size(); ++p) {
-    const Polytope& piece = part.pieces[p];
-    for (int v = 0; v < piece.counts[0]; ++v) {
-      around.clear();
-      gather(static_cast<int>(p), piece.vertices[Index(v)]);
-      for (int neighbour : surface.neighbours(surface.number(static_cast<int>(p), 0, v)))
-        gather(neighbour, piece.vertices[Index(v)]);
-      for (const Polytope::Face& face : piece.faces)
-        for (int slot = face.first; slot < face.first + face.count; ++slot) {
-          if (piece.face_vertices[Index(slot)] != v) continue;
-          Vec3 sum = Vec3::Zero();
-          for (const auto& [group, normal] : around)
-            if (normal.dot(face.normal) >= cosine) sum += normal;
-          const bool alone = (sum.normalized() - face.normal).norm() < tolerances::kSameNormal;
-          corners_[Index(first_slot_[p] + slot)].normal = alone ? face.normal : Vec3(sum.normalized());
-        }
-    }
+  for (const auto& [group, faces] : groups) {
+    if (faces.size() < 2) continue;
+    const std::vector<CornerName> names = corners_as_one(part, faces);
+    if (names.empty()) continue;
+    const auto [first_piece, first_face] = faces.front();
+    const int whole = add_face(names, part.pieces[Index(first_piece)].faces[Index(first_face)].normal);
+    for (const auto& [piece, face] : faces) face_of_[Index(first_face_[Index(piece)] + face)] = whole;
   }
 }
 
@@ -155,11 +213,9 @@ void ShadingNormals::shade_surface(double cosine) {
 
 Vec3 ShadingNormals::deviation(int piece, const Feature& feature, const Vec3& point) const noexcept {
   if (feature.kind != FeatureKind::kFace) return Vec3::Zero();
-  if (!curved_face_[Index(first_face_[Index(piece)] + feature.index)]) return Vec3::Zero();
-  const Polytope& polytope = part_->pieces[Index(piece)];
-  const Polytope::Face& face = polytope.faces[Index(feature.index)];
-  return interpolated(polytope, face, &corners_[Index(first_slot_[Index(piece)] + face.first)], point) -
-         face.normal;
+  const ShadedFace& face = faces_[Index(face_of_[Index(first_face_[Index(piece)] + feature.index)])];
+  if (face.count == 0) return Vec3::Zero();
+  return interpolated(face, &corners_[Index(face.first)], point) - face.normal;
 }
 
 /// Barycentric coordinates weigh the corners of a triangle.

@@ -6,8 +6,8 @@
 /// A corner's normal on a face is the mean of the normals of the faces around the corner that meet that face
 /// at less than the crease angle; at a sharp edge it is the face's own. Inside a face, Wachspress coordinates
 /// of the polygon weigh the corners: linear on its edges, so that the direction is continuous from face to
-/// face. Faces around a corner are those of the part's true surface, of whatever piece; a facet that was cut
-/// across is shaded stretch by stretch.
+/// face. Faces and those around a corner are the part's true ones: what pieces cut across is shaded as one,
+/// unless it is not convex as one; then stretch by stretch.
 
 #include <array>
 #include <vector>
@@ -18,10 +18,17 @@
 
 namespace tactum {
 
-/// A corner of a face: the normal of the surface there, and its part of the Wachspress weight.
+/// A corner of a face: where, the normal of the surface there, and its part of the Wachspress weight.
 struct ShadedCorner {
+  Vec3 p = Vec3::Zero();       ///< part's frame [m]
   Vec3 normal = Vec3::Zero();  ///< unit [-]
   double area = 0.0;           ///< twice that of the triangle with its neighbours [m^2]
+};
+
+/// A true face. No corners: nothing of it deviates.
+struct ShadedFace {
+  Vec3 normal = Vec3::Zero();  ///< unit [-]
+  int first = 0, count = 0;    ///< of its corners, counter-clockwise
 };
 
 class ShadingNormals {
@@ -36,15 +43,14 @@ class ShadingNormals {
   Vec3 deviation_on_surface(const Feature& feature, const Vec3& point) const noexcept;
 
  private:
-  void shade_polytope(const Polytope& piece, double cosine);
-  void shade_over_seams(const Part& part, double cosine);
+  void shade_pieces(double cosine);
   void shade_surface(double cosine);
 
   const Part* part_;
-  std::vector<int> first_slot_;        // per piece, into corners_; slots as in Polytope::face_vertices
-  std::vector<ShadedCorner> corners_;  // per slot
-  std::vector<char> curved_face_;      // per piece and face: whether any corner deviates
-  std::vector<int> first_face_;        // per piece, into curved_face_
+  std::vector<int> first_face_;  // per piece, into face_of_
+  std::vector<int> face_of_;     // per piece and face, into faces_
+  std::vector<ShadedFace> faces_;
+  std::vector<ShadedCorner> corners_;
   std::vector<std::array<Vec3, 3>> triangle_normals_;  // at the corners of the surface's triangles
 };
 

@@ -1,0 +1,143 @@
+#include <algorithm>
+#include <limits>
+
+#include "tactum/base/tolerances.h"
+#include "tactum/collision/patch_work.h"
+
+namespace tactum::detail {
+namespace {
+
+struct GapRange {
+  double least = std::numeric_limits<double>::infinity();
+  double most = -std::numeric_limits<double>::infinity();
+
+  void extend(const Height& gap, const PatchPolygon& polygon) noexcept {
+    for (const Vec2& x : polygon) {
+      const double here = gap(x);
+      least = std::min(least, here);
+      most = std::max(most, here);
+    }
+  }
+};
+
+/// Where both faces are, one over the other: the polygon of the contact's own pieces, and those of the other
+/// stretches, which are made anew whenever they are asked for.
+class Overlap {
+ public:
+  Overlap(const PatchWork& w, const Tangent& tangent_B) noexcept : w_(w), tangent_B_(tangent_B) {
+    face_outline(w.tangent, w.A, w.a.feature.index, true, own_);
+  }
+  const PatchPolygon& own() const noexcept { return own_; }
+  /// Clips A's face by B's.
+  void clip() noexcept {
+    PatchPolygon window;
+    face_outline(tangent_B_, w_.B, w_.b.feature.index, false, window);
+    clip_polygon(own_, window);
+  }
+  /// Keeps where slope . x <= offset.
+  void cut(const Vec2& slope, double offset) noexcept {
+    clip_polygon(own_, slope, offset);
+    if (!w_.others.empty()) cuts_.push_back({slope, offset});
+  }
+  /// Calls visit(polygon) for each that is not empty.
+  template <class Visit>
+  void visit(const Visit& visit_one) const noexcept {
+    if (!own_.empty()) visit_one(own_);
+    for (const Stretch& other : w_.others) {
+      PatchPolygon polygon;
+      PatchPolygon window;
+      face_outline(w_.tangent, *other.A, other.a.index, true, polygon);
+      face_outline(tangent_B_, *other.B, other.b.index, false, window);
+      clip_polygon(polygon, window);
+      for (const Cut& cut : cuts_) clip_polygon(polygon, cut.slope, cut.offset);
+      if (!polygon.empty()) visit_one(polygon);
+    }
+  }
+
+ private:
+  struct Cut {
+    Vec2 slope;
+    double offset;
+  };
+  const PatchWork& w_;
+  const Tangent& tangent_B_;
+  PatchPolygon own_;
+  StaticVector<Cut, 3> cuts_;  // one by the gap, one for each face that leans
+};
+
+/// The moments of all polygons as those of one figure.
+PatchMoments moments_over(const Overlap& overlap, bool alone) noexcept {
+  if (alone) return moments_of(overlap.own());
+  PatchMoments sum;
+  overlap.visit([&](const PatchPolygon& polygon) {
+    const PatchMoments m = moments_of(polygon);
+    if (m.area > 0.0) sum = together(sum, m);
+  });
+  return sum;
+}
+
+/// One of four points: B's surface is under A's, along the normal.
+inline void add_quarter(const PatchWork& w, const Vec3& p_a, double gap) noexcept {
+  w.out.points.push_back({p_a, p_a - w.tangent.n * gap, gap, 0.25, 0});
+}
+
+/// The corners of the contact's own polygon that are farthest apart.
+void sliver_of(const PatchWork& w, const PatchPolygon& polygon, const Height& za, const Height& zb) noexcept {
+  if (polygon.empty()) return point_contact(w);
+  Vec2 x0 = polygon[0];
+  Vec2 x1 = polygon[0];
+  for (const Vec2& x : polygon)
+    if ((x - x0).squaredNorm() > (x1 - x0).squaredNorm()) x1 = x;
+  for (const Vec2& x : polygon)
+    if ((x - x1).squaredNorm() > (x0 - x1).squaredNorm()) x0 = x;
+  sliver_contact(w, x0, x1, za, zb);
+}
+
+}  // namespace
+
+void face_face_contact(const PatchWork& w) noexcept {
+  const Tangent tangent_B = w.tangent_B();
+  const Height za = face_height(w.tangent, w.A, w.a.feature.index);
+  const Height zb = face_height(tangent_B, w.B, w.b.feature.index);
+  const Height gap{za.at_origin - zb.at_origin, za.slope - zb.slope};
+  const bool alone = w.others.empty();
+  Overlap overlap(w, tangent_B);
+  GapRange before;
+  before.extend(gap, overlap.own());
+  overlap.clip();
+  if (overlap.own().empty() && alone) return point_contact(w);
+  // Where the whole face is within the tolerance the gap cuts nothing.
+  if (before.most > w.tolerance || gap_share(w) < 1.0 || !alone) {
+    GapRange range;
+    overlap.visit([&](const PatchPolygon& polygon) { range.extend(gap, polygon); });
+    if (range.least >= w.tolerance) return point_contact(w);
+    if (const double level = cut_level(w, range.least); range.most > level)
+      overlap.cut(gap.slope, level - gap.at_origin);
+  }
+  const auto cut_toward_edge = [&](const Rise& rise, double share) {
+    double highest = 0.0;
+    overlap.visit([&](const PatchPolygon& polygon) {
+      for (const Vec2& x : polygon) highest = std::max(highest, rise(x));
+    });
+    overlap.cut(rise.slope, rise.offset + highest * share);
+  };
+  if (w.a.face_share < 1.0)
+    cut_toward_edge(rise_from_edge(w.tangent, w.A, w.a.edge, {}, za.slope), w.a.face_share);
+  if (w.b.face_share < 1.0)
+    cut_toward_edge(rise_from_edge(w.tangent, w.B, w.b.edge, w.X_AB, -zb.slope), w.b.face_share);
+  const PatchMoments m = moments_over(overlap, alone);
+  const double size = std::max(w.A.size, w.B.size);
+  if (m.area <= tolerances::kPatchArea * size * size) return sliver_of(w, overlap.own(), za, zb);
+  w.out.area = m.area;
+  const PatchSpread arms = spread_of(m);
+  const Vec3 center = w.tangent.point(m.centroid, za(m.centroid));
+  const double center_gap = gap(m.centroid);
+  for (const Vec2* arm : {&arms.u, &arms.v}) {
+    const Vec3 to_a = w.tangent.e1 * arm->x() + w.tangent.e2 * arm->y() + w.tangent.n * za.slope.dot(*arm);
+    const double opens = gap.slope.dot(*arm);
+    add_quarter(w, center + to_a, center_gap + opens);
+    add_quarter(w, center - to_a, center_gap - opens);
+  }
+}
+
+}  // namespace tactum::detail

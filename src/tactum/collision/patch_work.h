@@ -1,0 +1,87 @@
+#pragma once
+/// What the makers of contact patches share: line_patch.cpp for intervals, area_patch.cpp for polygons,
+/// manifold.cpp chooses between them.
+
+#include <algorithm>
+#include <span>
+
+#include "tactum/collision/contact_plane.h"
+#include "tactum/collision/facing_feature.h"
+#include "tactum/collision/manifold.h"
+#include "tactum/collision/pair_view.h"
+
+namespace tactum::detail {
+
+/// What a maker works on. Built in place: copying vectors that have just been written makes the processor
+/// wait for them.
+struct PatchWork {
+  const Polytope& A;
+  const Polytope& B;
+  const Pose& X_AB;
+  const PairDistance& closest;
+  double tolerance;
+  double angle;
+  Vec3 n_B;  ///< the normal in B's frame
+  Facing a, b;
+  Tangent tangent;
+  std::span<const Stretch> others;  ///< of the same kinds as a and b
+  Manifold& out;
+
+  PatchWork(const Polytope& of_a, const Polytope& of_b, const Pose& X, const PairDistance& at, double below,
+            double within, std::span<const Stretch> stretches, Manifold& patch) noexcept
+      : A(of_a),
+        B(of_b),
+        X_AB(X),
+        closest(at),
+        tolerance(below),
+        angle(within),
+        n_B(rotated_back(X.R, at.normal)),
+        a(facing_feature(A, at.a, -at.normal, angle)),
+        b(facing_feature(B, at.b, n_B, angle)),
+        tangent(contact_plane(A, a.feature, at.p_b, at.normal)),
+        others(stretches),
+        out(patch) {}
+
+  Vec3 vertex_b(int v) const noexcept { return X_AB * B.vertices[v]; }
+  /// The contact plane in B's frame.
+  Tangent tangent_B() const noexcept {
+    Tangent plane{rotated_back(X_AB.R, tangent.origin - X_AB.p), rotated_back(X_AB.R, tangent.e1), {}, n_B};
+    plane.e2 = plane.n.cross(plane.e1);
+    return plane;
+  }
+};
+
+/// How much of the gap's range is kept as the features lean.
+inline double gap_share(const PatchWork& w) noexcept {
+  const auto share_of = [](const Facing& f) {
+    return f.feature.kind == FeatureKind::kFace ? std::max(f.face_share, f.along_share) : f.along_share;
+  };
+  return std::min(share_of(w.a), share_of(w.b));
+}
+
+/// The gap above which the patch ends: the tolerance, or nearer the least gap when the features lean. That of
+/// a stretch (seam_settler.h) is the whole contact's, `closest` is where the least is.
+inline double cut_level(const PatchWork& w, double least_gap) noexcept {
+  const double share = gap_share(w);
+  least_gap = std::min(least_gap, w.closest.distance);
+  return share >= 1.0 ? w.tolerance : least_gap + (w.tolerance - least_gap) * share;
+}
+
+inline void point_contact(const PatchWork& w) noexcept {
+  w.out.points.clear();
+  w.out.area = 0.0;
+  w.out.points.push_back({w.closest.p_a, w.closest.p_b, w.closest.distance, 1.0, 0});
+}
+
+/// The patch of A's and B's edge, or of an edge of one over a face of the other: two points.
+void edge_edge_contact(const PatchWork& w) noexcept;
+void edge_a_face_b(const PatchWork& w) noexcept;
+void face_a_edge_b(const PatchWork& w) noexcept;
+
+/// The patch of two faces: four points; fewer where they have no common area.
+void face_face_contact(const PatchWork& w) noexcept;
+
+/// A polygon without area: the interval between these corners of it.
+void sliver_contact(const PatchWork& w, Vec2 x0, Vec2 x1, const Height& za, const Height& zb) noexcept;
+
+}  // namespace tactum::detail
