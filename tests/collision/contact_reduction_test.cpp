@@ -32,8 +32,8 @@ double overstepped(const SurfaceMinimum& m, const Vec3& x, const Vec3& w) {
 TEST(ContactReduction, BoundsByHowMuchADroppedMinimumIsOverstepped) {
   Random random(4);
   std::vector<SurfaceMinimum> minima = random_minima(random, 200);
-  std::vector<double> error(minima.size());
-  const ReductionReport report = reduce_contacts(minima, error, 40, kBounds);
+  std::vector<ReductionScratch> scratch(minima.size());
+  const ReductionReport report = reduce_contacts(minima, scratch, 40, kBounds);
   EXPECT_EQ(report.kept, 40);
   EXPECT_EQ(report.dropped, 160);
   int steps = 0;
@@ -43,12 +43,46 @@ TEST(ContactReduction, BoundsByHowMuchADroppedMinimumIsOverstepped) {
     double worst_kept = 0.0;
     for (std::size_t k = 0; k < 40; ++k) worst_kept = std::max(worst_kept, overstepped(minima[k], x, w));
     for (std::size_t k = 40; k < minima.size(); ++k) {
-      EXPECT_LE(overstepped(minima[k], x, w), worst_kept + error[k] + 1e-15);
-      EXPECT_LE(error[k], report.largest_error);
+      EXPECT_LE(overstepped(minima[k], x, w), worst_kept + scratch[k].error + 1e-15);
+      EXPECT_LE(scratch[k].error, report.largest_error);
     }
     steps += int(worst_kept > 0.0);
   }
   EXPECT_GT(steps, 100);
+}
+
+/// Farthest-first as it is defined: every one against every kept one.
+std::vector<int> farthest_first(const std::vector<SurfaceMinimum>& minima, std::size_t room) {
+  std::vector<double> error(minima.size(), 1e300);
+  std::vector<int> kept;
+  while (kept.size() < room) {
+    std::size_t next = 0;
+    for (std::size_t i = 1; i < minima.size(); ++i) {
+      if (kept.empty() ? minima[i].distance < minima[next].distance : error[i] > error[next]) next = i;
+    }
+    const SurfaceMinimum& k = minima[next];
+    kept.push_back(k.a.index);
+    for (std::size_t i = 0; i < minima.size(); ++i) {
+      const SurfaceMinimum& m = minima[i];
+      error[i] = std::min(error[i],
+                          std::max(0.0, k.distance - m.distance) +
+                              (m.normal - k.normal).norm() * kBounds.max_translation +
+                              (m.p_b.cross(m.normal) - k.p_b.cross(k.normal)).norm() * kBounds.max_rotation);
+    }
+  }
+  return kept;
+}
+
+TEST(ContactReduction, LeavesOutNothingThatTheDefinitionWouldKeep) {
+  Random random(8);
+  for (const double spread : {1.0, 0.1, 0.01}) {  // all directions, then as on one flank
+    std::vector<SurfaceMinimum> minima = random_minima(random, 600);
+    for (SurfaceMinimum& m : minima) m.normal = (Vec3::UnitZ() + spread * m.normal).normalized();
+    const std::vector<int> wanted = farthest_first(minima, 150);
+    std::vector<ReductionScratch> scratch(minima.size());
+    reduce_contacts(minima, scratch, 150, kBounds);
+    for (std::size_t k = 0; k < wanted.size(); ++k) ASSERT_EQ(minima[k].a.index, wanted[k]) << k;
+  }
 }
 
 TEST(ContactReduction, KeepsTheNearestFirstAndLosesNone) {
@@ -56,8 +90,8 @@ TEST(ContactReduction, KeepsTheNearestFirstAndLosesNone) {
   std::vector<SurfaceMinimum> minima = random_minima(random, 100);
   double nearest = 1.0;
   for (const SurfaceMinimum& m : minima) nearest = std::min(nearest, m.distance);
-  std::vector<double> error(minima.size());
-  reduce_contacts(minima, error, 10, kBounds);
+  std::vector<ReductionScratch> scratch(minima.size());
+  reduce_contacts(minima, scratch, 10, kBounds);
   EXPECT_EQ(minima[0].distance, nearest);
   std::vector<int> names;
   for (const SurfaceMinimum& m : minima) names.push_back(m.a.index);
@@ -87,8 +121,8 @@ TEST(ContactReduction, IsWithinTwiceTheBestChoice) {
       }
       best = std::min(best, error);
     }
-    std::vector<double> error(minima.size());
-    EXPECT_LE(reduce_contacts(minima, error, 4, kBounds).largest_error, 2.0 * best + 1e-15);
+    std::vector<ReductionScratch> scratch(minima.size());
+    EXPECT_LE(reduce_contacts(minima, scratch, 4, kBounds).largest_error, 2.0 * best + 1e-15);
   }
 }
 
@@ -103,8 +137,8 @@ TEST(ContactReduction, OfAFlatContactKeepsItsCorners) {
       minima.push_back(m);
     }
   }
-  std::vector<double> error(minima.size());
-  reduce_contacts(minima, error, 5, kBounds);
+  std::vector<ReductionScratch> scratch(minima.size());
+  reduce_contacts(minima, scratch, 5, kBounds);
   int corners = 0;
   for (std::size_t k = 0; k < 5; ++k) {
     corners += int(std::abs(std::abs(minima[k].p_b.x()) - 0.05) < 1e-12 &&
@@ -118,15 +152,15 @@ TEST(ContactReduction, StopsWhenItIsEnoughAndTakesNoMemory) {
   std::vector<SurfaceMinimum> minima = random_minima(random, 50);
   std::vector<SurfaceMinimum> doubled = minima;
   doubled.insert(doubled.end(), minima.begin(), minima.end());
-  std::vector<double> error(doubled.size());
+  std::vector<ReductionScratch> scratch(doubled.size());
   const AllocationGuard guard;
-  const ReductionReport report = reduce_contacts(doubled, error, 100, kBounds);
+  const ReductionReport report = reduce_contacts(doubled, scratch, 100, kBounds);
   const std::size_t allocations = guard.allocations();
   EXPECT_EQ(allocations, 0u);
   EXPECT_LE(report.kept, 50);
   EXPECT_EQ(report.largest_error, 0.0);
   EXPECT_EQ(reduce_contacts({}, {}, 5, kBounds).kept, 0);
-  EXPECT_EQ(reduce_contacts(doubled, error, 0, kBounds).dropped, 100);
+  EXPECT_EQ(reduce_contacts(doubled, scratch, 0, kBounds).dropped, 100);
 }
 
 }  // namespace

@@ -44,10 +44,11 @@ TEST(Passivity, TheLedgerOfASampledSpringIsKnownExactly) {
   // - f_(n-1) (x_n - x_(n-1)), summed over a spring f = - K x, is  K x_N^2 / 2 - K / 2 sum (x_n - x_(n-1))^2:
   // what is stored, less what sampling has made.
   Random random(11);
-  Spring spring;
+  Spring spring, turned;  // one that is moved and one that is turned: neither pays for the other
   Vec3 x = Vec3::Zero(), turn = Vec3::Zero();
   double squares = 0.0, turned_squares = 0.0;
   spring.go({});
+  turned.go({});
   for (int i = 0; i < 5000; ++i) {
     Vec3 step(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
     const double turn_step = random.uniform(-0.01, 0.01);
@@ -55,10 +56,11 @@ TEST(Passivity, TheLedgerOfASampledSpringIsKnownExactly) {
     turn.z() += turn_step;  // about one axis, where turns add up
     squares += step.squaredNorm();
     turned_squares += turn_step * turn_step;
-    spring.go({exp_rotation(turn), x});
+    spring.go({Mat3::Identity(), x});
+    turned.go({exp_rotation(turn), Vec3::Zero()});
   }
   EXPECT_NEAR(spring.report.ledger_J, 500.0 * (x.squaredNorm() - squares), 1e-10);
-  EXPECT_NEAR(spring.report.ledger_turning_J, 5.0 * (turn.squaredNorm() - turned_squares), 1e-9);
+  EXPECT_NEAR(turned.report.ledger_turning_J, 5.0 * (turn.squaredNorm() - turned_squares), 1e-9);
   EXPECT_LT(spring.report.ledger_J, spring.K * 0.5 * x.squaredNorm()) << "sampling makes energy";
 }
 
@@ -203,6 +205,36 @@ TEST(Passivity, EnergyThatBodiesGiveUpIsNoneThatWasMade) {
       injected = std::max(injected, report.injected_Ns_per_m);
     }
     if (told) {
+      EXPECT_EQ(injected, 0.0);
+    } else {
+      EXPECT_GT(injected, 0.0) << "or this test could not fail";
+    }
+  }
+}
+
+TEST(Passivity, AScrewMayPassWorkFromTurningToPushing) {
+  // A frictionless thread of 2 mm pitch, turned steadily against 1 N along its axis: what the hand puts in by
+  // turning it gets back by being pushed. With half the torque half of it is made from nothing.
+  constexpr double kLead = 0.002 / (2.0 * kPi);  // [m/rad]
+  for (const double share : {1.0, 0.5}) {
+    PortSettings settings;
+    settings.max_injected_Ns_per_m = 10.0;
+    PortState state;
+    PortReport report;
+    PortInput input;
+    input.wanted = {{0, 0, -1.0}, {0, 0, share * kLead}};
+    double injected = 0.0;
+    for (int i = 0; i <= 5000; ++i) {
+      DeviceSample sample;
+      sample.valid = true;
+      const double angle = -1e-3 * i;
+      sample.X_DH = {exp_rotation({0, 0, angle}), {0, 0, kLead * angle}};
+      // An encoder tells the way along the axis now and then only.
+      sample.X_DH.p.z() = 1e-5 * std::ceil(sample.X_DH.p.z() / 1e-5);
+      input.sent = passive_wrench(settings, state, sample, input, report);
+      injected = std::max(injected, report.injected_Ns_per_m);
+    }
+    if (share == 1.0) {
       EXPECT_EQ(injected, 0.0);
     } else {
       EXPECT_GT(injected, 0.0) << "or this test could not fail";

@@ -66,7 +66,7 @@ ContactFinder::ContactFinder(std::vector<CollisionBody> bodies, std::span<const 
   patches_.reserve(rooms.patches);
   candidates_.reserve(rooms.patches);
   minima_.reserve(rooms.minima);
-  reduction_error_.reserve(rooms.minima);
+  reduction_scratch_.reserve(rooms.minima);
   kept_minima_ = rooms.kept_minima;
 }
 

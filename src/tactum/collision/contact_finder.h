@@ -26,6 +26,7 @@
 
 #include "tactum/collision/contact.h"
 #include "tactum/collision/contact_patch.h"
+#include "tactum/collision/contact_reduction.h"
 #include "tactum/collision/schedule.h"
 #include "tactum/collision/seam_settler.h"
 #include "tactum/collision/steady_contact.h"
@@ -149,7 +150,7 @@ class ContactFinder {
   std::vector<ContactPatch> patches_;
   std::vector<SeamCandidate> candidates_;
   std::vector<SurfaceMinimum> minima_;
-  std::vector<double> reduction_error_;  // scratch
+  std::vector<ReductionScratch> reduction_scratch_;
   std::size_t kept_minima_ = 0;
   std::span<const double> reach_;
   PatchPoints points_ = PatchPoints::kQuadrature;

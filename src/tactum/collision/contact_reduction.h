@@ -14,7 +14,11 @@
 /// Kept first is the nearest, then again and again the one with the largest error, until none is above
 /// `enough` or the room is full: farthest-first, which is within twice the best possible choice of as many
 /// [Gonzalez 1985]. So the first few spread over normals and lever arms, and what is said about the dropped
-/// ones is a bound, not an estimate. Cost: kept x all, a few nanoseconds each. Ties go to the lower index.
+/// ones is a bound, not an estimate. Ties go to the lower index.
+///
+/// The dropped stand in groups about the kept one they are nearest to. A group that is far enough from the
+/// one just kept has nothing to lose to it and is not looked at [Elkan 2003]; of 4 400 minima on a thread,
+/// 1 024 kept, that leaves a fortieth of the pairs.
 
 #include <span>
 
@@ -36,10 +40,22 @@ struct ReductionReport {
       0.0;  ///< a dropped minimum can be overstepped by at most this in a step within the bounds [m]
 };
 
+/// What is remembered of each minimum and of each group meanwhile.
+struct ReductionScratch {
+  double error = 0.0;        ///< afterwards, of a dropped one: by how much it can be overstepped [m]
+  Vec3 push = Vec3::Zero();  ///< the normal times the largest translation [m]
+  Vec3 turn = Vec3::Zero();  ///< the lever arm times the largest rotation [m]
+  double distance = 0.0;     ///< [m]
+  int next = -1;             ///< in its group
+  int first = -1;            ///< of the group with this number
+  int farthest = -1;         ///< of the group: the one with the largest error
+  int chosen = -1;           ///< of the group: the kept one it stands about
+  int went = -1;             ///< where the minimum with this number went when a kept one took its place
+};
+
 /// Orders `minima` so that the kept ones, at most `room`, come first, in the order of their choice; the rest
-/// follows. `error`, as long as `minima`, tells of each dropped one by how much it can be overstepped [m]. No
-/// allocation.
-ReductionReport reduce_contacts(std::span<SurfaceMinimum> minima, std::span<double> error, std::size_t room,
-                                const ReductionBounds& bounds) noexcept;
+/// follows. `scratch` must be as long as `minima` at least. No allocation.
+ReductionReport reduce_contacts(std::span<SurfaceMinimum> minima, std::span<ReductionScratch> scratch,
+                                std::size_t room, const ReductionBounds& bounds) noexcept;
 
 }  // namespace tactum

@@ -4,7 +4,6 @@
 
 #include "tactum/base/tolerances.h"
 #include "tactum/collision/contact_finder.h"
-#include "tactum/collision/contact_reduction.h"
 
 namespace tactum {
 namespace {
@@ -46,12 +45,12 @@ void ContactFinder::test_surfaces(int a, int b, std::span<const Pose> X_WB) noex
   list.free_until = odometers(a, b) + (minima_.empty() ? reach : 0.0);
   Index kept = minima_.size();
   if (kept > kept_minima_) {
-    reduction_error_.resize(kept);  // within what was reserved
+    reduction_scratch_.resize(kept);  // within what was reserved
     Vec3 center = Vec3::Zero();
     for (const SurfaceMinimum& minimum : minima_) center += minimum.p_a / double(minima_.size());
     const double radius = radius_[Index(a)] + radius_[Index(b)];
     const ReductionReport reduced =
-        reduce_contacts(minima_, reduction_error_, kept_minima_,
+        reduce_contacts(minima_, reduction_scratch_, kept_minima_,
                         {.center = center, .max_translation = reach, .max_rotation = reach / radius});
     kept = Index(reduced.kept);
     work_.dropped_minima += reduced.dropped;

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "tactum/base/tolerances.h"
-#include "tactum/collision/patch_corners.h"
+#include "tactum/haptics/constraint_rows.h"
 #include "tactum/haptics/frame_state.h"
 #include "tactum/math/screw.h"
 
@@ -22,62 +22,6 @@ constexpr int kSlipRounds = 6;
 constexpr double kTrustGrowth = 2.0;
 /// The tolerance of contact determination is so much more than the trusted length, in skins.
 constexpr double kReachMargin = 4.0;
-
-Push push_of(const ContactRow& row) { return {row.p_W, row.n_BA_W, Vec3::Zero()}; }
-
-/// A name that a row keeps from frame to frame while the pair's patch has as many corners.
-std::uint64_t name_of(const ContactPatch& patch, Index corner) {
-  if (patch.of_surfaces) return patch.manifold.points[0].id;
-  const auto pieces =
-      static_cast<std::uint64_t>(patch.piece_a) << 20 ^ static_cast<std::uint64_t>(patch.piece_b);
-  const auto bodies =
-      static_cast<std::uint64_t>(patch.body_a) << 6 ^ static_cast<std::uint64_t>(patch.body_b);
-  return (bodies << 40 ^ pieces) << 8 ^ corner;
-}
-
-/// The rows of one frame: all corners of all patches.
-void make_rows(const World& world, FrameState& state) {
-  ConstraintState& c = state.constraint;
-  ContactRows& out = state.contacts;
-  out.rows.clear();
-  out.full = false;
-  c.names.clear();
-  PatchCorners corners;
-  const std::span<const ContactPatch> patches = state.finder.patches();
-  Pose X_AB;
-  for (Index p = 0; p < patches.size(); ++p) {
-    const ContactPatch& patch = patches[p];
-    const Pose& X_WA = state.world.X_WB[Index(patch.body_a)];
-    if (p == 0 || patch.body_a != patches[p - 1].body_a || patch.body_b != patches[p - 1].body_b)
-      X_AB = relative_pose(X_WA, state.world.X_WB[Index(patch.body_b)]);
-    if (patch.manifold.points.empty()) continue;  // only watched
-    if (patch.of_surfaces) {
-      const ContactPoint& point = patch.manifold.points[0];
-      corners.clear();
-      corners.push_back({0.5 * (point.p_a + point.p_b), point.distance});
-    } else {
-      patch_corners(world.bodies[Index(patch.body_a)].part->pieces[Index(patch.piece_a)],
-                    world.bodies[Index(patch.body_b)].part->pieces[Index(patch.piece_b)], X_AB,
-                    patch.manifold, patch.distance, patch.tolerance, corners);
-    }
-    const Vec3 normal_W = X_WA.R * patch.manifold.normal;
-    for (Index i = 0; i < corners.size(); ++i) {
-      if (out.rows.size() == out.rows.capacity()) {
-        out.full = true;
-        return;
-      }
-      ContactRow& row = out.rows.emplace_back();
-      row.body_a = patch.body_a;
-      row.body_b = patch.body_b;
-      row.patch = static_cast<int>(p);
-      row.n_BA_W = normal_W;
-      row.p_W = X_WA * corners[i].p_A;
-      row.distance = corners[i].distance;
-      row.tolerance = patch.tolerance;
-      c.names.push_back(name_of(patch, i));
-    }
-  }
-}
 
 /// The displacement of the handle that the coupling asks for.
 Vec6 wanted_by_hand(const FrameSettings& settings, double dt_s, const FrameState& state) {
@@ -108,33 +52,22 @@ void add_bodies(const World& world, const FrameSettings& settings, double dt_s, 
   problem.add_brakes();
 }
 
-/// The rows of the contacts. Where a gap is below the skin, `opening` asks
-/// for the skin, for which there may be no room; else only that it closes no further, which staying keeps.
-void add_contact_rows(bool opening, FrameState& state) {
-  ConstraintState& c = state.constraint;
-  c.first_row = c.problem.rows();
-  for (const ContactRow& row : state.contacts.rows) {
-    const double offset = c.skin_m - row.distance;
-    c.problem.add_row(row.body_a, row.body_b, push_of(row), opening ? offset : std::min(0.0, offset));
-  }
-  c.feedback.assign(state.contacts.rows.size(), 0.0);
-}
-
-bool solve_from(std::span<const int> first, const FrameSettings& settings, ConstraintState& c,
+bool solve_from(std::span<const int> first, const FrameSettings& settings, ConstraintProblem& problem,
                 FrameReport& report) {
-  const QpAnswer& answer = c.problem.solve(first, settings.budget.solver_iterations);
+  const QpAnswer& answer = problem.solve(first, settings.budget.solver_iterations);
   report.solver_iterations += answer.iterations;
   if (answer.status == QpStatus::kBounded) report.flags |= frame_flag::kSolverBounded;
   return answer.status == QpStatus::kSolved;
 }
 
 /// Solves, from the rows that held in the last frame. False when there is no solution.
-bool solve(const FrameSettings& settings, ConstraintState& c, FrameReport& report) {
+bool solve(const FrameSettings& settings, const ConstraintState& c, ConstraintProblem& problem,
+           FrameReport& report) {
   StaticVector<int, kMostUnknowns> first;
   for (Index row = 0; row < c.names.size(); ++row)
     for (const std::uint64_t name : c.held)
       if (name == c.names[row]) first.push_back(static_cast<int>(c.first_row + row));
-  return solve_from({first.begin(), first.end()}, settings, c, report);
+  return solve_from({first.begin(), first.end()}, settings, problem, report);
 }
 
 /// Solves again, from the rows that hold now.
@@ -142,7 +75,7 @@ bool solve_on(const FrameSettings& settings, ConstraintState& c, FrameReport& re
   StaticVector<int, kMostUnknowns> first;
   for (const QpActive& active : c.problem.answer().active)
     if (Index(active.row) < c.problem.rows()) first.push_back(active.row);
-  return solve_from({first.begin(), first.end()}, settings, c, report);
+  return solve_from({first.begin(), first.end()}, settings, c.problem, report);
 }
 
 /// Lets every patch stick, then slip where it must, until none slips further. Where no answer keeps the
@@ -187,7 +120,7 @@ void keep_forces(const FrameSettings& settings, double dt_s, FrameState& state, 
 
 /// The farthest way of a point of the body in the last answer [m].
 double way_of(const FrameState& state, const Mover& mover) {
-  const Vec6 x = state.constraint.problem.displacement(mover.body);
+  const Vec6 x = state.constraint.moves().displacement(mover.body);
   return x.head<3>().norm() + x.tail<3>().norm() * state.finder.radius(mover.body);
 }
 
@@ -195,12 +128,12 @@ double way_of(const FrameState& state, const Mover& mover) {
 double trusted_share(const FrameSettings& settings, const FrameState& state) {
   const ConstraintState& c = state.constraint;
   double share = 1.0;
-  for (const Mover& mover : c.problem.movers()) {
+  for (const Mover& mover : c.moves().movers()) {
     const double way = way_of(state, mover);
     const double trusted = state.reach[Index(mover.body)] - kReachMargin * c.skin_m;
     if (way * share > trusted) share = trusted / way;
     if (mover.body != state.tool.body) continue;
-    const double turn = c.problem.displacement(mover.body).tail<3>().norm();
+    const double turn = c.moves().displacement(mover.body).tail<3>().norm();
     if (turn * share > settings.constraint.max_turn_rad) share = settings.constraint.max_turn_rad / turn;
   }
   return share;
@@ -216,9 +149,9 @@ bool may_become(double now, double then, double skin) {
 bool open_after(const World& world, double share, FrameState& state, FrameReport& report) {
   ConstraintState& c = state.constraint;
   c.X_WB_trial = state.world.X_WB;  // same size: nothing is allocated
-  for (const Mover& mover : c.problem.movers()) {
+  for (const Mover& mover : c.moves().movers()) {
     const Index i = Index(mover.body);
-    const Twist step = to_twist(c.problem.displacement(mover.body) * share);
+    const Twist step = to_twist(c.moves().displacement(mover.body) * share);
     c.X_WB_trial[i] = constrained_pose(world.bodies[i], advanced(state.world.X_WB[i], step, 1.0));
     if (!c.X_WB_trial[i].finite()) return false;
   }
@@ -227,34 +160,6 @@ bool open_after(const World& world, double share, FrameState& state, FrameReport
   for (Index p = 0; p < c.gap.size(); ++p)
     if (!may_become(c.gap[p], c.gap_trial[p], c.skin_m)) return false;
   return true;
-}
-
-/// The gap of a row at the trial: its points go with their bodies, its normal with the face that makes it.
-double gap_at_trial(const ContactRow& row, const FrameState& state) {
-  const ConstraintState& c = state.constraint;
-  const Manifold& patch = state.finder.patches()[Index(row.patch)].manifold;
-  const auto carried = [&](int body, const Vec3& p_W) {
-    const Pose& before = state.world.X_WB[Index(body)];
-    return c.X_WB_trial[Index(body)] * rotated_back(before.R, p_W - before.p);
-  };
-  const int owner =
-      patch.b.kind != FeatureKind::kFace && patch.a.kind == FeatureKind::kFace ? row.body_a : row.body_b;
-  const Vec3 half = 0.5 * row.distance * row.n_BA_W;
-  const Vec3 normal =
-      c.X_WB_trial[Index(owner)].R * rotated_back(state.world.X_WB[Index(owner)].R, row.n_BA_W);
-  return normal.dot(carried(row.body_a, row.p_W + half) - carried(row.body_b, row.p_W - half));
-}
-
-/// Second-order correction: what the trial's gaps differ from what the rows said is added to the rows.
-void feed_back(double share, FrameState& state) {
-  ConstraintState& c = state.constraint;
-  for (Index r = 0; r < state.contacts.rows.size(); ++r) {
-    const ContactRow& row = state.contacts.rows[r];
-    const double linear = c.problem.opening(row.body_a, row.body_b, push_of(row));
-    const double missing = (row.distance + share * linear - gap_at_trial(row, state)) / share;
-    c.problem.tighten(c.first_row + r, missing - c.feedback[r]);
-    c.feedback[r] = missing;
-  }
 }
 
 void take_trial(FrameState& state) {
@@ -269,34 +174,57 @@ void restore(const World& world, const FrameSettings& settings, double dt_s, Fra
   ConstraintState& c = state.constraint;
   if (std::all_of(c.gap.begin(), c.gap.end(), [&](double gap) { return gap >= 0.5 * c.skin_m; })) return;
   add_bodies(world, settings, dt_s, true, state, report);
-  add_contact_rows(true, state);
-  if (!solve(settings, c, report)) return;
+  add_contact_rows(true, c.problem, state);
+  if (!solve(settings, c, c.problem, report)) return;
   if (!open_after(world, trusted_share(settings, state), state, report)) return;
   for (ContactRow& row : state.contacts.rows) row.distance = gap_at_trial(row, state);
   take_trial(state);
 }
 
+/// Finds what pushes, where shading bends normals with these, and for those the problem of the way: to where
+/// the forces would have it, as far as the true normals let it. False when there is no answer.
+bool find_forces(const World& world, const FrameSettings& settings, double dt_s, FrameState& state,
+                 FrameReport& report) {
+  ConstraintState& c = state.constraint;
+  add_bodies(world, settings, dt_s, false, state, report);
+  c.shades = c.bent;
+  if (c.shades) exchange_normals(state);
+  add_contact_rows(false, c.problem, state);
+  c.friction_row = c.problem.rows();
+  c.friction.clear();
+  bool solved = solve(settings, c, c.problem, report);
+  if (solved && c.friction.begin(world, settings.friction, state.contacts.rows, state.finder.patches(),
+                                 state.world.X_WB, c.skin_m, c.first_row, c.problem))
+    solved = solve_sliding(settings, c.friction_row, c, report);
+  if (solved) keep_forces(settings, dt_s, state, report);
+  if (!c.shades) return solved;
+  exchange_normals(state);
+  c.way.follow(c.problem);
+  add_contact_rows(false, c.way, state);
+  return solved && solve(settings, c, c.way, report);
+}
+
+/// Solves again after a feedback.
+bool find_again(const FrameSettings& settings, double dt_s, FrameState& state, FrameReport& report) {
+  ConstraintState& c = state.constraint;
+  if (c.shades) return solve(settings, c, c.way, report);
+  const bool solved = c.friction.acts() ? solve_sliding(settings, c.friction_row, c, report)
+                                        : solve(settings, c, c.problem, report);
+  if (solved) keep_forces(settings, dt_s, state, report);
+  return solved;
+}
+
 /// Goes where the hand wants as far as everything stays open; returns the share of the answer that was taken.
 double advance(const World& world, const FrameSettings& settings, double dt_s, FrameState& state,
                FrameReport& report) {
-  ConstraintState& c = state.constraint;
-  add_bodies(world, settings, dt_s, false, state, report);
-  add_contact_rows(false, state);
-  const Index friction_row = c.problem.rows();
-  c.friction.clear();
+  if (!find_forces(world, settings, dt_s, state, report)) return 0.0;
   double share = 0.0;
   for (int round = 0; round <= kFeedbacks; ++round) {
     if (round > 0) {
       ++report.validation_retries;
       feed_back(share, state);
+      if (!find_again(settings, dt_s, state, report)) break;
     }
-    const bool solved =
-        c.friction.acts() ? solve_sliding(settings, friction_row, c, report) : solve(settings, c, report);
-    if (!solved) break;
-    if (round == 0 && c.friction.begin(world, settings.friction, state.contacts.rows, state.finder.patches(),
-                                       state.world.X_WB, c.skin_m, c.first_row, c.problem))
-      solve_sliding(settings, friction_row, c, report);
-    keep_forces(settings, dt_s, state, report);
     share = trusted_share(settings, state);
     if (open_after(world, share, state, report)) return share;
   }
@@ -311,6 +239,7 @@ double advance(const World& world, const FrameSettings& settings, double dt_s, F
 /// The contacts as they push: normal forces of corners, and of friction the edges of its cones.
 void report_rows(double dt_s, FrameState& state, FrameReport& report) {
   const int held = state.tool.body;
+  if (state.constraint.shades) exchange_normals(state);
   report.contact_points = static_cast<int>(state.contacts.rows.size());
   for (const ContactRow& row : state.contacts.rows)
     report.held_contact_points += row.impulse > 0.0 && (row.body_a == held || row.body_b == held) ? 1 : 0;
@@ -326,6 +255,7 @@ void report_rows(double dt_s, FrameState& state, FrameReport& report) {
 ConstraintState::ConstraintState(const World& world, const FrameSettings& settings)
     : problem(static_cast<Index>(settings.budget.max_contact_points) +
               Friction::kMostPatches * Friction::kRowsAPatch),
+      way(static_cast<Index>(settings.budget.max_contact_points)),
       trust_m(settings.constraint.least_step_m),
       X_WB_trial(world.bodies.size()) {
   double size = 0.0;
@@ -335,6 +265,7 @@ ConstraintState::ConstraintState(const World& world, const FrameSettings& settin
   const Index rows = static_cast<Index>(settings.budget.max_contact_points);
   names.reserve(rows);
   feedback.reserve(rows);
+  shaded.reserve(rows);
   gap.reserve(settings.budget.rooms.patches);
   gap_trial.reserve(settings.budget.rooms.patches);
 }
@@ -358,7 +289,7 @@ void trusted_reach(double dt_s, FrameState& state) noexcept {
 void respond_constrained(const World& world, const FrameSettings& settings, double dt_s, FrameState& state,
                          FrameReport& report) noexcept {
   ConstraintState& c = state.constraint;
-  make_rows(world, state);
+  make_corner_rows(world, state);
   const std::span<const ContactPatch> patches = state.finder.patches();
   c.gap.clear();
   for (const ContactPatch& patch : patches) c.gap.push_back(patch.distance);
@@ -367,7 +298,7 @@ void respond_constrained(const World& world, const FrameSettings& settings, doub
   restore(world, settings, dt_s, state, report);
   const double share = advance(world, settings, dt_s, state, report);
   double way = 0.0;
-  for (const Mover& mover : c.problem.movers()) way = std::max(way, share * way_of(state, mover));
+  for (const Mover& mover : c.moves().movers()) way = std::max(way, share * way_of(state, mover));
   if (share > 0.0) take_trial(state);
   c.friction.end(share, state.contacts.rows, c.first_row, c.problem, state.world.X_WB);
   const Constraint& limits = settings.constraint;

@@ -25,7 +25,8 @@ struct FrameState;
 struct ConstraintState {
   ConstraintState(const World& world, const FrameSettings& settings);
 
-  ConstraintProblem problem;
+  ConstraintProblem problem;  ///< of the forces, and of the way unless normals are shaded
+  ConstraintProblem way;      ///< where they are: to where the forces would have it
   Friction friction;
   double skin_m;   ///< the gap contacts are held at [m]
   double trust_m;  ///< how far a point of a body may move in the next frame [m]
@@ -36,10 +37,18 @@ struct ConstraintState {
 
   // Scratch of one frame.
   std::size_t first_row = 0;         ///< of the contacts, in the problem
+  std::size_t friction_row = 0;      ///< of friction
+  bool bent = false;                 ///< some normal is bent by shading
+  bool shades = false;               ///< ... so the step is that of `way`
+  std::vector<Vec3> shaded;          ///< normals of the rows; empty without shading [-]
   std::vector<std::uint64_t> names;  ///< of the rows
   std::vector<double> feedback;      ///< what exact gaps have added to the rows [m]
   std::vector<Pose> X_WB_trial;
   std::vector<double> gap, gap_trial;  ///< of the patches: now, and at the trial [m]
+
+  /// The problem whose answer is the step.
+  ConstraintProblem& moves() { return shades ? way : problem; }
+  const ConstraintProblem& moves() const { return shades ? way : problem; }
 };
 
 /// Gravity on free bodies; the held part and the hinges are the contact problem's.

@@ -130,6 +130,17 @@ bool ConstraintProblem::add_free(int body, const Body& what, const Pose& X_WB, c
   return true;
 }
 
+void ConstraintProblem::follow(const ConstraintProblem& led) noexcept {
+  clear();
+  for (const Mover& other : led.movers()) {
+    Mover& mover = movers_[mover_count_++];
+    mover = other;
+    mover.first = unknowns_;
+    mover.wanted = led.displacement_at_centre(other);
+    unknowns_ += mover.rank;
+  }
+}
+
 void ConstraintProblem::add_brake(const Mover& hinged, double friction_Nm) noexcept {
   if (!(friction_Nm > 0.0) || unknowns_ == kMostUnknowns) return;
   brakes_.push_back({&hinged, friction_Nm, unknowns_++});

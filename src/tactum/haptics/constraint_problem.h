@@ -68,6 +68,8 @@ class ConstraintProblem {
                 const Vec6& wanted) noexcept;
   /// A body that resists with its inertia; `wanted` is where it goes when nothing touches it.
   bool add_free(int body, const Body& what, const Pose& X_WB, const Vec6& wanted, double dt_s) noexcept;
+  /// The same bodies, each wanting to go where the other problem's answer has it; without brakes.
+  void follow(const ConstraintProblem& led) noexcept;
   /// The rows of the brakes: after the bodies, before other rows.
   void add_brakes() noexcept;
 

@@ -48,29 +48,49 @@ double allowance(const FrictionPatch& patch, Index k) {
   return patch.coefficient * patch.slip_m + (edge_of(patch, k).force - patch.n_BA_W).dot(patch.apart_W);
 }
 
+/// A lift, or a gap, of less than this share of the skin is none. What slides without lifting (on the way to
+/// a wall that it has not reached) needs no leave: of a wedged part, every leave would lead to another. And
+/// what a wedged part could move by in such gaps would grow without bound near the limit.
+constexpr double kSettled = 0.25;
+
+/// A patch that moves off the other surface by more than this share of its way along it peels off: well above
+/// the tilt of a part in its clearance, below that of the line between two contacts that are worth the name.
+constexpr double kPeeling = 0.15;
+
+/// How far beyond the skin a patch is.
+double gap_beyond(double distance_m, double skin_m) {
+  return distance_m - skin_m > kSettled * skin_m ? distance_m - skin_m : 0.0;
+}
+
+PatchKey key_of(const World& world, const ContactPatch& patch) {
+  return {patch.body_a, patch.body_b,
+          world.bodies[Index(patch.body_a)].part->surface_group[Index(patch.piece_a)],
+          world.bodies[Index(patch.body_b)].part->surface_group[Index(patch.piece_b)]};
+}
+
 }  // namespace
 
-bool Friction::begin(const World& world, const FrictionSettings& settings, std::span<const ContactRow> rows,
-                     std::span<const ContactPatch> patches, std::span<const Pose> X_WB, double skin_m,
-                     std::size_t first_row, ConstraintProblem& problem) noexcept {
-  patches_.clear();
-  if (settings.coefficients.empty()) return false;
+FrictionPatch* Friction::patch_of(const PatchKey& key) noexcept {
+  const auto found = std::find_if(patches_.begin(), patches_.end(),
+                                  [&](const FrictionPatch& other) { return other.key == key; });
+  return found == patches_.end() ? nullptr : found;
+}
+
+/// The patches that push in the last answer.
+void Friction::find_pushing(const World& world, const FrictionSettings& settings,
+                            std::span<const ContactRow> rows, std::span<const ContactPatch> patches,
+                            double skin_m, Index first_row, const ConstraintProblem& problem) noexcept {
   const auto for_pushing_rows = [&](const auto& visit) {
     for (const QpActive& active : problem.answer().active) {
       const Index i = Index(active.row) - first_row;
-      if (Index(active.row) < first_row || i >= rows.size()) continue;
-      const ContactPatch& patch = patches[Index(rows[i].patch)];
-      const Body& a = world.bodies[Index(patch.body_a)];
-      const Body& b = world.bodies[Index(patch.body_b)];
-      const PatchKey key{patch.body_a, patch.body_b, a.part->surface_group[Index(patch.piece_a)],
-                         b.part->surface_group[Index(patch.piece_b)]};
-      FrictionPatch* found = std::find_if(patches_.begin(), patches_.end(),
-                                          [&](const FrictionPatch& other) { return other.key == key; });
-      if (found == patches_.end()) {
+      if (Index(active.row) < first_row || i >= rows.size() || !(active.multiplier > 0.0)) continue;
+      const PatchKey key = key_of(world, patches[Index(rows[i].patch)]);
+      FrictionPatch* found = patch_of(key);
+      if (found == nullptr) {
         FrictionPatch next;
         next.key = key;
         next.finder_patch = rows[i].patch;
-        next.coefficient = settings.between(patch.body_a, patch.body_b);
+        next.coefficient = settings.between(key.body_a, key.body_b);
         if (!(next.coefficient > 0.0) || !patches_.push_back(next)) continue;
         found = &patches_.back();
       }
@@ -84,17 +104,50 @@ bool Friction::begin(const World& world, const FrictionSettings& settings, std::
     patch.gap_m += force * row.distance;
   });
   for (FrictionPatch& patch : patches_) {
-    if (!(patch.load_N > 0.0)) continue;
     patch.centre_W /= patch.load_N;
-    patch.gap_m = std::max(0.0, patch.gap_m / patch.load_N - skin_m);
+    patch.gap_m = gap_beyond(patch.gap_m / patch.load_N, skin_m);
     patch.n_BA_W.normalize();
   }
   for_pushing_rows([](FrictionPatch& patch, const ContactRow& row, double force) {
-    if (patch.load_N > 0.0) patch.radius_m += force / patch.load_N * (row.p_W - patch.centre_W).norm();
+    patch.radius_m += force / patch.load_N * (row.p_W - patch.centre_W).norm();
   });
+}
+
+/// The patches that held in the last frame, do not push by themselves, and touch.
+void Friction::find_holding(const World& world, const FrictionSettings& settings,
+                            std::span<const ContactRow> rows, std::span<const ContactPatch> patches,
+                            std::span<const Pose> X_WB, double skin_m,
+                            const ConstraintProblem& problem) noexcept {
+  for (const Anchor& last : anchors_) {
+    if (!last.held || patch_of(last.key) != nullptr) continue;
+    FrictionPatch patch;
+    patch.key = last.key;
+    patch.coefficient = settings.between(last.key.body_a, last.key.body_b);
+    patch.centre_W = X_WB[Index(last.key.body_a)] * last.centre_A;
+    patch.radius_m = last.radius_m;
+    for (const ContactRow& row : rows) {
+      if (gap_beyond(row.distance, skin_m) > 0.0 || !(key_of(world, patches[Index(row.patch)]) == last.key))
+        continue;
+      patch.finder_patch = row.patch;
+      patch.n_BA_W += row.n_BA_W;
+    }
+    if (patch.finder_patch < 0) continue;
+    patch.n_BA_W.normalize();
+    const Slide free = slide_of(patch, problem);
+    if (free.lift > kPeeling * free.way.norm()) continue;
+    if (!patches_.push_back(patch)) return;
+  }
+}
+
+bool Friction::begin(const World& world, const FrictionSettings& settings, std::span<const ContactRow> rows,
+                     std::span<const ContactPatch> patches, std::span<const Pose> X_WB, double skin_m,
+                     std::size_t first_row, ConstraintProblem& problem) noexcept {
+  patches_.clear();
+  if (settings.coefficients.empty()) return false;
+  find_pushing(world, settings, rows, patches, skin_m, first_row, problem);
+  find_holding(world, settings, rows, patches, X_WB, skin_m, problem);
   for (FrictionPatch& patch : patches_) {
-    if (!(patch.load_N > 0.0)) continue;
-    anchor(patch, X_WB);
+    anchor(patch, X_WB, kSettled * skin_m);
     const Slide free = slide_of(patch, problem);
     const double length = free.way.norm();
     patch.along_W = length > 0.0 ? Vec3(free.way / length) : any_orthogonal(patch.n_BA_W);
@@ -104,13 +157,15 @@ bool Friction::begin(const World& world, const FrictionSettings& settings, std::
 }
 
 /// The anchor and the centre of the patch's last frame, if it had one.
-void Friction::anchor(FrictionPatch& patch, std::span<const Pose> X_WB) noexcept {
+void Friction::anchor(FrictionPatch& patch, std::span<const Pose> X_WB, double settled_m) noexcept {
   for (const Anchor& last : anchors_) {
     if (!(last.key == patch.key)) continue;
     const Pose& X_WA = X_WB[Index(patch.key.body_a)];
     const Pose& X_W_B = X_WB[Index(patch.key.body_b)];
     patch.apart_W = X_WA * last.on_A - X_W_B * last.on_B;
     patch.apart_W -= patch.n_BA_W * patch.n_BA_W.dot(patch.apart_W);
+    if (last.stuck) patch.gap_m = 0.0;
+    if (patch.apart_W.norm() <= settled_m) std::swap(patch.apart_W, patch.left_W);
     const Vec3 centre = X_WA * last.centre_A;
     patch.centre_W = centre + patch.n_BA_W * patch.n_BA_W.dot(patch.centre_W - centre);
   }
@@ -123,14 +178,18 @@ void Friction::add_rows(FrictionPatch& patch, ConstraintProblem& problem) noexce
                     -patch.gap_m - allowance(patch, k));
 }
 
+/// Its rows ask for nothing that a part could miss.
+void Friction::let_go(FrictionPatch& patch, ConstraintProblem& problem) noexcept {
+  constexpr double kAnywhere_m = 1e3;  // [m]
+  for (Index k = 0; k < kRowsAPatch; ++k) problem.tighten(patch.first_row + k, -kAnywhere_m);
+  patch.acts = false;
+}
+
 bool Friction::let_slip(double skin_m, ConstraintProblem& problem) noexcept {
-  // A lift of less than this share of the skin is none. What slides without lifting (on the way to a wall
-  // that it has not reached) needs no leave: of a wedged part, every leave would lead to another.
-  constexpr double kSettled = 0.25;
   const double settled = kSettled * skin_m;
   bool changed = false;
   for (FrictionPatch& patch : patches_) {
-    if (!(patch.load_N > 0.0)) continue;
+    if (!patch.acts) continue;
     const Slide slide = slide_of(patch, problem);
     const double arm = patch.coefficient * patch.radius_m;
     double further = std::min(slide.lift, patch.coefficient * (slide.way.norm() - patch.slip_m));
@@ -138,18 +197,22 @@ bool Friction::let_slip(double skin_m, ConstraintProblem& problem) noexcept {
     if (further <= settled) further = 0.0;
     if (turned <= settled) turned = 0.0;
     if (further == 0.0 && turned == 0.0) continue;
+    changed = true;
+    if (patch.load_N == 0.0) {
+      let_go(patch, problem);
+      continue;
+    }
     for (Index k = 0; k < kDirections; ++k) problem.tighten(patch.first_row + k, -further);
     for (Index k = kDirections; k < kRowsAPatch; ++k) problem.tighten(patch.first_row + k, -turned);
     patch.slip_m += further / patch.coefficient;
     if (turned > 0.0) patch.slip_rad += turned / arm;
-    changed = true;
   }
   return changed;
 }
 
 void Friction::forget_anchors(ConstraintProblem& problem) noexcept {
   for (FrictionPatch& patch : patches_) {
-    if (!(patch.load_N > 0.0)) continue;
+    if (!patch.acts) continue;
     const Vec3 apart = patch.apart_W;
     for (Index k = 0; k < kDirections; ++k)
       problem.tighten(patch.first_row + k, (edge_of(patch, k).force - patch.n_BA_W).dot(apart));
@@ -161,15 +224,17 @@ void Friction::end(double share, std::span<const ContactRow> rows, std::size_t f
                    const ConstraintProblem& problem, std::span<const Pose> X_WB) noexcept {
   anchors_.clear();
   for (const FrictionPatch& patch : patches_) {
-    if (!(patch.load_N > 0.0)) continue;
+    if (!patch.acts) continue;
     // The centre of all forces of the patch: its corners', and the cone's at the centre so far.
     double load = 0.0;
     Vec3 moment = Vec3::Zero();
+    bool held = false;
     for (const QpActive& active : problem.answer().active) {
       const Index row = Index(active.row);
       if (row >= patch.first_row && row < patch.first_row + kRowsAPatch) {
         load += active.multiplier;
         moment += active.multiplier * patch.centre_W;
+        held |= active.multiplier > 0.0;
       } else if (row >= first_row && row - first_row < rows.size() &&
                  rows[row - first_row].patch == patch.finder_patch) {
         load += active.multiplier;
@@ -178,11 +243,13 @@ void Friction::end(double share, std::span<const ContactRow> rows, std::size_t f
     }
     const Vec3 centre = load > 0.0 ? Vec3(moment / load) : patch.centre_W;
     const bool slid = patch.slip_m > 0.0;
-    const Vec3 apart = slid ? Vec3(Vec3::Zero())
-                            : Vec3(patch.apart_W + share * (slide_of(patch, problem).way - patch.apart_W));
+    const Vec3 apart =
+        slid ? Vec3(Vec3::Zero())
+             : Vec3(patch.left_W + patch.apart_W + share * (slide_of(patch, problem).way - patch.apart_W));
     const Pose X_AW = X_WB[Index(patch.key.body_a)].inverse();
     const Pose X_BW = X_WB[Index(patch.key.body_b)].inverse();
-    anchors_.push_back({patch.key, X_AW * (centre + apart), X_BW * centre, X_AW * centre});
+    anchors_.push_back({patch.key, X_AW * (centre + apart), X_BW * centre, X_AW * centre, patch.radius_m,
+                        held, held && !slid});
   }
 }
 
@@ -192,7 +259,7 @@ Vec3 Friction::add_forces(int body, double dt_s, const ConstraintProblem& proble
   for (const QpActive& active : problem.answer().active)
     for (const FrictionPatch& patch : patches_) {
       const Index row = Index(active.row);
-      if (row < patch.first_row || row >= patch.first_row + kRowsAPatch || !(patch.load_N > 0.0)) continue;
+      if (row < patch.first_row || row >= patch.first_row + kRowsAPatch || !patch.acts) continue;
       const Push push = edge_of(patch, row - patch.first_row);
       if (patch.key.body_a == body) torque += active.multiplier * push.torque;
       if (patch.key.body_b == body) torque -= active.multiplier * push.torque;

@@ -17,8 +17,11 @@
 /// Turning about the normal has two rows of the same kind, with the torque mu N r of the patch's mean radius
 /// r; force and torque share the cone linearly, a diamond inside the ellipse that an area has.
 ///
-/// Only patches that would push without friction have a cone. A part held by nothing but its own wedging
-/// comes free when the hand stops pressing it there.
+/// Patches have a cone that would push without friction, and those that held in the last frame and still
+/// touch: where the line between two of these lies inside both cones no motion is left, and the part is
+/// wedged though nothing presses it there [Simunovic 1975; Whitney 1982]. Forces within the cones could hold
+/// it against a turn that takes the points off their walls as well, for ever; so of those that only held, one
+/// that the hand peels off is let go, and one that would have to slip.
 
 #include "tactum/dynamics/contact_solver.h"
 #include "tactum/haptics/constraint_problem.h"
@@ -37,12 +40,14 @@ struct FrictionPatch {
   PatchKey key;
   int finder_patch = -1;         ///< one of the finder's patches that make it up
   double coefficient = 0.0;      ///< mu [-]
-  double load_N = 0.0;           ///< N [N]
+  double load_N = 0.0;           ///< N without friction; 0: it only held in the last frame [N]
+  bool acts = true;              ///< false: let go
   double radius_m = 0.0;         ///< r, of the forces about their centre [m]
-  double gap_m = 0.0;            ///< at the centre, beyond the skin [m]
+  double gap_m = 0.0;            ///< at the centre, beyond the skin; none where it is too small to count [m]
   Vec3 n_BA_W = Vec3::Zero();    ///< [-]
   Vec3 centre_W = Vec3::Zero();  ///< c [m]
-  Vec3 apart_W = Vec3::Zero();   ///< a [m]
+  Vec3 apart_W = Vec3::Zero();   ///< a; none where it is too small to count [m]
+  Vec3 left_W = Vec3::Zero();    ///< how far the anchor has come apart that was too small to count [m]
   Vec3 along_W = Vec3::Zero();   ///< the first direction d, unit [-]
   double slip_m = 0.0;           ///< allowed without lifting [m]
   double slip_rad = 0.0;         ///< of turning about the normal [rad]
@@ -80,9 +85,20 @@ class Friction {
   struct Anchor {
     PatchKey key;
     Vec3 on_A = Vec3::Zero(), on_B = Vec3::Zero(), centre_A = Vec3::Zero();  // [m]
+    double radius_m = 0.0;
+    bool held = false;   ///< its cone pushed
+    bool stuck = false;  ///< ... and it did not slip
   };
+  void find_pushing(const World& world, const FrictionSettings& settings, std::span<const ContactRow> rows,
+                    std::span<const ContactPatch> patches, double skin_m, std::size_t first_row,
+                    const ConstraintProblem& problem) noexcept;
+  void find_holding(const World& world, const FrictionSettings& settings, std::span<const ContactRow> rows,
+                    std::span<const ContactPatch> patches, std::span<const Pose> X_WB, double skin_m,
+                    const ConstraintProblem& problem) noexcept;
+  FrictionPatch* patch_of(const PatchKey& key) noexcept;
   void add_rows(FrictionPatch& patch, ConstraintProblem& problem) noexcept;
-  void anchor(FrictionPatch& patch, std::span<const Pose> X_WB) noexcept;
+  void let_go(FrictionPatch& patch, ConstraintProblem& problem) noexcept;
+  void anchor(FrictionPatch& patch, std::span<const Pose> X_WB, double settled_m) noexcept;
 
   StaticVector<FrictionPatch, kMostPatches> patches_;
   StaticVector<Anchor, kMostPatches> anchors_;

@@ -19,11 +19,22 @@ struct Step {
   double dt_s;
 };
 
-/// Books the step and returns the damping to add.
-double book(const Step& step, double& ledger_J) noexcept {
-  const double way_sq = step.way.squaredNorm();
-  const double passed_J = -step.sent.dot(step.way) + step.damping * way_sq / step.dt_s + step.given_J;
+void book(const Step& step, double& ledger_J) noexcept {
+  const double passed_J =
+      -step.sent.dot(step.way) + step.damping * step.way.squaredNorm() / step.dt_s + step.given_J;
   ledger_J = std::clamp(ledger_J + passed_J, -step.credit_J, step.highest_J);
+}
+
+/// A thread turns one kind of work into the other: what one ledger owes, the other pays as far as it can.
+void settle(double& ledger_J, double& other_J) noexcept {
+  const double paid_J = std::max(0.0, std::min(-ledger_J, other_J));
+  ledger_J += paid_J;
+  other_J -= paid_J;
+}
+
+/// The damping to add.
+double injected(const Step& step, double ledger_J) noexcept {
+  const double way_sq = step.way.squaredNorm();
   if (!(ledger_J < 0.0) || way_sq == 0.0) return 0.0;
   // a |V|^2 dt = - ledger, with V = way / dt; a huge quotient is cut to what is allowed
   return std::min(-ledger_J * step.dt_s / way_sq, step.max_injected);
@@ -39,15 +50,30 @@ Wrench passive_wrench(const PortSettings& settings, PortState& state, const Devi
   if (sample.valid && plausible(sample.X_DH) && input.dt_s > 0.0) {
     const Twist way = state.known ? twist_between(state.X_DH, sample.X_DH, 1.0) : Twist{};
     const double given_J = state.known ? std::max(0.0, state.bodies_J - input.bodies_J) : 0.0;
-    report.injected_Ns_per_m =
-        book({way.v, input.sent.f, settings.damping_Ns_per_m, given_J, settings.credit_J + input.spring_J,
-              settings.credit_J, settings.max_injected_Ns_per_m, input.dt_s},
-             state.ledger_J);
-    report.injected_Nms_per_rad =
-        book({way.w, input.sent.t, settings.damping_Nms_per_rad, given_J,
-              settings.credit_turning_J + input.spring_turning_J, settings.credit_turning_J,
-              settings.actuates_torque ? settings.max_injected_Nms_per_rad : 0.0, input.dt_s},
-             state.ledger_turning_J);
+    const Step moved{way.v,
+                     input.sent.f,
+                     settings.damping_Ns_per_m,
+                     given_J,
+                     settings.credit_J + input.spring_J,
+                     settings.credit_J,
+                     settings.max_injected_Ns_per_m,
+                     input.dt_s};
+    const Step turned{way.w,
+                      input.sent.t,
+                      settings.damping_Nms_per_rad,
+                      given_J,
+                      settings.credit_turning_J + input.spring_turning_J,
+                      settings.credit_turning_J,
+                      settings.actuates_torque ? settings.max_injected_Nms_per_rad : 0.0,
+                      input.dt_s};
+    book(moved, state.ledger_J);
+    book(turned, state.ledger_turning_J);
+    if (settings.actuates_torque) {
+      settle(state.ledger_J, state.ledger_turning_J);
+      settle(state.ledger_turning_J, state.ledger_J);
+    }
+    report.injected_Ns_per_m = injected(moved, state.ledger_J);
+    report.injected_Nms_per_rad = injected(turned, state.ledger_turning_J);
     F.f -= report.injected_Ns_per_m / input.dt_s * way.v;
     F.t -= report.injected_Nms_per_rad / input.dt_s * way.w;
     state.X_DH = sample.X_DH;

@@ -16,7 +16,9 @@
 /// The energy passed is exact, not an estimate: the wrench is held over the step, so its work is f . dp
 /// whatever the way was like. From the paper depart: the two bounds of the ledger (without the upper one, a
 /// minute of rubbing pays for a long burst of buzzing), the known damping, and the bodies' energy. Six axes
-/// are two ledgers: forces in one direction do pay for another, as in an isotropic spring they must.
+/// are two ledgers: forces in one direction do pay for another, as in an isotropic spring they must. Where
+/// torque is driven too, a ledger below zero is paid from the other: a nut that is turned pulls the hand
+/// along its axis, and that is no energy that was made.
 ///
 /// A handle whose rotation is sensed but cannot be driven gets no torque; its ledger of rotation stays empty.
 /// Cost: one rotation vector and two dozen products. No clock, no allocation; the device's samples are all it

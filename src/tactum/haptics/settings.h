@@ -78,7 +78,7 @@ struct WorkBudget {
   int max_exact_tests = 4096;     ///< exact tests a frame (paper 4.2: the array of fixed length) [-]
   int max_contact_points = 2048;  ///< contact points a frame [-]
   ContactFinderRooms rooms;       ///< near pairs and patches there is memory for
-  int solver_iterations = 60;     ///< sweeps of the contact solver over many rows, at most [-]
+  int solver_iterations = 120;    ///< sweeps of the contact solver, or rows taken in and let go, at most [-]
 };
 
 /// All of it.

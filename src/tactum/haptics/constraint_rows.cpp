@@ -1,0 +1,136 @@
+#include "tactum/haptics/constraint_rows.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "tactum/collision/patch_corners.h"
+#include "tactum/haptics/frame_state.h"
+
+namespace tactum {
+namespace {
+
+using Index = std::size_t;
+
+Push push_of(const ContactRow& row) { return {row.p_W, row.n_BA_W, Vec3::Zero()}; }
+
+/// A name that a row keeps from frame to frame while the pair's patch has as many corners.
+std::uint64_t name_of(const ContactPatch& patch, Index corner) {
+  if (patch.of_surfaces) return patch.manifold.points[0].id;
+  const auto pieces =
+      static_cast<std::uint64_t>(patch.piece_a) << 20 ^ static_cast<std::uint64_t>(patch.piece_b);
+  const auto bodies =
+      static_cast<std::uint64_t>(patch.body_a) << 6 ^ static_cast<std::uint64_t>(patch.body_b);
+  return (bodies << 40 ^ pieces) << 8 ^ corner;
+}
+
+/// How the shading of the two bodies' faces bends a normal at a corner, A's frame. The one face that there is
+/// decides; of two curved faces each has half a say, and a flat one against a curved one all of it.
+Vec3 bend(const ShadingNormals& a, const ShadingNormals& b, const Pose& X_AB, const ContactPatch& patch,
+          const PatchCorner& corner) {
+  const Feature& on_a = patch.manifold.a;
+  const Feature& on_b = patch.manifold.b;
+  const Vec3 p_B = rotated_back(X_AB.R, corner.p_A - X_AB.p);
+  const Vec3 by_a = patch.of_surfaces ? a.deviation_on_surface(on_a, corner.p_A)
+                                      : a.deviation(patch.piece_a, on_a, corner.p_A);
+  const Vec3 by_b =
+      patch.of_surfaces ? b.deviation_on_surface(on_b, p_B) : b.deviation(patch.piece_b, on_b, p_B);
+  if (on_a.kind != FeatureKind::kFace || on_b.kind != FeatureKind::kFace) return rotated(X_AB.R, by_b) - by_a;
+  if (by_a.isZero(0.0) || by_b.isZero(0.0)) return Vec3::Zero();
+  return 0.5 * (rotated(X_AB.R, by_b) - by_a);
+}
+
+}  // namespace
+
+void make_corner_rows(const World& world, FrameState& state) noexcept {
+  ConstraintState& c = state.constraint;
+  ContactRows& out = state.contacts;
+  out.rows.clear();
+  out.full = false;
+  c.names.clear();
+  c.shaded.clear();
+  c.shades = c.bent = false;
+  PatchCorners corners;
+  const std::span<const ContactPatch> patches = state.finder.patches();
+  Pose X_AB;
+  for (Index p = 0; p < patches.size(); ++p) {
+    const ContactPatch& patch = patches[p];
+    const Pose& X_WA = state.world.X_WB[Index(patch.body_a)];
+    if (p == 0 || patch.body_a != patches[p - 1].body_a || patch.body_b != patches[p - 1].body_b)
+      X_AB = relative_pose(X_WA, state.world.X_WB[Index(patch.body_b)]);
+    if (patch.manifold.points.empty()) continue;  // only watched
+    if (patch.of_surfaces) {
+      const ContactPoint& point = patch.manifold.points[0];
+      corners.clear();
+      corners.push_back({0.5 * (point.p_a + point.p_b), point.distance});
+    } else {
+      patch_corners(world.bodies[Index(patch.body_a)].part->pieces[Index(patch.piece_a)],
+                    world.bodies[Index(patch.body_b)].part->pieces[Index(patch.piece_b)], X_AB,
+                    patch.manifold, patch.distance, patch.tolerance, corners);
+    }
+    const Vec3 normal_W = X_WA.R * patch.manifold.normal;
+    for (Index i = 0; i < corners.size(); ++i) {
+      if (out.rows.size() == out.rows.capacity()) {
+        out.full = true;
+        return;
+      }
+      ContactRow& row = out.rows.emplace_back();
+      row.body_a = patch.body_a;
+      row.body_b = patch.body_b;
+      row.patch = static_cast<int>(p);
+      row.n_BA_W = normal_W;
+      row.p_W = X_WA * corners[i].p_A;
+      row.distance = corners[i].distance;
+      row.tolerance = patch.tolerance;
+      c.names.push_back(name_of(patch, i));
+      if (state.shading.empty()) continue;
+      const Vec3 bent = bend(state.shading[Index(patch.body_a)], state.shading[Index(patch.body_b)], X_AB,
+                             patch, corners[i]);
+      c.bent |= !bent.isZero(0.0);
+      c.shaded.push_back(bent.isZero(0.0) ? normal_W : Vec3((normal_W + X_WA.R * bent).normalized()));
+    }
+  }
+}
+
+void add_contact_rows(bool opening, ConstraintProblem& problem, FrameState& state) noexcept {
+  ConstraintState& c = state.constraint;
+  c.first_row = problem.rows();
+  for (const ContactRow& row : state.contacts.rows) {
+    const double offset = c.skin_m - row.distance;
+    problem.add_row(row.body_a, row.body_b, push_of(row), opening ? offset : std::min(0.0, offset));
+  }
+  c.feedback.assign(state.contacts.rows.size(), 0.0);
+}
+
+void exchange_normals(FrameState& state) noexcept {
+  ConstraintState& c = state.constraint;
+  for (Index r = 0; r < c.shaded.size(); ++r) std::swap(c.shaded[r], state.contacts.rows[r].n_BA_W);
+}
+
+double gap_at_trial(const ContactRow& row, const FrameState& state) noexcept {
+  const ConstraintState& c = state.constraint;
+  const Manifold& patch = state.finder.patches()[Index(row.patch)].manifold;
+  const auto carried = [&](int body, const Vec3& p_W) {
+    const Pose& before = state.world.X_WB[Index(body)];
+    return c.X_WB_trial[Index(body)] * rotated_back(before.R, p_W - before.p);
+  };
+  const int owner =
+      patch.b.kind != FeatureKind::kFace && patch.a.kind == FeatureKind::kFace ? row.body_a : row.body_b;
+  const Vec3 half = 0.5 * row.distance * row.n_BA_W;
+  const Vec3 normal =
+      c.X_WB_trial[Index(owner)].R * rotated_back(state.world.X_WB[Index(owner)].R, row.n_BA_W);
+  return normal.dot(carried(row.body_a, row.p_W + half) - carried(row.body_b, row.p_W - half));
+}
+
+void feed_back(double share, FrameState& state) noexcept {
+  ConstraintState& c = state.constraint;
+  ConstraintProblem& problem = c.moves();
+  for (Index r = 0; r < state.contacts.rows.size(); ++r) {
+    const ContactRow& row = state.contacts.rows[r];
+    const double linear = problem.opening(row.body_a, row.body_b, push_of(row));
+    const double missing = (row.distance + share * linear - gap_at_trial(row, state)) / share;
+    problem.tighten(c.first_row + r, missing - c.feedback[r]);
+    c.feedback[r] = missing;
+  }
+}
+
+}  // namespace tactum

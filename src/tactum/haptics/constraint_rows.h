@@ -1,0 +1,37 @@
+#pragma once
+/// The contacts of a frame as rows of the constraint problem: every corner of every patch keeps its gap.
+///
+///        |  true normal: what must not be entered, which way the part may go
+///     ---c---
+///       /   shaded normal, over facets of a curved surface: which way the force acts, where the part wants
+///       to
+///
+/// Forces are found with the shaded normals, the way with the true ones; a faceted cylinder so feels round
+/// and is never entered [Ruspini 1997].
+
+#include "tactum/dynamics/contact_solver.h"
+#include "tactum/dynamics/world.h"
+#include "tactum/haptics/constraint_problem.h"
+
+namespace tactum {
+
+struct FrameState;
+
+/// Fills state.contacts.rows, and in state.constraint the rows' names and shaded normals.
+void make_corner_rows(const World& world, FrameState& state) noexcept;
+
+/// Adds them to the problem. Where a gap is below the skin, `opening` asks for the skin, for which there may
+/// be no room; else only that it closes no further, which staying keeps.
+void add_contact_rows(bool opening, ConstraintProblem& problem, FrameState& state) noexcept;
+
+/// The rows take their shaded normals, or their true ones back.
+void exchange_normals(FrameState& state) noexcept;
+
+/// The gap of a row at the trial: its points go with their bodies, its normal with the face that makes it
+/// [m].
+double gap_at_trial(const ContactRow& row, const FrameState& state) noexcept;
+
+/// Second-order correction: what the trial's gaps differ from what the rows said is added to the rows.
+void feed_back(double share, FrameState& state) noexcept;
+
+}  // namespace tactum

@@ -1,0 +1,152 @@
+/// A tilted peg in a slot touches it at two points. Whether it can be pulled out is geometry alone: when the
+/// line between the two points lies inside both friction cones, the two contact forces balance any pull among
+/// themselves, and the peg is wedged [Simunovic 1975; Whitney 1982]. These tests hold the constraint response
+/// to that condition.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support/pressed_block.h"
+
+namespace tactum {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kWidth = 0.020;       // of the peg [m]
+constexpr double kClearance = 0.0001;  // of the slot [m]
+constexpr double kHalfLength = 0.020;  // of the peg [m]
+constexpr double kSqueeze_rad = 0.05;  // the hand turns so much farther than the walls let the peg
+constexpr double kStuck_m = 1e-6;      // less than this is no motion
+
+/// A peg in a slot between two walls whose rims are at z = 0, and an ideal device.
+struct Slot {
+  World world;
+  FrameSettings settings;
+  std::unique_ptr<FrameState> state;
+  FrameReport report;
+  Pose X_DH;
+  std::uint64_t frame = 0;
+
+  explicit Slot(double depth) {
+    world.bodies.resize(3);
+    world.bodies[0].part = solid_box({0.5 * kWidth, 0.007, kHalfLength});
+    world.bodies[0].mass_kg = 0.05;
+    world.bodies[0].inertia_B = 1e-5 * Mat3::Identity();
+    world.bodies[0].X_WB.p.z() = kHalfLength - depth;
+    for (const int side : {1, 2}) {
+      Body& wall = world.bodies[std::size_t(side)];
+      wall.part = solid_box({0.02, 0.02, 0.025});
+      wall.X_WB.p = {(side == 1 ? -1.0 : 1.0) * (0.5 * (kWidth + kClearance) + 0.02), 0.0, -0.025};
+      wall.joint.kind = JointKind::kFixed;
+    }
+    settings.tool.body = 0;
+    settings.coupling.damping_Ns_per_m = 0.0;
+    settings.coupling.damping_Nms_per_rad = 0.0;
+    settings.smoothing = {kInfinity, kInfinity};
+    state = std::make_unique<FrameState>(world, settings);
+    step({});
+  }
+  void rub(double mu) { settings.friction = {{0, mu, mu, mu, 0, mu, mu, mu, 0}, 3}; }
+  const Pose& X_WB() const { return state->world.X_WB[0]; }
+  void step(const Pose& X) {
+    X_DH = X;
+    DeviceSample sample;
+    sample.valid = true;
+    sample.time_s = static_cast<double>(frame) * 1e-3;
+    sample.X_DH = X;
+    FrameTick tick;
+    tick.index = frame++;
+    tick.now_s = sample.time_s;
+    haptic_frame(world, settings, sample, tick, *state, report);
+    EXPECT_FALSE(report.penetrating);
+  }
+  void go(const Pose& X, int frames) {
+    const Pose from = X_DH;
+    for (int i = 1; i <= frames; ++i) step(interpolated(from, X, static_cast<double>(i) / frames));
+  }
+};
+
+Pose turned(double angle, const Vec3& p = Vec3::Zero()) { return {exp_rotation({0, angle, 0}), p}; }
+
+/// The angle at which a peg that stands `depth` deep touches both walls: found by bisection on the gap
+/// between its lower corner and the one wall when its side rests on the rim of the other.
+double tilt_at(double depth) {
+  double low = 0.0, high = 0.3;
+  for (int i = 0; i < 60; ++i) {
+    const double tilt = 0.5 * (low + high);
+    // Across the slot: width times cosine, and the sine of what is below the rim along the side.
+    const double span = kWidth * std::cos(tilt) + depth * std::tan(tilt);
+    (span > kWidth + kClearance ? high : low) = tilt;
+  }
+  return 0.5 * (low + high);
+}
+
+/// The friction at which the line between the two contacts leaves the narrower cone, from the peg's pose.
+double wedging_limit(const Pose& X_WB, double tilt) {
+  const double sense = tilt > 0.0 ? 1.0 : -1.0;  // turned about y: the tip goes to -x
+  const Vec3 rim(sense * 0.5 * (kWidth + kClearance), 0, 0);
+  const Vec3 corner = X_WB * Vec3(-sense * 0.5 * kWidth, 0, -kHalfLength);
+  const Vec3 line = (Vec3(corner.x(), 0, corner.z()) - rim).normalized();
+  const Vec3 off_rim = X_WB.R * Vec3(-sense, 0, 0);
+  const Vec3 off_wall(sense, 0, 0);
+  const double at_rim = std::acos(std::abs(line.dot(off_rim)));
+  const double at_wall = std::acos(std::abs(line.dot(off_wall)));
+  return std::tan(std::max(at_rim, at_wall));
+}
+
+/// Jams a peg `depth` deep without friction, so that both contacts are there, then lets it rub and pulls with
+/// ten times what friction holds by the squeeze alone.
+struct Pull {
+  Slot slot;
+  double angle, limit;  // of the hand; analytic friction
+  Vec3 p_jammed;
+
+  Pull(double depth, double mu, double sense) : slot(depth), angle(sense * (tilt_at(depth) + kSqueeze_rad)) {
+    slot.go(turned(angle), 300);
+    slot.go(slot.X_DH, 100);
+    limit = wedging_limit(slot.X_WB(), angle);
+    slot.rub(mu);
+    slot.go(slot.X_DH, 20);
+    p_jammed = slot.X_WB().p;
+    const Coupling& coupling = slot.settings.coupling;
+    const double held_N = 2.0 * mu * coupling.stiffness_Nm_per_rad * kSqueeze_rad / depth;
+    slot.go(turned(angle, {0, 0, 10.0 * held_N / coupling.stiffness_N_per_m}), 500);
+    slot.go(slot.X_DH, 500);
+  }
+  double way() const { return (slot.X_WB().p - p_jammed).norm(); }
+};
+
+TEST(Wedging, TheJammedPegHoldsAboveTheGeometricLimitAndComesOutBelow) {
+  for (const double depth : {0.004, 0.006, 0.010})
+    for (const double sense : {1.0, -1.0}) {
+      double limit = 0.0, low = 0.05, high = 1.0;
+      while (high - low > 0.002) {
+        const double mu = 0.5 * (low + high);
+        const Pull pull(depth, mu, sense);
+        limit = pull.limit;
+        (pull.way() < kStuck_m ? high : low) = mu;
+      }
+      std::printf("%g mm deep: wedged from friction %.4f, analytic %.4f\n", 1e3 * depth, high, limit);
+      EXPECT_NEAR(high, limit, 0.05 * limit) << depth << " " << sense;
+    }
+}
+
+TEST(Wedging, AJammedPegIsFreedByTurningItStraight) {
+  const double depth = 0.006;
+  Pull pull(depth, 1.3 * 0.5 * depth / (0.5 * kWidth), 1.0);
+  ASSERT_LT(pull.way(), kStuck_m);
+  // A still hand, and a pull twice as hard, do not help.
+  pull.slot.go(turned(pull.angle, 2.0 * pull.slot.X_DH.p), 500);
+  pull.slot.go(pull.slot.X_DH, 3000);
+  EXPECT_LT(pull.way(), kStuck_m);
+  // The hand lets go of the pull, turns the peg to the other side and back, and pulls a little.
+  pull.slot.go(turned(pull.angle), 300);
+  pull.slot.go(turned(-pull.angle), 300);
+  pull.slot.go(turned(0.0), 300);
+  pull.slot.go(turned(0.0, {0, 0, 1.5 * depth}), 300);
+  EXPECT_GT(pull.slot.X_WB().p.z() - pull.p_jammed.z(), depth);
+}
+
+}  // namespace
+}  // namespace tactum
