@@ -16,13 +16,16 @@ class DistanceQuery {
     best_.distance = kNone;
   }
 
-  SurfaceDistance run(const SurfacePairCache& cache) noexcept {
+  SurfaceDistance run(const SurfacePairCache& cache, TouchingPairs touching) noexcept {
     if (cache.triangle_a >= 0 && cache.triangle_a < a_.count() && cache.triangle_b >= 0 &&
         cache.triangle_b < b_.count()) {
       test(cache.triangle_a, cache.triangle_b);
     }
     if (!a_.bvh().empty() && !b_.bvh().empty()) descend();
-    if (best_.distance == 0.0) count_touching();
+    if (best_.distance == 0.0) {
+      best_.touching_pairs = 1;
+      if (touching == TouchingPairs::kCounted) count_touching();
+    }
     return best_;
   }
 
@@ -105,6 +108,7 @@ class DistanceQuery {
   }
 
   void count_touching() noexcept {
+    best_.touching_pairs = 0;
     for_each_pair_within(a_.bvh(), b_.bvh(), frame_.X_AB, touching_, [this](int triangle_a, int triangle_b) {
       const TrianglePoints& a = a_.triangle(triangle_a);
       const TrianglePoints b = moved(triangle_b);
@@ -146,8 +150,8 @@ Surface::Surface(const TriangleMesh& mesh) : size_(bounds(mesh.vertices).diagona
 }
 
 SurfaceDistance surface_distance(const Surface& a, const Surface& b, const Pose& X_AB,
-                                 SurfacePairCache& cache) noexcept {
-  const SurfaceDistance result = DistanceQuery(a, b, X_AB).run(cache);
+                                 SurfacePairCache& cache, TouchingPairs touching) noexcept {
+  const SurfaceDistance result = DistanceQuery(a, b, X_AB).run(cache, touching);
   cache = {result.triangle_a, result.triangle_b};
   return result;
 }
