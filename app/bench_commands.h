@@ -5,6 +5,7 @@
 
 namespace tactum {
 
+void add_bench_feel(CLI::App& parent);
 void add_bench_impact(CLI::App& parent);
 void add_bench_manifold(CLI::App& parent);
 void add_bench_pairs(CLI::App& parent);

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -7,6 +8,7 @@
 
 #include "commands.h"
 #include "part_text.h"
+#include "tactum/geometry/deviation.h"
 #include "tactum/geometry/mesh_import.h"
 #include "tactum/geometry/mesh_report.h"
 #include "tactum/geometry/part.h"
@@ -32,7 +34,12 @@ struct Inspection {
   MeshReport report;
   UnitGuess unit;
   int exact_boundary_edges = 0;  ///< when only equal coordinates are joined
+  Result<Part> part = Error{};   ///< what a scene would make of it
+  Deviation deviation;           ///< ... and how far that is from the file
 };
+
+/// CAD files come in hundreds of groups; so many are named.
+constexpr std::size_t kNamedGroups = 12;
 
 Inspection inspected(const std::string& file, ImportedMesh mesh, double scale) {
   Inspection out;
@@ -43,6 +50,8 @@ Inspection inspected(const std::string& file, ImportedMesh mesh, double scale) {
   in_file_units.min /= scale;
   in_file_units.max /= scale;
   out.unit = guess_unit(in_file_units);
+  out.part = part_from_mesh(mesh.mesh, {.name = std::filesystem::path(file).filename().string()});
+  if (out.part) out.deviation = surface_deviation(mesh.mesh, *out.part);
   out.mesh = std::move(mesh);
   return out;
 }
@@ -51,16 +60,30 @@ std::string as_text(const Inspection& of) {
   std::string text = fmt::format("{}: {}\n", of.file, of.mesh.report.format);
   if (of.mesh.groups.size() > 1) {
     text += fmt::format("{} objects:", of.mesh.groups.size());
-    for (const MeshGroup& group : of.mesh.groups)
-      text += fmt::format(" '{}' ({})", group.name, group.triangle_count);
-    text += "\n";
+    for (std::size_t i = 0; i < std::min(kNamedGroups, of.mesh.groups.size()); ++i)
+      text += fmt::format(" '{}' ({})", of.mesh.groups[i].name, of.mesh.groups[i].triangle_count);
+    text += of.mesh.groups.size() > kNamedGroups ? " ...\n" : "\n";
   }
   text += describe(of.report);
   if (of.exact_boundary_edges != of.report.boundary_edges) {
     text += fmt::format("{} boundary edges if only equal coordinates are joined\n", of.exact_boundary_edges);
   }
   for (const std::string& remark : of.mesh.report.remarks) text += remark + "\n";
-  return text + fmt::format("unit: {}? {}\n", of.unit.name, of.unit.reason);
+  text += fmt::format("unit: {}? {}\n", of.unit.name, of.unit.reason);
+  if (!of.part) return text + fmt::format("as a part: {}\n", of.part.error().message());
+  return text +
+         fmt::format("as a part: {}; deviation {:.2g} of the size ({} samples of the mesh, {} of the part)\n",
+                     of.part->way, of.deviation.largest() / of.deviation.size, of.deviation.mesh_samples,
+                     of.deviation.part_samples);
+}
+
+nlohmann::json part_json(const Inspection& of) {
+  if (!of.part) return {{"error", of.part.error().message()}};
+  return {{"way", of.part->way},
+          {"pieces", of.part->pieces.size()},
+          {"mesh_to_part_m", of.deviation.mesh_to_part},
+          {"part_to_mesh_m", of.deviation.part_to_mesh},
+          {"deviation_over_size", of.deviation.largest() / of.deviation.size}};
 }
 
 nlohmann::json vector_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
@@ -96,6 +119,7 @@ nlohmann::json as_json(const Inspection& of) {
       {"box_max_m", vector_json(r.box.max)},
       {"unit_guess",
        {{"name", of.unit.name}, {"metres_per_unit", of.unit.metres_per_unit}, {"reason", of.unit.reason}}},
+      {"part", part_json(of)},
       {"remarks", of.mesh.report.remarks}};
 }
 

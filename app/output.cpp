@@ -66,6 +66,12 @@ void print_summary(std::FILE* out, const Session& session, const Summary& times,
              times.mean_ns * 1e-3, times.p50_ns * 1e-3, times.p99_ns * 1e-3, times.p999_ns * 1e-3,
              times.max_ns * 1e-3);
   fmt::print(out, "{}", table_of(stages.summaries()));
+  if (record.surface_queries > 0)
+    fmt::print(
+        out,
+        "surfaces         {} queries: mean {:.0f} minima, at most {} a frame; mean {:.0f} feature pairs\n",
+        record.surface_queries, mean(static_cast<double>(record.minima), record.surface_queries),
+        record.max_minima, mean(static_cast<double>(record.feature_steps), record.surface_queries));
   const LoopStatus loop = session.loop_status();
   if (loop.frames > 0)
     fmt::print(out, "loop             {} frames, {} missed deadlines, {} late\n", loop.frames,
@@ -106,6 +112,10 @@ nlohmann::ordered_json summary_json(const Session& session, const Summary& times
           {"exact_tests", record.exact_tests},
           {"uncertified", record.uncertified},
           {"unchecked", record.unchecked},
+          {"surface_queries", record.surface_queries},
+          {"minima", record.minima},
+          {"max_minima", record.max_minima},
+          {"feature_steps", record.feature_steps},
           {"missed_deadlines", loop.missed_deadlines},
           {"frame_us", summary_us(times)},
           {"stages_us", stages_us},

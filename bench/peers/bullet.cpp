@@ -1,50 +1,25 @@
-#include <BulletCollision/CollisionShapes/btBoxShape.h>
-#include <BulletCollision/CollisionShapes/btConvexHullShape.h>
 #include <BulletCollision/NarrowPhaseCollision/btGjkEpa2.h>
 #include <BulletCollision/NarrowPhaseCollision/btGjkEpaPenetrationDepthSolver.h>
 #include <BulletCollision/NarrowPhaseCollision/btGjkPairDetector.h>
 #include <BulletCollision/NarrowPhaseCollision/btPointCollector.h>
 #include <BulletCollision/NarrowPhaseCollision/btVoronoiSimplexSolver.h>
 
+#include "bench/peers/bullet_shape.h"
 #include "bench/peers/peers.h"
 
 namespace tactum::bench {
 namespace {
 
-btTransform transform(const Pose& X) {
-  const Mat3& R = X.R;
-  return btTransform(
-      btMatrix3x3(R(0, 0), R(0, 1), R(0, 2), R(1, 0), R(1, 1), R(1, 2), R(2, 0), R(2, 1), R(2, 2)),
-      btVector3(X.p.x(), X.p.y(), X.p.z()));
-}
-
-/// Without the margin by which Bullet rounds its shapes: we compare the shapes as they are.
-std::unique_ptr<btConvexShape> shape_of(const Shape& shape) {
-  std::unique_ptr<btConvexShape> made;
-  if (shape.box_half_m) {
-    const Vec3& half = *shape.box_half_m;
-    auto box = std::make_unique<btBoxShape>(btVector3(half.x(), half.y(), half.z()));
-    made = std::move(box);
-  } else {
-    auto hull = std::make_unique<btConvexHullShape>();
-    for (const Vec3& v : shape.polytope.vertices) hull->addPoint(btVector3(v.x(), v.y(), v.z()), false);
-    hull->recalcLocalAabb();
-    made = std::move(hull);
-  }
-  made->setMargin(0.0);
-  return made;
-}
-
 class Bullet : public Engine {
  public:
   bool hold(const Shape& a, const Shape& b) override {
-    a_ = shape_of(a);
-    b_ = shape_of(b);
+    a_ = bullet_shape(a);
+    b_ = bullet_shape(b);
     return true;
   }
   void forget() override { guess_ = {1.0, 0.0, 0.0}; }
   void place(const Recording& recording, std::size_t i) override {
-    pose_b_ = transform(recording.poses[i]);
+    pose_b_ = bullet_pose(recording.poses[i]);
     if (guess_.fuzzyZero()) guess_ = {1.0, 0.0, 0.0};
   }
   Answer answer() const override { return found_; }

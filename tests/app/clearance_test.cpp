@@ -1,8 +1,18 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <cstdio>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <utility>
 
 #include "app/program.h"
+#include "support/real_data.h"
 
 namespace tactum {
 namespace {
@@ -82,6 +92,84 @@ TEST(ClearanceCommand, RefusesStretchedMatricesAndTellsMendedOnes) {
   EXPECT_FALSE(far.err.empty());
 }
 
+/// A pair of real meshes, the unit they are prepared in, and the motion that was measured by others.
+struct ReferenceMotion {
+  const char* name;
+  const char *a, *b;
+  const char* motion;
+  const char* unit;
+  double scale;  ///< metres per unit of the motion
+  bool slow;     ///< left to the long test
+};
+
+/// frame -> (distance, whether triangles cross), of the reference's brute column.
+std::map<long, std::pair<double, bool>> brute_column(const std::string& path) {
+  std::map<long, std::pair<double, bool>> rows;
+  std::istringstream lines(testing::content(path));
+  for (std::string line; std::getline(lines, line);) {
+    if (line.empty() || !std::isdigit(static_cast<unsigned char>(line[0]))) continue;
+    std::istringstream cells(line);
+    std::array<std::string, 4> cell;
+    for (std::string& text : cell) std::getline(cells, text, ',');
+    rows[std::stol(cell[0])] = {std::stod(cell[2]), std::stol(cell[3]) > 0};
+  }
+  return rows;
+}
+
+class ClearanceOfRealParts : public ::testing::TestWithParam<ReferenceMotion> {};
+
+TEST_P(ClearanceOfRealParts, IsThatOfTheReference) {
+  TACTUM_NEEDS_REAL_DATA();
+  const ReferenceMotion& of = GetParam();
+  if (of.slow && !testing::full_run()) GTEST_SKIP() << "a long test: TACTUM_FULL=1";
+  const ScratchFolder folder;
+  const std::string data = testing::real_data().string() + "/";
+  for (const auto& [mesh, part] : {std::pair(of.a, "a.tactum"), std::pair(of.b, "b.tactum")}) {
+    const ProgramRun run =
+        run_tactum("prepare " + data + mesh + " -o " + (folder / part) + " --no-cache --units " + of.unit);
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+  }
+  const ProgramRun run =
+      run_tactum("clearance " + (folder / "a.tactum") + " " + (folder / "b.tactum") + " " + data + of.motion +
+                 "_motion.csv --scale " + std::to_string(of.scale) + " --json -");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const nlohmann::json json = nlohmann::json::parse(run.out);
+  const auto reference = brute_column(data + of.motion + "_reference.csv");
+  ASSERT_EQ(json["rows"].size(), reference.size());
+  double worst = 0.0;
+  for (const nlohmann::json& row : json["rows"]) {
+    const auto& [distance, touching] = reference.at(row["frame"].get<long>());
+    EXPECT_EQ(row["touching_pairs"].get<int>() > 0, touching) << row["frame"];
+    worst = std::max(worst, std::abs(row["distance_m"].get<double>() - of.scale * distance));
+  }
+  std::printf("%s: off by at most %.3g m\n", of.motion, worst);
+  EXPECT_LE(worst, 1e-7);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Motions, ClearanceOfRealParts,
+    ::testing::Values(
+        ReferenceMotion{"Gears", "industreal/industreal_gear_medium.obj",
+                        "industreal/industreal_gear_small.obj", "reference/gears_medium_small", "m", 1.0,
+                        false},
+        ReferenceMotion{"Thread", "factory/factory_bolt_m16_loose.obj",
+                        "factory/factory_nut_m16_loose_subdiv_3x.obj", "reference/m16_loose_screw", "m", 1.0,
+                        true},
+        ReferenceMotion{"Peg", "factory/factory_round_hole_8mm_subdiv_3x.obj",
+                        "factory/factory_round_peg_8mm_loose.obj", "reference/round_peg_8mm_loose", "m", 1.0,
+                        false},
+        ReferenceMotion{"RecordedMotion", "fcl_contact_models/newdata__Model_1_Scenario_3_obj1.obj",
+                        "fcl_contact_models/newdata__Model_1_Scenario_3_obj2.obj",
+                        "fcl_contact_models/newdata__Model_1_Scenario_3", "mm", 0.001, false},
+        ReferenceMotion{"RecordedGears", "fcl_contact_models/scenario-1-2-3__Model_2_Scenario_1_obj1.obj",
+                        "fcl_contact_models/scenario-1-2-3__Model_2_Scenario_1_obj2.obj",
+                        "fcl_contact_models/scenario-1-2-3__Model_2_Scenario_1", "mm", 0.001, false},
+        ReferenceMotion{"RecordedGearsLater",
+                        "fcl_contact_models/scenario-1-2-3__Model_2_Scenario_2_obj1.obj",
+                        "fcl_contact_models/scenario-1-2-3__Model_2_Scenario_2_obj2.obj",
+                        "fcl_contact_models/scenario-1-2-3__Model_2_Scenario_2", "mm", 0.001, false}),
+    [](const ::testing::TestParamInfo<ReferenceMotion>& run) { return std::string(run.param.name); });
+
 TEST(Program, ExitCodesTellWhoIsAtFault) {
   const ScratchFolder folder;
   EXPECT_EQ(run_tactum("--help").exit_code, 0);
@@ -103,6 +191,8 @@ TEST(InspectCommand, ReportsTheCube) {
   ASSERT_EQ(json.size(), 1u);
   EXPECT_EQ(json[0]["triangles"], 12);
   EXPECT_EQ(json[0]["convex"], true);
+  EXPECT_EQ(json[0]["part"]["way"], "solid: convex as it is");
+  EXPECT_LT(json[0]["part"]["deviation_over_size"].get<double>(), 1e-15);
   EXPECT_NEAR(json[0]["volume_m3"].get<double>(), 1.0, 1e-12);
   const ProgramRun text = run_tactum("inspect " + (folder / "cube.obj") + " " + (folder / "bad.obj"));
   EXPECT_EQ(text.exit_code, 1);  // one of two is bad, the other is still shown

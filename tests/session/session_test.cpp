@@ -51,6 +51,16 @@ std::unique_ptr<Session> open_session(const std::string& name) {
   return session ? std::move(*session) : nullptr;
 }
 
+/// Frames of a run of the scene, and whether they are all of its motion. Of scenes of surfaces, whose frames
+/// take tens of milliseconds, a long test runs them all; they have tests of their own (real_parts_test.cpp).
+std::pair<std::uint64_t, bool> frames_to_run(const Scene& scene) {
+  const auto& bodies = scene.world.bodies;
+  const bool slow = std::any_of(bodies.begin(), bodies.end(),
+                                [](const Body& body) { return body.part->surface.triangles.size() > 4000; });
+  if (slow && !testing::full_run()) return {300, false};
+  return {std::max<std::uint64_t>(10000, static_cast<std::uint64_t>(frames_of_motion(scene))), true};
+}
+
 class EveryScene : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(EveryScene, RunsWithoutAllocatingTwiceTheSameAndReachesItsGoals) {
@@ -58,8 +68,7 @@ TEST_P(EveryScene, RunsWithoutAllocatingTwiceTheSameAndReachesItsGoals) {
   const std::unique_ptr<Session> first = open_session(GetParam());
   if (!first) GTEST_SKIP() << "its meshes are not on this machine";
   AllocationWatch watch;
-  const std::uint64_t frames =
-      std::max<std::uint64_t>(10000, static_cast<std::uint64_t>(frames_of_motion(first->scene())));
+  const auto [frames, whole] = frames_to_run(first->scene());
   ASSERT_TRUE(first->run_virtual(frames, &watch));
   EXPECT_EQ(watch.allocations, 0u);
   EXPECT_EQ(first->record().frames, frames);
@@ -67,8 +76,10 @@ TEST_P(EveryScene, RunsWithoutAllocatingTwiceTheSameAndReachesItsGoals) {
   EXPECT_EQ(first->record().uncertified, 0u);
   EXPECT_EQ(first->record().unchecked, 0u);
   EXPECT_EQ(first->record().flags, 0u);
-  EXPECT_GT(first->record().held_contact_frames, frames / 10) << "the hand must have something to feel";
-  for (std::size_t i = 0; i < first->scene().goals.size(); ++i)
+  if (whole) {
+    EXPECT_GT(first->record().held_contact_frames, frames / 10) << "the hand must have something to feel";
+  }
+  for (std::size_t i = 0; whole && i < first->scene().goals.size(); ++i)
     EXPECT_TRUE(first->goals().met(i)) << first->goals().describe(first->scene().world, i);
   EXPECT_LE(first->record().max_force_N, first->device().max_force_N);
   EXPECT_LE(first->record().max_torque_Nm, first->device().max_torque_Nm);

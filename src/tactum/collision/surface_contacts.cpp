@@ -17,10 +17,6 @@ constexpr double kSurfaceDepth = 0.02;
 /// At the end of a step only gaps below this share of the tolerance are looked for: the others are open.
 constexpr double kWatched = 0.15;
 
-/// Two edges whose normal lies only in their widened cones are no contact below this distance: there its sign
-/// no longer tells on which side of each other they are.
-constexpr double kEdgePair_m = 1e-6;
-
 }  // namespace
 
 void ContactFinder::test_surfaces(int a, int b, std::span<const Pose> X_WB) noexcept {
@@ -57,9 +53,10 @@ void ContactFinder::test_surfaces(int a, int b, std::span<const Pose> X_WB) noex
     work_.dropped_error = std::max(work_.dropped_error, reduced.largest_error);
   }
   for (Index i = 0; i < kept; ++i) {
-    // The sign of two edges' distance means nothing outside their true cones.
+    // Outside their true cones two edges may seem to have crossed that have not. Apart they count, however
+    // near: the far end of an almost flat contact is such a pair, and the next step may find it in the cones.
     const bool edges = minima_[i].a.kind == FeatureKind::kEdge && minima_[i].b.kind == FeatureKind::kEdge;
-    if (edges && !minima_[i].strict && minima_[i].distance < kEdgePair_m) continue;
+    if (edges && !minima_[i].strict && minima_[i].distance < 0.0) continue;
     // Parallel edges have two minima, at the ends of the interval they share; they stand side by side.
     const bool second_end = i > 0 && minima_[i - 1].a == minima_[i].a && minima_[i - 1].b == minima_[i].b;
     add_surface_patch(a, b, minima_[i], second_end, reach);

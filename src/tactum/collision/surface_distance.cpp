@@ -16,13 +16,16 @@ class DistanceQuery {
     best_.distance = kNone;
   }
 
-  SurfaceDistance run(const SurfacePairCache& cache) noexcept {
+  SurfaceDistance run(const SurfacePairCache& cache, TouchingPairs touching) noexcept {
     if (cache.triangle_a >= 0 && cache.triangle_a < a_.count() && cache.triangle_b >= 0 &&
         cache.triangle_b < b_.count()) {
       test(cache.triangle_a, cache.triangle_b);
     }
     if (!a_.bvh().empty() && !b_.bvh().empty()) descend();
-    if (best_.distance == 0.0) count_touching();
+    if (best_.distance == 0.0) {
+      best_.touching_pairs = 1;
+      if (touching == TouchingPairs::kCounted) count_touching();
+    }
     return best_;
   }
 
@@ -30,15 +33,16 @@ class DistanceQuery {
   static constexpr double kNone = 1e300;
   struct Pair {
     std::int32_t a, b;
-    double gap;  ///< lower bound of the distance [m]
+    double gap;       ///< lower bound of the distance [m]
+    double apart_sq;  ///< of the centres [m^2]
   };
 
-  /// Depth first, of two children the nearer one first.
+  /// Depth first, of two children the nearer one first: what is found early leaves out most.
   void descend() noexcept {
     // Filled as far as it is used: NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init)
     std::array<Pair, 2 * Bvh::kMaxDepth + 2> stack;
     std::size_t size = 0;
-    stack[size++] = {0, 0, 0.0};
+    stack[size++] = {0, 0, 0.0, 0.0};
     while (size > 0 && best_.distance > 0.0) {
       const Pair pair = stack[--size];
       if (pair.gap >= best_.distance) continue;
@@ -51,7 +55,10 @@ class DistanceQuery {
       const bool split_a = b.leaf() || (!a.leaf() && a.half.squaredNorm() >= b.half.squaredNorm());
       const Pair first = split_a ? bounded(pair.a + 1, pair.b) : bounded(pair.a, pair.b + 1);
       const Pair second = split_a ? bounded(a.second, pair.b) : bounded(pair.a, b.second);
-      const bool first_nearer = first.gap <= second.gap;
+      // Boxes that overlap are no nearer one than the other: then those go first that lie in each other
+      // deeper.
+      const bool first_nearer =
+          first.gap != second.gap ? first.gap < second.gap : first.apart_sq <= second.apart_sq;
       const Pair& far = first_nearer ? second : first;
       const Pair& near = first_nearer ? first : second;
       if (far.gap < best_.distance) stack[size++] = far;
@@ -61,7 +68,9 @@ class DistanceQuery {
 
   Pair bounded(std::int32_t a, std::int32_t b) noexcept {
     ++best_.boxes_tested;
-    return {a, b, box_gap(frame_, node_a(a), node_b(b))};
+    const Bvh::Node& of_a = node_a(a);
+    const Bvh::Node& of_b = node_b(b);
+    return {a, b, box_gap(frame_, of_a, of_b), (frame_.X_AB * of_b.center - of_a.center).squaredNorm()};
   }
 
   void test_leaves(const Bvh::Node& a, const Bvh::Node& b) noexcept {
@@ -105,6 +114,7 @@ class DistanceQuery {
   }
 
   void count_touching() noexcept {
+    best_.touching_pairs = 0;
     for_each_pair_within(a_.bvh(), b_.bvh(), frame_.X_AB, touching_, [this](int triangle_a, int triangle_b) {
       const TrianglePoints& a = a_.triangle(triangle_a);
       const TrianglePoints b = moved(triangle_b);
@@ -146,8 +156,8 @@ Surface::Surface(const TriangleMesh& mesh) : size_(bounds(mesh.vertices).diagona
 }
 
 SurfaceDistance surface_distance(const Surface& a, const Surface& b, const Pose& X_AB,
-                                 SurfacePairCache& cache) noexcept {
-  const SurfaceDistance result = DistanceQuery(a, b, X_AB).run(cache);
+                                 SurfacePairCache& cache, TouchingPairs touching) noexcept {
+  const SurfaceDistance result = DistanceQuery(a, b, X_AB).run(cache, touching);
   cache = {result.triangle_a, result.triangle_b};
   return result;
 }

@@ -43,7 +43,7 @@ struct SurfacePairCache {
 
 struct SurfaceDistance {
   double distance = 0.0;    ///< zero when they touch or cross [m]
-  int touching_pairs = 0;   ///< pairs of triangles that share a point
+  int touching_pairs = 0;   ///< pairs of triangles that share a point; 1 for any when not counted
   Vec3 p_a = Vec3::Zero();  ///< nearest point on A, A's frame [m]
   Vec3 p_b = Vec3::Zero();  ///< nearest point on B, A's frame [m]
   int triangle_a = -1;      ///< the nearest triangles; when touching, the first pair found
@@ -52,8 +52,12 @@ struct SurfaceDistance {
   long triangles_tested = 0;  ///< work done
 };
 
+/// Whether all touching pairs are counted, which costs a second walk, or the first one found is the answer.
+enum class TouchingPairs { kCounted, kFirst };
+
 /// Distance of A and B with B at X_AB. Two surfaces without triangles are infinitely far apart (1e300).
 SurfaceDistance surface_distance(const Surface& a, const Surface& b, const Pose& X_AB,
-                                 SurfacePairCache& cache) noexcept;
+                                 SurfacePairCache& cache,
+                                 TouchingPairs touching = TouchingPairs::kCounted) noexcept;
 
 }  // namespace tactum

@@ -25,6 +25,10 @@
 
 namespace tactum {
 
+/// So many pieces are few enough for the solid to be the better way than the surface, measured by the cost of
+/// near pairs.
+inline constexpr int kFewSolidPieces = 32;
+
 struct SolidPieces {
   std::vector<Polytope> pieces;
   int reflex_edges = 0;  ///< of the solid given

@@ -24,7 +24,7 @@ double area_of(const TriangleMesh& mesh, const Triangle& t) {
 
 /// Calls visit(triangle, point) for every sample of the mesh.
 template <class Visitor>
-void for_each_sample(const TriangleMesh& mesh, Visitor&& visit) {
+void for_each_sample(const TriangleMesh& mesh, int area_samples, Visitor&& visit) {
   constexpr int kFinest = 64;  // rows of the grid on one triangle
   double area = 0.0;
   for (const Triangle& t : mesh.triangles) area += area_of(mesh, t);
@@ -38,7 +38,7 @@ void for_each_sample(const TriangleMesh& mesh, Visitor&& visit) {
       seen[t[corner]] = true;
     }
     const double share = area > 0.0 ? area_of(mesh, t) / area : 0.0;
-    const int rows = std::clamp(static_cast<int>(std::ceil(std::sqrt(kAreaSamples * share))), 1, kFinest);
+    const int rows = std::clamp(static_cast<int>(std::ceil(std::sqrt(area_samples * share))), 1, kFinest);
     for (int u = 0; u < rows; ++u) {
       for (int v = 0; u + v < rows; ++v) {  // centres of the upright cells: one row, the centre
         const double a = (u + 1.0 / 3.0) / rows;
@@ -156,7 +156,8 @@ TriangleMesh faces_of(const Part& part, const Vec3& origin, std::vector<int>& pi
   return faces;
 }
 
-Deviation surface_deviation(const TriangleMesh& mesh, const Part& part, const Vec3& origin) {
+Deviation surface_deviation(const TriangleMesh& mesh, const Part& part, const Vec3& origin,
+                            int area_samples) {
   Deviation out;
   Aabb box;
   for (const Triangle& t : mesh.triangles)
@@ -165,7 +166,7 @@ Deviation surface_deviation(const TriangleMesh& mesh, const Part& part, const Ve
   std::vector<int> piece;
   const TriangleMesh faces = faces_of(part, origin, piece);
   NearestOnMesh on_part(faces);
-  for_each_sample(mesh, [&](int, const Vec3& point) {
+  for_each_sample(mesh, area_samples, [&](int, const Vec3& point) {
     ++out.mesh_samples;
     const double distance = on_part.distance(point);
     if (distance <= out.mesh_to_part) return;
@@ -174,7 +175,7 @@ Deviation surface_deviation(const TriangleMesh& mesh, const Part& part, const Ve
   });
   NearestOnMesh on_mesh(mesh);
   const double slack = tolerances::kSurfaceDeviation * out.size;
-  for_each_sample(faces, [&](int triangle, const Vec3& point) {
+  for_each_sample(faces, area_samples, [&](int triangle, const Vec3& point) {
     ++out.part_samples;
     const double distance = on_mesh.distance(point);
     if (distance <= out.part_to_mesh) return;

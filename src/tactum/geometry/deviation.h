@@ -7,7 +7,7 @@
 ///   part -> mesh   the same of the pieces' faces to the mesh; what lies on or in another solid piece is a
 ///                  cut of ours inside the solid, not surface, and is only counted
 ///
-/// The grid is finer on larger triangles: about kAreaSamples over the whole surface. A part without pieces is
+/// The grid is finer on larger triangles. A part without pieces is
 /// judged by its surface. Under trees of boxes: n log n, about two microseconds a sample.
 
 #include <vector>
@@ -54,6 +54,8 @@ struct Deviation {
 TriangleMesh faces_of(const Part& part, const Vec3& origin, std::vector<int>& piece);
 
 /// `origin`: where the part's frame stands in the mesh's [m].
-Deviation surface_deviation(const TriangleMesh& mesh, const Part& part, const Vec3& origin = Vec3::Zero());
+/// `area_samples`: of the grid over either surface, about.
+Deviation surface_deviation(const TriangleMesh& mesh, const Part& part, const Vec3& origin = Vec3::Zero(),
+                            int area_samples = kAreaSamples);
 
 }  // namespace tactum

@@ -121,9 +121,7 @@ TriangleMesh group_mesh(const ImportedMesh& mesh, const MeshGroup& group, double
   return weld(part).mesh;
 }
 
-/// So many pieces are few enough for the solid to be the better way, measured by the cost of near pairs ...
-constexpr int kFewPieces = 32;
-/// ... and so many are allowed when asked for.
+/// So many pieces are allowed when a solid is asked for.
 constexpr int kMostPieces = 512;
 
 void add_solid_pieces(std::vector<Polytope> pieces, Part& part) {
@@ -145,7 +143,7 @@ Result<void> add_pieces(const TriangleMesh& closed, bool convex, const PartOptio
         return {};
       }
     }
-    const int few = chosen_here ? kFewPieces : kMostPieces;
+    const int few = chosen_here ? kFewSolidPieces : kMostPieces;
     Result<SolidPieces> solid =
         solid_pieces(closed, options.most_solid_pieces > 0 ? options.most_solid_pieces : few);
     if (solid) {

@@ -67,6 +67,7 @@ struct Attempt {
   const PiecesInput& input;
   const TriangleMesh& reference;
   const PrepareProgress& progress;
+  int area_samples;
 
   Result<void> run(const PiecesWay& way, PartFile& file, PrepareReport& report) const {
     progress("cutting into pieces", 0.3);
@@ -78,7 +79,8 @@ struct Attempt {
     const bool solid = std::any_of(part->pieces.begin(), part->pieces.end(),
                                    [](const Polytope& piece) { return !piece.flat; });
     const double area = solid && part->pieces.size() > 1 ? -1.0 : input.report.area;
-    report.verification = verify_part(reference, *part, *center, solid ? way.volume(input) : -1.0, area);
+    report.verification =
+        verify_part(reference, *part, *center, solid ? way.volume(input) : -1.0, area, area_samples);
     if (Result<void> passed = verdict_on(report.verification, input.options.name); !passed) return passed;
     file.part = std::move(*part);
     file.origin = *center;
@@ -117,9 +119,9 @@ std::vector<std::string> pieces_ways() {
 }
 
 Verification verify_part(const TriangleMesh& reference, const Part& part, const Vec3& origin, double volume,
-                         double area) {
+                         double area, int area_samples) {
   Verification out;
-  out.deviation = surface_deviation(reference, part, origin);
+  out.deviation = surface_deviation(reference, part, origin, area_samples);
   out.overlaps = overlapping_pieces(part, tolerances::kSurfaceDeviation * part.size);
   out.mesh_volume = volume;
   out.mesh_area = area;
@@ -199,7 +201,8 @@ Result<PartFile> prepare_part(const ImportedMesh& imported, const PrepareOptions
   file.density_kg_per_m3 = options.density_kg_per_m3;
   const PiecesInput input{given, repaired.mesh, report.mesh, part_options};
   const TriangleMesh reference = reference_of(given.mesh, repaired);
-  if (Result<void> made = make_pieces({input, reference, tell}, options, file, report); !made)
+  if (Result<void> made = make_pieces({input, reference, tell, options.area_samples}, options, file, report);
+      !made)
     return made.error();
   for (const RepairNote& note : repaired.notes)
     if (!note.mended) file.part.remarks.push_back(note.sentence());

@@ -29,6 +29,7 @@ struct PrepareOptions {
   std::string pieces = "auto";        ///< the way to pieces: auto, or one of pieces_ways()
   int close_holes = 0;                ///< holes of at most this many edges are closed; 0: none
   double density_kg_per_m3 = 1000.0;  ///< [kg/m^3]
+  int area_samples = kAreaSamples;    ///< of the verification, over either surface, beside corners and sides
 };
 
 /// What verification measured.
@@ -67,7 +68,7 @@ std::vector<std::string> pieces_ways();
 /// before repair with the triangles that close holes; volume and area as in Verification, negative: not
 /// asked.
 Verification verify_part(const TriangleMesh& reference, const Part& part, const Vec3& origin, double volume,
-                         double area);
+                         double area, int area_samples = kAreaSamples);
 
 /// What verification found wrong, as an error; nothing when the part passes.
 Result<void> verdict_on(const Verification& found, const std::string& name);

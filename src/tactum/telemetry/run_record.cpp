@@ -26,6 +26,10 @@ void RunRecord::add(const FrameReport& report, const WorldState& world) noexcept
   exact_tests += static_cast<std::uint64_t>(report.work.exact_tests);
   uncertified += static_cast<std::uint64_t>(report.work.uncertified);
   unchecked += static_cast<std::uint64_t>(report.work.unchecked);
+  surface_queries += static_cast<std::uint64_t>(report.work.surface_queries);
+  minima += static_cast<std::uint64_t>(report.work.minima);
+  feature_steps += static_cast<std::uint64_t>(report.work.feature_steps);
+  max_minima = std::max(max_minima, report.work.minima);
   flags |= report.flags;
   safety |= report.safety;
   max_contact_points = std::max(max_contact_points, report.contact_points);

@@ -34,8 +34,12 @@ class RunRecord {
   std::uint64_t exact_tests = 0;
   std::uint64_t uncertified = 0;
   std::uint64_t unchecked = 0;
-  std::uint32_t flags = 0;   ///< union of all frames' frame_flag
-  std::uint32_t safety = 0;  ///< union of all frames' safety_flag
+  std::uint64_t surface_queries = 0;  ///< pairs of bodies asked for the local minima of their surfaces
+  std::uint64_t minima = 0;           ///< found by them
+  std::uint64_t feature_steps = 0;    ///< feature pairs visited, of surfaces and of convex pieces
+  int max_minima = 0;                 ///< in one frame
+  std::uint32_t flags = 0;            ///< union of all frames' frame_flag
+  std::uint32_t safety = 0;           ///< union of all frames' safety_flag
   int max_contact_points = 0;
   int max_exact_tests = 0;  ///< in one frame
 
