@@ -1,5 +1,5 @@
-/// tactum bench surfaces: all minima of two surfaces, beside FCL's distance on the same poses. What is
-/// measured, and how, is in bench/surfaces.h.
+/// tactum bench surfaces: all minima of two surfaces, beside FCL's distance and Bullet's GImpact on the same
+/// poses. What is measured, and how, is in bench/surfaces.h.
 
 #include <fmt/format.h>
 
@@ -37,7 +37,8 @@ void run(const Job& job) {
 
 void add_bench_surfaces(CLI::App& parent) {
   auto job = std::make_shared<Job>();
-  CLI::App* command = parent.add_subcommand("surfaces", "All minima of two triangle surfaces, beside FCL");
+  CLI::App* command =
+      parent.add_subcommand("surfaces", "All minima of two triangle surfaces, beside FCL and Bullet");
   if (const char* data = std::getenv("TACTUM_DATA")) job->options.data = data;
   command->add_option("--data", job->options.data,
                       "folder of real meshes and motions (default: TACTUM_DATA)");

@@ -60,6 +60,7 @@ void measure(const FineClock& clock, const SurfacePair& pair, int replays, Surfa
   const auto at = [&](double share) { return fastest[std::size_t(share * double(fastest.size() - 1))]; };
   row.mean_ns = std::accumulate(fastest.begin(), fastest.end(), 0.0) / row.frames;
   row.p50_ns = at(0.5);
+  row.p99_ns = at(0.99);
   row.p999_ns = at(0.999);
   row.max_ns = fastest.back();
 }
@@ -101,6 +102,9 @@ SurfacesReport bench_surfaces(const SurfacesOptions& options,
 #ifdef TACTUM_PEER_FCL
     row.fcl_mean_ns = ask(make_fcl_surfaces(pair->a, pair->b, entry.tolerance_m));
 #endif
+#ifdef TACTUM_PEER_BULLET
+    row.gimpact_mean_ns = ask(make_gimpact_surfaces(pair->a, pair->b, entry.tolerance_m));
+#endif
     report.rows.push_back(row);
   }
   report.how = fmt::format(
@@ -115,14 +119,15 @@ SurfacesReport bench_surfaces(const SurfacesOptions& options,
 Table table_of(const SurfacesReport& report) {
   Table table;
   table.rows.push_back({"pair", "triangles", "within", "minima", "leaf pairs", "feature pairs", "mean", "p50",
-                        "p99.9", "max", "bytes a triangle", "FCL distance"});
+                        "p99", "p99.9", "max", "bytes a triangle", "FCL distance", "GImpact"});
   for (const SurfacesRow& row : report.rows) {
     table.rows.push_back(
         {row.pair, fmt::format("{} / {}", row.triangles_a, row.triangles_b), length_text(row.tolerance_m),
          fmt::format("{:.0f} / {}", row.minima_mean, row.minima_max),
          fmt::format("{:.0f}", row.leaf_pairs_mean), fmt::format("{:.0f}", row.feature_pairs_mean),
-         time_text(row.mean_ns), time_text(row.p50_ns), time_text(row.p999_ns), time_text(row.max_ns),
-         fmt::format("{:.0f}", row.bytes_per_triangle), ratio_text(row.fcl_mean_ns, row.mean_ns)});
+         time_text(row.mean_ns), time_text(row.p50_ns), time_text(row.p99_ns), time_text(row.p999_ns),
+         time_text(row.max_ns), fmt::format("{:.0f}", row.bytes_per_triangle),
+         ratio_text(row.fcl_mean_ns, row.mean_ns), ratio_text(row.gimpact_mean_ns, row.mean_ns)});
   }
   return table;
 }
@@ -139,11 +144,13 @@ nlohmann::ordered_json to_json(const SurfacesRow& row) {
           {"feature_pairs_mean", row.feature_pairs_mean},
           {"mean_ns", row.mean_ns},
           {"p50_ns", row.p50_ns},
+          {"p99_ns", row.p99_ns},
           {"p999_ns", row.p999_ns},
           {"max_ns", row.max_ns},
           {"bytes_per_triangle", row.bytes_per_triangle},
           {"build_s", row.build_s},
-          {"fcl_mean_ns", row.fcl_mean_ns}};
+          {"fcl_mean_ns", row.fcl_mean_ns},
+          {"gimpact_mean_ns", row.gimpact_mean_ns}};
 }
 
 }  // namespace tactum::bench

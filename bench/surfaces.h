@@ -1,6 +1,6 @@
 #pragma once
-/// What all minima of two surfaces cost, beside the distance of FCL on the same poses: real parts where the
-/// folder with them is given, and pairs made here.
+/// What all minima of two surfaces cost, beside FCL's distance and Bullet's GImpact on the same poses: real
+/// parts where the folder with them is given, and pairs made here.
 
 #include <functional>
 #include <memory>
@@ -27,6 +27,10 @@ class SurfacePeer {
 std::unique_ptr<SurfacePeer> make_fcl_surfaces(const TriangleMesh& a, const TriangleMesh& b,
                                                double tolerance_m);
 
+/// Bullet's GImpact: all pairs of triangles within the tolerance.
+std::unique_ptr<SurfacePeer> make_gimpact_surfaces(const TriangleMesh& a, const TriangleMesh& b,
+                                                   double tolerance_m);
+
 struct SurfacesOptions {
   std::string data;                ///< folder of real meshes and motions; empty: only what is made here
   std::vector<std::string> pairs;  ///< by name; empty: all
@@ -45,10 +49,12 @@ struct SurfacesRow {
   int minima_max = 0;
   double leaf_pairs_mean = 0.0;                                     ///< work
   double feature_pairs_mean = 0.0;                                  ///< compared exactly
-  double mean_ns = 0.0, p50_ns = 0.0, p999_ns = 0.0, max_ns = 0.0;  ///< of the poses' fastest replays [ns]
+  double mean_ns = 0.0, p50_ns = 0.0, p99_ns = 0.0, p999_ns = 0.0;  ///< of the poses' fastest replays [ns]
+  double max_ns = 0.0;                                              ///< [ns]
   double bytes_per_triangle = 0.0;
-  double build_s = 0.0;      ///< both trees [s]
-  double fcl_mean_ns = 0.0;  ///< 0: not measured [ns]
+  double build_s = 0.0;          ///< both trees [s]
+  double fcl_mean_ns = 0.0;      ///< 0: not measured [ns]
+  double gimpact_mean_ns = 0.0;  ///< 0: not measured [ns]
 };
 
 struct SurfacesReport {

@@ -71,14 +71,17 @@ TEST(SurfaceTree, BoxesHoldWhatIsBelowThem) {
             below.push_back(tree.vertex(tree.triangle(corner / 3)[(std::size_t(corner) + k) % 3]));
         }
       }
+      const auto at_lane = [&](const SurfaceTree::Lanes3& v) {
+        return Vec3(v[0][lane], v[1][lane], v[2][lane]);
+      };
+      const Vec3 up = at_lane(node.up);
+      const Vec3 along = at_lane(node.along);
+      const Vec3 half = at_lane(node.half);
       for (const Vec3& p : below) {
-        for (std::size_t i = 0; i < 3; ++i) {
-          double along = 0.0;
-          for (std::size_t k = 0; k < 3; ++k)
-            along += double(node.axis[i][k][lane]) *
-                     (p[int(k)] - tree.center()[int(k)] - double(node.center[k][lane]));
-          EXPECT_LE(std::abs(along), double(node.half[i][lane]));
-        }
+        const Vec3 off = p - tree.center() - at_lane(node.center);
+        EXPECT_LE(std::abs(along.dot(off)), half[0]);
+        EXPECT_LE(std::abs(up.cross(along).dot(off)), half[1]);
+        EXPECT_LE(std::abs(up.dot(off)), half[2]);
       }
       all.insert(all.end(), below.begin(), below.end());
     }

@@ -72,4 +72,12 @@ struct MinimaWork {
 MinimaWork surface_minima(const SurfaceTree& a, const SurfaceTree& b, const Pose& X_AB,
                           const MinimaQuery& query, std::vector<SurfaceMinimum>& minima) noexcept;
 
+namespace lanes {
+struct Kernels;
+/// The same with these tests (surface_minima_lanes.h) instead of the best the processor has: for comparisons.
+MinimaWork surface_minima(const Kernels& kernels, const SurfaceTree& a, const SurfaceTree& b,
+                          const Pose& X_AB, const MinimaQuery& query,
+                          std::vector<SurfaceMinimum>& minima) noexcept;
+}  // namespace lanes
+
 }  // namespace tactum

@@ -32,8 +32,8 @@ bool nearer(const SurfaceMinimum& x, const SurfaceMinimum& y) noexcept {
 
 FeatureComparison::FeatureComparison(const SurfaceTree& a, const SurfaceTree& b, const Pose& X_AB,
                                      const MinimaQuery& query, std::vector<SurfaceMinimum>& minima) noexcept
-    : a_{a, Mat3::Identity(), Vec3::Zero()},
-      b_{b, X_AB.R, X_AB.p},
+    : a_{a, true, Mat3::Identity(), Vec3::Zero()},
+      b_{b, false, X_AB.R, X_AB.p},
       query_(query),
       minima_(minima),
       touching_(tolerances::kTouching * std::max(a.size(), b.size())),
@@ -42,89 +42,88 @@ FeatureComparison::FeatureComparison(const SurfaceTree& a, const SurfaceTree& b,
   minima_.clear();
 }
 
-FeatureComparison::Placed FeatureComparison::placed(const Side& side, std::int32_t corner) const noexcept {
-  const Triangle& t = side.tree.triangle(corner / 3);
-  const std::size_t k = std::size_t(corner) % 3;
-  Placed placed;
-  placed.corner = corner;
-  placed.point = {side.told(t[k]), side.told(t[(k + 1) % 3]), side.told(t[(k + 2) % 3])};
-  placed.normal = (placed.point[1] - placed.point[0]).cross(placed.point[2] - placed.point[0]).normalized();
-  return placed;
+Vec3 FeatureComparison::Side::normal(std::int32_t corner) const noexcept {
+  const Vec3 from = point(corner, 0);
+  return (point(corner, 1) - from).cross(point(corner, 2) - from).normalized();
+}
+
+FeatureComparison::Edge FeatureComparison::edge(const Side& side, std::int32_t corner) noexcept {
+  const Vec3 from = side.point(corner, 0);
+  return {corner, from, side.point(corner, 1) - from};
 }
 
 void FeatureComparison::vertex_face(bool swapped, std::int32_t vertex_corner,
                                     std::int32_t face_corner) noexcept {
   ++work.feature_pairs;
-  const Placed face = placed(side(!swapped), face_corner);
-  const int vertex_index = side(swapped).tree.vertex_at(vertex_corner);
-  const Vec3 point = side(swapped).told(vertex_index);
-  const double height = face.normal.dot(point - face.point[0]);
+  const Side& of_face = side(!swapped);
+  const Side& of_vertex = side(swapped);
+  const Vec3 point = of_vertex.point(vertex_corner, 0);
+  const std::array<Vec3, 3> face = {of_face.point(face_corner, 0), of_face.point(face_corner, 1),
+                                    of_face.point(face_corner, 2)};
+  const Vec3 normal = (face[1] - face[0]).cross(face[2] - face[0]).normalized();
+  const double height = normal.dot(point - face[0]);
   if (!in_range(height)) return;
   for (std::size_t k = 0; k < 3; ++k) {
-    const Vec3 along = face.point[(k + 1) % 3] - face.point[k];
-    const double inside = along.cross(point - face.point[k]).dot(face.normal);
+    const Vec3 along = face[(k + 1) % 3] - face[k];
+    const double inside = along.cross(point - face[k]).dot(normal);
     if (!(inside >= -tolerances::kTouching * along.squaredNorm())) return;
   }
-  const InCone cone = in_vertex_cone(side(swapped), placed(side(swapped), vertex_corner), -face.normal);
+  const InCone cone = in_vertex_cone(of_vertex, vertex_corner, -normal);
   if (cone == InCone::kOutside) return;
-  const Vec3 foot = point - height * face.normal;
-  const Feature vertex = vertex_of(side(swapped).tree, vertex_corner);
+  const Vec3 foot = point - height * normal;
+  const Feature vertex = vertex_of(of_vertex.tree, vertex_corner);
   if (swapped) {
-    take({foot, point, -face.normal, height, face_of(face_corner), vertex, cone}, face.triangle(),
+    take({foot, point, -normal, height, face_of(face_corner), vertex, cone}, face_corner / 3,
          vertex_corner / 3);
   } else {
-    take({point, foot, face.normal, height, vertex, face_of(face_corner), cone}, vertex_corner / 3,
-         face.triangle());
+    take({point, foot, normal, height, vertex, face_of(face_corner), cone}, vertex_corner / 3,
+         face_corner / 3);
   }
 }
 
 void FeatureComparison::vertex_edge(bool swapped, std::int32_t vertex_corner,
                                     std::int32_t edge_corner) noexcept {
   ++work.feature_pairs;
-  const Placed edge = placed(side(!swapped), edge_corner);
-  const Placed vertex = placed(side(swapped), vertex_corner);
-  const Vec3 along = edge.point[1] - edge.point[0];
-  const double t = along.dot(vertex.point[0] - edge.point[0]) / along.squaredNorm();
+  const Edge line = edge(side(!swapped), edge_corner);
+  const Vec3 point = side(swapped).point(vertex_corner, 0);
+  const double t = line.along.dot(point - line.from) / line.along.squaredNorm();
   if (!(t >= 0.0 && t <= 1.0)) return;
-  const Vec3 foot = edge.point[0] + t * along;
-  const double distance = (vertex.point[0] - foot).norm();
+  const Vec3 foot = line.from + t * line.along;
+  const double distance = (point - foot).norm();
   if (!(distance <= query_.reach && distance > touching_)) return;
-  const Vec3 n = (vertex.point[0] - foot) / distance;
-  InCone cone = in_edge_cone(side(!swapped), edge, n);
-  if (cone != InCone::kOutside) cone = worst(cone, in_vertex_cone(side(swapped), vertex, -n));
+  const Vec3 n = (point - foot) / distance;
+  InCone cone = in_edge_cone(side(!swapped), line, n);
+  if (cone != InCone::kOutside) cone = worst(cone, in_vertex_cone(side(swapped), vertex_corner, -n));
   if (cone == InCone::kOutside) return;
   const Feature corner = vertex_of(side(swapped).tree, vertex_corner);
   if (swapped) {
-    take({foot, vertex.point[0], -n, distance, edge_of(edge_corner), corner, cone}, edge.triangle(),
-         vertex.triangle());
+    take({foot, point, -n, distance, edge_of(edge_corner), corner, cone}, edge_corner / 3, vertex_corner / 3);
   } else {
-    take({vertex.point[0], foot, n, distance, corner, edge_of(edge_corner), cone}, vertex.triangle(),
-         edge.triangle());
+    take({point, foot, n, distance, corner, edge_of(edge_corner), cone}, vertex_corner / 3, edge_corner / 3);
   }
 }
 
 void FeatureComparison::vertex_vertex(std::int32_t a_corner, std::int32_t b_corner) noexcept {
   ++work.feature_pairs;
-  const Placed a = placed(a_, a_corner);
-  const Placed b = placed(b_, b_corner);
-  const double distance = (a.point[0] - b.point[0]).norm();
+  const Vec3 p_a = a_.point(a_corner, 0);
+  const Vec3 p_b = b_.point(b_corner, 0);
+  const double distance = (p_a - p_b).norm();
   if (!(distance <= query_.reach && distance > touching_)) return;
-  const Vec3 n = (a.point[0] - b.point[0]) / distance;
-  InCone cone = in_vertex_cone(b_, b, n);
-  if (cone != InCone::kOutside) cone = worst(cone, in_vertex_cone(a_, a, -n));
+  const Vec3 n = (p_a - p_b) / distance;
+  InCone cone = in_vertex_cone(b_, b_corner, n);
+  if (cone != InCone::kOutside) cone = worst(cone, in_vertex_cone(a_, a_corner, -n));
   if (cone == InCone::kOutside) return;
-  take(
-      {a.point[0], b.point[0], n, distance, vertex_of(a_.tree, a_corner), vertex_of(b_.tree, b_corner), cone},
-      a.triangle(), b.triangle());
+  take({p_a, p_b, n, distance, vertex_of(a_.tree, a_corner), vertex_of(b_.tree, b_corner), cone},
+       a_corner / 3, b_corner / 3);
 }
 
 void FeatureComparison::edge_edge(std::int32_t a_corner, std::int32_t b_corner) noexcept {
   ++work.feature_pairs;
-  const Placed a = placed(a_, a_corner);
-  const Placed b = placed(b_, b_corner);
-  const Vec3 u = a.point[1] - a.point[0];
-  const Vec3 w = b.point[1] - b.point[0];
-  const Vec3 r = b.point[0] - a.point[0];
+  const Edge a = edge(a_, a_corner);
+  const Edge b = edge(b_, b_corner);
+  const Vec3& u = a.along;
+  const Vec3& w = b.along;
+  const Vec3 r = b.from - a.from;
   const Vec3 c = u.cross(w);
   const double sine_sq = c.squaredNorm();
   const double lengths_sq = u.squaredNorm() * w.squaredNorm();
@@ -135,15 +134,15 @@ void FeatureComparison::edge_edge(std::int32_t a_corner, std::int32_t b_corner) 
   constexpr double kEnd = tolerances::kTouching;
   if (!(s >= -kEnd && s <= 1.0 + kEnd && t >= -kEnd && t <= 1.0 + kEnd)) return;
   const Vec3 n = c / std::sqrt(sine_sq);
-  take_edges(a, b, a.point[0] + s * u, b.point[0] + t * w, n, -r.dot(n));
+  take_edges(a, b, a.from + s * u, b.from + t * w, n, -r.dot(n));
 }
 
 /// The ends of what two nearly parallel edges share.
-void FeatureComparison::parallel_edges(const Placed& a, const Placed& b) noexcept {
-  const Vec3& p = a.point[0];
-  const Vec3& q = b.point[0];
-  const Vec3 u = a.point[1] - p;
-  const Vec3 w = b.point[1] - q;
+void FeatureComparison::parallel_edges(const Edge& a, const Edge& b) noexcept {
+  const Vec3& p = a.from;
+  const Vec3& q = b.from;
+  const Vec3& u = a.along;
+  const Vec3& w = b.along;
   const double from = u.dot(q - p) / u.squaredNorm();
   const double to = u.dot(q + w - p) / u.squaredNorm();
   const double first = std::max(0.0, std::min(from, to));
@@ -159,7 +158,7 @@ void FeatureComparison::parallel_edges(const Placed& a, const Placed& b) noexcep
   }
 }
 
-void FeatureComparison::take_edges(const Placed& a, const Placed& b, const Vec3& p_a, const Vec3& p_b,
+void FeatureComparison::take_edges(const Edge& a, const Edge& b, const Vec3& p_a, const Vec3& p_b,
                                    const Vec3& n, double distance) noexcept {
   for (const double sign : {1.0, -1.0}) {
     if (!in_range(sign * distance)) continue;
@@ -179,33 +178,30 @@ InCone FeatureComparison::falls_away(double value, double length_sq) const noexc
   return value * value <= slack_sq_ * length_sq ? InCone::kInflated : InCone::kOutside;
 }
 
-/// u is unit and square to the edge.
-InCone FeatureComparison::in_edge_cone(const Side& side, const Placed& edge, const Vec3& u) const noexcept {
-  InCone cone = InCone::kStrict;
-  if (side.tree.narrow_edge(edge.corner)) cone = falls_away(-edge.normal.dot(u), 1.0);
-  const Vec3 along = edge.point[1] - edge.point[0];
+/// u is unit and square to the edge. The neighbours first: they turn most away and cost least.
+InCone FeatureComparison::in_edge_cone(const Side& side, const Edge& edge, const Vec3& u) const noexcept {
   // What counts is a face's direction square to the edge: e . u needs no more, its length does.
   const auto face_falls = [&](const Vec3& e) {
     const double value = e.dot(u);
     return value <= 0.0 ? InCone::kStrict
-                        : falls_away(value, e.cross(along).squaredNorm() / along.squaredNorm());
+                        : falls_away(value, e.cross(edge.along).squaredNorm() / edge.along.squaredNorm());
   };
-  if (cone != InCone::kOutside) cone = worst(cone, face_falls(edge.point[2] - edge.point[0]));
+  InCone cone = face_falls(side.point(edge.corner, 2) - edge.from);
   if (cone == InCone::kOutside) return cone;
   const std::int32_t beyond = side.tree.beyond(edge.corner);
-  if (beyond == SurfaceTree::kWall) return worst(cone, falls_away(-edge.normal.dot(u), 1.0));
-  return worst(cone, face_falls(side.told(beyond) - edge.point[0]));
+  const bool wall = beyond == SurfaceTree::kWall;
+  if (!wall) cone = worst(cone, face_falls(side.told(beyond) - edge.from));
+  if (cone == InCone::kOutside || !(wall || side.tree.narrow_edge(edge.corner))) return cone;
+  return worst(cone, falls_away(-side.normal(edge.corner).dot(u), 1.0));
 }
 
-InCone FeatureComparison::in_vertex_cone(const Side& side, const Placed& vertex,
+InCone FeatureComparison::in_vertex_cone(const Side& side, std::int32_t corner,
                                          const Vec3& u) const noexcept {
-  InCone cone = InCone::kStrict;
-  if (side.tree.narrow_vertex(vertex.corner)) cone = falls_away(-vertex.normal.dot(u), 1.0);
-  if (cone == InCone::kOutside) return cone;
   const SurfaceTree& tree = side.tree;
-  const int index = tree.vertex_at(vertex.corner);
+  const int index = tree.vertex_at(corner);
   const Vec3& p = tree.vertex(index);
-  const Vec3 direction = rotated_back(side.R, u);
+  const Vec3 direction = side.is_a ? u : rotated_back(side.R, u);
+  InCone cone = InCone::kStrict;
   for (std::int32_t w : tree.around(index)) {
     if (w >= 0) {
       const Vec3 e = tree.vertex(w) - p;
@@ -215,9 +211,10 @@ InCone FeatureComparison::in_vertex_cone(const Side& side, const Placed& vertex,
       const Vec3 wall = (tree.vertex(t[2]) - tree.vertex(t[0])).cross(tree.vertex(t[1]) - tree.vertex(t[0]));
       cone = worst(cone, falls_away(wall.dot(direction), wall.squaredNorm()));
     }
-    if (cone == InCone::kOutside) break;
+    if (cone == InCone::kOutside) return cone;
   }
-  return cone;
+  if (!tree.narrow_vertex(corner)) return cone;
+  return worst(cone, falls_away(-side.normal(corner).dot(u), 1.0));
 }
 
 void FeatureComparison::take(const Touch& touch, int triangle_a, int triangle_b) noexcept {

@@ -30,15 +30,23 @@ class FeatureComparison {
   /// One of the two surfaces, and its pose in A.
   struct Side {
     const SurfaceTree& tree;
+    bool is_a;
     Mat3 R;
     Vec3 p;
-    Vec3 told(int vertex) const noexcept { return rotated(R, tree.vertex(vertex)) + p; }
+    Vec3 told(int vertex) const noexcept {
+      return is_a ? tree.vertex(vertex) : Vec3(rotated(R, tree.vertex(vertex)) + p);
+    }
+    /// The corner of a triangle that is so many after this one.
+    Vec3 point(std::int32_t corner, std::size_t after) const noexcept {
+      return told(tree.triangle(corner / 3)[(std::size_t(corner) % 3 + after) % 3]);
+    }
+    /// Of the triangle, unit, outward [-].
+    Vec3 normal(std::int32_t corner) const noexcept;
   };
-  /// A feature in A's frame: the corners of its triangle, its own first, and the triangle's normal.
-  struct Placed {
-    std::int32_t corner = -1;
-    std::array<Vec3, 3> point;
-    Vec3 normal;  ///< unit, outward [-]
+  /// An edge in A's frame.
+  struct Edge {
+    std::int32_t corner;
+    Vec3 from, along;
     int triangle() const noexcept { return corner / 3; }
   };
   struct Touch {
@@ -48,17 +56,17 @@ class FeatureComparison {
     InCone cone;
   };
 
-  Placed placed(const Side& side, std::int32_t corner) const noexcept;
+  static Edge edge(const Side& side, std::int32_t corner) noexcept;
   const Side& side(bool swapped) const noexcept { return swapped ? b_ : a_; }
   /// Takes a pair of edges with these nearest points if n or -n is in both cones; distance = n . (p_a - p_b).
-  void take_edges(const Placed& a, const Placed& b, const Vec3& p_a, const Vec3& p_b, const Vec3& n,
+  void take_edges(const Edge& a, const Edge& b, const Vec3& p_a, const Vec3& p_b, const Vec3& n,
                   double distance) noexcept;
-  void parallel_edges(const Placed& a, const Placed& b) noexcept;
+  void parallel_edges(const Edge& a, const Edge& b) noexcept;
 
   /// Of  e . u <= 0,  where `value` is e . u and `length_sq` the square of e's length.
   InCone falls_away(double value, double length_sq) const noexcept;
-  InCone in_edge_cone(const Side& side, const Placed& edge, const Vec3& u) const noexcept;
-  InCone in_vertex_cone(const Side& side, const Placed& vertex, const Vec3& u) const noexcept;
+  InCone in_edge_cone(const Side& side, const Edge& edge, const Vec3& u) const noexcept;
+  InCone in_vertex_cone(const Side& side, std::int32_t corner, const Vec3& u) const noexcept;
   void take(const Touch& touch, int triangle_a, int triangle_b) noexcept;
   bool in_range(double distance) const noexcept {
     return distance <= query_.reach && distance >= -query_.depth;

@@ -150,7 +150,8 @@ void SurfaceBoxes::make_box(SurfaceTree::Node& node, std::size_t lane, Range ran
   }
   const Vec3 middle_told = 0.5 * (low + high);
   put(node.center, lane, axis[0] * middle_told[0] + axis[1] * middle_told[1] + axis[2] * middle_told[2]);
-  for (std::size_t i = 0; i < 3; ++i) put(node.axis[i], lane, axis[i]);
+  put(node.up, lane, up);
+  put(node.along, lane, along);
   put(node.half, lane, 0.5 * (high - low) + Vec3::Constant(grown_));
   node.cone[lane] = grown_angle(width);
 }

@@ -64,13 +64,15 @@ class SurfaceTree {
   using Lanes = std::array<float, kLanes>;
   using Lanes3 = std::array<Lanes, 3>;
 
-  /// Eight oriented boxes, told from the mesh's center. The third axis of a box is along the mean direction
-  /// of the cones within; `cone` is the largest angle from it to one of them.
+  /// Eight oriented boxes, told from the mesh's center, in the order in which the query asks. A box's axes
+  /// are `along`, up x along and `up`, the mean direction of the cones within; `cone` is the largest angle
+  /// from it to one of them.
   struct Node {
-    Lanes3 center{};                           ///< [m]
-    std::array<Lanes3, 3> axis{};              ///< unit, square to each other [-]
-    Lanes3 half{};                             ///< half the sides along the axes [m]
+    Lanes3 up{};                               ///< unit [-]
     Lanes cone{};                              ///< [rad]
+    Lanes3 center{};                           ///< [m]
+    Lanes3 half{};                             ///< half the sides along the axes [m]
+    Lanes3 along{};                            ///< unit, square to `up` [-]
     std::array<std::int32_t, kLanes> child{};  ///< a node, or ~leaf; 0: no box
   };
   /// Eight features of one kind, each as a corner 3 t + k of the triangle that owns it: a vertex is that
