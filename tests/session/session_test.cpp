@@ -56,7 +56,7 @@ std::unique_ptr<Session> open_session(const std::string& name) {
 std::pair<std::uint64_t, bool> frames_to_run(const Scene& scene) {
   const auto& bodies = scene.world.bodies;
   const bool slow = std::any_of(bodies.begin(), bodies.end(),
-                                [](const Body& body) { return body.part->surface.triangles.size() > 4000; });
+                                [](const Body& body) { return body.part->surface.triangles.size() > 3000; });
   if (slow && !testing::full_run()) return {300, false};
   return {std::max<std::uint64_t>(10000, static_cast<std::uint64_t>(frames_of_motion(scene))), true};
 }

@@ -199,15 +199,7 @@ void write_shape(const Part& part, std::string& out) {
   for (const DrawnEdge& edge : edges) wire::put(out, static_cast<std::uint32_t>(edge.kind));
 }
 
-/// Whether the pieces' faces are the surface's triangles, one after the other.
-bool told_by_pieces(const Part& part) {
-  std::size_t triangles = 0;
-  for (const Polytope& piece : part.pieces)
-    for (const Polytope::Face& face : piece.faces) triangles += static_cast<std::size_t>(face.count - 2);
-  return part.is_surface() || triangles == part.surface.triangles.size();
-}
-
-/// A part whose surface is not cut as its pieces are (a convex mesh): the pieces' own faces instead.
+/// A part whose surface is the pieces' own faces.
 Part with_surface_of_pieces(const Part& part) {
   Part told;
   told.pieces = part.pieces;
@@ -221,6 +213,16 @@ Part with_surface_of_pieces(const Part& part) {
     }
   }
   return told;
+}
+
+/// Whether the pieces' faces, as `faces` has them, are the surface's triangles one after the other.
+bool told_by_pieces(const TriangleMesh& surface, const TriangleMesh& faces) {
+  if (surface.triangles.size() != faces.triangles.size()) return false;
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t)
+    for (int corner = 0; corner < 3; ++corner)
+      if (surface.vertices[surface.triangles[t][corner]] != faces.vertices[faces.triangles[t][corner]])
+        return false;
+  return true;
 }
 
 }  // namespace
@@ -259,11 +261,12 @@ std::string geometry_of(const World& world) {
   std::string out;
   wire::put(out, static_cast<std::uint32_t>(shapes.parts.size()));
   for (const Part* part : shapes.parts) {
-    if (told_by_pieces(*part)) {
+    if (part->is_surface()) {
       write_shape(*part, out);
-    } else {
-      write_shape(with_surface_of_pieces(*part), out);
+      continue;
     }
+    const Part told = with_surface_of_pieces(*part);
+    write_shape(told_by_pieces(part->surface, told.surface) ? *part : told, out);
   }
   return out;
 }

@@ -424,8 +424,8 @@ const topics = {
     const keep = process.env.TACTUM_PICTURES === "keep";
     const folder = keep ? join(root, "docs/pictures") : join(root, "build/pictures");
     mkdirSync(folder, { recursive: true });
-    const take = async (scene, options, prepare) => {
-      const program = await Program.start(tactum, scene);
+    const take = async (scene, options, prepare, words = ["feel", scene]) => {
+      const program = await Program.command(tactum, words);
       const page = await openPage(browser, program, { viewport: { width: 1280, height: 720 }, ...options }, "#fine");
       await prepare(page);
       const png = await page.screenshot();
@@ -463,6 +463,24 @@ const topics = {
       await page.mouse.move(700, 500);
       await pause(1.5);
     });
+    await take("nut-bolt", {}, async (page) => {
+      await page.keyboard.press("e");
+      await until("the nut has been turned for a while", async () => Number((await state(page)).newest) > 1000, 60);
+    });
+    // A bracket like an F, as it falls into pieces.
+    const outline = [[0, 0], [12, 0], [12, 30], [34, 30], [34, 42], [12, 42], [12, 56], [44, 56], [44, 68], [0, 68]];
+    const n = outline.length;
+    const corners = [0, 20].flatMap((z) => outline.map(([x, y]) => `v ${x} ${y} ${z}`));
+    const below = outline.map((_, i) => n - i);
+    const walls = outline.map((_, i) => [i + 1, ((i + 1) % n) + 1, ((i + 1) % n) + 1 + n, i + 1 + n]);
+    const faces = [below, below.map((v) => 2 * n + 1 - v), ...walls];
+    const file = join(mkdtempSync(join(tmpdir(), "tactum-part-")), "bracket.obj");
+    writeFileSync(file, [...corners, ...faces.map((face) => `f ${face.join(" ")}`), ""].join("\n"));
+    await take("pieces", { colorScheme: "light" }, async (page) => {
+      await page.keyboard.press("p");
+      await page.keyboard.press("e");
+      await pause(1);
+    }, ["inspect", file]);
   },
 };
 
