@@ -103,8 +103,9 @@ Summary feel_viewed_virtually(Viewer& viewer, std::uint64_t frames) {
 void tell_what_is_felt(std::FILE* out, const Session& session, const std::string& grip) {
   fmt::print(out, "{}: {}\n{} at {:.0f} Hz, hand {}\n", session.scene().name, session.scene().description,
              session.device().name, session.rate_Hz(), grip.empty() ? session.scene().grip : grip);
-  fmt::print(out, "{}\n",
-             margin_sentence(session.scene().settings.coupling, session.device(), session.rate_Hz()));
+  fmt::print(out, "{}{}\n",
+             margin_sentence(session.scene().settings.coupling, session.device(), session.rate_Hz()),
+             session.scene().coupling_by_device ? "; chosen for this device and rate" : "");
   std::fflush(out);
 }
 

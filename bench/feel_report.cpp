@@ -112,11 +112,17 @@ std::string peg_plot(const std::vector<PegRow>& rows) {
     for (double tick = panel.scale.low; tick <= 1.01 * panel.scale.high; tick *= 10) {
       svg.line({left, panel.scale(tick)}, {left + kWidth, panel.scale(tick)}, R"(stroke="#e4e7eb")");
       const bool none = tick == panel.scale.low && panel.value == &PegRow::penetration_m;
-      svg.text({left - 6, panel.scale(tick) + 4}, none ? "none" : fmt::format("{:.3g} {}", tick, panel.unit),
+      svg.text({left - 6, panel.scale(tick) + 4}, none ? "none" : quantity(tick, panel.unit),
                R"(font-size="11" fill="#4b5563" text-anchor="end")");
     }
     for (const double c : kClearances_m)
       svg.text({left + clearance(c), kBottom + 20}, quantity(c, "m"), "text-anchor=\"middle\" " + small);
+    if (panel.value == &PegRow::penetration_m) {
+      std::vector<SheetPoint> fit;
+      for (const double c : kClearances_m) fit.push_back({left + clearance(c), panel.scale(c)});
+      svg.path(fit, R"(stroke="#9aa3af" stroke-dasharray="5 4")");
+      svg.text({fit.front().x + 12, fit.front().y - 6}, "the clearance", small);
+    }
     for (const char* engine : {"tactum", "bullet", "ode"}) {
       std::vector<SheetPoint> points;
       for (const PegRow& row : rows)

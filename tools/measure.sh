@@ -11,6 +11,7 @@ mkdir -p "$root/out"
 "$tactum" bench penetration --referee-seconds 4 --json "$root/out/bench-penetration.json" --markdown "$page"
 "$tactum" bench manifold --json "$root/out/bench-manifold.json" --markdown "$page"
 "$tactum" bench impact --json "$root/out/bench-impact.json" --markdown "$page"
+"$tactum" bench feel --json "$root/out/bench-feel.json" --svg "$root/docs/pictures/feel.svg" --markdown "$page"
 # Real parts, where they are: see tests/support/real_data.h.
 data="${TACTUM_DATA:-$root/../shared/data}"
 "$tactum" bench surfaces --data "$data" --json "$root/out/bench-surfaces.json" --markdown "$page"

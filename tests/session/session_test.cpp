@@ -11,6 +11,7 @@
 
 #include "support/allocation_guard.h"
 #include "support/real_data.h"
+#include "tactum/haptics/coupling_gains.h"
 #include "tactum/scene/builtin_scenes.h"
 #include "tactum/scene/scene_file.h"
 
@@ -192,6 +193,54 @@ TEST(Session, AnUnknownDeviceIsToldBeforeAnythingRuns) {
       Session::open(std::move(*scene), {.device = "phantom-of-the-opera", .grip = "", .rate_Hz = 0.0});
   ASSERT_FALSE(session);
   EXPECT_NE(session.error().message().find("simulated"), std::string::npos);
+}
+
+TEST(Session, ASceneWithoutACouplingGetsThatOfItsDeviceAndRate) {
+  const auto opened = [](const std::string& device, double rate_Hz, const std::string& coupling) {
+    Result<Scene> scene = parse_scene(R"(
+schema = 1
+[[body]]
+name = "block"
+part = { box = { size_m = [0.04, 0.03, 0.02] } }
+density_kg_per_m3 = 1000
+[tool]
+body = "block"
+)" + coupling,
+                                      "block", "block.toml", {});
+    EXPECT_TRUE(scene) << scene.error().message();
+    return Session::open(std::move(*scene),
+                         {.device = "simulated:" + device, .grip = {}, .rate_Hz = rate_Hz});
+  };
+  for (const char* device : {"premium-1.5-6dof", "touch", "sigma.7", "virtuose-6d"})
+    for (const double rate_Hz : {1000.0, 4000.0}) {
+      const auto session = opened(device, rate_Hz, "");
+      ASSERT_TRUE(session);
+      const Coupling& chosen = (*session)->scene().settings.coupling;
+      const CouplingGains gains = coupling_gains((*session)->device(), rate_Hz);
+      EXPECT_EQ(chosen.stiffness_N_per_m, gains.coupling.stiffness_N_per_m) << device;
+      EXPECT_EQ(chosen.damping_Nms_per_rad, gains.coupling.damping_Nms_per_rad) << device;
+      EXPECT_LE(chosen.stiffness_N_per_m, gains.translation.held) << device;
+    }
+  const auto told = opened("sigma.7", 1000.0, "[coupling]\nstiffness_N_per_m = 432\n");
+  ASSERT_TRUE(told);
+  EXPECT_EQ((*told)->scene().settings.coupling.stiffness_N_per_m, 432.0);
+}
+
+TEST(Session, WithTheChosenCouplingEveryDeviceReachesTheGoalsOfTheBlock) {
+  for (const char* device : {"premium-1.5-6dof", "touch", "omega.6", "sigma.7", "virtuose-6d"}) {
+    Result<Scene> scene = open_scene("block-on-plate");
+    ASSERT_TRUE(scene);
+    scene->settings.response = ResponseModel::kConstraint;
+    scene->coupling_by_device = true;
+    const auto frames = static_cast<std::uint64_t>(frames_of_motion(*scene));
+    auto session = Session::open(std::move(*scene),
+                                 {.device = std::string("simulated:") + device, .grip = {}, .rate_Hz = 0.0});
+    ASSERT_TRUE(session);
+    ASSERT_TRUE((*session)->run_virtual(frames, nullptr));
+    EXPECT_TRUE((*session)->goals().all_met()) << device;
+    EXPECT_EQ((*session)->record().penetrating_frames, 0u) << device;
+    EXPECT_EQ((*session)->record().flags, 0u) << device;
+  }
 }
 
 }  // namespace

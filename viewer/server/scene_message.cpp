@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tactum/devices/registry.h"
+#include "tactum/haptics/coupling_gains.h"
 #include "tactum/haptics/safety.h"
 #include "tactum/scene/builtin_scenes.h"
 #include "viewer/server/access.h"
@@ -76,9 +77,10 @@ Json settings_json(const FrameSettings& frame, const SafetySettings& safety) {
   Json settings = Json::array();
   for (const SettingInfo& setting : setting_table()) {
     const double value = setting.get(frame, safety);
-    const char* kind = setting.kind == SettingKind::kOnOff    ? "on-off"
-                       : setting.kind == SettingKind::kNumber ? "number"
-                                                              : "integer";  // a choice by its number
+    constexpr const char* kKinds[] = {"number", "integer", "on-off", "choice"};  // as in SettingKind
+    const char* kind = kKinds[static_cast<std::size_t>(setting.kind)];
+    Json choices = Json::array();
+    for (const char* choice : setting.choices) choices.push_back(choice);
     settings.push_back({{"section", setting.section},
                         {"key", setting.key},
                         {"name", setting.name},
@@ -87,6 +89,7 @@ Json settings_json(const FrameSettings& frame, const SafetySettings& safety) {
                         {"low", setting.low},
                         {"high", setting.high},
                         {"kind", kind},
+                        {"choices", choices},
                         {"live", setting.live},
                         {"value", std::isfinite(value) ? Json(value) : Json()}});
   }
@@ -225,6 +228,11 @@ bool told_by_pieces(const TriangleMesh& surface, const TriangleMesh& faces) {
   return true;
 }
 
+/// How much of the device's stability bounds the coupling uses, as it is set now.
+std::string margin_of(const Session& session, const UserSettings& settings) {
+  return margin_sentence(settings.frame.coupling, session.device(), session.rate_Hz());
+}
+
 }  // namespace
 
 std::string run_message(const Session& session, const UserSettings& settings, const RunFacts& facts) {
@@ -245,14 +253,16 @@ std::string run_message(const Session& session, const UserSettings& settings, co
                         {"channels", channels_json()},
                         {"flags", flags_json()},
                         {"settings", settings_json(settings.frame, settings.safety)},
+                        {"margin", margin_of(session, settings)},
                         {"toml", settings_toml(settings.frame, settings.safety)}};
   return message.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-std::string settings_message(const FrameSettings& frame, const SafetySettings& safety) {
+std::string settings_message(const Session& session, const UserSettings& settings) {
   const Json message = {{"type", "settings"},
-                        {"settings", settings_json(frame, safety)},
-                        {"toml", settings_toml(frame, safety)}};
+                        {"settings", settings_json(settings.frame, settings.safety)},
+                        {"margin", margin_of(session, settings)},
+                        {"toml", settings_toml(settings.frame, settings.safety)}};
   return message.dump();
 }
 

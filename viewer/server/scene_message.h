@@ -21,8 +21,8 @@ struct RunFacts {
 /// Scene, bodies, device, tables of stages, channels and settings with their values, choices.
 std::string run_message(const Session& session, const UserSettings& settings, const RunFacts& facts);
 
-/// The settings alone, after one was changed.
-std::string settings_message(const FrameSettings& frame, const SafetySettings& safety);
+/// The settings alone, after one was changed, and what of the stability bounds they use.
+std::string settings_message(const Session& session, const UserSettings& settings);
 
 /// The surfaces of the parts, each once: vertices, triangles with piece and face, and the edges worth
 /// drawing.

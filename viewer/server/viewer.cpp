@@ -48,6 +48,7 @@ Result<void> Viewer::begin_run() {
   (*session)->time_stages(stages.get());
   (*session)->hold_wrench_at_zero(stopped_);
   session_ = std::move(*session);  // the old one first: it refers to the old feed
+  scene_.settings.coupling = session_->scene().settings.coupling;  // it may have chosen
   feed_ = std::move(feed);
   stages_ = std::move(stages);
   waiting_.clear();
@@ -175,6 +176,7 @@ void Viewer::set(const Request& request) {
     return tell_settings();
   }
   setting.set(scene_.settings, scene_.safety, request.value);
+  if (std::string_view(setting.section) == "coupling") scene_.coupling_by_device = false;
   if (!setting.live) return restart();
   session_->ask({.kind = SessionCommand::Kind::kSet, .setting = index, .value = request.value});
   tell_settings();
@@ -182,7 +184,7 @@ void Viewer::set(const Request& request) {
 
 void Viewer::tell_settings() {
   const RunFacts facts{run_, options_.device, options_.grip, true};
-  server_->tell_settings(settings_message(scene_.settings, scene_.safety),
+  server_->tell_settings(settings_message(*session_, {scene_.settings, scene_.safety}),
                          run_message(*session_, {scene_.settings, scene_.safety}, facts));
 }
 

@@ -184,6 +184,7 @@ void read_tool(const TomlReader& root, Scene& scene) {
 void read_settings(const TomlReader& root, Scene& scene) {
   scene.settings.dt_s = root.number("dt_s", 0.001, {kShortestStep_s, kLongestStep_s});
   read_coupling(root, scene.settings.coupling);
+  scene.coupling_by_device = !root.has("coupling");
   scene.settings.response = response_of(root);
   read_penalty(root, scene.settings.penalty);
   read_constraint(root, scene.settings.constraint);

@@ -22,6 +22,8 @@ struct Scene {
       p_BP;  ///< of each body: the origin of its part's own frame P (that of its file); axes of B are P's [m]
   std::vector<std::string> materials;  ///< of each body; empty when none is told
   FrameSettings settings;              ///< its safety limits are the device's, see `safety`
+  bool coupling_by_device =
+      false;              ///< the file tells no coupling: a session chooses it for its device and rate
   SafetySettings safety;  ///< what the scene tightens; the session applies it to the device's limits
   std::string device;     ///< preset of the simulated device the hand motion was made for
   std::string grip;       ///< hand model of the simulated hand

@@ -58,6 +58,8 @@ Session::Session(Scene scene, std::unique_ptr<Device> device)
       glances_(kGlances) {
   scene_.settings.safety = tightened(device_limits_, scene_.safety);
   scene_.settings.port = port_settings(device_->info(), rate_Hz());
+  if (scene_.coupling_by_device)
+    scene_.settings.coupling = coupling_gains(device_->info(), rate_Hz()).coupling;
 }
 
 Result<VirtualRun> Session::run_virtual(std::uint64_t frames, LoopObserver* observer) {

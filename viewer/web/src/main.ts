@@ -53,7 +53,7 @@ function notice(text: string) {
 
 function told(message: Told) {
   if (message.type === "run") void begin(message);
-  else if (message.type === "settings") panel.showSettings(message.settings, message.toml);
+  else if (message.type === "settings") panel.showSettings(message);
   else if (message.type === "told") notice(message.sentence);
   else showStatus(message);
 }

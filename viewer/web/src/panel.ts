@@ -9,7 +9,7 @@ export interface Ask { (message: Record<string, unknown>): void }
 const idOf = (setting: Setting) => (setting.section ? `${setting.section}.${setting.key}` : setting.key);
 const sections: Record<string, string> = {
   coupling: "Coupling of hand and part", penalty: "Contact", shading: "Shading", smoothing: "Smoothing", safety: "Safety: only tighter",
-  "": "Rate", budget: "Work budget",
+  "": "Response and rate", constraint: "Nothing is entered", budget: "Work budget",
 };
 
 /** Sliders of wide ranges go by factors, not by steps. */
@@ -36,6 +36,7 @@ export class Panel {
   private readonly device = make("div", { class: "device" });
   private readonly health = make("dl", { class: "numbers" });
   private readonly refused = make("dl", { class: "numbers" });
+  private readonly margin = make("p", { class: "quiet", id: "margin", role: "status" });
   private shownFor = "";
 
   constructor(root: HTMLElement, private readonly ask: Ask) {
@@ -49,7 +50,7 @@ export class Panel {
   begin(run: Run) {
     this.scene = run.scene;
     this.showDevice(run);
-    this.showSettings(run.settings, run.toml);
+    this.showSettings(run);
   }
 
   private showDevice(run: Run) {
@@ -71,7 +72,7 @@ export class Panel {
       device.can_be_led ? "" : " It cannot be led by the mouse."));
   }
 
-  showSettings(settings: Setting[], toml: string) {
+  showSettings({ settings, margin, toml }: { settings: Setting[]; margin: string; toml: string }) {
     this.toml = toml;
     const shape = settings.map(idOf).join();
     if (shape !== this.shownFor) {
@@ -79,6 +80,7 @@ export class Panel {
       this.build(settings);
     }
     for (const setting of settings) this.fill(setting);
+    this.margin.textContent = `Stability: ${margin}.`;
   }
 
   private build(settings: Setting[]) {
@@ -86,6 +88,7 @@ export class Panel {
     for (const section of [...new Set(settings.map((s) => s.section))]) {
       const group = make("fieldset", {}, make("legend", {}, sections[section] ?? section));
       for (const setting of settings.filter((s) => s.section === section)) group.append(this.row(setting));
+      if (section === "coupling") group.append(this.margin);
       this.form.append(group);
     }
   }
@@ -98,6 +101,12 @@ export class Panel {
       const box = make("input", { type: "checkbox", id: `set-${id}` });
       box.onchange = () => set(box.checked ? 1 : 0);
       return make("div", { class: "setting", title: note }, make("label", { for: box.id }, setting.name), box, make("small", {}, note));
+    }
+    if (setting.kind === "choice") {
+      const choice = make("select", { id: `set-${id}` });
+      setting.choices.forEach((name, value) => choice.append(new Option(name, String(value))));
+      choice.onchange = () => set(Number(choice.value));
+      return make("div", { class: "setting", title: note }, make("label", { for: choice.id }, setting.name), choice, make("small", {}, note));
     }
     const scale = new Scale(setting);
     const range = `${setting.low} to ${setting.high} ${setting.unit}`;
@@ -120,6 +129,10 @@ export class Panel {
     if (document.activeElement === field && field.type === "number") return;
     if (setting.kind === "on-off") {
       field.checked = setting.value !== null && setting.value !== 0;
+      return;
+    }
+    if (setting.kind === "choice") {
+      field.value = String(setting.value);
       return;
     }
     field.value = setting.value === null ? "" : String(Number(setting.value.toPrecision(6)));

@@ -12,7 +12,7 @@ export interface StageInfo { key: string; name: string; meaning: string }
 export interface ChannelInfo { key: string; name: string; unit: string; group: string; meaning: string }
 export interface Setting {
   section: string; key: string; name: string; unit: string; meaning: string; low: number; high: number;
-  kind: "number" | "integer" | "on-off"; live: boolean; value: number | null;
+  kind: "number" | "integer" | "on-off" | "choice"; choices: string[]; live: boolean; value: number | null;
 }
 export interface FlagInfo { flag: number; name: string; fault?: boolean }
 export interface DeviceFacts {
@@ -23,7 +23,7 @@ export interface DeviceFacts {
 export interface Run {
   type: "run"; run: number; scene: string; description: string; scenes: { name: string; description: string }[];
   rate_Hz: number; bodies: Body[]; held: number; X_BH: Pose; device: DeviceFacts; stages: StageInfo[];
-  channels: ChannelInfo[]; flags: { safety: FlagInfo[]; frame: FlagInfo[] }; settings: Setting[]; toml: string;
+  channels: ChannelInfo[]; flags: { safety: FlagInfo[]; frame: FlagInfo[] }; settings: Setting[]; margin: string; toml: string;
 }
 export interface Times { mean: number; p50: number; p99: number; p999: number; max: number }
 export interface Status {
@@ -36,7 +36,7 @@ export interface Status {
   };
 }
 export type Told =
-  | Run | Status | { type: "settings"; settings: Setting[]; toml: string } | { type: "told"; sentence: string };
+  | Run | Status | { type: "settings"; settings: Setting[]; margin: string; toml: string } | { type: "told"; sentence: string };
 
 export interface Contact {
   bodies: [number, number]; pieces: [number, number]; kinds: [number, number]; features: [number, number];
