@@ -22,8 +22,8 @@
 /// Cones are inflated by `cone_slack`, the largest rotation of a step. Without it only the lowest corner of a
 /// flat contact is a minimum, and the contact sticks; with it, all corners of either that face the other, and
 /// the crossings of their outlines. `strict` tells which minima hold without it: validate with those alone.
-/// An edge pair that is not strict is no constraint below about a micrometre, for its sign means nothing
-/// outside its true cone.
+/// Outside its true cone the sign of an edge pair means nothing: one that is not strict is a constraint while
+/// it is apart, and none below zero.
 ///
 /// Edges parallel to within the slack touch along an interval: the two ends of it are two minima of the same
 /// features.

@@ -18,7 +18,7 @@
 namespace tactum::lanes {
 
 /// Vectors of so many numbers, as g++ and clang++ share them.
-template <std::size_t kWidth>
+template <std::size_t Width>
 struct Wide;
 
 template <>
@@ -48,7 +48,7 @@ struct Wide<8> {
 };
 #endif
 
-template <std::size_t kWidth>
+template <std::size_t Width>
 class KernelsOf {
  public:
   static constexpr Kernels table() noexcept {
@@ -62,7 +62,7 @@ class KernelsOf {
   }
 
  private:
-  using W = Wide<kWidth>;
+  using W = Wide<Width>;
   using Float = typename W::Float;
   using Int = typename W::Int;
 
@@ -101,7 +101,7 @@ class KernelsOf {
   template <class Test>
   static std::uint32_t every_lane(const Test& test) noexcept {
     std::uint32_t found = 0;
-    for (std::size_t first = 0; first < kLanes; first += kWidth) found |= test(first) << first;
+    for (std::size_t first = 0; first < kLanes; first += Width) found |= test(first) << first;
     return found;
   }
 
@@ -120,7 +120,7 @@ class KernelsOf {
     const Float cone = load(node.cone, first);
     const Float opposite = dot(own[2], up);
     const Float sum = cone + (box.cone + 2.0F * q.slack);
-    std::int32_t child[kWidth];
+    std::int32_t child[Width];
     std::memcpy(child, &node.child[first], sizeof child);
     Int fine = std::bit_cast<Int>(child) != 0;
     fine &= 2.0F + 2.0F * opposite <= sum * sum + float(tolerances::kSingle);

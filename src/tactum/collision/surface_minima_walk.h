@@ -11,14 +11,14 @@ namespace tactum {
 
 /// Boxes and leaves in the form the tests want, kept for the pairs that follow, which mostly ask for the same
 /// again. The room is filled as far as it is used.
-template <class Value, std::size_t kRoom>
+template <class Value, std::size_t Room>
 class Kept {
  public:
   Kept() noexcept { key_.fill(-1); }  // NOLINT(cppcoreguidelines-pro-type-member-init)
   /// The value with this key, which make(value) makes when it is not there.
   template <class Make>
   const Value& get(std::int32_t key, const Make& make) noexcept {
-    const std::size_t slot = std::size_t(key) % kRoom;
+    const std::size_t slot = std::size_t(key) % Room;
     if (key_[slot] != key) {
       key_[slot] = key;
       make(value_[slot]);
@@ -27,8 +27,8 @@ class Kept {
   }
 
  private:
-  std::array<std::int32_t, kRoom> key_;
-  std::array<Value, kRoom> value_;
+  std::array<std::int32_t, Room> key_;
+  std::array<Value, Room> value_;
 };
 
 /// Everything is told in B's frame, from B's center; only boxes of B that are held against A's nodes are told
