@@ -12,7 +12,6 @@
 namespace tactum::bench {
 namespace {
 
-constexpr double kStep_s = 1e-3;
 constexpr double kMoved_m = 1e-5;  // beyond this it has begun to slide
 
 std::shared_ptr<const Part> part_of(const std::vector<FeelPiece>& pieces) {
@@ -51,7 +50,7 @@ class Ours final : public FeelEngine {
   void step(const Pose& X_WH) override {
     DeviceSample sample;
     sample.valid = true;
-    sample.time_s = static_cast<double>(frame_) * kStep_s;
+    sample.time_s = static_cast<double>(frame_) * kFeelStep_s;
     sample.X_DH = {X_WH.R, X_WH.p - X_start_.p};
     FrameTick tick;
     tick.index = frame_++;
@@ -109,11 +108,11 @@ struct Run {
 /// Leads the engine through the scene; returns the mean time of a step [us].
 double lead(const FeelScene& scene, FeelEngine& engine, const std::function<void(const Run&)>& look) {
   static const FineClock clock;
-  const auto frames = static_cast<int>(scene.hand->duration_s() / kStep_s);
+  const auto frames = static_cast<int>(scene.hand->duration_s() / kFeelStep_s);
   double ns = 0.0;
   Run run;
   for (int i = 0; i <= frames; ++i) {
-    run.time_s = i * kStep_s;
+    run.time_s = i * kFeelStep_s;
     run.X_WH = scene.hand->at(run.time_s).X_DH;
     const std::uint64_t begun = clock.start();
     engine.step(run.X_WH);

@@ -73,6 +73,7 @@ struct FeelEngineEntry {
 std::vector<FeelEngineEntry> feel_engines();
 
 /// Handle and part together, for engines that need a mass: a light device's.
+inline constexpr double kFeelStep_s = 1e-3;  ///< between two poses of the hand [s]
 inline constexpr double kFeltMass_kg = 0.05;
 inline constexpr double kFeltInertia_kg_m2 = 2e-5;
 

@@ -6,7 +6,6 @@
 namespace tactum::bench {
 namespace {
 
-constexpr double kStep_s = 1e-3;
 constexpr int kIterations = 50;  // five times its default
 
 Vec3 from(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
@@ -28,14 +27,14 @@ class BulletFeel final : public FeelEngine {
     for (const auto& body : bodies_) world_.removeRigidBody(body.get());
   }
   void step(const Pose& X_WH) override {
-    const Twist V_WH = twist_between(X_WH_, X_WH, kStep_s);
+    const Twist V_WH = twist_between(X_WH_, X_WH, kFeelStep_s);
     const Pose X_before = X_WH_;
     for (int i = 1; i <= substeps_; ++i) {
       X_WH_ = interpolated(X_before, X_WH, static_cast<double>(i) / substeps_);
       const Wrench F = coupling_.on_hand(X_WH_, V_WH, X_WB(), V_WB());
       held_->applyCentralForce(to(-F.f));
       held_->applyTorque(to(-F.t));
-      world_.stepSimulation(kStep_s / substeps_, 0);
+      world_.stepSimulation(kFeelStep_s / substeps_, 0);
     }
     felt_ = coupling_.on_hand(X_WH, V_WH, X_WB(), V_WB());
   }

@@ -7,7 +7,6 @@
 namespace tactum::bench {
 namespace {
 
-constexpr double kStep_s = 1e-3;
 constexpr double kSoftness = 1e-10;  // of contacts: its own default in double precision
 
 /// With dWorldStep, its accurate solver, and friction of a pyramid.
@@ -46,7 +45,7 @@ class OdeFeel final : public FeelEngine {
     dCloseODE();
   }
   void step(const Pose& X_WH) override {
-    const Twist V_WH = twist_between(X_WH_, X_WH, kStep_s);
+    const Twist V_WH = twist_between(X_WH_, X_WH, kFeelStep_s);
     const Pose X_before = X_WH_;
     for (int i = 1; i <= substeps_; ++i) {
       X_WH_ = interpolated(X_before, X_WH, static_cast<double>(i) / substeps_);
@@ -54,7 +53,7 @@ class OdeFeel final : public FeelEngine {
       dBodyAddForce(body_, -F.f.x(), -F.f.y(), -F.f.z());
       dBodyAddTorque(body_, -F.t.x(), -F.t.y(), -F.t.z());
       touch();
-      dWorldStep(world_, kStep_s / substeps_);
+      dWorldStep(world_, kFeelStep_s / substeps_);
       dJointGroupEmpty(contacts_);
     }
     felt_ = coupling_.on_hand(X_WH, V_WH, X_WB(), V_WB());

@@ -79,15 +79,9 @@ lanes::Faces faces_of(Draw& draw) {
   return faces;
 }
 
-const Kernels* wide_or_skip() {
-  const Kernels* wide = lanes::wide_kernels();
-  if (!wide) std::printf("this processor has no AVX2: nothing to compare\n");
-  return wide;
-}
-
 TEST(SurfaceMinimaKernels, TellTheSameOfBoxesInFourLanesAndInEight) {
-  const Kernels* wide = wide_or_skip();
-  if (!wide) GTEST_SKIP();
+  const Kernels* wide = lanes::wide_kernels();
+  if (!wide) GTEST_SKIP() << "this processor has no AVX2: nothing to compare";
   const Kernels& narrow = lanes::narrow_kernels();
   Draw draw(31);
   int set = 0;
@@ -107,8 +101,8 @@ TEST(SurfaceMinimaKernels, TellTheSameOfBoxesInFourLanesAndInEight) {
 }
 
 TEST(SurfaceMinimaKernels, TellTheSameOfFeaturesInFourLanesAndInEight) {
-  const Kernels* wide = wide_or_skip();
-  if (!wide) GTEST_SKIP();
+  const Kernels* wide = lanes::wide_kernels();
+  if (!wide) GTEST_SKIP() << "this processor has no AVX2: nothing to compare";
   const Kernels& narrow = lanes::narrow_kernels();
   Draw draw(32);
   std::array<int, 6> set{};
@@ -153,8 +147,8 @@ TEST(SurfaceMinimaKernels, TellTheSameOfFeaturesInFourLanesAndInEight) {
 }
 
 TEST(SurfaceMinimaKernels, FindTheSameMinimaInFourLanesAndInEight) {
-  const Kernels* wide = wide_or_skip();
-  if (!wide) GTEST_SKIP();
+  const Kernels* wide = lanes::wide_kernels();
+  if (!wide) GTEST_SKIP() << "this processor has no AVX2: nothing to compare";
   testing::Thread shape;
   const SurfaceTree bolt(testing::thread_mesh(shape));
   shape.inner = true;

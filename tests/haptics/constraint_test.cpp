@@ -5,6 +5,7 @@
 #include <iostream>
 
 #include "support/pressed_block.h"
+#include "support/rig.h"
 #include "tactum/base/random.h"
 #include "tactum/haptics/frame.h"
 #include "tactum/math/screw.h"
@@ -12,59 +13,20 @@
 namespace tactum {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 const Vec3 kHalf(0.010, 0.007, 0.005);  // of the held block [m]
 
 /// A held block of 20 x 14 x 10 mm, 3 mm over a fixed plate whose top is at z = 0, and an ideal device.
-struct Bench {
-  World world;
-  FrameSettings settings;
-  std::unique_ptr<FrameState> state;
-  FrameReport report;
-  Pose X_DH;
-  std::uint64_t frame = 0;
-
-  explicit Bench(double mu = 0.0) {
-    world.bodies.resize(2);
+struct Bench : Rig {
+  explicit Bench(double mu = 0.0) : Rig(2) {
     world.bodies[0].part = solid_box(kHalf);
-    world.bodies[0].mass_kg = 0.05;
-    world.bodies[0].inertia_B = 1e-5 * Mat3::Identity();
     world.bodies[0].X_WB.p.z() = 0.008;
     world.bodies[1].part = solid_box({0.05, 0.05, 0.01});
     world.bodies[1].X_WB.p.z() = -0.01;
     world.bodies[1].joint.kind = JointKind::kFixed;
-    settings.tool.body = 0;
     settings.response = ResponseModel::kConstraint;
-    settings.coupling.damping_Ns_per_m = 0.0;
-    settings.coupling.damping_Nms_per_rad = 0.0;
-    settings.smoothing = {kInfinity, kInfinity};
     if (mu > 0.0) settings.friction = {{0.0, mu, mu, 0.0}, 2};
   }
-  FrameState& begun() {
-    if (!state) state = std::make_unique<FrameState>(world, settings);
-    return *state;
-  }
-  const Pose& X_WB() { return begun().world.X_WB[0]; }
   double skin() { return begun().constraint.skin_m; }
-
-  const FrameReport& step(const Pose& X) {
-    X_DH = X;
-    DeviceSample sample;
-    sample.valid = true;
-    sample.time_s = static_cast<double>(frame) * 1e-3;
-    sample.X_DH = X;
-    FrameTick tick;
-    tick.index = frame++;
-    tick.now_s = sample.time_s;
-    haptic_frame(world, settings, sample, tick, begun(), report);
-    return report;
-  }
-  /// From where the handle is to X in `frames` frames.
-  const FrameReport& go(const Pose& X, int frames) {
-    const Pose from = X_DH;
-    for (int i = 1; i <= frames; ++i) step(interpolated(from, X, static_cast<double>(i) / frames));
-    return report;
-  }
   /// The sum of the contact forces at the handle less the wrench that is felt.
   Wrench unaccounted() const {
     const Wrench at_handle = moved(report.restoring, state->constraint.problem.movers().front().centre -

@@ -8,11 +8,11 @@
 #include <cmath>
 
 #include "support/pressed_block.h"
+#include "support/rig.h"
 
 namespace tactum {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kWidth = 0.020;       // of the peg [m]
 constexpr double kClearance = 0.0001;  // of the slot [m]
 constexpr double kHalfLength = 0.020;  // of the peg [m]
@@ -20,19 +20,9 @@ constexpr double kSqueeze_rad = 0.05;  // the hand turns so much farther than th
 constexpr double kStuck_m = 1e-6;      // less than this is no motion
 
 /// A peg in a slot between two walls whose rims are at z = 0, and an ideal device.
-struct Slot {
-  World world;
-  FrameSettings settings;
-  std::unique_ptr<FrameState> state;
-  FrameReport report;
-  Pose X_DH;
-  std::uint64_t frame = 0;
-
-  explicit Slot(double depth) {
-    world.bodies.resize(3);
+struct Slot : Rig {
+  explicit Slot(double depth) : Rig(3) {
     world.bodies[0].part = solid_box({0.5 * kWidth, 0.007, kHalfLength});
-    world.bodies[0].mass_kg = 0.05;
-    world.bodies[0].inertia_B = 1e-5 * Mat3::Identity();
     world.bodies[0].X_WB.p.z() = kHalfLength - depth;
     for (const int side : {1, 2}) {
       Body& wall = world.bodies[std::size_t(side)];
@@ -40,31 +30,9 @@ struct Slot {
       wall.X_WB.p = {(side == 1 ? -1.0 : 1.0) * (0.5 * (kWidth + kClearance) + 0.02), 0.0, -0.025};
       wall.joint.kind = JointKind::kFixed;
     }
-    settings.tool.body = 0;
-    settings.coupling.damping_Ns_per_m = 0.0;
-    settings.coupling.damping_Nms_per_rad = 0.0;
-    settings.smoothing = {kInfinity, kInfinity};
-    state = std::make_unique<FrameState>(world, settings);
     step({});
   }
   void rub(double mu) { settings.friction = {{0, mu, mu, mu, 0, mu, mu, mu, 0}, 3}; }
-  const Pose& X_WB() const { return state->world.X_WB[0]; }
-  void step(const Pose& X) {
-    X_DH = X;
-    DeviceSample sample;
-    sample.valid = true;
-    sample.time_s = static_cast<double>(frame) * 1e-3;
-    sample.X_DH = X;
-    FrameTick tick;
-    tick.index = frame++;
-    tick.now_s = sample.time_s;
-    haptic_frame(world, settings, sample, tick, *state, report);
-    EXPECT_FALSE(report.penetrating);
-  }
-  void go(const Pose& X, int frames) {
-    const Pose from = X_DH;
-    for (int i = 1; i <= frames; ++i) step(interpolated(from, X, static_cast<double>(i) / frames));
-  }
 };
 
 Pose turned(double angle, const Vec3& p = Vec3::Zero()) { return {exp_rotation({0, angle, 0}), p}; }
@@ -113,8 +81,9 @@ struct Pull {
     const double held_N = 2.0 * mu * coupling.stiffness_Nm_per_rad * kSqueeze_rad / depth;
     slot.go(turned(angle, {0, 0, 10.0 * held_N / coupling.stiffness_N_per_m}), 500);
     slot.go(slot.X_DH, 500);
+    EXPECT_EQ(slot.penetrating_frames, 0);
   }
-  double way() const { return (slot.X_WB().p - p_jammed).norm(); }
+  double way() { return (slot.X_WB().p - p_jammed).norm(); }
 };
 
 TEST(Wedging, TheJammedPegHoldsAboveTheGeometricLimitAndComesOutBelow) {
@@ -123,7 +92,7 @@ TEST(Wedging, TheJammedPegHoldsAboveTheGeometricLimitAndComesOutBelow) {
       double limit = 0.0, low = 0.05, high = 1.0;
       while (high - low > 0.002) {
         const double mu = 0.5 * (low + high);
-        const Pull pull(depth, mu, sense);
+        Pull pull(depth, mu, sense);
         limit = pull.limit;
         (pull.way() < kStuck_m ? high : low) = mu;
       }
@@ -146,6 +115,7 @@ TEST(Wedging, AJammedPegIsFreedByTurningItStraight) {
   pull.slot.go(turned(0.0), 300);
   pull.slot.go(turned(0.0, {0, 0, 1.5 * depth}), 300);
   EXPECT_GT(pull.slot.X_WB().p.z() - pull.p_jammed.z(), depth);
+  EXPECT_EQ(pull.slot.penetrating_frames, 0);
 }
 
 }  // namespace

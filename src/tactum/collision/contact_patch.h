@@ -15,7 +15,7 @@ struct ContactPatch {
   int piece_a = -1, piece_b = -1;  ///< within their parts; triangles where two surfaces meet
   int pair = -1;                   ///< of pieces, in the finder's list
   bool of_surfaces = false;        ///< the features of the manifold are those of SurfaceTree
-  /// Patches of the same bodies and facets share one stiffness: they are stretches of one true contact.
+  /// Patches of the same bodies and facets share one stiffness: they touch on the same two flat walls.
   int facet_a = -1, facet_b = -1;
   double distance = 0.0;   ///< of the pieces, negative when they overlap [m]
   double tolerance = 0.0;  ///< delta of the pair of bodies [m]

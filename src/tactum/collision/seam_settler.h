@@ -2,14 +2,11 @@
 /// From the answers of pairs of pieces, where parts have seams, to contact patches: who leads, who follows,
 /// and who is answered for (the rules are in seams.h).
 ///
-///   for each two bodies, nearest first:   a true contact leads: its patch is made. Every other pair with a
-///                                         stretch of the same true faces (or edges) follows: its patch, cut
-///                                         out of its own stretch, has the leader's normal and shares the
-///                                         leader's stiffness, so together they are the patch of the uncut
-///                                         part.
-///   then the objected:                    dropped when they are apart or a leader answers for them, else
-///   they
-///                                         lead by the least depth under a true face.
+///   for each two bodies, nearest first:  a true contact leads. Every other pair with a stretch of the same
+///                                        true faces (or edges) follows: its stretch goes into the leader's
+///                                        patch, which is then that of the uncut part (manifold.h).
+///   then the objected:                   dropped when they are apart or a leader answers for them; else they
+///                                        lead by the least depth on the true surface.
 ///
 /// The memory of what was shown goes from the leader to all it answers for, so that a contact slides over a
 /// seam without forgetting. Cost: what the patches cost, and a look-up for each leader and pair.
