@@ -128,16 +128,17 @@ TEST(HingeFriction, HoldsBelowItsLimitAndSlowsAboveIt) {
   const Joint joint{.kind = JointKind::kHinge,
                     .axis_W = Vec3::UnitZ(),
                     .anchor_W = Vec3::Zero(),
-                    .damping_Nms = 0.0,
-                    .friction_Nm = 0.01};
+                    .damping = 0.0,
+                    .friction = 0.01};
   Body body;
+  body.joint = joint;
   body.mass_kg = 0.2;
   body.inertia_B = 1e-4 * Mat3::Identity();
   const Mobility W = mobility(joint, body.X_WB, inertial_resistance(body, body.X_WB));
   const auto rate_after = [&](double rate) {
     Twist V;
     V.w.z() = rate;
-    return after_hinge_friction(joint, body.X_WB, W, 0.001, V).w.z();
+    return after_joint(body, body.X_WB, W, 0.001, V).w.z();
   };
   EXPECT_EQ(rate_after(0.05), 0.0);  // the friction takes 0.01 * 0.001 / 1e-4 = 0.1 rad/s a step
   EXPECT_NEAR(rate_after(-0.5), -0.4, 1e-12);

@@ -83,7 +83,7 @@ TEST(SceneFile, BuildsTheWorldItTells) {
   EXPECT_EQ(box.joint.kind, JointKind::kHinge);
   EXPECT_EQ(box.joint.axis_W, Vec3::UnitZ());
   EXPECT_TRUE(box.joint.anchor_W.isApprox(Vec3(0.01, 0, 0.1)));
-  EXPECT_EQ(box.joint.friction_Nm, 0.1);
+  EXPECT_EQ(box.joint.friction, 0.1);
   EXPECT_EQ(scene->settings.coupling.stiffness_N_per_m, 700.0);
   EXPECT_EQ(scene->grip, "firm");
   EXPECT_EQ(scene->settings.tool.body, 1);
@@ -260,8 +260,8 @@ TEST(SceneErrors, Names) {
   expect_error(2, "device = \"premium\"", "test.toml:2:10", "premium");
   expect_error(24, "kind = \"dance\"", "test.toml:24:8",
                "found \"dance\", expected one of \"turned\", \"moved\", \"followed\"");
-  expect_error(13, "joint = { kind = \"ball\" }", "test.toml:13:18",
-               "expected one of \"free\", \"fixed\", \"hinge\"");
+  expect_error(13, "joint = { kind = \"screw\" }", "test.toml:13:18",
+               "expected one of \"free\", \"fixed\", \"hinge\", \"slider\", \"ball\"");
 }
 
 TEST(SceneErrors, Contradictions) {
@@ -271,7 +271,7 @@ TEST(SceneErrors, Contradictions) {
   expect_error(10, "part = { }", "test.toml:10:8", "must have one shape: found none");
   expect_error(10, "part = { scale = 2, box = { size_m = [1, 1, 1] } }", "test.toml:10:18",
                "for meshes only");
-  expect_error(13, "joint = { kind = \"free\", axis = [0, 0, 1] }", "test.toml:13:33", "for hinges only");
+  expect_error(13, "joint = { kind = \"free\", axis = [0, 0, 1] }", "test.toml:13:33", "expected hinge, slider");
   expect_error(17, "body = \"plate\"", "test.toml:17:8", "a fixed body cannot be held");
   expect_error(17, "body = \"box\"\nradius_m = 0.1", "test.toml:18:12", "grasp = \"rim\" only");
   expect_error(21, "turn_deg = 30\nhold_s = 1", "test.toml:20:1", "must do one thing: found several");

@@ -47,6 +47,10 @@ const char* joint_name(JointKind kind) {
       return "fixed";
     case JointKind::kHinge:
       return "hinge";
+    case JointKind::kSlider:
+      return "slider";
+    case JointKind::kBall:
+      return "ball";
   }
   return "";
 }

@@ -73,6 +73,10 @@ inline constexpr double kConvexMesh = 1e-9;
 /// largest one asked for: a force error far below what a hand or a device resolves (1e-3).
 inline constexpr double kContactVelocity = 1e-6;
 
+/// Resting contacts are settled when a sweep changes no velocity by more than this [m/s]: a heap then drifts
+/// by less than a micrometre in a quarter of an hour. Rounding of 1 m/s is 1e-16.
+inline constexpr double kRestingVelocity = 1e-9;
+
 /// A direction in which less than this share of a body's mobility is left, once the directions found before
 /// are taken away, is none: a hinge's mobility is of rank one, but for rounding.
 inline constexpr double kNoMobility = 1e-12;

@@ -265,9 +265,14 @@ void ContactFinder::test(Pair& pair, std::span<const Pose> X_WB) noexcept {
   steady_centroid(X_AB, patch.manifold, pair.shown);
 }
 
-void ContactFinder::distances_at(std::span<const Pose> X_WB, std::span<double> distance) noexcept {
+void ContactFinder::distances_at(std::span<const Pose> X_WB, std::span<double> distance,
+                                 std::span<const char> wanted) noexcept {
   for (Index i = 0; i < patches_.size();) {
     const ContactPatch& patch = patches_[i];
+    if (!wanted.empty() && wanted[i] == 0) {
+      ++i;
+      continue;
+    }
     if (!patch.of_surfaces) {
       Pair& pair = pairs_[Index(patch.pair)];
       const Pose X_AB = relative_pose(X_WB[Index(pair.body_a)], X_WB[Index(pair.body_b)]);

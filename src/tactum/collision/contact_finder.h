@@ -93,7 +93,9 @@ class ContactFinder {
   /// the patches: what a step has to keep positive. `distance` has an entry per patch [m]. A distance that
   /// could not be certified counts as none. Between surfaces it is that of every local minimum there is at
   /// the other poses, told by the patches of the same features; where there is none, by the nearest patch.
-  void distances_at(std::span<const Pose> X_WB, std::span<double> distance) noexcept;
+  /// Where `wanted` has entries, one per patch, only those that are not 0 are filled.
+  void distances_at(std::span<const Pose> X_WB, std::span<double> distance,
+                    std::span<const char> wanted = {}) noexcept;
   const ContactWork& work() const noexcept { return work_; }
   /// Largest distance of a point of body i from its origin [m].
   double radius(int i) const noexcept { return radius_[static_cast<std::size_t>(i)]; }

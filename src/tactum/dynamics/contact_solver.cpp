@@ -279,16 +279,6 @@ class MotionProblem {
 
 }  // namespace
 
-Twist after_hinge_friction(const Joint& joint, const Pose& X_WB, const Mobility& W, double h,
-                           const Twist& V) noexcept {
-  if (joint.kind != JointKind::kHinge || (joint.friction_Nm == 0.0 && joint.damping_Nms == 0.0)) return V;
-  const double mobility_about_axis = joint.axis_W.dot(W.bottomRightCorner<3, 3>() * joint.axis_W);
-  const double rate = joint.axis_W.dot(V.w);
-  const double damped = rate / (1.0 + joint.damping_Nms * h * mobility_about_axis);
-  const double most = joint.friction_Nm * h * mobility_about_axis;
-  return to_twist(hinge_motion(joint, X_WB) * (damped - std::clamp(damped, -most, most)));
-}
-
 SolverResult solve_contacts(std::span<ContactRow> rows, std::span<const Pose> X_WB,
                             std::span<const Mobility> W, double h, int max_sweeps,
                             std::span<Twist> V) noexcept {

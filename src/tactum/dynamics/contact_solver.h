@@ -29,6 +29,9 @@ struct ContactRow {
   double distance = 0.0;       ///< signed, at the start of the step [m]
   double tolerance = 0.0;      ///< delta of the pair [m]
   double stiffness = 0.0;      ///< k, the point's share [N/m]
+  double friction = 0.0;       ///< Coulomb's coefficient [-]
+  double restitution = 0.0;    ///< of the speed, in an impact [-]
+  bool struck = true;          ///< takes part in impacts
   double impulse = 0.0;        ///< lambda, the solver's answer [N s]
 
   // For the sweeps only: lever arms, twist changes per unit impulse.
@@ -41,12 +44,6 @@ struct SolverResult {
   int iterations = 0;      ///< rounds of Newton's method, or sweeps
   bool converged = false;  ///< false: the sweeps ran out; the impulses are usable, not exact
 };
-
-/// What is left of a hinged body's twist after its joint's damping and dry friction have acted for `h`
-/// seconds: a torque against the turning, up to the joint's friction, that stops but never reverses it.
-/// Applied after whatever else pushed in these `h` seconds, so that pushes below the friction move nothing.
-Twist after_hinge_friction(const Joint& joint, const Pose& X_WB, const Mobility& W, double h,
-                           const Twist& V) noexcept;
 
 /// Finds the impulses and adds their effect to the twists `V` (one per body). `h` [s] is the step they act
 /// for.

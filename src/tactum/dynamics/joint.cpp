@@ -1,10 +1,19 @@
 #include "tactum/dynamics/joint.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
 
 #include "tactum/math/screw.h"
 
 namespace tactum {
+namespace {
+
+/// One or three unknowns, without allocation.
+using SmallMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 3, 3>;
+
+}  // namespace
 
 Resistance inertial_resistance(const Body& body, const Pose& X_WB) noexcept {
   Resistance M = Resistance::Zero();
@@ -13,52 +22,120 @@ Resistance inertial_resistance(const Body& body, const Pose& X_WB) noexcept {
   return M;
 }
 
-Vec6 hinge_motion(const Joint& joint, const Pose& X_WB) noexcept {
-  Vec6 S;
-  S << joint.axis_W.cross(X_WB.p - joint.anchor_W), joint.axis_W;
+JointMotions joint_motions(const Joint& joint, const Pose& X_WB) noexcept {
+  const Vec3 arm = X_WB.p - joint.anchor_W;
+  JointMotions S;
+  switch (joint.kind) {
+    case JointKind::kFree:
+    case JointKind::kFixed:
+      S.resize(6, 0);
+      break;
+    case JointKind::kHinge:
+      S.resize(6, 1);
+      S << joint.axis_W.cross(arm), joint.axis_W;
+      break;
+    case JointKind::kSlider:
+      S.resize(6, 1);
+      S << joint.axis_W, Vec3::Zero();
+      break;
+    case JointKind::kBall:
+      S.resize(6, 3);
+      S << -skew(arm), Mat3::Identity();
+      break;
+  }
   return S;
 }
 
-Mobility mobility(const Joint& joint, const Pose& X_WB, const Resistance& M) noexcept {
-  switch (joint.kind) {
-    case JointKind::kFixed:
-      return Mobility::Zero();
+Vec6 joint_rate(const Body& body, const Pose& X_WB) noexcept {
+  Vec6 rate = Vec6::Zero();
+  switch (body.joint.kind) {
     case JointKind::kFree:
-      return M.llt().solve(Mat6::Identity());
-    case JointKind::kHinge:
+    case JointKind::kFixed:
       break;
+    case JointKind::kHinge:
+      rate.tail<3>() = body.joint.axis_W;
+      break;
+    case JointKind::kSlider:
+      rate.head<3>() = body.joint.axis_W;
+      break;
+    case JointKind::kBall: {
+      const Vec3 turned = log_rotation(X_WB.R * body.X_WB.R.transpose());
+      const double angle = turned.norm();
+      if (angle > 0.0) rate.tail<3>() = turned / angle;
+      break;
+    }
   }
-  const Vec6 S = hinge_motion(joint, X_WB);
-  return S * S.transpose() / S.dot(M * S);
+  return rate;
+}
+
+Mobility mobility(const Joint& joint, const Pose& X_WB, const Resistance& M) noexcept {
+  if (joint.kind == JointKind::kFixed) return Mobility::Zero();
+  if (joint.kind == JointKind::kFree) return M.llt().solve(Mat6::Identity());
+  const JointMotions S = joint_motions(joint, X_WB);
+  return S * SmallMatrix(S.transpose() * M * S).llt().solve(S.transpose());
+}
+
+Mobility inertial_mobility(const Body& body, const Pose& X_WB) noexcept {
+  if (body.joint.kind != JointKind::kFree) return mobility(body.joint, X_WB, inertial_resistance(body, X_WB));
+  Mobility W = Mobility::Zero();
+  W.topLeftCorner<3, 3>().diagonal().setConstant(1.0 / body.mass_kg);
+  W.bottomRightCorner<3, 3>() = X_WB.R * body.inertia_B.inverse() * X_WB.R.transpose();
+  return W;
 }
 
 Twist constrained_velocity(const Joint& joint, const Pose& X_WB, const Resistance& M,
                            const Twist& V) noexcept {
-  switch (joint.kind) {
-    case JointKind::kFixed:
-      return {};
-    case JointKind::kFree:
-      return V;
-    case JointKind::kHinge:
-      break;
+  if (joint.kind == JointKind::kFixed) return {};
+  if (joint.kind == JointKind::kFree) return V;
+  const JointMotions S = joint_motions(joint, X_WB);
+  const JointMotions MS = M * S;
+  return to_twist(S * SmallMatrix(MS.transpose() * S).llt().solve(MS.transpose() * to_vector(V)));
+}
+
+Twist after_joint(const Body& body, const Pose& X_WB, const Mobility& W, double h, const Twist& V) noexcept {
+  const Joint& joint = body.joint;
+  if (joint.kind == JointKind::kFree || joint.kind == JointKind::kFixed) return V;
+  Vec6 after = to_vector(V);
+  double damping = joint.damping;
+  if (joint.kind == JointKind::kBall) {  // about every axis, not only that of its position
+    const double mobile = W.bottomRightCorner<3, 3>().trace() / 3.0;
+    const Vec3 lost = V.w * (1.0 / (1.0 + mobile * h * damping) - 1.0);
+    after += joint_motions(joint, X_WB) * lost;
+    damping = 0.0;
   }
-  const Vec6 S = hinge_motion(joint, X_WB);
-  const Vec6 MS = M * S;
-  return to_twist(S * (MS.dot(to_vector(V)) / MS.dot(S)));
+  const Vec6 along = joint_rate(body, X_WB);
+  const double mobile = along.dot(W * along);
+  if (!(mobile > 0.0)) return to_twist(after);
+  const double before = along.dot(after);
+  const double position = joint_position(body, X_WB);
+  // Spring and damper at the end of the step: stable however stiff.
+  double rate = (before - mobile * h * joint.stiffness * (position - joint.rest)) /
+                (1.0 + mobile * h * (damping + h * joint.stiffness));
+  const double most = joint.friction * h * mobile;
+  rate = std::abs(rate) <= most ? 0.0 : rate - std::copysign(most, rate);
+  rate = std::clamp(rate, std::min(0.0, (joint.lower - position) / h),
+                    std::max(0.0, (joint.upper - position) / h));
+  return to_twist(after + W * along * ((rate - before) / mobile));
 }
 
 Pose constrained_pose(const Body& body, const Pose& X_WB) noexcept {
+  const Vec3& anchor = body.joint.anchor_W;
+  const auto turned = [&](const Mat3& turn) -> Pose {
+    return {turn * body.X_WB.R, anchor + turn * (body.X_WB.p - anchor)};
+  };
   switch (body.joint.kind) {
     case JointKind::kFixed:
       return body.X_WB;
     case JointKind::kFree:
       return renormalized(X_WB);
     case JointKind::kHinge:
-      break;
+      return turned(exp_rotation(body.joint.axis_W * hinge_angle(body, X_WB)));
+    case JointKind::kSlider:
+      return {body.X_WB.R, body.X_WB.p + body.joint.axis_W * joint_position(body, X_WB)};
+    case JointKind::kBall:
+      return turned(renormalized(X_WB).R * body.X_WB.R.transpose());
   }
-  const Mat3 turn = exp_rotation(body.joint.axis_W * hinge_angle(body, X_WB));
-  const Vec3& anchor = body.joint.anchor_W;
-  return {turn * body.X_WB.R, anchor + turn * (body.X_WB.p - anchor)};
+  return X_WB;
 }
 
 }  // namespace tactum

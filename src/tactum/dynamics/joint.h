@@ -18,11 +18,25 @@ using Mobility = Mat6;
 /// Mass and inertia at the present orientation.
 Resistance inertial_resistance(const Body& body, const Pose& X_WB) noexcept;
 
-/// The twist of a hinged body per unit angular rate about its axis.
-Vec6 hinge_motion(const Joint& joint, const Pose& X_WB) noexcept;
+/// The twists that a joint leaves free, one per column: per unit rate about a hinge's axis, along a slider's,
+/// about a ball's centre and an axis of the world. No columns for a fixed body; a free body has no use for
+/// them.
+using JointMotions = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, 3>;
+JointMotions joint_motions(const Joint& joint, const Pose& X_WB) noexcept;
 
-/// What the joint lets through. Zero for a fixed body.
+/// The twist that changes the joint's position, and how: position' = rate . V. Zero where there is none. For
+/// a ball the axis it has turned about.
+Vec6 joint_rate(const Body& body, const Pose& X_WB) noexcept;
+
+/// What is left of a jointed body's twist after its joint's spring, damping, dry friction and limits have
+/// acted for `h` seconds: friction stops but never reverses, limits are not overrun. Applied after whatever
+/// else pushed in these `h` seconds, so that pushes below the friction move nothing.
+Twist after_joint(const Body& body, const Pose& X_WB, const Mobility& W, double h, const Twist& V) noexcept;
+
+/// What the joint lets through of a resistance. Zero for a fixed body.
 Mobility mobility(const Joint& joint, const Pose& X_WB, const Resistance& M) noexcept;
+/// The same of mass and inertia.
+Mobility inertial_mobility(const Body& body, const Pose& X_WB) noexcept;
 
 /// The velocity the joint allows that is nearest to V in the metric of the resistance: constraints applied to
 /// velocities at the start of the frame.

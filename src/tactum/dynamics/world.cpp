@@ -25,4 +25,19 @@ double hinge_angle(const Body& body, const Pose& X_WB) {
   return angle;
 }
 
+double joint_position(const Body& body, const Pose& X_WB) {
+  switch (body.joint.kind) {
+    case JointKind::kFree:
+    case JointKind::kFixed:
+      return 0.0;
+    case JointKind::kHinge:
+      return hinge_angle(body, X_WB);
+    case JointKind::kSlider:
+      return body.joint.axis_W.dot(X_WB.p - body.X_WB.p);
+    case JointKind::kBall:
+      return log_rotation(X_WB.R * body.X_WB.R.transpose()).norm();
+  }
+  return 0.0;
+}
+
 }  // namespace tactum

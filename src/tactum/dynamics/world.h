@@ -5,6 +5,7 @@
 /// A body's frame B has its origin at the centre of mass and the axes of its part's file, so that a twist at
 /// the origin is a twist at the centre of mass. V_WB is told in world axes.
 
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -16,17 +17,26 @@ namespace tactum {
 
 /// What holds a body to the world.
 enum class JointKind {
-  kFree,   ///< nothing
-  kFixed,  ///< everything: the body never moves
-  kHinge,  ///< turns about an axis through a point
+  kFree,    ///< nothing
+  kFixed,   ///< everything: the body never moves
+  kHinge,   ///< turns about an axis through a point
+  kSlider,  ///< slides along an axis, without turning
+  kBall,    ///< turns about a point
 };
 
+/// Its position is how far the body has come from its pose at the start: the angle of a hinge, the way of a
+/// slider; of a ball, the angle turned, whatever the axis. Numbers are of torque for what turns, of force for
+/// a slider.
 struct Joint {
   JointKind kind = JointKind::kFree;
-  Vec3 axis_W = Vec3::UnitZ();   ///< hinge axis, unit, fixed in the world [-]
-  Vec3 anchor_W = Vec3::Zero();  ///< a point of the axis [m]
-  double damping_Nms = 0.0;      ///< viscous torque about the axis [N m s/rad]
-  double friction_Nm = 0.0;      ///< largest dry-friction torque about the axis [N m]
+  Vec3 axis_W = Vec3::UnitZ();   ///< of a hinge or slider, unit, fixed in the world [-]
+  Vec3 anchor_W = Vec3::Zero();  ///< a point of a hinge's axis; a ball's centre [m]
+  double damping = 0.0;          ///< viscous, against the motion [N m s/rad or N s/m]
+  double friction = 0.0;         ///< largest dry friction of a hinge or slider [N m or N]
+  double stiffness = 0.0;        ///< of the spring of a hinge or slider [N m/rad or N/m]
+  double rest = 0.0;             ///< the position its spring pulls to [rad or m]
+  double lower = -std::numeric_limits<double>::infinity();  ///< least position of a hinge or slider [rad, m]
+  double upper = std::numeric_limits<double>::infinity();   ///< largest position [rad or m]
 };
 
 /// A rigid body; its part's pieces are told in B.
@@ -59,5 +69,8 @@ WorldState initial_state(const World& world);
 
 /// Angle by which a hinged body has turned from its pose at the start, in (-pi, pi] [rad].
 double hinge_angle(const Body& body, const Pose& X_WB);
+
+/// The position of the body's joint (see Joint); 0 for a free or fixed body [rad or m].
+double joint_position(const Body& body, const Pose& X_WB);
 
 }  // namespace tactum

@@ -23,12 +23,6 @@ constexpr double kTrustGrowth = 2.0;
 /// The tolerance of contact determination is so much more than the trusted length, in skins.
 constexpr double kReachMargin = 4.0;
 
-/// The displacement of the handle that the coupling asks for.
-Vec6 wanted_by_hand(const FrameSettings& settings, double dt_s, const FrameState& state) {
-  const Pose X_WH_proxy = state.world.X_WB[Index(state.tool.body)] * state.tool.X_BH;
-  return balanced_step(settings.coupling, dt_s, X_WH_proxy, state.hand.X_WH, state.hand.V_WH);
-}
-
 /// The bodies and what each wants: to the hand, on along its way; or, `at_rest`, nothing.
 void add_bodies(const World& world, const FrameSettings& settings, double dt_s, bool at_rest,
                 FrameState& state, FrameReport& report) {
@@ -38,18 +32,23 @@ void add_bodies(const World& world, const FrameSettings& settings, double dt_s, 
   bool room = true;
   if (held >= 0) {
     const Pose& X_WB = state.world.X_WB[Index(held)];
-    state.constraint.wanted = at_rest ? Vec6(Vec6::Zero()) : wanted_by_hand(settings, dt_s, state);
-    room &= problem.add_held(held, world.bodies[Index(held)].joint, X_WB, X_WB * state.tool.X_BH.p,
-                             held_metric(settings.coupling, dt_s), state.constraint.wanted);
+    Vec6 wanted = Vec6::Zero();
+    state.constraint.wanted = wanted;
+    if (!at_rest) {
+      state.constraint.wanted = wanted_by_hand(settings, dt_s, state);
+      wanted = with_weight(world, settings, dt_s, state, state.constraint.wanted);
+    }
+    room &= problem.add_held(held, world.bodies[Index(held)], X_WB, X_WB * state.tool.X_BH.p,
+                             held_metric(settings.coupling, dt_s), wanted);
   }
   for (Index i = 0; i < world.bodies.size(); ++i) {
     const int b = static_cast<int>(i);
-    if (b == held || !world.bodies[i].moves()) continue;
+    if (b == held || !state.free.near_held[i]) continue;
     const Vec6 on = at_rest ? Vec6(Vec6::Zero()) : to_vector(state.world.V_WB[i] * dt_s);
     room &= problem.add_free(b, world.bodies[i], state.world.X_WB[i], on, dt_s);
   }
   if (!room) report.flags |= frame_flag::kSolverBounded;
-  problem.add_brakes();
+  problem.add_joint_rows();
 }
 
 bool solve_from(std::span<const int> first, const FrameSettings& settings, ConstraintProblem& problem,
@@ -64,7 +63,7 @@ bool solve_from(std::span<const int> first, const FrameSettings& settings, Const
 bool solve(const FrameSettings& settings, const ConstraintState& c, ConstraintProblem& problem,
            FrameReport& report) {
   StaticVector<int, kMostUnknowns> first;
-  for (Index row = 0; row < c.names.size(); ++row)
+  for (Index row = 0; row < c.own_rows; ++row)
     for (const std::uint64_t name : c.held)
       if (name == c.names[row]) first.push_back(static_cast<int>(c.first_row + row));
   return solve_from({first.begin(), first.end()}, settings, problem, report);
@@ -102,20 +101,15 @@ bool solve_sliding(const FrameSettings& settings, Index friction_row, Constraint
 void keep_forces(const FrameSettings& settings, double dt_s, FrameState& state, FrameReport& report) {
   ConstraintState& c = state.constraint;
   c.held.clear();
-  for (ContactRow& row : state.contacts.rows) row.impulse = 0.0;
+  for (ContactRow& row : own_rows(state)) row.impulse = 0.0;
   for (const QpActive& active : c.problem.answer().active) {
     const Index row = Index(active.row) - c.first_row;
-    if (Index(active.row) < c.first_row || row >= c.names.size()) continue;
+    if (Index(active.row) < c.first_row || row >= c.own_rows) continue;
     state.contacts.rows[row].impulse = active.multiplier * dt_s;
     c.held.push_back(c.names[row]);
   }
   report.active_constraints = static_cast<int>(c.held.size());
-  if (state.tool.body < 0) return;
-  // M (x - x*) at the handle: with a free held part, exactly the sum of the contact forces.
-  const HeldMetric metric = held_metric(settings.coupling, dt_s);
-  const Mover& held = c.problem.movers().front();
-  const Vec6 off = c.problem.displacement_at_centre(held) - c.wanted;
-  c.felt = {metric.stiffness_N_per_m * off.head<3>(), metric.stiffness_Nm_per_rad * off.tail<3>()};
+  feel(settings, dt_s, c.problem.displacement_at_centre(c.problem.movers().front()), state);
 }
 
 /// The farthest way of a point of the body in the last answer [m].
@@ -139,12 +133,6 @@ double trusted_share(const FrameSettings& settings, const FrameState& state) {
   return share;
 }
 
-/// Whether a gap may become `then` after `now`: open, and if it must shrink below half the skin, then by no
-/// more than half. Held to the exact last gap, a part that is a rounding too near could never move again.
-bool may_become(double now, double then, double skin) {
-  return then >= std::min(0.5 * skin, now > 0.0 ? 0.5 * now : now);
-}
-
 /// Moves everything by `share` of the answer's step, on trial, and looks at every gap there.
 bool open_after(const World& world, double share, FrameState& state, FrameReport& report) {
   ConstraintState& c = state.constraint;
@@ -155,29 +143,33 @@ bool open_after(const World& world, double share, FrameState& state, FrameReport
     c.X_WB_trial[i] = constrained_pose(world.bodies[i], advanced(state.world.X_WB[i], step, 1.0));
     if (!c.X_WB_trial[i].finite()) return false;
   }
-  state.finder.distances_at(c.X_WB_trial, c.gap_trial);
-  report.validation_tests += static_cast<int>(c.gap_trial.size());
+  const std::span<const char> asked = state.free.patch_asked;
+  state.finder.distances_at(c.X_WB_trial, c.gap_trial, asked);
+  for (Index p = 0; p < c.gap.size(); ++p) report.validation_tests += asked[p];
   for (Index p = 0; p < c.gap.size(); ++p)
-    if (!may_become(c.gap[p], c.gap_trial[p], c.skin_m)) return false;
+    if (asked[p] && !may_become(c.gap[p], c.gap_trial[p], c.skin_m)) return false;
   return true;
 }
 
 void take_trial(FrameState& state) {
   ConstraintState& c = state.constraint;
   state.world.X_WB.swap(c.X_WB_trial);
-  c.gap.swap(c.gap_trial);
+  for (Index p = 0; p < c.gap.size(); ++p)
+    if (state.free.patch_asked[p]) c.gap[p] = c.gap_trial[p];
 }
 
 /// Contacts nearer than half the skin are opened first, as far as there is room.
 void restore(const World& world, const FrameSettings& settings, double dt_s, FrameState& state,
              FrameReport& report) {
   ConstraintState& c = state.constraint;
-  if (std::all_of(c.gap.begin(), c.gap.end(), [&](double gap) { return gap >= 0.5 * c.skin_m; })) return;
+  bool tight = false;
+  for (Index p = 0; p < c.gap.size(); ++p) tight |= state.free.patch_asked[p] && c.gap[p] < 0.5 * c.skin_m;
+  if (!tight) return;
   add_bodies(world, settings, dt_s, true, state, report);
   add_contact_rows(true, c.problem, state);
   if (!solve(settings, c, c.problem, report)) return;
   if (!open_after(world, trusted_share(settings, state), state, report)) return;
-  for (ContactRow& row : state.contacts.rows) row.distance = gap_at_trial(row, state);
+  for (ContactRow& row : own_rows(state)) row.distance = gap_at_trial(row, state);
   take_trial(state);
 }
 
@@ -193,7 +185,7 @@ bool find_forces(const World& world, const FrameSettings& settings, double dt_s,
   c.friction_row = c.problem.rows();
   c.friction.clear();
   bool solved = solve(settings, c, c.problem, report);
-  if (solved && c.friction.begin(world, settings.friction, state.contacts.rows, state.finder.patches(),
+  if (solved && c.friction.begin(world, settings.friction, own_rows(state), state.finder.patches(),
                                  state.world.X_WB, c.skin_m, c.first_row, c.problem))
     solved = solve_sliding(settings, c.friction_row, c, report);
   if (solved) keep_forces(settings, dt_s, state, report);
@@ -236,17 +228,43 @@ double advance(const World& world, const FrameSettings& settings, double dt_s, F
   return 0.0;
 }
 
+/// The island of the held part: its bodies' velocities are what they did.
+void move_held_island(const World& world, const FrameSettings& settings, double dt_s, FrameState& state,
+                      FrameReport& report) {
+  ConstraintState& c = state.constraint;
+  state.free.patch_asked.clear();
+  for (const ContactPatch& patch : state.finder.patches())
+    state.free.patch_asked.push_back(state.free.of_held(patch) ? 1 : 0);
+  restore(world, settings, dt_s, state, report);
+  const double share = advance(world, settings, dt_s, state, report);
+  double way = 0.0;
+  for (const Mover& mover : c.moves().movers()) way = std::max(way, share * way_of(state, mover));
+  if (share > 0.0) take_trial(state);
+  c.friction.end(share, own_rows(state), c.first_row, c.problem, state.world.X_WB);
+  const Constraint& limits = settings.constraint;
+  const double most = state.finder.work().minima > 0 ? limits.max_step_on_surfaces_m : limits.max_step_m;
+  c.trust_m = std::clamp(kTrustGrowth * way, std::min(limits.least_step_m, most), most);
+  for (Index i = 0; i < world.bodies.size(); ++i)
+    if (state.free.near_held[i])
+      state.world.V_WB[i] = twist_between(state.X_WB_start[i], state.world.X_WB[i], dt_s);
+}
+
 /// The contacts as they push: normal forces of corners, and of friction the edges of its cones.
 void report_rows(double dt_s, FrameState& state, FrameReport& report) {
   const int held = state.tool.body;
-  if (state.constraint.shades) exchange_normals(state);
-  report.contact_points = static_cast<int>(state.contacts.rows.size());
+  const ConstraintState& c = state.constraint;
+  if (c.shades) exchange_normals(state);
+  report.contact_points = static_cast<int>(c.names.size());
   for (const ContactRow& row : state.contacts.rows)
     report.held_contact_points += row.impulse > 0.0 && (row.body_a == held || row.body_b == held) ? 1 : 0;
-  const ConstraintState& c = state.constraint;
-  const Vec3 torque = c.friction.add_forces(held, dt_s, c.problem, state.contacts.rows);
+  Vec3 torque = Vec3::Zero();
+  Vec3 origin = held < 0 ? Vec3(Vec3::Zero()) : state.X_WB_start[Index(held)].p;
+  if (state.free.held_island >= 0) {
+    origin = c.problem.movers().front().origin;
+    torque = c.friction.add_forces(held, dt_s, c.problem, state.contacts.rows);
+  }
   if (held < 0) return;
-  report.restoring = contact_wrench(state.contacts.rows, held, c.problem.movers().front().origin, dt_s);
+  report.restoring = contact_wrench(state.contacts.rows, held, origin, dt_s);
   report.restoring.t += torque;
 }
 
@@ -270,43 +288,63 @@ ConstraintState::ConstraintState(const World& world, const FrameSettings& settin
   gap_trial.reserve(settings.budget.rooms.patches);
 }
 
-void pull_free_bodies(const World& world, double dt_s, FrameState& state) noexcept {
-  for (Index i = 0; i < world.bodies.size(); ++i)
-    if (world.bodies[i].moves()) state.world.V_WB[i].v += world.gravity_W * dt_s;
+Vec6 wanted_by_hand(const FrameSettings& settings, double dt_s, const FrameState& state) noexcept {
+  const Pose X_WH_proxy = state.world.X_WB[Index(state.tool.body)] * state.tool.X_BH;
+  return balanced_step(settings.coupling, dt_s, X_WH_proxy, state.hand.X_WH, state.hand.V_WH);
 }
 
-void trusted_reach(double dt_s, FrameState& state) noexcept {
+Vec6 with_weight(const World& world, const FrameSettings& settings, double dt_s, const FrameState& state,
+                 const Vec6& wanted) noexcept {
+  const Index held = Index(state.tool.body);
+  const Vec3 weight = world.bodies[held].mass_kg * world.gravity_W;
+  const Vec3 lever = -(state.world.X_WB[held].R * state.tool.X_BH.p);  // from the handle
+  const HeldMetric metric = held_metric(settings.coupling, dt_s);
+  Vec6 sunk = wanted;
+  sunk.head<3>() += weight / metric.stiffness_N_per_m;
+  sunk.tail<3>() += lever.cross(weight) / metric.stiffness_Nm_per_rad;
+  return sunk;
+}
+
+void feel(const FrameSettings& settings, double dt_s, const Vec6& displacement, FrameState& state) noexcept {
+  // M (x - x*) at the handle: with a free held part, exactly the sum of the contact forces and its weight.
+  const HeldMetric metric = held_metric(settings.coupling, dt_s);
+  const Vec6 off = displacement - state.constraint.wanted;
+  state.constraint.felt = {metric.stiffness_N_per_m * off.head<3>(),
+                           metric.stiffness_Nm_per_rad * off.tail<3>()};
+}
+
+bool may_become(double now, double then, double skin) noexcept {
+  return then >= std::min(0.5 * skin, now > 0.0 ? 0.5 * now : now);
+}
+
+void trusted_reach(const World& world, double dt_s, FrameState& state) noexcept {
   const ConstraintState& c = state.constraint;
+  const double pull = world.gravity_W.norm() * dt_s;
   for (Index i = 0; i < state.reach.size(); ++i) {
+    state.reach[i] = kReachMargin * c.skin_m;
+    if (!world.bodies[i].moves()) continue;
     const Twist& V = state.world.V_WB[i];
     const bool held = static_cast<int>(i) == state.tool.body;
-    const double own =
-        held ? 0.0 : (V.v.norm() + V.w.norm() * state.finder.radius(static_cast<int>(i))) * dt_s;
-    state.reach[i] = own + c.trust_m + kReachMargin * c.skin_m;
+    if (!held)
+      state.reach[i] += (V.v.norm() + pull + V.w.norm() * state.finder.radius(static_cast<int>(i))) * dt_s;
+    if (held || state.free.near_held[i]) state.reach[i] += c.trust_m;
   }
 }
 
 void respond_constrained(const World& world, const FrameSettings& settings, double dt_s, FrameState& state,
                          FrameReport& report) noexcept {
   ConstraintState& c = state.constraint;
-  make_corner_rows(world, state);
   const std::span<const ContactPatch> patches = state.finder.patches();
   c.gap.clear();
   for (const ContactPatch& patch : patches) c.gap.push_back(patch.distance);
   c.gap_trial.resize(c.gap.size());
 
-  restore(world, settings, dt_s, state, report);
-  const double share = advance(world, settings, dt_s, state, report);
-  double way = 0.0;
-  for (const Mover& mover : c.moves().movers()) way = std::max(way, share * way_of(state, mover));
-  if (share > 0.0) take_trial(state);
-  c.friction.end(share, state.contacts.rows, c.first_row, c.problem, state.world.X_WB);
-  const Constraint& limits = settings.constraint;
-  const double most = state.finder.work().minima > 0 ? limits.max_step_on_surfaces_m : limits.max_step_m;
-  c.trust_m = std::clamp(kTrustGrowth * way, std::min(limits.least_step_m, most), most);
-  for (Index i = 0; i < world.bodies.size(); ++i)
-    if (world.bodies[i].moves())
-      state.world.V_WB[i] = twist_between(state.X_WB_start[i], state.world.X_WB[i], dt_s);
+  find_islands(world, state);
+  make_corner_rows(world, settings, state);
+  strike(world, settings, dt_s, state, report);
+  move_free_bodies(world, settings, dt_s, state, report);
+  if (state.free.held_island >= 0) move_held_island(world, settings, dt_s, state, report);
+  end_turning(world, state);
   report_rows(dt_s, state, report);
 }
 

@@ -36,11 +36,12 @@ struct ConstraintState {
   StaticVector<std::uint64_t, kMostUnknowns> held;
 
   // Scratch of one frame.
-  std::size_t first_row = 0;         ///< of the contacts, in the problem
+  std::size_t own_rows = 0;          ///< the first so many contact rows are the problem's
+  std::size_t first_row = 0;         ///< of them, in the problem
   std::size_t friction_row = 0;      ///< of friction
   bool bent = false;                 ///< some normal is bent by shading
   bool shades = false;               ///< ... so the step is that of `way`
-  std::vector<Vec3> shaded;          ///< normals of the rows; empty without shading [-]
+  std::vector<Vec3> shaded;          ///< normals of the own rows; empty without shading [-]
   std::vector<std::uint64_t> names;  ///< of the rows
   std::vector<double> feedback;      ///< what exact gaps have added to the rows [m]
   std::vector<Pose> X_WB_trial;
@@ -51,14 +52,24 @@ struct ConstraintState {
   const ConstraintProblem& moves() const { return shades ? way : problem; }
 };
 
-/// Gravity on free bodies; the held part and the hinges are the contact problem's.
-void pull_free_bodies(const World& world, double dt_s, FrameState& state) noexcept;
+/// How far points may move in the frame: the trusted length for the held part and, on top of their own way,
+/// for what it may push. Fills state.reach.
+void trusted_reach(const World& world, double dt_s, FrameState& state) noexcept;
 
-/// How far points may move in the frame: the trusted length for the held part, and what it may push, for the
-/// others on top of their own way. Fills state.reach.
-void trusted_reach(double dt_s, FrameState& state) noexcept;
+/// The displacement of the handle that the coupling asks for, (m, rad).
+Vec6 wanted_by_hand(const FrameSettings& settings, double dt_s, const FrameState& state) noexcept;
+/// ... and where the held part's weight pulls it from there.
+Vec6 with_weight(const World& world, const FrameSettings& settings, double dt_s, const FrameState& state,
+                 const Vec6& wanted) noexcept;
+/// What the hand feels when the handle moves so: sets state.constraint.felt.
+void feel(const FrameSettings& settings, double dt_s, const Vec6& displacement, FrameState& state) noexcept;
 
-/// Moves everything that moves. Fills state.contacts.rows, the felt wrench and the report's response fields.
+/// A gap may become `then` after `now`: open, and if it must shrink below half the skin, then by no more than
+/// half. Held to the exact last gap, a part that is a rounding too near could never move again.
+bool may_become(double now, double then, double skin) noexcept;
+
+/// Moves everything that moves, the held part's island last. Fills state.contacts.rows, the felt wrench and
+/// the report's response fields.
 void respond_constrained(const World& world, const FrameSettings& settings, double dt_s, FrameState& state,
                          FrameReport& report) noexcept;
 

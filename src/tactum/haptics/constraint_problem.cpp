@@ -11,9 +11,9 @@ namespace {
 
 using Index = std::size_t;
 
-/// A brake's spring turns its torque by less than this share over the farthest turn of a frame.
+/// A brake's spring turns its torque by less than this share over the farthest way of a frame.
 constexpr double kBrakeSoftness = 1e-3;
-constexpr double kFarthestTurn_rad = 0.05;
+constexpr double kFarthestWay = 0.05;  // [rad or m]
 
 Vec6 column(const Vec3& way, const Vec3& turn) {
   Vec6 c;
@@ -26,10 +26,20 @@ Vec6 at_point(const Vec6& x, const Vec3& r) {
   return column(x.head<3>() + Vec3(x.tail<3>()).cross(r), x.tail<3>());
 }
 
-/// One unknown along `motion`, with stiffness m: the wanted displacement is the nearest along it.
-void set_single(Mover& mover, const Vec6& motion, double m, double wanted) {
-  mover.hinge = motion / std::sqrt(m);
-  mover.wanted = motion * wanted;
+/// How many ways a joint leaves.
+Index rank_of(const Joint& joint) {
+  switch (joint.kind) {
+    case JointKind::kFixed:
+      return 0;
+    case JointKind::kHinge:
+    case JointKind::kSlider:
+      return 1;
+    case JointKind::kBall:
+      return 3;
+    case JointKind::kFree:
+      break;
+  }
+  return 6;
 }
 
 /// What a push does on a displacement told at `centre`.
@@ -39,6 +49,8 @@ double work(const Push& push, const Vec3& centre, const Vec6& x) {
 }
 
 }  // namespace
+
+Index unknowns_of(const Joint& joint) noexcept { return rank_of(joint) + (joint.friction > 0.0 ? 1 : 0); }
 
 HeldMetric held_metric(const Coupling& coupling, double dt_s) noexcept {
   return {coupling.stiffness_N_per_m + coupling.damping_Ns_per_m / dt_s,
@@ -56,7 +68,7 @@ Vec6 balanced_step(const Coupling& coupling, double dt_s, const Pose& X_WH_proxy
           metric.stiffness_Nm_per_rad);
 }
 
-ConstraintProblem::ConstraintProblem(std::size_t most_rows) : most_rows_(most_rows + 2 * kMostMovers) {
+ConstraintProblem::ConstraintProblem(std::size_t most_rows) : most_rows_(most_rows + 4 * kMostMovers) {
   normals_.reserve(most_rows_ * kMostUnknowns);
   offsets_.reserve(most_rows_);
 }
@@ -65,6 +77,7 @@ void ConstraintProblem::clear() noexcept {
   mover_count_ = 0;
   unknowns_ = 0;
   brakes_.clear();
+  limits_.clear();
   normals_.clear();
   offsets_.clear();
 }
@@ -88,19 +101,48 @@ Mover* ConstraintProblem::next_mover(int body, std::size_t rank, const Vec3& ori
   return &mover;
 }
 
-bool ConstraintProblem::add_held(int body, const Joint& joint, const Pose& X_WB, const Vec3& p_WH,
+/// The unknowns of a jointed body: what is nearest to `wanted` in the metric and with the joint's spring and
+/// damping is where it goes by itself. All told at the mover's centre.
+void ConstraintProblem::set_motions(Mover& mover, const Body& what, const Pose& X_WB, const Mat6& metric,
+                                    const Vec6& wanted, double spring, double damping) noexcept {
+  JointMotions S = joint_motions(what.joint, X_WB);
+  for (Eigen::Index i = 0; i < S.cols(); ++i) S.col(i) = at_point(S.col(i), mover.centre - mover.origin);
+  using Reduced = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 3, 3>;
+  using Few = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 3, 1>;
+  Reduced M = S.transpose() * metric * S;
+  Few pull = S.transpose() * metric * wanted;
+  for (Eigen::Index i = 0; i < S.cols(); ++i) M(i, i) += spring + damping;
+  if (spring > 0.0) pull[0] -= spring * (joint_position(what, X_WB) - what.joint.rest);
+  const Eigen::LLT<Reduced> factor(M);
+  mover.wanted = S * factor.solve(pull);
+  mover.motions = factor.matrixL().solve(S.transpose()).transpose();  // M^-1 = L^-T L^-1
+}
+
+void ConstraintProblem::add_joint(const Mover& mover, const Body& what, const Pose& X_WB) noexcept {
+  const Joint& joint = what.joint;
+  const Vec6 rate = joint_rate(what, X_WB);
+  const Push along{mover.centre, rate.head<3>(), rate.tail<3>()};
+  if (joint.friction > 0.0 && mover.rank == 1 && unknowns_ < kMostUnknowns)
+    brakes_.push_back({&mover, joint.friction, work(along, mover.centre, mover.motions.col(0)), unknowns_++});
+  const double position = joint_position(what, X_WB);
+  if (std::isfinite(joint.lower))
+    limits_.push_back({mover.body, along, std::max(0.0, position - joint.lower)});
+  if (std::isfinite(joint.upper))
+    limits_.push_back(
+        {mover.body, {along.p_W, -along.force, -along.torque}, std::max(0.0, joint.upper - position)});
+}
+
+bool ConstraintProblem::add_held(int body, const Body& what, const Pose& X_WB, const Vec3& p_WH,
                                  const HeldMetric& metric, const Vec6& wanted) noexcept {
   const double k_t = metric.stiffness_N_per_m;
   const double k_r = metric.stiffness_Nm_per_rad;
-  const bool hinged = joint.kind == JointKind::kHinge;
-  Mover* const mover = next_mover(body, hinged ? 1 : 6, X_WB.p, p_WH);
+  Mover* const mover = next_mover(body, rank_of(what.joint), X_WB.p, p_WH);
   if (mover == nullptr) return false;
-  if (hinged) {
-    const Vec6 motion = at_point(hinge_motion(joint, X_WB), p_WH - X_WB.p);
-    const Vec6 force = column(k_t * motion.head<3>(), k_r * motion.tail<3>());
-    const double m = force.dot(motion);
-    set_single(*mover, motion, m, force.dot(wanted) / m);
-    add_brake(*mover, joint.friction_Nm);
+  if (mover->rank < 6) {
+    Mat6 M = Mat6::Zero();
+    M.diagonal() << k_t, k_t, k_t, k_r, k_r, k_r;
+    set_motions(*mover, what, X_WB, M, wanted, 0.0, 0.0);
+    add_joint(*mover, what, X_WB);
     return true;
   }
   mover->wanted = wanted;
@@ -111,16 +153,12 @@ bool ConstraintProblem::add_held(int body, const Joint& joint, const Pose& X_WB,
 
 bool ConstraintProblem::add_free(int body, const Body& what, const Pose& X_WB, const Vec6& wanted,
                                  double dt_s) noexcept {
-  const bool hinged = what.joint.kind == JointKind::kHinge;
-  Mover* const mover = next_mover(body, hinged ? 1 : 6, X_WB.p, X_WB.p);
+  Mover* const mover = next_mover(body, rank_of(what.joint), X_WB.p, X_WB.p);
   if (mover == nullptr) return false;
   const Resistance M = inertial_resistance(what, X_WB) / (dt_s * dt_s);
-  if (hinged) {
-    const Vec6 motion = hinge_motion(what.joint, X_WB);
-    const Vec6 force = M * motion;
-    const double m = force.dot(motion) + what.joint.damping_Nms / dt_s;
-    set_single(*mover, motion, m, force.dot(wanted) / m);
-    add_brake(*mover, what.joint.friction_Nm);
+  if (mover->rank < 6) {
+    set_motions(*mover, what, X_WB, M, wanted, what.joint.stiffness, what.joint.damping / dt_s);
+    add_joint(*mover, what, X_WB);
     return true;
   }
   mover->wanted = wanted;
@@ -139,28 +177,26 @@ void ConstraintProblem::follow(const ConstraintProblem& led) noexcept {
     mover.wanted = led.displacement_at_centre(other);
     unknowns_ += mover.rank;
   }
+  limits_ = led.limits_;
+  add_joint_rows();
 }
 
-void ConstraintProblem::add_brake(const Mover& hinged, double friction_Nm) noexcept {
-  if (!(friction_Nm > 0.0) || unknowns_ == kMostUnknowns) return;
-  brakes_.push_back({&hinged, friction_Nm, unknowns_++});
-}
-
-void ConstraintProblem::add_brakes() noexcept {
+void ConstraintProblem::add_joint_rows() noexcept {
   for (const Brake& brake : brakes_) {
-    const double spring = kBrakeSoftness * brake.friction_Nm / kFarthestTurn_rad;
-    const double unpulled = -brake.friction_Nm / spring;  // t*
-    const Vec6& hinge = brake.hinged->hinge;
-    const double turn = hinge.tail<3>().norm();
-    const double wanted = brake.hinged->wanted.dot(hinge) / hinge.squaredNorm();
+    const double spring = kBrakeSoftness * brake.friction / kFarthestWay;
+    const double unpulled = -brake.friction / spring;  // t*
+    const Mover& mover = *brake.mover;
+    const double wanted =
+        brake.per_unknown * mover.wanted.dot(mover.motions.col(0)) / mover.motions.col(0).squaredNorm();
     for (const double side : {1.0, -1.0}) {
       normals_.resize(normals_.size() + unknowns_, 0.0);
       double* const row = normals_.data() + normals_.size() - unknowns_;
       row[brake.unknown] = 1.0 / std::sqrt(spring);
-      row[brake.hinged->first] = -side * turn;
-      offsets_.push_back(side * turn * wanted - unpulled);
+      row[mover.first] = -side * brake.per_unknown;
+      offsets_.push_back(side * wanted - unpulled);
     }
   }
+  for (const Limit& limit : limits_) add_row(limit.body, -1, limit.push, -limit.way_left);
 }
 
 bool ConstraintProblem::add_row(int body_a, int body_b, const Push& push, double offset) noexcept {
@@ -173,8 +209,9 @@ bool ConstraintProblem::add_row(int body_a, int body_b, const Push& push, double
     double* const g = row + mover->first;
     const Vec3 torque = push.torque + (push.p_W - mover->centre).cross(push.force);
     offset -= sign * (push.force.dot(mover->wanted.head<3>()) + torque.dot(mover->wanted.tail<3>()));
-    if (mover->rank == 1) {
-      g[0] = sign * (push.force.dot(mover->hinge.head<3>()) + torque.dot(mover->hinge.tail<3>()));
+    if (mover->rank < 6) {
+      for (Index i = 0; i < mover->rank; ++i)
+        g[i] = sign * work(push, mover->centre, mover->motions.col(Eigen::Index(i)));
       return;
     }
     for (int i = 0; i < 3; ++i) {
@@ -202,7 +239,11 @@ const QpAnswer& ConstraintProblem::solve(std::span<const int> first, int max_ite
 
 Vec6 ConstraintProblem::displacement_at_centre(const Mover& mover) const noexcept {
   const double* const z = answer_.z.data() + mover.first;
-  if (mover.rank == 1) return mover.wanted + mover.hinge * z[0];
+  if (mover.rank < 6) {
+    Vec6 x = mover.wanted;
+    for (Index i = 0; i < mover.rank; ++i) x += mover.motions.col(Eigen::Index(i)) * z[i];
+    return x;
+  }
   const Vec3 along(z[0], z[1], z[2]);
   const Vec3 about(z[3], z[4], z[5]);
   return mover.wanted + column(mover.per_way * along, mover.turns * about);

@@ -10,10 +10,13 @@
 /// contact forces in newtons, and M (x - x*) is their sum: what the hand feels, and nothing else.
 ///
 /// With x = x* + B z and M^-1 = B B^T it is the nearest point to the origin in a polyhedron (small_qp.h): six
-/// unknowns for a free body, one for a hinged one. A hinge with dry friction has a brake, one more unknown t
-/// that may not be less than the angle turned, either way, and that the friction's torque pulls down:
+/// unknowns for a free body, one for a hinged or sliding one, three for one on a ball. A joint with dry
+/// friction has a brake, one more unknown t that may not be less than the way a of its position, either way,
+/// and that the friction pulls down:
 ///
 ///     t >= a,  t >= -a,   energy  T t + e t^2 / 2      so |T_a| <= T + e t, with e t a thousandth of T
+///
+/// A joint's spring and damper are part of its body's metric, its limits are rows.
 
 #include <vector>
 
@@ -35,8 +38,11 @@ HeldMetric held_metric(const Coupling& coupling, double dt_s) noexcept;
 Vec6 balanced_step(const Coupling& coupling, double dt_s, const Pose& X_WH_proxy, const Pose& X_WH,
                    const Twist& V_WH) noexcept;
 
+/// How many unknowns a body needs, with the one for its joint's friction.
+std::size_t unknowns_of(const Joint& joint) noexcept;
+
 /// A body whose displacement is unknown. Its six unknowns are the way of `centre`, each times `per_way`, and
-/// the turn, the columns of `turns`; or the one unknown of a hinge is the motion `hinge`.
+/// the turn, the columns of `turns`; or the fewer ones of a jointed body are the columns of `motions`.
 struct Mover {
   int body = -1;
   std::size_t first = 0, rank = 0;  ///< its unknowns
@@ -45,7 +51,7 @@ struct Mover {
   Vec6 wanted = Vec6::Zero();       ///< x* at the centre [m, rad]
   double per_way = 0.0;
   Mat3 turns = Mat3::Zero();
-  Vec6 hinge = Vec6::Zero();
+  JointMotions motions;
 };
 
 /// What a row pushes with, per unit of its multiplier: a force at a point, and a torque beside it.
@@ -64,14 +70,15 @@ class ConstraintProblem {
   void clear() noexcept;
   /// The held part. `wanted` is told at the handle p_WH. False, and the body stays where it is, when there is
   /// no room for its unknowns.
-  bool add_held(int body, const Joint& joint, const Pose& X_WB, const Vec3& p_WH, const HeldMetric& metric,
+  bool add_held(int body, const Body& what, const Pose& X_WB, const Vec3& p_WH, const HeldMetric& metric,
                 const Vec6& wanted) noexcept;
   /// A body that resists with its inertia; `wanted` is where it goes when nothing touches it.
   bool add_free(int body, const Body& what, const Pose& X_WB, const Vec6& wanted, double dt_s) noexcept;
-  /// The same bodies, each wanting to go where the other problem's answer has it; without brakes.
+  /// The same bodies, each wanting to go where the other problem's answer has it, and the rows of their
+  /// joints' limits; friction has had its say.
   void follow(const ConstraintProblem& led) noexcept;
-  /// The rows of the brakes: after the bodies, before other rows.
-  void add_brakes() noexcept;
+  /// The rows of brakes and limits: after the bodies, before other rows.
+  void add_joint_rows() noexcept;
 
   /// Adds the row  push . (x_a - x_b) >= offset. A body that was not added does not move. False when full.
   bool add_row(int body_a, int body_b, const Push& push, double offset) noexcept;
@@ -98,20 +105,29 @@ class ConstraintProblem {
 
  private:
   struct Brake {
-    const Mover* hinged;
-    double friction_Nm;
+    const Mover* mover;
+    double friction;     // [N m or N]
+    double per_unknown;  // the joint's way for its body's unknown [rad or m]
     std::size_t unknown;
+  };
+  struct Limit {
+    int body;
+    Push push;        // along the joint's position
+    double way_left;  // [rad or m], not negative
   };
   static constexpr std::size_t kMostMovers = kMostUnknowns;
 
   const Mover* mover_of(int body) const noexcept;
   Mover* next_mover(int body, std::size_t rank, const Vec3& origin, const Vec3& centre) noexcept;
-  void add_brake(const Mover& hinged, double friction_Nm) noexcept;
+  void set_motions(Mover& mover, const Body& what, const Pose& X_WB, const Mat6& metric, const Vec6& wanted,
+                   double spring, double damping) noexcept;
+  void add_joint(const Mover& mover, const Body& what, const Pose& X_WB) noexcept;
 
   Mover movers_[kMostMovers];
   std::size_t mover_count_ = 0;
   std::size_t unknowns_ = 0;
   StaticVector<Brake, kMostMovers> brakes_;
+  StaticVector<Limit, 2 * kMostMovers> limits_;
   std::vector<double> normals_, offsets_;
   std::size_t most_rows_;
   QpAnswer answer_;

@@ -39,28 +39,21 @@ Vec3 bend(const ShadingNormals& a, const ShadingNormals& b, const Pose& X_AB, co
   return 0.5 * (rotated(X_AB.R, by_b) - by_a);
 }
 
-}  // namespace
+/// The rows of a patch: one per corner.
+struct RowMaker {
+  const World& world;
+  const FrameSettings& settings;
+  FrameState& state;
 
-void make_corner_rows(const World& world, FrameState& state) noexcept {
-  ConstraintState& c = state.constraint;
-  ContactRows& out = state.contacts;
-  out.rows.clear();
-  out.full = false;
-  c.names.clear();
-  c.shaded.clear();
-  c.shades = c.bent = false;
-  PatchCorners corners;
-  const std::span<const ContactPatch> patches = state.finder.patches();
-  Pose X_AB;
-  for (Index p = 0; p < patches.size(); ++p) {
-    const ContactPatch& patch = patches[p];
+  void add(const ContactPatch& patch, int number, bool own) const noexcept {
+    if (patch.manifold.points.empty()) return;  // only watched
+    ConstraintState& c = state.constraint;
+    ContactRows& out = state.contacts;
     const Pose& X_WA = state.world.X_WB[Index(patch.body_a)];
-    if (p == 0 || patch.body_a != patches[p - 1].body_a || patch.body_b != patches[p - 1].body_b)
-      X_AB = relative_pose(X_WA, state.world.X_WB[Index(patch.body_b)]);
-    if (patch.manifold.points.empty()) continue;  // only watched
+    const Pose X_AB = relative_pose(X_WA, state.world.X_WB[Index(patch.body_b)]);
+    PatchCorners corners;
     if (patch.of_surfaces) {
       const ContactPoint& point = patch.manifold.points[0];
-      corners.clear();
       corners.push_back({0.5 * (point.p_a + point.p_b), point.distance});
     } else {
       patch_corners(world.bodies[Index(patch.body_a)].part->pieces[Index(patch.piece_a)],
@@ -68,6 +61,13 @@ void make_corner_rows(const World& world, FrameState& state) noexcept {
                     patch.manifold, patch.distance, patch.tolerance, corners);
     }
     const Vec3 normal_W = X_WA.R * patch.manifold.normal;
+    const double friction = settings.friction.between(patch.body_a, patch.body_b);
+    const double restitution = settings.impacts.restitution.between(patch.body_a, patch.body_b);
+    // What the hand drives into something that is held is no blow: its coupling is what bounces.
+    const int other = patch.body_a == state.tool.body   ? patch.body_b
+                      : patch.body_b == state.tool.body ? patch.body_a
+                                                        : -1;
+    const bool struck = other < 0 || world.bodies[Index(other)].joint.kind == JointKind::kFree;
     for (Index i = 0; i < corners.size(); ++i) {
       if (out.rows.size() == out.rows.capacity()) {
         out.full = true;
@@ -76,29 +76,55 @@ void make_corner_rows(const World& world, FrameState& state) noexcept {
       ContactRow& row = out.rows.emplace_back();
       row.body_a = patch.body_a;
       row.body_b = patch.body_b;
-      row.patch = static_cast<int>(p);
+      row.patch = number;
       row.n_BA_W = normal_W;
       row.p_W = X_WA * corners[i].p_A;
       row.distance = corners[i].distance;
       row.tolerance = patch.tolerance;
+      row.friction = friction;
+      row.restitution = restitution;
+      row.struck = struck;
       c.names.push_back(name_of(patch, i));
-      if (state.shading.empty()) continue;
+      if (!own || state.shading.empty()) continue;
       const Vec3 bent = bend(state.shading[Index(patch.body_a)], state.shading[Index(patch.body_b)], X_AB,
                              patch, corners[i]);
       c.bent |= !bent.isZero(0.0);
       c.shaded.push_back(bent.isZero(0.0) ? normal_W : Vec3((normal_W + X_WA.R * bent).normalized()));
     }
   }
+};
+
+}  // namespace
+
+void make_corner_rows(const World& world, const FrameSettings& settings, FrameState& state) noexcept {
+  ConstraintState& c = state.constraint;
+  ContactRows& out = state.contacts;
+  out.rows.clear();
+  out.full = false;
+  c.names.clear();
+  c.shaded.clear();
+  c.shades = c.bent = false;
+  const std::span<const ContactPatch> patches = state.finder.patches();
+  const RowMaker maker{world, settings, state};
+  for (Index p = 0; p < patches.size() && !out.full; ++p)
+    if (state.free.of_held(patches[p])) maker.add(patches[p], static_cast<int>(p), true);
+  c.own_rows = out.rows.size();
+  for (Index p = 0; p < patches.size() && !out.full; ++p)
+    if (!state.free.of_held(patches[p])) maker.add(patches[p], static_cast<int>(p), false);
+}
+
+std::span<ContactRow> own_rows(FrameState& state) noexcept {
+  return {state.contacts.rows.data(), state.constraint.own_rows};
 }
 
 void add_contact_rows(bool opening, ConstraintProblem& problem, FrameState& state) noexcept {
   ConstraintState& c = state.constraint;
   c.first_row = problem.rows();
-  for (const ContactRow& row : state.contacts.rows) {
+  for (const ContactRow& row : own_rows(state)) {
     const double offset = c.skin_m - row.distance;
     problem.add_row(row.body_a, row.body_b, push_of(row), opening ? offset : std::min(0.0, offset));
   }
-  c.feedback.assign(state.contacts.rows.size(), 0.0);
+  c.feedback.assign(c.own_rows, 0.0);
 }
 
 void exchange_normals(FrameState& state) noexcept {
@@ -124,7 +150,7 @@ double gap_at_trial(const ContactRow& row, const FrameState& state) noexcept {
 void feed_back(double share, FrameState& state) noexcept {
   ConstraintState& c = state.constraint;
   ConstraintProblem& problem = c.moves();
-  for (Index r = 0; r < state.contacts.rows.size(); ++r) {
+  for (Index r = 0; r < c.own_rows; ++r) {
     const ContactRow& row = state.contacts.rows[r];
     const double linear = problem.opening(row.body_a, row.body_b, push_of(row));
     const double missing = (row.distance + share * linear - gap_at_trial(row, state)) / share;

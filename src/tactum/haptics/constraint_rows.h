@@ -17,8 +17,12 @@ namespace tactum {
 
 struct FrameState;
 
-/// Fills state.contacts.rows, and in state.constraint the rows' names and shaded normals.
-void make_corner_rows(const World& world, FrameState& state) noexcept;
+/// Fills state.contacts.rows, and in state.constraint the rows' names and shaded normals. The rows of the
+/// island that holds the held part come first, `own_rows` of them: those are the constraint problem's.
+void make_corner_rows(const World& world, const FrameSettings& settings, FrameState& state) noexcept;
+
+/// The rows of the constraint problem.
+std::span<ContactRow> own_rows(FrameState& state) noexcept;
 
 /// Adds them to the problem. Where a gap is below the skin, `opening` asks for the skin, for which there may
 /// be no room; else only that it closes no further, which staying keeps.

@@ -30,7 +30,7 @@ Wrench haptic_frame(const World& world, const FrameSettings& settings, const Dev
   if (state.hand.known) {
     // How fast does everything move, and how far may it come: delta = v_c dt.
     wanted_velocities(world, settings, dt, state);
-    tolerances_from_speed(settings, dt, state);
+    tolerances_from_speed(world, settings, dt, state);
     state.ended(Stage::kVelocities);
 
     // Which pairs could touch, and where do they?

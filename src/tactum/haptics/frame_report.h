@@ -45,6 +45,7 @@ struct FrameReport {
       0.0;                      ///< smallest, from the start of the frame; the whole step without impact [s]
   int contact_points = 0;       ///< rows of the contact problem
   int held_contact_points = 0;  ///< ... that push the held part
+  int impacts = 0;              ///< pairs of bodies that hit each other, blow by blow (constraint response)
   int solver_iterations = 0;
   int active_constraints = 0;  ///< rows that hold the bodies (constraint response)
   int validation_tests = 0;    ///< exact tests of poses before they were taken

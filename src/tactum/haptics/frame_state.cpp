@@ -22,7 +22,9 @@ FrameState::FrameState(const World& constant_world, const FrameSettings& setting
       X_WB_start(world.X_WB),
       reach(constant_world.bodies.size(), 0.0),
       contacts(settings.budget.rooms.patches, static_cast<std::size_t>(settings.budget.max_contact_points)),
-      constraint(constant_world, settings) {
+      constraint(constant_world, settings),
+      free(constant_world, settings) {
+  if (settings.response == ResponseModel::kConstraint) begin_midway(constant_world, settings.dt_s, world);
   hand.X_WD = settings.workspace.X_WD;
   if (!settings.shading.on) return;
   for (const Body& body : constant_world.bodies)

@@ -6,7 +6,9 @@
 #include "tactum/collision/contact_finder.h"
 #include "tactum/haptics/constraint.h"
 #include "tactum/haptics/contact_force.h"
+#include "tactum/haptics/free_bodies.h"
 #include "tactum/haptics/hand.h"
+#include "tactum/haptics/impulse_display.h"
 #include "tactum/haptics/safety.h"
 #include "tactum/haptics/settings.h"
 #include "tactum/haptics/shading.h"
@@ -34,6 +36,7 @@ struct FrameState {
   ContactFinder finder;
   std::vector<ShadingNormals> shading;  ///< one per body; empty when shading is off
   SmoothingState smoothing;
+  ImpulseDisplay blows;
   PortState port;
   SafetyState safety;
   StageObserver* observer;  ///< may be null
@@ -45,6 +48,7 @@ struct FrameState {
   std::vector<double> reach;
   ContactRows contacts;
   ConstraintState constraint;
+  FreeBodies free;
 
   void ended(Stage stage) noexcept {
     if (observer) observer->stage_ended(stage);

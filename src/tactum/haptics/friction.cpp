@@ -77,7 +77,7 @@ FrictionPatch* Friction::patch_of(const PatchKey& key) noexcept {
 }
 
 /// The patches that push in the last answer.
-void Friction::find_pushing(const World& world, const FrictionSettings& settings,
+void Friction::find_pushing(const World& world, const PairCoefficients& settings,
                             std::span<const ContactRow> rows, std::span<const ContactPatch> patches,
                             double skin_m, Index first_row, const ConstraintProblem& problem) noexcept {
   const auto for_pushing_rows = [&](const auto& visit) {
@@ -114,7 +114,7 @@ void Friction::find_pushing(const World& world, const FrictionSettings& settings
 }
 
 /// The patches that held in the last frame, do not push by themselves, and touch.
-void Friction::find_holding(const World& world, const FrictionSettings& settings,
+void Friction::find_holding(const World& world, const PairCoefficients& settings,
                             std::span<const ContactRow> rows, std::span<const ContactPatch> patches,
                             std::span<const Pose> X_WB, double skin_m,
                             const ConstraintProblem& problem) noexcept {
@@ -139,7 +139,7 @@ void Friction::find_holding(const World& world, const FrictionSettings& settings
   }
 }
 
-bool Friction::begin(const World& world, const FrictionSettings& settings, std::span<const ContactRow> rows,
+bool Friction::begin(const World& world, const PairCoefficients& settings, std::span<const ContactRow> rows,
                      std::span<const ContactPatch> patches, std::span<const Pose> X_WB, double skin_m,
                      std::size_t first_row, ConstraintProblem& problem) noexcept {
   patches_.clear();

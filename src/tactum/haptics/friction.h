@@ -62,7 +62,7 @@ class Friction {
 
   /// The patches that push in the last answer, whose contact rows begin at `first_row`; their rows are added
   /// to the problem. False when there is none.
-  bool begin(const World& world, const FrictionSettings& settings, std::span<const ContactRow> rows,
+  bool begin(const World& world, const PairCoefficients& settings, std::span<const ContactRow> rows,
              std::span<const ContactPatch> patches, std::span<const Pose> X_WB, double skin_m,
              std::size_t first_row, ConstraintProblem& problem) noexcept;
   /// Lets patches slip by what they slid in the last answer. True when that changed a row.
@@ -89,10 +89,10 @@ class Friction {
     bool held = false;   ///< its cone pushed
     bool stuck = false;  ///< ... and it did not slip
   };
-  void find_pushing(const World& world, const FrictionSettings& settings, std::span<const ContactRow> rows,
+  void find_pushing(const World& world, const PairCoefficients& settings, std::span<const ContactRow> rows,
                     std::span<const ContactPatch> patches, double skin_m, std::size_t first_row,
                     const ConstraintProblem& problem) noexcept;
-  void find_holding(const World& world, const FrictionSettings& settings, std::span<const ContactRow> rows,
+  void find_holding(const World& world, const PairCoefficients& settings, std::span<const ContactRow> rows,
                     std::span<const ContactPatch> patches, std::span<const Pose> X_WB, double skin_m,
                     const ConstraintProblem& problem) noexcept;
   FrictionPatch* patch_of(const PatchKey& key) noexcept;

@@ -42,12 +42,12 @@ void pull_held(const World& world, const FrameSettings& settings, double rest, F
   state.world.V_WB[i] = constrained_velocity(joint, X_WB, state.resistance[i], pull);
 }
 
-/// Damping and friction of every hinge but that of body `spared`.
-void slow_hinges(const World& world, double h, int spared, FrameState& state) {
+/// What joints do to the motion, but that of body `spared`.
+void slow_joints(const World& world, double h, int spared, FrameState& state) {
   for (Index i = 0; i < world.bodies.size(); ++i) {
     if (static_cast<int>(i) == spared || !world.bodies[i].moves()) continue;
     Twist& V_WB = state.world.V_WB[i];
-    V_WB = after_hinge_friction(world.bodies[i].joint, state.world.X_WB[i], state.mobility[i], h, V_WB);
+    V_WB = after_joint(world.bodies[i], state.world.X_WB[i], state.mobility[i], h, V_WB);
   }
 }
 
@@ -93,7 +93,7 @@ void respond_by_penalty(const World& world, const FrameSettings& settings, doubl
   const double impact = smallest_time_of_impact(rows, X_WB, V_WB, dt_s);
   const double rest = dt_s - impact;
   // The held part has no mass to be slowed before the impact: its friction acts where it is pulled.
-  slow_hinges(world, impact, rest > 0.0 ? state.tool.body : -1, state);
+  slow_joints(world, impact, rest > 0.0 ? state.tool.body : -1, state);
   advance_distances(rows, X_WB, V_WB, impact);
   advance_bodies(world, V_WB, impact, X_WB);
 
@@ -104,7 +104,7 @@ void respond_by_penalty(const World& world, const FrameSettings& settings, doubl
     report.solver_iterations = solved.iterations;
     if (!solved.converged) report.flags |= frame_flag::kSolverBounded;
     report_contacts(state, rest, report);
-    slow_hinges(world, rest, -1, state);
+    slow_joints(world, rest, -1, state);
     limit_held(settings, dt_s, state);
     advance_bodies(world, V_WB, rest, X_WB);
   }
@@ -144,8 +144,9 @@ void wanted_velocities(const World& world, const FrameSettings& settings, double
   limit_held(settings, dt_s, state);
 }
 
-void tolerances_from_speed(const FrameSettings& settings, double dt_s, FrameState& state) noexcept {
-  if (settings.response == ResponseModel::kConstraint) return trusted_reach(dt_s, state);
+void tolerances_from_speed(const World& world, const FrameSettings& settings, double dt_s,
+                           FrameState& state) noexcept {
+  if (settings.response == ResponseModel::kConstraint) return trusted_reach(world, dt_s, state);
   for (Index i = 0; i < state.reach.size(); ++i) {
     const Twist& V = state.world.V_WB[i];
     state.reach[i] = (V.v.norm() + V.w.norm() * state.finder.radius(static_cast<int>(i))) * dt_s;
@@ -171,10 +172,11 @@ void respond(const World& world, const FrameSettings& settings, double dt_s, Fra
 
 Wrench felt_wrench(const FrameSettings& settings, FrameState& state, FrameReport& report) noexcept {
   report.X_WH = state.hand.X_WH;
+  const Wrench blows = state.blows.next();
   if (state.tool.body < 0) return {};
   const Pose& X_WB = state.world.X_WB[Index(state.tool.body)];
   report.X_WH_proxy = X_WB * state.tool.X_BH;
-  if (settings.response == ResponseModel::kConstraint) return state.constraint.felt;
+  if (settings.response == ResponseModel::kConstraint) return state.constraint.felt + blows;
   // The velocity that counts is the way of the whole frame, not the last part's after an impact.
   const Pose X_WH_before = state.X_WB_start[Index(state.tool.body)] * state.tool.X_BH;
   const Twist V_WH_proxy = twist_between(X_WH_before, report.X_WH_proxy, settings.dt_s);

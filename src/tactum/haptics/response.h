@@ -18,7 +18,8 @@ void wanted_velocities(const World& world, const FrameSettings& settings, double
                        FrameState& state) noexcept;
 
 /// v_c dt of every body: linear and angular speed bound [Gregory 2000, 5.2]. Fills state.reach.
-void tolerances_from_speed(const FrameSettings& settings, double dt_s, FrameState& state) noexcept;
+void tolerances_from_speed(const World& world, const FrameSettings& settings, double dt_s,
+                           FrameState& state) noexcept;
 
 /// What the response needs to know of a patch: points that carry its force, or its features.
 PatchPoints points_wanted(const FrameSettings& settings) noexcept;

@@ -51,14 +51,22 @@ struct Constraint {
   double max_turn_rad = 0.020;           ///< farthest that the held part turns in a frame [rad]
 };
 
-/// Dry friction in the constraint response, told for pairs of bodies (scene files tell it for materials).
-struct FrictionSettings {
+/// A coefficient for every pair of bodies (scene files tell it for pairs of materials).
+struct PairCoefficients {
   std::vector<double> coefficients;  ///< bodies x bodies, row after row; empty: none [-]
   int bodies = 0;
 
   double between(int a, int b) const noexcept {
     return coefficients.empty() ? 0.0 : coefficients[static_cast<std::size_t>(a * bodies + b)];
   }
+};
+
+/// Blows: bodies that hit each other in the constraint response, and how the hand feels those that hit the
+/// held part. "We are considering the possibility of force expansion over time or force amplification", 6.2.
+struct Impacts {
+  PairCoefficients restitution;  ///< of the speed of approach [-]
+  double expansion_s = 0.02;     ///< a blow is felt as a pulse of the same momentum, this long [s]
+  double amplification = 1.0;    ///< ... times this [-]
 };
 
 /// Which part is held, and where.
@@ -90,7 +98,8 @@ struct FrameSettings {
   ResponseModel response = ResponseModel::kConstraint;
   Penalty penalty;
   Constraint constraint;
-  FrictionSettings friction;
+  PairCoefficients friction;  ///< Coulomb's, in the constraint response
+  Impacts impacts;
   Shading shading;
   SmoothingSettings smoothing;
   PortSettings port;

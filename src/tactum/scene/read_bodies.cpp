@@ -7,23 +7,76 @@ namespace {
 
 constexpr double kWaterDensity = 1000.0;  // of a part whose file says nothing [kg/m^3]
 
+/// The keys of a joint and for which kinds they are.
+struct JointKey {
+  const char* name;
+  const char* kinds;
+};
+constexpr JointKey kJointKeys[] = {
+    {"axis", "hinge, slider"},
+    {"anchor_m", "hinge, ball"},
+    {"damping_Nms", "hinge, ball"},
+    {"damping_Ns_per_m", "slider"},
+    {"friction_Nm", "hinge"},
+    {"friction_N", "slider"},
+    {"stiffness_Nm_per_rad", "hinge"},
+    {"stiffness_N_per_m", "slider"},
+    {"rest_deg", "hinge"},
+    {"rest_m", "slider"},
+    {"limits_deg", "hinge"},
+    {"limits_m", "slider"},
+    {"swing_deg", "ball"},
+};
+
+bool is_for(const JointKey& key, const std::string& kind) {
+  return std::string_view(key.kinds).find(kind) != std::string_view::npos;
+}
+
+/// What a joint does to its motion, where `turns` tells torques and angles from forces and ways.
+void read_joint_action(const TomlReader& table, bool turns, Joint& joint) {
+  const double unit = turns ? radians(1.0) : 1.0;
+  joint.damping = table.number(turns ? "damping_Nms" : "damping_Ns_per_m", 0.0, kNotNegative);
+  if (joint.kind == JointKind::kBall) {
+    joint.upper = table.has("swing_deg") ? radians(table.number("swing_deg", {}, {0.0, 180.0})) : joint.upper;
+    return;
+  }
+  joint.friction = table.number(turns ? "friction_Nm" : "friction_N", 0.0, kNotNegative);
+  joint.stiffness = table.number(turns ? "stiffness_Nm_per_rad" : "stiffness_N_per_m", 0.0, kNotNegative);
+  joint.rest = unit * table.number(turns ? "rest_deg" : "rest_m", 0.0);
+  const char* const limits = turns ? "limits_deg" : "limits_m";
+  if (!table.has(limits)) return;
+  const std::vector<double> ends = table.numbers(limits, 2);
+  if (table.errors()) return;
+  joint.lower = unit * ends[0];
+  joint.upper = unit * ends[1];
+  if (!(joint.lower <= 0.0 && joint.upper >= 0.0 && joint.lower < joint.upper))
+    table.fail(limits, "the limits do not hold the joint as it stands, at 0",
+               fmt::format("{} to {}", ends[0], ends[1]), "a negative and a positive one, or 0");
+}
+
 Joint read_joint(const TomlReader& body, const Pose& X_WP) {
   Joint joint;
   if (!body.has("joint")) return joint;
-  const TomlReader table = body.table("joint", {"kind", "axis", "anchor_m", "damping_Nms", "friction_Nm"});
-  const std::string kind = table.choice("kind", {}, {"free", "fixed", "hinge"});
-  if (kind != "hinge") {
-    for (const char* key : {"axis", "anchor_m", "damping_Nms", "friction_Nm"})
-      if (table.has(key))
-        table.fail(key, fmt::format("\"{}\" in {} is for hinges only", key, table.section()), kind, "hinge");
-    joint.kind = kind == "fixed" ? JointKind::kFixed : JointKind::kFree;
-    return joint;
-  }
-  joint.kind = JointKind::kHinge;
-  joint.axis_W = X_WP.R * table.unit_vector3("axis");
-  joint.anchor_W = X_WP * table.vector3("anchor_m", Vec3::Zero());
-  joint.damping_Nms = table.number("damping_Nms", 0.0, kNotNegative);
-  joint.friction_Nm = table.number("friction_Nm", 0.0, kNotNegative);
+  const TomlReader table =
+      body.table("joint", {"kind", "axis", "anchor_m", "damping_Nms", "damping_Ns_per_m", "friction_Nm",
+                           "friction_N", "stiffness_Nm_per_rad", "stiffness_N_per_m", "rest_deg", "rest_m",
+                           "limits_deg", "limits_m", "swing_deg"});
+  const std::string kind = table.choice("kind", {}, {"free", "fixed", "hinge", "slider", "ball"});
+  for (const JointKey& key : kJointKeys)
+    if (table.has(key.name) && !is_for(key, kind))
+      table.fail(key.name,
+                 fmt::format("\"{}\" in {} is not for this kind of joint", key.name, table.section()), kind,
+                 key.kinds);
+  if (table.errors()) return joint;
+  joint.kind = kind == "fixed"    ? JointKind::kFixed
+               : kind == "hinge"  ? JointKind::kHinge
+               : kind == "slider" ? JointKind::kSlider
+               : kind == "ball"   ? JointKind::kBall
+                                  : JointKind::kFree;
+  if (joint.kind == JointKind::kFree || joint.kind == JointKind::kFixed) return joint;
+  if (joint.kind != JointKind::kBall) joint.axis_W = X_WP.R * table.unit_vector3("axis");
+  if (joint.kind != JointKind::kSlider) joint.anchor_W = X_WP * table.vector3("anchor_m", Vec3::Zero());
+  read_joint_action(table, joint.kind != JointKind::kSlider, joint);
   return joint;
 }
 

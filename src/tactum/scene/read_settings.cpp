@@ -53,7 +53,7 @@ void read_friction(const TomlReader& root, Scene& scene) {
   const auto pairs = root.tables("friction", {"material_a", "material_b", "coefficient"});
   if (pairs.empty()) return;
   const std::size_t bodies = scene.world.bodies.size();
-  FrictionSettings& friction = scene.settings.friction;
+  PairCoefficients& friction = scene.settings.friction;
   friction.bodies = static_cast<int>(bodies);
   friction.coefficients.assign(bodies * bodies, 0.0);
   for (const TomlReader& pair : pairs) {

@@ -74,6 +74,7 @@ class TomlReader {
   /// A text that must be one of `choices`.
   std::string choice(const char* key, std::optional<std::string> fallback,
                      const std::vector<std::string>& choices) const;
+  std::vector<double> numbers(const char* key, std::size_t count) const;
   Vec3 vector3(const char* key, std::optional<Vec3> fallback = {}) const;
   Vec3 unit_vector3(const char* key, std::optional<Vec3> fallback = {}) const;
   /// From `quat_wxyz` or `rpy_deg` (about fixed x, then y, then z, as in URDF); identity when neither is
@@ -92,7 +93,6 @@ class TomlReader {
 
  private:
   const toml::node* node(const char* key, bool required, const char* expected) const;
-  std::vector<double> numbers(const char* key, std::size_t count) const;
   void check_keys(Keys keys) const;
   std::string path_of(const char* key) const;
 

@@ -1,0 +1,42 @@
+#pragma once
+/// Which bodies may push each other in a frame: an island is a set of bodies that move and that contacts
+/// join. What does not move joins nothing. Islands answer independently of each other.
+
+#include <vector>
+
+#include "tactum/dynamics/world.h"
+
+namespace tactum {
+
+class Islands {
+ public:
+  explicit Islands(const World& world) : parent_(world.bodies.size()), moves_(world.bodies.size()) {
+    for (std::size_t i = 0; i < moves_.size(); ++i) moves_[i] = world.bodies[i].moves() ? 1 : 0;
+    clear();
+  }
+  /// Every body on its own.
+  void clear() noexcept {
+    for (std::size_t i = 0; i < parent_.size(); ++i) parent_[i] = static_cast<int>(i);
+  }
+  void join(int a, int b) noexcept {
+    if (!moves(a) || !moves(b)) return;
+    const int root_a = of(a);
+    const int root_b = of(b);
+    // The smaller number leads, so that the order of contacts does not matter.
+    parent_[static_cast<std::size_t>(std::max(root_a, root_b))] = std::min(root_a, root_b);
+  }
+  /// The number of a body's island: its first body.
+  int of(int body) const noexcept {
+    while (parent_[static_cast<std::size_t>(body)] != body) body = parent_[static_cast<std::size_t>(body)];
+    return body;
+  }
+  bool moves(int body) const noexcept { return moves_[static_cast<std::size_t>(body)] != 0; }
+  /// The island that a contact of two bodies belongs to; -1 when neither moves.
+  int of_contact(int a, int b) const noexcept { return moves(a) ? of(a) : moves(b) ? of(b) : -1; }
+
+ private:
+  std::vector<int> parent_;
+  std::vector<char> moves_;
+};
+
+}  // namespace tactum

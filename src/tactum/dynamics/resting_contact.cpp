@@ -1,0 +1,136 @@
+#include "tactum/dynamics/resting_contact.h"
+
+#include <algorithm>
+
+#include "tactum/base/tolerances.h"
+
+namespace tactum {
+namespace {
+
+using Index = std::size_t;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// Contacts come in the same order from frame to frame but for those that come and go; so many may at once
+/// before an impulse is forgotten.
+constexpr Index kLookAhead = 64;
+
+}  // namespace
+
+void RestingContact::add(const ContactRow& row, int index, std::uint64_t name, double gap_m,
+                         std::span<const Pose> X_WB, std::span<const Mobility> W, double h) noexcept {
+  if (rows_.size() == rows_.capacity()) return;
+  Row& next = rows_.emplace_back();
+  next.body_a = row.body_a;
+  next.body_b = row.body_b;
+  next.index = index;
+  next.name = name;
+  next.wanted = -gap_m / h;
+  next.contact.set(row, X_WB, W);
+  for (Index ahead = 0; ahead < std::min(kLookAhead, last_.size()); ++ahead) {
+    const Index i = (next_ + ahead) % last_.size();
+    if (last_[i].name != name) continue;
+    Vec3& impulse = next.contact.impulse;
+    for (int d = 0; d < (next.contact.friction > 0.0 ? 3 : 1); ++d)
+      impulse[d] = next.contact.direction[d].dot(last_[i].impulse_W);
+    impulse[0] = std::max(0.0, impulse[0]);
+    next_ = i + 1;
+    break;
+  }
+}
+
+void RestingContact::add_joint(int body, const Body& what, const Pose& X_WB, const Mobility& W,
+                               double h) noexcept {
+  const Joint& joint = what.joint;
+  const auto add_row = [&](const Vec6& along, double wanted, double softness, double lower, double upper) {
+    const Vec6 response = W * along;
+    const double mobile = along.dot(response);
+    if (mobile > 0.0) joints_.push_back({body, along, response, mobile, wanted, softness, lower, upper});
+  };
+  if (joint.kind == JointKind::kBall && joint.damping > 0.0)
+    for (int i = 0; i < 3; ++i)
+      add_row(Vec6::Unit(3 + i), 0.0, 1.0 / (h * joint.damping), -kInfinity, kInfinity);
+  const Vec6 along = joint_rate(what, X_WB);
+  const double position = joint_position(what, X_WB);
+  // A spring and a damper at the end of the step: impulse = -h (k (position + h rate - rest) + c rate).
+  const double stiff = joint.damping + h * joint.stiffness;
+  if (joint.kind != JointKind::kBall && stiff > 0.0)
+    add_row(along, -joint.stiffness * (position - joint.rest) / stiff, 1.0 / (h * stiff), -kInfinity,
+            kInfinity);
+  if (joint.friction > 0.0) add_row(along, 0.0, 0.0, -joint.friction * h, joint.friction * h);
+  if (std::isfinite(joint.lower)) add_row(along, (joint.lower - position) / h, 0.0, 0.0, kInfinity);
+  if (std::isfinite(joint.upper)) add_row(along, (joint.upper - position) / h, 0.0, -kInfinity, 0.0);
+}
+
+void RestingContact::tighten(int index, double by_m, double h) noexcept {
+  const auto found = std::lower_bound(rows_.begin(), rows_.end(), index,
+                                      [](const Row& row, int i) { return row.index < i; });
+  if (found != rows_.end() && found->index == index) found->wanted += by_m / h;
+}
+
+void RestingContact::push(const Row& row, const Vec3& impulse, std::span<Twist> V) noexcept {
+  for (int d = 0; d < (row.contact.friction > 0.0 ? 3 : 1); ++d)
+    row.contact.along[d].push(impulse[d], V[Index(row.body_a)], V[Index(row.body_b)]);
+}
+
+/// One round of projected Gauss-Seidel; the largest change of a velocity.
+double RestingContact::sweep(std::span<Twist> V) noexcept {
+  double change = 0.0;
+  for (JointRow& row : joints_) {
+    Twist& v = V[Index(row.body)];
+    const double off = row.wanted - row.along.dot(to_vector(v)) - row.softness * row.impulse;
+    const double impulse =
+        std::clamp(row.impulse + off / (row.mobility + row.softness), row.lower, row.upper);
+    v = v + to_twist(row.response * (impulse - row.impulse));
+    change = std::max(change, std::abs(impulse - row.impulse) * row.mobility);
+    row.impulse = impulse;
+  }
+  for (Row& row : rows_)
+    change = std::max(change, row.contact.relax(row.wanted, V[Index(row.body_a)], V[Index(row.body_b)]));
+  return change;
+}
+
+SolverResult RestingContact::solve(int max_sweeps, std::span<Twist> V) noexcept {
+  if (!started_)
+    for (const Row& row : rows_)
+      if (!row.contact.impulse.isZero(0.0)) push(row, row.contact.impulse, V);
+  started_ = true;
+
+  SolverResult result;
+  double last_gradient = 0.0;  // squared
+  for (Row& row : rows_) row.course.setZero();
+  for (JointRow& row : joints_) row.course = 0.0;
+  for (; result.iterations < max_sweeps; ++result.iterations) {
+    for (Row& row : rows_) row.before = row.contact.impulse;
+    for (JointRow& row : joints_) row.before = row.impulse;
+    result.converged = sweep(V) <= tolerances::kRestingVelocity;
+    if (result.converged || result.iterations + 1 == max_sweeps) break;
+    double gradient = 0.0;
+    for (const Row& row : rows_) gradient += (row.contact.impulse - row.before).squaredNorm();
+    for (const JointRow& row : joints_) gradient += (row.impulse - row.before) * (row.impulse - row.before);
+    const bool restart = !(last_gradient > gradient);
+    const double keep = restart ? 0.0 : gradient / last_gradient;
+    last_gradient = gradient;
+    for (Row& row : rows_) {
+      const Vec3 step = row.contact.impulse - row.before;
+      row.course *= keep;
+      row.contact.impulse += row.course;
+      if (keep > 0.0) push(row, row.course, V);
+      row.course += step;
+    }
+    for (JointRow& row : joints_) {
+      const double step = row.impulse - row.before;
+      row.course *= keep;
+      row.impulse += row.course;
+      V[Index(row.body)] = V[Index(row.body)] + to_twist(row.response * row.course);
+      row.course += step;
+    }
+  }
+  return result;
+}
+
+void RestingContact::end() noexcept {
+  last_.clear();
+  for (const Row& row : rows_) last_.push_back({row.name, row.contact.impulse_W()});
+}
+
+}  // namespace tactum

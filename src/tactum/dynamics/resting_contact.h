@@ -1,0 +1,87 @@
+#pragma once
+/// Contact forces of any number of bodies that rest, slide and roll on each other: the least change of their
+/// motion, in the metric of their inertia, after which no contact closes beyond its gap within the step,
+///
+///     vn + gap / h >= 0,   lambda_n >= 0,   |lambda_t| <= mu lambda_n against the sliding,
+///
+/// by projected Gauss-Seidel from the last frame's impulses, along conjugate directions [Stewart 1996;
+/// Silcowitz 2010]: plain sweeps carry a load through a stack of ten boxes too slowly. An impulse
+/// acts on both bodies, so momentum is kept to rounding however few sweeps there were; what sweeps are for is
+/// that no contact closes too far. A heap at rest begins at its answer and stays there.
+///
+/// Springs, damping, friction and limits of joints are rows of the same kind.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "tactum/dynamics/friction_row.h"
+
+namespace tactum {
+
+class RestingContact {
+ public:
+  RestingContact(std::size_t most_rows, std::size_t bodies) {
+    rows_.reserve(most_rows);
+    last_.reserve(most_rows);
+    joints_.reserve(bodies * kMostJointRows);
+  }
+
+  /// Forgets the rows, not the last frame's impulses.
+  void begin() noexcept {
+    rows_.clear();
+    joints_.clear();
+    next_ = 0;
+    started_ = false;
+  }
+  /// A contact whose gap may close to nothing within h. `name` is the row's from frame to frame; `index` is
+  /// the caller's, and rises.
+  void add(const ContactRow& row, int index, std::uint64_t name, double gap_m, std::span<const Pose> X_WB,
+           std::span<const Mobility> W, double h) noexcept;
+  /// A body's joint, when it does anything to its motion.
+  void add_joint(int body, const Body& what, const Pose& X_WB, const Mobility& W, double h) noexcept;
+  /// Asks of the contact that was added as `index` to close by `by_m` less.
+  void tighten(int index, double by_m, double h) noexcept;
+
+  /// Changes the twists; may be called again after tighten().
+  SolverResult solve(int max_sweeps, std::span<Twist> V) noexcept;
+  /// The impulses that act on body_a of the contact added as `index`, world axes, the normal one's size.
+  template <class Visit>
+  void for_each(const Visit& visit) const {
+    for (const Row& row : rows_) visit(row.index, row.contact.impulse[0], row.contact.impulse_W());
+  }
+  /// Keeps the impulses for the next frame.
+  void end() noexcept;
+
+ private:
+  static constexpr std::size_t kMostJointRows = 4;  // of a body
+
+  struct Row {
+    int body_a, body_b, index;
+    std::uint64_t name;
+    double wanted;  // least normal velocity [m/s]
+    FrictionRow contact;
+    Vec3 before = Vec3::Zero(), course = Vec3::Zero();  // impulses of the last sweep; the way they go
+  };
+  struct Last {
+    std::uint64_t name;
+    Vec3 impulse_W;
+  };
+  /// rate + softness impulse -> wanted, lower <= impulse <= upper.
+  struct JointRow {
+    int body;
+    Vec6 along, response;
+    double mobility, wanted, softness, lower, upper;
+    double impulse = 0.0, before = 0.0, course = 0.0;
+  };
+  static void push(const Row& row, const Vec3& impulse, std::span<Twist> V) noexcept;
+  double sweep(std::span<Twist> V) noexcept;
+
+  std::vector<Row> rows_;
+  std::vector<Last> last_;
+  std::vector<JointRow> joints_;
+  std::size_t next_ = 0;  // in last_: names come in the same order from frame to frame
+  bool started_ = false;
+};
+
+}  // namespace tactum

@@ -1,0 +1,23 @@
+#include "tactum/dynamics/spin.h"
+
+#include <Eigen/LU>
+
+namespace tactum {
+
+Vec3 rate_midway(const Mat3& inertia_B, const Mat3& R_WB, const Vec3& w_WB, double h) noexcept {
+  const Vec3 momentum = inertia_at(inertia_B, R_WB) * w_WB;
+  Vec3 rate = w_WB;
+  for (int round = 0; round < 3; ++round) {  // each is right to one more power of h
+    const Mat3 R_mid = exp_rotation(0.5 * h * rate) * R_WB;
+    rate = inertia_at(inertia_B, R_mid).inverse() * momentum;
+  }
+  return rate;
+}
+
+Vec3 rate_after(const Mat3& inertia_B, const Mat3& R_WB, const Vec3& w_WB, const Vec3& impulse,
+                const Mat3& R_WB_end) noexcept {
+  const Vec3 momentum = inertia_at(inertia_B, R_WB) * w_WB + impulse;
+  return inertia_at(inertia_B, R_WB_end).inverse() * momentum;
+}
+
+}  // namespace tactum

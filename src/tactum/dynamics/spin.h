@@ -1,0 +1,24 @@
+#pragma once
+/// How a body that nothing touches turns: its angular momentum stays, its axis wanders.
+///
+/// Over a step of h seconds it turns by the rate it has midway, w = I(R_mid)^-1 L, which keeps L to the bit
+/// and its energy to the second order of h.
+
+#include "tactum/math/screw.h"
+
+namespace tactum {
+
+/// Inertia about world axes at an orientation.
+inline Mat3 inertia_at(const Mat3& inertia_B, const Mat3& R_WB) {
+  return R_WB * inertia_B * R_WB.transpose();
+}
+
+/// The rate midway through a step that begins with rate `w_WB` at R_WB [rad/s].
+Vec3 rate_midway(const Mat3& inertia_B, const Mat3& R_WB, const Vec3& w_WB, double h) noexcept;
+
+/// The rate at the end of a step from R_WB to R_WB_end that began with rate `w_WB` and was pushed by
+/// `impulse`, an angular momentum [N m s].
+Vec3 rate_after(const Mat3& inertia_B, const Mat3& R_WB, const Vec3& w_WB, const Vec3& impulse,
+                const Mat3& R_WB_end) noexcept;
+
+}  // namespace tactum

@@ -1,0 +1,315 @@
+#include "tactum/haptics/free_bodies.h"
+
+#include <algorithm>
+
+#include "tactum/base/tolerances.h"
+#include "tactum/dynamics/spin.h"
+#include "tactum/haptics/constraint_rows.h"
+#include "tactum/haptics/coupling.h"
+#include "tactum/haptics/frame_state.h"
+
+namespace tactum {
+namespace {
+
+using Index = std::size_t;
+
+constexpr int kFeedbacks = 2;
+constexpr int kHalvings = 3;
+/// Blows in a frame, for every contact point; what is left then is taken as rest, without restitution.
+constexpr int kBlowsAPoint = 8;
+/// A gap below the skin opens by this share of what is missing in a frame.
+constexpr double kOpening = 0.1;
+
+/// Blows on the held part, told at the handle.
+class BlowsOnHeld final : public ImpactObserver {
+ public:
+  BlowsOnHeld(int held, const Vec3& p_WH) : held_(held), p_WH_(p_WH) {}
+  void hit(int body_a, int body_b, const Vec3& impulse, const Vec3& p_W) noexcept override {
+    if (body_a != held_ && body_b != held_) return;
+    const Vec3 on_held = body_a == held_ ? impulse : Vec3(-impulse);
+    sum_ = sum_ + Wrench{on_held, (p_W - p_WH_).cross(on_held)};
+    any_ = true;
+  }
+  const Wrench* sum() const { return any_ ? &sum_ : nullptr; }
+
+ private:
+  int held_;
+  Vec3 p_WH_;
+  Wrench sum_;
+  bool any_ = false;
+};
+
+bool is_held(const FrameState& state, Index body) { return static_cast<int>(body) == state.tool.body; }
+
+bool turns_freely(const Body& body) {
+  return body.joint.kind == JointKind::kFree || body.joint.kind == JointKind::kBall;
+}
+
+/// Inertia about the point it turns about: the centre of mass, or the ball it hangs on.
+Mat3 turning_inertia(const Body& body) {
+  if (body.joint.kind == JointKind::kFree) return body.inertia_B;
+  const Vec3 arm = body.X_WB.R.transpose() * (body.X_WB.p - body.joint.anchor_W);
+  return body.inertia_B + body.mass_kg * (arm.squaredNorm() * Mat3::Identity() - arm * arm.transpose());
+}
+
+/// Whether move_free_bodies() moves a body.
+bool moves_here(const World& world, const FrameState& state, Index body) {
+  if (!world.bodies[body].moves()) return false;
+  return state.free.held_island < 0 ||
+         state.free.islands.of(static_cast<int>(body)) != state.free.held_island;
+}
+
+/// The held part as one of the bodies: its coupling is what resists.
+void lend_held(const World& world, const FrameSettings& settings, double dt_s, FrameState& state) {
+  const Index held = Index(state.tool.body);
+  const Body& body = world.bodies[held];
+  const Pose& X_WB = state.world.X_WB[held];
+  const Vec3 arm = X_WB.R * state.tool.X_BH.p;
+  const HeldMetric metric = held_metric(settings.coupling, dt_s);
+  const Coupling both{.stiffness_N_per_m = metric.stiffness_N_per_m,
+                      .stiffness_Nm_per_rad = metric.stiffness_Nm_per_rad};
+  const Resistance M = coupling_resistance(both, arm, dt_s);
+  state.mobility[held] = mobility(body.joint, X_WB, M);
+  state.constraint.wanted = wanted_by_hand(settings, dt_s, state);
+  const Vec6 wanted = with_weight(world, settings, dt_s, state, state.constraint.wanted);
+  const Twist at_origin = moved(to_twist(wanted), -arm) * (1.0 / dt_s);
+  state.world.V_WB[held] = constrained_velocity(body.joint, X_WB, M, at_origin);
+}
+
+void add_rows(const World& world, double dt_s, FrameState& state) {
+  FreeBodies& f = state.free;
+  const ConstraintState& c = state.constraint;
+  const std::vector<Pose>& X_WB = state.world.X_WB;
+  f.resting.begin();
+  for (Index r = c.own_rows; r < state.contacts.rows.size(); ++r) {
+    const ContactRow& row = state.contacts.rows[r];
+    const double beyond = row.distance - c.skin_m;
+    f.resting.add(row, static_cast<int>(r), c.names[r], beyond < 0.0 ? kOpening * beyond : beyond, X_WB,
+                  state.mobility, dt_s);
+  }
+  for (Index i = 0; i < world.bodies.size(); ++i)
+    if (moves_here(world, state, i) && !is_held(state, i))
+      f.resting.add_joint(static_cast<int>(i), world.bodies[i], X_WB[i], state.mobility[i], dt_s);
+}
+
+/// The share of every island's step that its bodies' reach allows.
+void limit_shares(const World& world, double dt_s, FrameState& state) {
+  FreeBodies& f = state.free;
+  std::fill(f.share.begin(), f.share.end(), 1.0);
+  for (Index i = 0; i < world.bodies.size(); ++i) {
+    if (!moves_here(world, state, i)) continue;
+    const Twist& V = state.world.V_WB[i];
+    const double way = (V.v.norm() + V.w.norm() * state.finder.radius(static_cast<int>(i))) * dt_s;
+    double& share = f.share[Index(f.islands.of(static_cast<int>(i)))];
+    if (way * share > state.reach[i]) share = state.reach[i] / way;
+  }
+}
+
+/// Puts the bodies of unsettled islands where their step leads.
+void try_steps(const World& world, double dt_s, FrameState& state) {
+  const FreeBodies& f = state.free;
+  for (Index i = 0; i < world.bodies.size(); ++i) {
+    if (!moves_here(world, state, i)) continue;
+    const Index island = Index(f.islands.of(static_cast<int>(i)));
+    if (f.settled[island]) continue;
+    Pose& X_trial = state.constraint.X_WB_trial[i];
+    const Pose& X_WB = state.world.X_WB[i];
+    X_trial = constrained_pose(world.bodies[i], advanced(X_WB, state.world.V_WB[i], f.share[island] * dt_s));
+    if (!X_trial.finite()) X_trial = X_WB;
+  }
+}
+
+Index island_of(const FreeBodies& f, const ContactPatch& patch) {
+  return Index(f.islands.of_contact(patch.body_a, patch.body_b));
+}
+
+/// Settles the islands whose gaps are all open on trial; false when some are not.
+bool look(FrameState& state, FrameReport& report) {
+  FreeBodies& f = state.free;
+  ConstraintState& c = state.constraint;
+  const std::span<const ContactPatch> patches = state.finder.patches();
+  f.patch_asked.clear();
+  for (const ContactPatch& patch : patches) {
+    const bool asked = !f.of_held(patch) && !f.settled[island_of(f, patch)];
+    f.patch_asked.push_back(asked ? 1 : 0);
+    report.validation_tests += asked ? 1 : 0;
+  }
+  state.finder.distances_at(c.X_WB_trial, c.gap_trial, f.patch_asked);
+  std::fill(f.settled.begin(), f.settled.end(), 1);
+  bool all = true;
+  for (Index p = 0; p < patches.size(); ++p) {
+    if (!f.patch_asked[p] || may_become(c.gap[p], c.gap_trial[p], c.skin_m)) continue;
+    f.settled[island_of(f, patches[p])] = 0;
+    all = false;
+  }
+  return all;
+}
+
+/// Second-order correction, as in constraint_rows.h.
+void correct(double dt_s, FrameState& state) {
+  FreeBodies& f = state.free;
+  ConstraintState& c = state.constraint;
+  for (Index r = c.own_rows; r < state.contacts.rows.size(); ++r) {
+    const ContactRow& row = state.contacts.rows[r];
+    const Index island = Index(f.islands.of_contact(row.body_a, row.body_b));
+    if (f.settled[island]) continue;
+    const Index a = Index(row.body_a);
+    const Index b = Index(row.body_b);
+    const double speed = row.n_BA_W.dot(velocity_at(state.world.V_WB[a], row.p_W - state.world.X_WB[a].p) -
+                                        velocity_at(state.world.V_WB[b], row.p_W - state.world.X_WB[b].p));
+    const double share = f.share[island];
+    const double missing = (row.distance + share * speed * dt_s - gap_at_trial(row, state)) / share;
+    if (missing > 0.0) f.resting.tighten(static_cast<int>(r), missing, dt_s);
+  }
+}
+
+/// What the contacts did, for the report.
+void tell_forces(const FrameSettings& settings, double dt_s, FrameState& state) {
+  std::vector<ContactRow>& rows = state.contacts.rows;
+  state.free.resting.for_each([&](int index, double normal, const Vec3& impulse_W) {
+    ContactRow& row = rows[Index(index)];
+    row.impulse = normal;
+    const Vec3 across = impulse_W - row.n_BA_W * normal;
+    const bool on_held = row.body_a == state.tool.body || row.body_b == state.tool.body;
+    if (!on_held || across.isZero(0.0) || rows.size() == rows.capacity()) return;
+    ContactRow friction = row;
+    friction.n_BA_W = across.normalized();
+    friction.impulse = across.norm();
+    rows.push_back(friction);
+  });
+  if (!state.free.held_here) return;
+  const Index held = Index(state.tool.body);
+  const Vec3 arm = state.world.X_WB[held].R * state.tool.X_BH.p;
+  feel(settings, dt_s, to_vector(moved(state.world.V_WB[held], arm) * dt_s), state);
+}
+
+}  // namespace
+
+FreeBodies::FreeBodies(const World& world, const FrameSettings& settings)
+    : islands(world),
+      resting(Index(settings.budget.max_contact_points), world.bodies.size()),
+      near_held(world.bodies.size(), 0),
+      w_start(world.bodies.size(), Vec3::Zero()),
+      w_free(world.bodies.size(), Vec3::Zero()),
+      share(world.bodies.size(), 1.0),
+      settled(world.bodies.size(), 0) {
+  patch_asked.reserve(settings.budget.rooms.patches);
+}
+
+void begin_midway(const World& world, double dt_s, WorldState& state) noexcept {
+  for (Index i = 0; i < world.bodies.size(); ++i)
+    if (world.bodies[i].moves()) state.V_WB[i].v -= world.gravity_W * (0.5 * dt_s);
+}
+
+void pull_free_bodies(const World& world, double dt_s, FrameState& state) noexcept {
+  for (Index i = 0; i < world.bodies.size(); ++i)
+    if (world.bodies[i].moves() && !is_held(state, i))
+      state.world.V_WB[i].v += world.gravity_W * (0.5 * dt_s);
+}
+
+void find_islands(const World& world, FrameState& state) noexcept {
+  FreeBodies& f = state.free;
+  f.islands.clear();
+  f.held_island = -1;
+  f.held_here = false;
+  for (const ContactPatch& patch : state.finder.patches()) f.islands.join(patch.body_a, patch.body_b);
+  const int held = state.tool.body;
+  const int island = held < 0 ? -1 : f.islands.of(held);
+  Index unknowns = 0;
+  f.alone = true;
+  for (Index i = 0; i < world.bodies.size(); ++i) {
+    const bool near = island >= 0 && world.bodies[i].moves() && f.islands.of(static_cast<int>(i)) == island;
+    f.near_held[i] = near ? 1 : 0;
+    f.alone &= near || !world.bodies[i].moves();
+    if (near) unknowns += unknowns_of(world.bodies[i].joint);
+  }
+  if (held < 0) return;
+  f.held_here = unknowns > kMostUnknowns;
+  if (!f.held_here) f.held_island = island;
+}
+
+void strike(const World& world, const FrameSettings& settings, double dt_s, FrameState& state,
+            FrameReport& report) noexcept {
+  std::vector<Twist>& V_WB = state.world.V_WB;
+  const std::vector<Pose>& X_WB = state.world.X_WB;
+  const int held = state.tool.body;
+  for (Index i = 0; i < world.bodies.size(); ++i) {
+    if (!world.bodies[i].moves()) continue;
+    state.mobility[i] = inertial_mobility(world.bodies[i], X_WB[i]);
+    if (world.bodies[i].joint.kind != JointKind::kFree && !is_held(state, i))
+      V_WB[i] = constrained_velocity(world.bodies[i].joint, X_WB[i],
+                                     inertial_resistance(world.bodies[i], X_WB[i]), V_WB[i]);
+  }
+  const Twist V_held = held < 0 ? Twist{} : V_WB[Index(held)];
+  BlowsOnHeld blows(held, held < 0 ? Vec3::Zero() : X_WB[Index(held)] * state.tool.X_BH.p);
+  report.impacts = resolve_impacts(state.contacts.rows, X_WB, state.mobility, dt_s,
+                                   kBlowsAPoint * static_cast<int>(state.contacts.rows.size()), V_WB, &blows);
+  if (held >= 0) V_WB[Index(held)] = V_held;  // the hand decides where that goes, and feels the blow
+  if (blows.sum()) state.blows.add(settings.impacts, dt_s, *blows.sum());
+
+  for (Index i = 0; i < world.bodies.size(); ++i) {
+    const Body& body = world.bodies[i];
+    if (!body.moves() || is_held(state, i)) continue;
+    state.free.w_start[i] = V_WB[i].w;
+    if (turns_freely(body)) V_WB[i].w = rate_midway(turning_inertia(body), X_WB[i].R, V_WB[i].w, dt_s);
+    if (body.joint.kind == JointKind::kBall) V_WB[i].v = V_WB[i].w.cross(X_WB[i].p - body.joint.anchor_W);
+    state.free.w_free[i] = V_WB[i].w;
+    V_WB[i].v += world.gravity_W * (0.5 * dt_s);
+    if (body.joint.kind != JointKind::kFree)
+      V_WB[i] = constrained_velocity(body.joint, X_WB[i], inertial_resistance(body, X_WB[i]), V_WB[i]);
+  }
+}
+
+void move_free_bodies(const World& world, const FrameSettings& settings, double dt_s, FrameState& state,
+                      FrameReport& report) noexcept {
+  FreeBodies& f = state.free;
+  if (f.alone && !f.held_here) return;
+  ConstraintState& c = state.constraint;
+  if (f.held_here) lend_held(world, settings, dt_s, state);
+  add_rows(world, dt_s, state);
+  const auto solve = [&] {
+    const SolverResult solved = f.resting.solve(settings.budget.solver_iterations, state.world.V_WB);
+    report.solver_iterations += solved.iterations;
+    if (!solved.converged) report.flags |= frame_flag::kSolverBounded;
+  };
+  solve();
+  limit_shares(world, dt_s, state);
+  c.X_WB_trial = state.world.X_WB;  // same size: nothing is allocated
+  std::fill(f.settled.begin(), f.settled.end(), 0);
+  for (int round = 0;; ++round) {
+    try_steps(world, dt_s, state);
+    if (look(state, report)) break;
+    ++report.validation_retries;
+    if (round < kFeedbacks) {
+      correct(dt_s, state);
+      solve();
+      limit_shares(world, dt_s, state);
+    } else {
+      for (Index i = 0; i < f.share.size(); ++i)
+        if (!f.settled[i]) f.share[i] = round < kFeedbacks + kHalvings ? 0.5 * f.share[i] : 0.0;
+      if (round > kFeedbacks + kHalvings) break;  // those stayed
+    }
+  }
+  for (Index i = 0; i < world.bodies.size(); ++i)
+    if (moves_here(world, state, i)) state.world.X_WB[i] = c.X_WB_trial[i];
+  for (Index p = 0; p < c.gap.size(); ++p)
+    if (!f.of_held(state.finder.patches()[p])) c.gap[p] = c.gap_trial[p];
+  f.resting.end();
+  tell_forces(settings, dt_s, state);
+}
+
+void end_turning(const World& world, FrameState& state) noexcept {
+  for (Index i = 0; i < world.bodies.size(); ++i) {
+    const Body& body = world.bodies[i];
+    if (!turns_freely(body) || is_held(state, i)) continue;
+    const Mat3 inertia_B = turning_inertia(body);
+    const Mat3& R_start = state.X_WB_start[i].R;
+    const Pose& X_WB = state.world.X_WB[i];
+    Twist& V = state.world.V_WB[i];
+    const Vec3 pushed = inertia_at(inertia_B, R_start) * (V.w - state.free.w_free[i]);
+    V.w = rate_after(inertia_B, R_start, state.free.w_start[i], pushed, X_WB.R);
+    if (body.joint.kind == JointKind::kBall) V.v = V.w.cross(X_WB.p - body.joint.anchor_W);
+  }
+}
+
+}  // namespace tactum

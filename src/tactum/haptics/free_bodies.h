@@ -1,0 +1,70 @@
+#pragma once
+/// The bodies that move by themselves, in the constraint response: they fall, hit, slide and rest, and
+/// nothing enters anything.
+///
+///     half of gravity's push -> blows -> the other half -> resting contact -> step on trial -> exact gaps
+///                                                                ^                                |
+///                                                                '---- fed back, or halved <------'
+///
+/// A body's velocity is that of the middle of the frame, so that it falls on the exact parabola and a ball
+/// that bounces without loss keeps its energy; blows are struck with the velocity at the beginning of the
+/// frame. Islands of bodies that touch answer apart from each other (dynamics/islands.h), so that what is
+/// stuck in one corner does not hold up the rest. The island of the held part is the problem of constraint.h,
+/// whose answer is exact, as long as it has room for it; where not, it is solved here like the others.
+
+#include "tactum/dynamics/impacts.h"
+#include "tactum/dynamics/islands.h"
+#include "tactum/dynamics/resting_contact.h"
+#include "tactum/haptics/frame_report.h"
+#include "tactum/haptics/settings.h"
+
+namespace tactum {
+
+struct FrameState;
+
+/// What is kept from frame to frame, and scratch, allocated at load time.
+struct FreeBodies {
+  FreeBodies(const World& world, const FrameSettings& settings);
+
+  Islands islands;
+  RestingContact resting;
+  int held_island = -1;         ///< the island that constraint.h answers for; -1: none
+  bool held_here = false;       ///< the held part's island had no room there
+  bool alone = true;            ///< nothing but that island moves
+  std::vector<char> near_held;  ///< of each body: in the held part's island in the last frame
+
+  /// Whether a patch belongs to the island that constraint.h answers for.
+  bool of_held(const ContactPatch& patch) const noexcept {
+    return held_island >= 0 && islands.of_contact(patch.body_a, patch.body_b) == held_island;
+  }
+
+  // Scratch of one frame, one entry per body, or per patch.
+  std::vector<Vec3> w_start;      ///< rates at the start [rad/s]
+  std::vector<Vec3> w_free;       ///< ... midway, if nothing touches [rad/s]
+  std::vector<double> share;      ///< of an island's step that is taken; by the island's first body [-]
+  std::vector<char> settled;      ///< an island's step has been found good
+  std::vector<char> patch_asked;  ///< patches whose exact gap is asked for
+};
+
+/// Takes half a frame of gravity back from the velocities a world starts with.
+void begin_midway(const World& world, double dt_s, WorldState& state) noexcept;
+
+/// Gravity up to the beginning of the frame.
+void pull_free_bodies(const World& world, double dt_s, FrameState& state) noexcept;
+
+/// Finds the islands, from the patches of the frame.
+void find_islands(const World& world, FrameState& state) noexcept;
+
+/// Strikes blows, and gives gravity's other half: afterwards every body that is not held
+/// has the velocity with which it would go on if nothing held it.
+void strike(const World& world, const FrameSettings& settings, double dt_s, FrameState& state,
+            FrameReport& report) noexcept;
+
+/// Moves all islands but `held_island`.
+void move_free_bodies(const World& world, const FrameSettings& settings, double dt_s, FrameState& state,
+                      FrameReport& report) noexcept;
+
+/// The rates at the end of the frame of the bodies that turn freely, from their mean ones.
+void end_turning(const World& world, FrameState& state) noexcept;
+
+}  // namespace tactum

@@ -1,0 +1,110 @@
+#pragma once
+/// A world that nobody holds, frame by frame in the constraint response.
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "tactum/geometry/primitives.h"
+#include "tactum/haptics/frame.h"
+#include "tactum/haptics/frame_state.h"
+
+namespace tactum {
+
+inline std::shared_ptr<const Part> solid_of(const Polytope& shape) {
+  Result<Part> part = part_from_clouds({shape.vertices});
+  EXPECT_TRUE(part);
+  return std::make_shared<const Part>(std::move(*part));
+}
+
+struct Sandbox {
+  World world;
+  FrameSettings settings;
+  std::unique_ptr<FrameState> state;
+  FrameReport report;
+  std::uint64_t frame = 0;
+  int penetrating_frames = 0;
+  std::uint32_t flags = 0;  ///< of all frames
+
+  /// Adds a body with the density of water; returns its number.
+  int add(const Polytope& shape, const Pose& X_WB, const Twist& V_WB = {}, const Joint& joint = {}) {
+    Body body;
+    body.part = solid_of(shape);
+    body.mass_kg = body.part->mass.mass;
+    body.inertia_B = body.part->mass.inertia;
+    body.X_WB = X_WB;
+    body.V_WB = V_WB;
+    body.joint = joint;
+    world.bodies.push_back(body);
+    return static_cast<int>(world.bodies.size()) - 1;
+  }
+  int add_fixed(const Polytope& shape, const Pose& X_WB) {
+    return add(shape, X_WB, {}, {.kind = JointKind::kFixed});
+  }
+  /// One coefficient for all pairs.
+  void rub(double mu) { settings.friction = all_pairs(mu); }
+  void bounce(double e) { settings.impacts.restitution = all_pairs(e); }
+  PairCoefficients all_pairs(double value) const {
+    return {std::vector<double>(world.bodies.size() * world.bodies.size(), value),
+            static_cast<int>(world.bodies.size())};
+  }
+
+  FrameState& begun() {
+    if (!state) state = std::make_unique<FrameState>(world, settings);
+    return *state;
+  }
+  void step(int frames = 1) {
+    for (int i = 0; i < frames; ++i) {
+      DeviceSample sample;
+      sample.valid = true;
+      sample.time_s = static_cast<double>(frame) * settings.dt_s;
+      FrameTick tick;
+      tick.index = frame++;
+      tick.now_s = sample.time_s;
+      haptic_frame(world, settings, sample, tick, begun(), report);
+      penetrating_frames += report.penetrating ? 1 : 0;
+      flags |= report.flags;
+    }
+  }
+  void run(double seconds) { step(static_cast<int>(std::lround(seconds / settings.dt_s))); }
+
+  const Pose& X(int body) { return begun().world.X_WB[static_cast<std::size_t>(body)]; }
+  /// The velocity at the end of the last frame: the state's is that of its middle.
+  Twist V(int body) {
+    Twist V = begun().world.V_WB[static_cast<std::size_t>(body)];
+    if (world.bodies[static_cast<std::size_t>(body)].moves()) V.v += world.gravity_W * (0.5 * settings.dt_s);
+    return V;
+  }
+  Vec3 momentum() {
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t i = 0; i < world.bodies.size(); ++i)
+      if (world.bodies[i].moves()) sum += world.bodies[i].mass_kg * V(static_cast<int>(i)).v;
+    return sum;
+  }
+  /// About the origin of the world.
+  Vec3 angular_momentum() {
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t i = 0; i < world.bodies.size(); ++i) {
+      const Body& body = world.bodies[i];
+      if (!body.moves()) continue;
+      const Pose& X_WB = X(static_cast<int>(i));
+      const Twist V_WB = V(static_cast<int>(i));
+      sum += X_WB.p.cross(body.mass_kg * V_WB.v) + X_WB.R * body.inertia_B * X_WB.R.transpose() * V_WB.w;
+    }
+    return sum;
+  }
+  double energy() {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < world.bodies.size(); ++i) {
+      const Body& body = world.bodies[i];
+      if (!body.moves()) continue;
+      const Twist V_WB = V(static_cast<int>(i));
+      const Vec3 w_B = X(static_cast<int>(i)).R.transpose() * V_WB.w;
+      sum += 0.5 * body.mass_kg * V_WB.v.squaredNorm() + 0.5 * w_B.dot(body.inertia_B * w_B) -
+             body.mass_kg * world.gravity_W.dot(X(static_cast<int>(i)).p);
+    }
+    return sum;
+  }
+};
+
+}  // namespace tactum
