@@ -67,7 +67,8 @@ TEST(BuiltinScenes, EveryOneBuildsIsHeldAndHasSomethingToReach) {
     if (!scene) continue;
     const World& world = scene->world;
     EXPECT_GE(world.bodies.size(), 2u) << source.name;
-    ASSERT_GE(scene->settings.tool.body, 0) << source.name;
+    const Tool& tool = scene->settings.tool;
+    ASSERT_TRUE(tool.body >= 0 || tool.picks) << source.name;
     for (const Body& body : world.bodies) {
       EXPECT_GT(body.mass_kg, 0.0) << source.name << " " << body.name;
       EXPECT_GT(body.inertia_B.determinant(), 0.0) << source.name << " " << body.name;
@@ -76,7 +77,8 @@ TEST(BuiltinScenes, EveryOneBuildsIsHeldAndHasSomethingToReach) {
     EXPECT_FALSE(scene->goals.empty()) << source.name;
     EXPECT_FALSE(GoalRecord(world, scene->goals).all_met()) << source.name << ": done before it begins";
     // The hand starts where the handle is.
-    const Pose X_WH = world.bodies[std::size_t(scene->settings.tool.body)].X_WB * scene->settings.tool.X_BH;
+    const Pose X_WH = tool.body < 0 ? scene->settings.workspace.X_WD
+                                    : world.bodies[std::size_t(tool.body)].X_WB * tool.X_BH;
     const Pose X_DH = scene->hand->at(-1.0).X_DH;
     const Workspace& space = scene->settings.workspace;
     EXPECT_LT((space.X_WD * (space.scale * X_DH.p) - X_WH.p).norm(), 2e-4)

@@ -258,8 +258,9 @@ TEST(SceneErrors, Names) {
   expect_error(25, "body = \"xylophone\"", "test.toml:25:8", "expected the name of a [[body]]");
   expect_error(19, "grip = \"frim\"", "test.toml:19:8", "frim");
   expect_error(2, "device = \"premium\"", "test.toml:2:10", "premium");
-  expect_error(24, "kind = \"dance\"", "test.toml:24:8",
-               "found \"dance\", expected one of \"turned\", \"moved\", \"followed\"");
+  expect_error(
+      24, "kind = \"dance\"", "test.toml:24:8",
+      "found \"dance\", expected one of \"turned\", \"moved\", \"touched\", \"picked\", \"followed\"");
   expect_error(13, "joint = { kind = \"screw\" }", "test.toml:13:18",
                "expected one of \"free\", \"fixed\", \"hinge\", \"slider\", \"ball\"");
 }
@@ -271,7 +272,8 @@ TEST(SceneErrors, Contradictions) {
   expect_error(10, "part = { }", "test.toml:10:8", "must have one shape: found none");
   expect_error(10, "part = { scale = 2, box = { size_m = [1, 1, 1] } }", "test.toml:10:18",
                "for meshes only");
-  expect_error(13, "joint = { kind = \"free\", axis = [0, 0, 1] }", "test.toml:13:33", "expected hinge, slider");
+  expect_error(13, "joint = { kind = \"free\", axis = [0, 0, 1] }", "test.toml:13:33",
+               "expected hinge, slider");
   expect_error(17, "body = \"plate\"", "test.toml:17:8", "a fixed body cannot be held");
   expect_error(17, "body = \"box\"\nradius_m = 0.1", "test.toml:18:12", "grasp = \"rim\" only");
   expect_error(21, "turn_deg = 30\nhold_s = 1", "test.toml:20:1", "must do one thing: found several");

@@ -73,9 +73,9 @@ inline constexpr double kConvexMesh = 1e-9;
 /// largest one asked for: a force error far below what a hand or a device resolves (1e-3).
 inline constexpr double kContactVelocity = 1e-6;
 
-/// Resting contacts are settled when a sweep changes no velocity by more than this [m/s]: a heap then drifts
-/// by less than a micrometre in a quarter of an hour. Rounding of 1 m/s is 1e-16.
-inline constexpr double kRestingVelocity = 1e-9;
+/// Resting contacts are settled when a sweep changes no velocity by more than this [m/s]. What is left is not
+/// lost: the next frame goes on from there, so a heap at rest comes to the rounding in the end.
+inline constexpr double kRestingVelocity = 1e-8;
 
 /// A direction in which less than this share of a body's mobility is left, once the directions found before
 /// are taken away, is none: a hinge's mobility is of rank one, but for rounding.

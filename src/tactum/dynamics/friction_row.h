@@ -69,7 +69,7 @@ struct FrictionRow {
     Vec3 after = impulse;
     for (int i = 1; i < 3; ++i)
       if (along[i].mobility > 0.0) after[i] -= along[i].velocity(a, b) / along[i].mobility;
-    const double across = std::hypot(after[1], after[2]);
+    const double across = std::sqrt(after[1] * after[1] + after[2] * after[2]);
     const double most = friction * normal;
     if (across > most) {
       after[1] *= most / across;

@@ -1,6 +1,8 @@
 #include "tactum/dynamics/resting_contact.h"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "tactum/base/tolerances.h"
 
@@ -16,13 +18,16 @@ constexpr Index kLookAhead = 64;
 
 }  // namespace
 
-void RestingContact::add(const ContactRow& row, int index, std::uint64_t name, double gap_m,
+void RestingContact::add(const ContactRow& row, int index, int island, std::uint64_t name, double gap_m,
                          std::span<const Pose> X_WB, std::span<const Mobility> W, double h) noexcept {
   if (rows_.size() == rows_.capacity()) return;
   Row& next = rows_.emplace_back();
   next.body_a = row.body_a;
   next.body_b = row.body_b;
   next.index = index;
+  next.island = island;
+  next.before.setZero();
+  next.course.setZero();
   next.name = name;
   next.wanted = -gap_m / h;
   next.contact.set(row, X_WB, W);
@@ -38,13 +43,14 @@ void RestingContact::add(const ContactRow& row, int index, std::uint64_t name, d
   }
 }
 
-void RestingContact::add_joint(int body, const Body& what, const Pose& X_WB, const Mobility& W,
+void RestingContact::add_joint(int body, int island, const Body& what, const Pose& X_WB, const Mobility& W,
                                double h) noexcept {
   const Joint& joint = what.joint;
   const auto add_row = [&](const Vec6& along, double wanted, double softness, double lower, double upper) {
     const Vec6 response = W * along;
     const double mobile = along.dot(response);
-    if (mobile > 0.0) joints_.push_back({body, along, response, mobile, wanted, softness, lower, upper});
+    if (mobile > 0.0)
+      joints_.push_back({body, island, along, response, mobile, wanted, softness, lower, upper});
   };
   if (joint.kind == JointKind::kBall && joint.damping > 0.0)
     for (int i = 0; i < 3; ++i)
@@ -72,58 +78,107 @@ void RestingContact::push(const Row& row, const Vec3& impulse, std::span<Twist> 
     row.contact.along[d].push(impulse[d], V[Index(row.body_a)], V[Index(row.body_b)]);
 }
 
+/// Groups the rows by island and gives the bodies the impulses they begin with.
+void RestingContact::arrange(std::span<Twist> V) noexcept {
+  started_ = true;
+  for (const Row& row : rows_)
+    if (!row.contact.impulse.isZero(0.0)) push(row, row.contact.impulse, V);
+  std::fill(islands_.begin(), islands_.end(), Range{});
+  for (const Row& row : rows_) ++islands_[Index(row.island)].count;
+  for (const JointRow& row : joints_) ++islands_[Index(row.island)].joint_count;
+  int first = 0;
+  int joint_first = 0;
+  for (Range& island : islands_) {
+    island.first = first;
+    island.joint_first = joint_first;
+    first += std::exchange(island.count, 0);
+    joint_first += std::exchange(island.joint_count, 0);
+  }
+  order_.resize(rows_.size());
+  joint_order_.resize(joints_.size());
+  for (Index i = 0; i < rows_.size(); ++i) {
+    Range& island = islands_[Index(rows_[i].island)];
+    order_[Index(island.first + island.count++)] = static_cast<int>(i);
+  }
+  for (Index i = 0; i < joints_.size(); ++i) {
+    Range& island = islands_[Index(joints_[i].island)];
+    joint_order_[Index(island.joint_first + island.joint_count++)] = static_cast<int>(i);
+  }
+}
+
 /// One round of projected Gauss-Seidel; the largest change of a velocity.
-double RestingContact::sweep(std::span<Twist> V) noexcept {
+double RestingContact::sweep(const Range& island, std::span<Twist> V) noexcept {
   double change = 0.0;
-  for (JointRow& row : joints_) {
+  for (int i = 0; i < island.joint_count; ++i) {
+    JointRow& row = joints_[Index(joint_order_[Index(island.joint_first + i)])];
     Twist& v = V[Index(row.body)];
     const double off = row.wanted - row.along.dot(to_vector(v)) - row.softness * row.impulse;
-    const double impulse =
-        std::clamp(row.impulse + off / (row.mobility + row.softness), row.lower, row.upper);
-    v = v + to_twist(row.response * (impulse - row.impulse));
-    change = std::max(change, std::abs(impulse - row.impulse) * row.mobility);
-    row.impulse = impulse;
+    row.before = row.impulse;
+    row.impulse = std::clamp(row.impulse + off / (row.mobility + row.softness), row.lower, row.upper);
+    v = v + to_twist(row.response * (row.impulse - row.before));
+    change = std::max(change, std::abs(row.impulse - row.before) * row.mobility);
   }
-  for (Row& row : rows_)
+  for (int i = 0; i < island.count; ++i) {
+    Row& row = rows_[Index(order_[Index(island.first + i)])];
+    row.before = row.contact.impulse;
     change = std::max(change, row.contact.relax(row.wanted, V[Index(row.body_a)], V[Index(row.body_b)]));
+  }
   return change;
 }
 
-SolverResult RestingContact::solve(int max_sweeps, std::span<Twist> V) noexcept {
-  if (!started_)
-    for (const Row& row : rows_)
-      if (!row.contact.impulse.isZero(0.0)) push(row, row.contact.impulse, V);
-  started_ = true;
+/// On along the way of the sweeps so far, by the share of Fletcher and Reeves; begins anew where the gradient
+/// has grown. What it oversteps, the next sweep projects.
+void RestingContact::accelerate(const Range& island, double& last_gradient, std::span<Twist> V) noexcept {
+  double gradient = 0.0;
+  for (int i = 0; i < island.count; ++i) {
+    const Row& row = rows_[Index(order_[Index(island.first + i)])];
+    gradient += (row.contact.impulse - row.before).squaredNorm();
+  }
+  for (int i = 0; i < island.joint_count; ++i) {
+    const JointRow& row = joints_[Index(joint_order_[Index(island.joint_first + i)])];
+    gradient += (row.impulse - row.before) * (row.impulse - row.before);
+  }
+  const double keep = last_gradient > gradient ? gradient / last_gradient : 0.0;
+  last_gradient = gradient;
+  for (int i = 0; i < island.count; ++i) {
+    Row& row = rows_[Index(order_[Index(island.first + i)])];
+    const Vec3 step = row.contact.impulse - row.before;
+    row.course *= keep;
+    row.contact.impulse += row.course;
+    if (keep > 0.0) push(row, row.course, V);
+    row.course += step;
+  }
+  for (int i = 0; i < island.joint_count; ++i) {
+    JointRow& row = joints_[Index(joint_order_[Index(island.joint_first + i)])];
+    const double step = row.impulse - row.before;
+    row.course *= keep;
+    row.impulse += row.course;
+    if (keep > 0.0) V[Index(row.body)] = V[Index(row.body)] + to_twist(row.response * row.course);
+    row.course += step;
+  }
+}
 
+SolverResult RestingContact::solve_island(const Range& island, int max_sweeps, std::span<Twist> V) noexcept {
   SolverResult result;
   double last_gradient = 0.0;  // squared
-  for (Row& row : rows_) row.course.setZero();
-  for (JointRow& row : joints_) row.course = 0.0;
-  for (; result.iterations < max_sweeps; ++result.iterations) {
-    for (Row& row : rows_) row.before = row.contact.impulse;
-    for (JointRow& row : joints_) row.before = row.impulse;
-    result.converged = sweep(V) <= tolerances::kRestingVelocity;
-    if (result.converged || result.iterations + 1 == max_sweeps) break;
-    double gradient = 0.0;
-    for (const Row& row : rows_) gradient += (row.contact.impulse - row.before).squaredNorm();
-    for (const JointRow& row : joints_) gradient += (row.impulse - row.before) * (row.impulse - row.before);
-    const bool restart = !(last_gradient > gradient);
-    const double keep = restart ? 0.0 : gradient / last_gradient;
-    last_gradient = gradient;
-    for (Row& row : rows_) {
-      const Vec3 step = row.contact.impulse - row.before;
-      row.course *= keep;
-      row.contact.impulse += row.course;
-      if (keep > 0.0) push(row, row.course, V);
-      row.course += step;
-    }
-    for (JointRow& row : joints_) {
-      const double step = row.impulse - row.before;
-      row.course *= keep;
-      row.impulse += row.course;
-      V[Index(row.body)] = V[Index(row.body)] + to_twist(row.response * row.course);
-      row.course += step;
-    }
+  while (result.iterations < max_sweeps) {
+    ++result.iterations;
+    result.converged = sweep(island, V) <= tolerances::kRestingVelocity;
+    if (result.converged || result.iterations == max_sweeps) break;
+    accelerate(island, last_gradient, V);
+  }
+  return result;
+}
+
+SolverResult RestingContact::solve(int max_sweeps, std::span<const char> settled,
+                                   std::span<Twist> V) noexcept {
+  if (!started_) arrange(V);
+  SolverResult result{.iterations = 0, .converged = true};
+  for (Index i = 0; i < islands_.size(); ++i) {
+    if (settled[i] != 0 || islands_[i].count + islands_[i].joint_count == 0) continue;
+    const SolverResult solved = solve_island(islands_[i], max_sweeps, V);
+    result.iterations = std::max(result.iterations, solved.iterations);
+    result.converged &= solved.converged;
   }
   return result;
 }

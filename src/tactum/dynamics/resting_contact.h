@@ -25,6 +25,9 @@ class RestingContact {
     rows_.reserve(most_rows);
     last_.reserve(most_rows);
     joints_.reserve(bodies * kMostJointRows);
+    order_.reserve(most_rows);
+    joint_order_.reserve(bodies * kMostJointRows);
+    islands_.resize(bodies);
   }
 
   /// Forgets the rows, not the last frame's impulses.
@@ -36,15 +39,17 @@ class RestingContact {
   }
   /// A contact whose gap may close to nothing within h. `name` is the row's from frame to frame; `index` is
   /// the caller's, and rises.
-  void add(const ContactRow& row, int index, std::uint64_t name, double gap_m, std::span<const Pose> X_WB,
-           std::span<const Mobility> W, double h) noexcept;
+  void add(const ContactRow& row, int index, int island, std::uint64_t name, double gap_m,
+           std::span<const Pose> X_WB, std::span<const Mobility> W, double h) noexcept;
   /// A body's joint, when it does anything to its motion.
-  void add_joint(int body, const Body& what, const Pose& X_WB, const Mobility& W, double h) noexcept;
+  void add_joint(int body, int island, const Body& what, const Pose& X_WB, const Mobility& W,
+                 double h) noexcept;
   /// Asks of the contact that was added as `index` to close by `by_m` less.
   void tighten(int index, double by_m, double h) noexcept;
 
-  /// Changes the twists; may be called again after tighten().
-  SolverResult solve(int max_sweeps, std::span<Twist> V) noexcept;
+  /// Changes the twists of the islands that are not settled, each by at most so many sweeps; may be called
+  /// again after tighten(). The result's iterations are those of the island that took most.
+  SolverResult solve(int max_sweeps, std::span<const char> settled, std::span<Twist> V) noexcept;
   /// The impulses that act on body_a of the contact added as `index`, world axes, the normal one's size.
   template <class Visit>
   void for_each(const Visit& visit) const {
@@ -57,7 +62,7 @@ class RestingContact {
   static constexpr std::size_t kMostJointRows = 4;  // of a body
 
   struct Row {
-    int body_a, body_b, index;
+    int body_a, body_b, index, island;
     std::uint64_t name;
     double wanted;  // least normal velocity [m/s]
     FrictionRow contact;
@@ -69,18 +74,27 @@ class RestingContact {
   };
   /// rate + softness impulse -> wanted, lower <= impulse <= upper.
   struct JointRow {
-    int body;
+    int body, island;
     Vec6 along, response;
     double mobility, wanted, softness, lower, upper;
     double impulse = 0.0, before = 0.0, course = 0.0;
   };
+  /// Where an island's rows stand in order_ and joint_order_.
+  struct Range {
+    int first = 0, count = 0, joint_first = 0, joint_count = 0;
+  };
   static void push(const Row& row, const Vec3& impulse, std::span<Twist> V) noexcept;
-  double sweep(std::span<Twist> V) noexcept;
+  void arrange(std::span<Twist> V) noexcept;
+  double sweep(const Range& island, std::span<Twist> V) noexcept;
+  void accelerate(const Range& island, double& last_gradient, std::span<Twist> V) noexcept;
+  SolverResult solve_island(const Range& island, int max_sweeps, std::span<Twist> V) noexcept;
 
   std::vector<Row> rows_;
   std::vector<Last> last_;
   std::vector<JointRow> joints_;
-  std::size_t next_ = 0;  // in last_: names come in the same order from frame to frame
+  std::vector<int> order_, joint_order_;  // rows, island by island
+  std::vector<Range> islands_;            // by the island's number
+  std::size_t next_ = 0;                  // in last_: names come in the same order from frame to frame
   bool started_ = false;
 };
 

@@ -343,7 +343,11 @@ void respond_constrained(const World& world, const FrameSettings& settings, doub
   make_corner_rows(world, settings, state);
   strike(world, settings, dt_s, state, report);
   move_free_bodies(world, settings, dt_s, state, report);
-  if (state.free.held_island >= 0) move_held_island(world, settings, dt_s, state, report);
+  if (state.free.held_island >= 0) {
+    move_held_island(world, settings, dt_s, state, report);
+  } else {
+    c.friction.forget();
+  }
   end_turning(world, state);
   report_rows(dt_s, state, report);
 }

@@ -1,6 +1,7 @@
 #include "tactum/haptics/frame.h"
 
 #include "tactum/haptics/energy.h"
+#include "tactum/haptics/picking.h"
 #include "tactum/haptics/response.h"
 
 namespace tactum {
@@ -25,6 +26,8 @@ Wrench haptic_frame(const World& world, const FrameSettings& settings, const Dev
   const bool was_known = state.hand.known;
   follow_hand(settings.workspace, sample, dt, state.hand);
   if (!was_known && state.hand.known) grasp(settings, state);
+  if (sample.valid) pick_or_let_go(world, settings.tool, sample.buttons, state);
+  report.held = state.tool.body;
   state.ended(Stage::kHand);
 
   if (state.hand.known) {

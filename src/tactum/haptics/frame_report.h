@@ -30,6 +30,7 @@ struct FrameReport {
   std::uint64_t index = 0;   ///< frames since the start
   std::uint32_t flags = 0;   ///< frame_flag
   std::uint32_t safety = 0;  ///< safety_flag
+  int held = -1;             ///< the body that is held; -1: none
   Pose X_WH;                 ///< where the hand is [m]
   Pose X_WH_proxy;           ///< where the proxy would have it [m]
   Wrench

@@ -6,6 +6,7 @@
 #include "tactum/dynamics/spin.h"
 #include "tactum/haptics/constraint_rows.h"
 #include "tactum/haptics/coupling.h"
+#include "tactum/haptics/energy.h"
 #include "tactum/haptics/frame_state.h"
 
 namespace tactum {
@@ -84,12 +85,13 @@ void add_rows(const World& world, double dt_s, FrameState& state) {
   for (Index r = c.own_rows; r < state.contacts.rows.size(); ++r) {
     const ContactRow& row = state.contacts.rows[r];
     const double beyond = row.distance - c.skin_m;
-    f.resting.add(row, static_cast<int>(r), c.names[r], beyond < 0.0 ? kOpening * beyond : beyond, X_WB,
-                  state.mobility, dt_s);
+    f.resting.add(row, static_cast<int>(r), f.islands.of_contact(row.body_a, row.body_b), c.names[r],
+                  beyond < 0.0 ? kOpening * beyond : beyond, X_WB, state.mobility, dt_s);
   }
   for (Index i = 0; i < world.bodies.size(); ++i)
     if (moves_here(world, state, i) && !is_held(state, i))
-      f.resting.add_joint(static_cast<int>(i), world.bodies[i], X_WB[i], state.mobility[i], dt_s);
+      f.resting.add_joint(static_cast<int>(i), f.islands.of(static_cast<int>(i)), world.bodies[i], X_WB[i],
+                          state.mobility[i], dt_s);
 }
 
 /// The share of every island's step that its bodies' reach allows.
@@ -235,17 +237,19 @@ void strike(const World& world, const FrameSettings& settings, double dt_s, Fram
   const int held = state.tool.body;
   for (Index i = 0; i < world.bodies.size(); ++i) {
     if (!world.bodies[i].moves()) continue;
-    state.mobility[i] = inertial_mobility(world.bodies[i], X_WB[i]);
+    // The hand decides where the held part goes: a blow does not move it, it is felt.
+    state.mobility[i] = is_held(state, i) ? Mobility::Zero() : inertial_mobility(world.bodies[i], X_WB[i]);
     if (world.bodies[i].joint.kind != JointKind::kFree && !is_held(state, i))
       V_WB[i] = constrained_velocity(world.bodies[i].joint, X_WB[i],
                                      inertial_resistance(world.bodies[i], X_WB[i]), V_WB[i]);
   }
-  const Twist V_held = held < 0 ? Twist{} : V_WB[Index(held)];
+  const double energy_J = held < 0 ? 0.0 : bodies_energy(world, state.world, held);
   BlowsOnHeld blows(held, held < 0 ? Vec3::Zero() : X_WB[Index(held)] * state.tool.X_BH.p);
   report.impacts = resolve_impacts(state.contacts.rows, X_WB, state.mobility, dt_s,
                                    kBlowsAPoint * static_cast<int>(state.contacts.rows.size()), V_WB, &blows);
-  if (held >= 0) V_WB[Index(held)] = V_held;  // the hand decides where that goes, and feels the blow
-  if (blows.sum()) state.blows.add(settings.impacts, dt_s, *blows.sum());
+  if (blows.sum())
+    state.blows.add(settings.impacts, dt_s, *blows.sum(),
+                    std::max(0.0, energy_J - bodies_energy(world, state.world, held)));
 
   for (Index i = 0; i < world.bodies.size(); ++i) {
     const Body& body = world.bodies[i];
@@ -268,14 +272,15 @@ void move_free_bodies(const World& world, const FrameSettings& settings, double 
   if (f.held_here) lend_held(world, settings, dt_s, state);
   add_rows(world, dt_s, state);
   const auto solve = [&] {
-    const SolverResult solved = f.resting.solve(settings.budget.solver_iterations, state.world.V_WB);
+    const SolverResult solved =
+        f.resting.solve(settings.budget.solver_iterations, f.settled, state.world.V_WB);
     report.solver_iterations += solved.iterations;
     if (!solved.converged) report.flags |= frame_flag::kSolverBounded;
   };
+  std::fill(f.settled.begin(), f.settled.end(), 0);
   solve();
   limit_shares(world, dt_s, state);
   c.X_WB_trial = state.world.X_WB;  // same size: nothing is allocated
-  std::fill(f.settled.begin(), f.settled.end(), 0);
   for (int round = 0;; ++round) {
     try_steps(world, dt_s, state);
     if (look(state, report)) break;

@@ -77,6 +77,11 @@ class Friction {
                   std::vector<ContactRow>& rows) const noexcept;
 
   bool acts() const noexcept { return !patches_.empty(); }
+  /// Nothing acts, and nothing is remembered.
+  void forget() noexcept {
+    patches_.clear();
+    anchors_.clear();
+  }
   /// Nothing acts.
   void clear() noexcept { patches_.clear(); }
 

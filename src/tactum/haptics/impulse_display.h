@@ -17,13 +17,18 @@ class ImpulseDisplay {
  public:
   static constexpr std::size_t kMostFrames = 1024;  ///< of a pulse
 
-  /// An impulse [N s, N m s] on the hand, at the handle, world axes.
-  void add(const Impacts& impacts, double dt_s, const Wrench& impulse) noexcept;
+  /// An impulse [N s, N m s] on the hand, at the handle, world axes; `energy_J` is what the bodies lost by
+  /// it.
+  void add(const Impacts& impacts, double dt_s, const Wrench& impulse, double energy_J) noexcept;
   /// What is felt of all blows in this frame; the next call is the next frame's.
   Wrench next() noexcept;
+  /// The energy of blows that is still to be felt [J].
+  double pending_J() const noexcept { return pending_J_; }
 
  private:
-  std::array<Wrench, kMostFrames> ahead_{};  // a ring
+  std::array<Wrench, kMostFrames> ahead_{};   // a ring
+  std::array<double, kMostFrames> energy_{};  // beside it
+  double pending_J_ = 0.0;
   std::size_t now_ = 0;
 };
 

@@ -24,7 +24,10 @@ double degrees(double radians) { return radians * 180.0 / kPi; }
 }  // namespace
 
 GoalRecord::GoalRecord(const World& world, std::vector<Goal> goals)
-    : goals_(std::move(goals)), angles_(world.bodies.size(), 0.0) {
+    : goals_(std::move(goals)),
+      angles_(world.bodies.size(), 0.0),
+      touched_(world.bodies.size(), 0),
+      picked_(world.bodies.size(), 0) {
   const WorldState start = initial_state(world);
   for (const Goal& goal : goals_) best_.push_back(measure(goal, world, start));
 }
@@ -41,13 +44,26 @@ double GoalRecord::measure(const Goal& goal, const World& world, const WorldStat
       return goal.vector_W.dot(place(state.X_WB[body]) - place(world.bodies[body].X_WB));
     case GoalKind::kMovedTo:
       return (place(state.X_WB[body]) - goal.vector_W).norm();
+    case GoalKind::kTouched:
+      return touched_[body];
+    case GoalKind::kPicked:
+      return picked_[body];
     case GoalKind::kFollowed:
       return std::abs(angles_[body] + goal.amount * angles_[Index(goal.leader)]);
   }
   return 0.0;
 }
 
-void GoalRecord::watch(const World& world, const WorldState& state) noexcept {
+void GoalRecord::watch(const World& world, const WorldState& state, int held,
+                       std::span<const ContactRow> rows) noexcept {
+  if (held >= 0) {
+    picked_[Index(held)] = 1;
+    for (const ContactRow& row : rows) {
+      if (!(row.impulse > 0.0)) continue;
+      if (row.body_a == held) touched_[Index(row.body_b)] = 1;
+      if (row.body_b == held) touched_[Index(row.body_a)] = 1;
+    }
+  }
   for (Index b = 0; b < angles_.size(); ++b) {
     const Body& body = world.bodies[b];
     if (body.joint.kind != JointKind::kHinge) continue;
@@ -94,6 +110,10 @@ std::string GoalRecord::describe(const World& world, std::size_t goal) const {
     case GoalKind::kMovedTo:
       return fmt::format("{} came within {:.2f} mm of its place, wanted {:.2f}: {}", body, 1e3 * best,
                          1e3 * g.tolerance, verdict);
+    case GoalKind::kTouched:
+      return fmt::format("{} was {}: {}", body, best > 0.0 ? "touched" : "not touched", verdict);
+    case GoalKind::kPicked:
+      return fmt::format("{} was {}: {}", body, best > 0.0 ? "picked up" : "not picked up", verdict);
     case GoalKind::kFollowed:
       return fmt::format("{} followed {}: off by {:.2f} degrees, allowed {:.2f}: {}", body,
                          world.bodies[Index(g.leader)].name, degrees(best), degrees(g.tolerance), verdict);

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "tactum/dynamics/world.h"
+#include "tactum/dynamics/contact_solver.h"
 
 namespace tactum {
 
@@ -14,6 +14,8 @@ enum class GoalKind {
   kTurnedTo,  ///< at the end the hinge's angle is within `tolerance` of `amount`
   kMovedBy,   ///< at some time the point had moved by `amount` or more along `vector_W`
   kMovedTo,   ///< at some time the point was within `tolerance` of `vector_W`
+  kTouched,   ///< at some time the held part pushed it
+  kPicked,    ///< at some time it was held
   kFollowed   ///< at the end the angle is -`amount` times the leader's, within `tolerance`
 };
 
@@ -34,7 +36,9 @@ class GoalRecord {
   GoalRecord(const World& world, std::vector<Goal> goals);
 
   /// Takes one frame in. Hinges must turn by less than half a turn from frame to frame. No allocation.
-  void watch(const World& world, const WorldState& state) noexcept;
+  /// `held` is the body in the hand, -1: none; `rows` are the frame's contacts.
+  void watch(const World& world, const WorldState& state, int held = -1,
+             std::span<const ContactRow> rows = {}) noexcept;
 
   bool met(std::size_t goal) const noexcept;
   /// Whether all are met; true when there is none.
@@ -49,8 +53,9 @@ class GoalRecord {
   double measure(const Goal& goal, const World& world, const WorldState& state) const noexcept;
 
   std::vector<Goal> goals_;
-  std::vector<double> angles_;  // of each body, unwrapped
-  std::vector<double> best_;    // of each goal: best so far, or the present value for those told at the end
+  std::vector<double> angles_;          // of each body, unwrapped
+  std::vector<char> touched_, picked_;  // of each body, so far
+  std::vector<double> best_;  // of each goal: best so far, or the present value for those told at the end
 };
 
 }  // namespace tactum

@@ -68,10 +68,15 @@ void read_goals(const TomlReader& root, Scene& scene) {
                            "at_least_m", "direction", "to_m", "tolerance_m", "point_m"});
   for (const TomlReader& table : readers) {
     Goal goal;
-    const std::string kind = table.choice("kind", {}, {"turned", "moved", "followed"});
+    const std::string kind = table.choice("kind", {}, {"turned", "moved", "touched", "picked", "followed"});
     if (table.errors()) return;
     if (kind == "turned") read_turned(table, scene.world, goal);
     if (kind == "moved") read_moved(table, scene, goal);
+    if (kind == "touched" || kind == "picked") {
+      goal.kind = kind == "touched" ? GoalKind::kTouched : GoalKind::kPicked;
+      goal.body = body_called(table, "body", scene.world);
+      goal.amount = 1.0;
+    }
     if (kind == "followed") read_followed(table, scene.world, goal);
     scene.goals.push_back(goal);
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "tactum/haptics/impulse_display.h"
 #include "tactum/scene/scene_sections.h"
 
 namespace tactum {
@@ -48,30 +49,39 @@ ResponseModel response_of(const TomlReader& root) {
              : ResponseModel::kConstraint;
 }
 
-/// `[[friction]]`: a coefficient for every pair of bodies of two materials.
-void read_friction(const TomlReader& root, Scene& scene) {
-  const auto pairs = root.tables("friction", {"material_a", "material_b", "coefficient"});
+/// `[[friction]]` or `[[restitution]]`: a coefficient for every pair of bodies of two materials.
+void read_pairs(const TomlReader& root, const char* key, Range range, const Scene& scene,
+                PairCoefficients& table) {
+  const auto pairs = root.tables(key, {"material_a", "material_b", "coefficient"});
   if (pairs.empty()) return;
   const std::size_t bodies = scene.world.bodies.size();
-  PairCoefficients& friction = scene.settings.friction;
-  friction.bodies = static_cast<int>(bodies);
-  friction.coefficients.assign(bodies * bodies, 0.0);
+  table.bodies = static_cast<int>(bodies);
+  table.coefficients.assign(bodies * bodies, 0.0);
   for (const TomlReader& pair : pairs) {
-    const double coefficient = pair.number("coefficient", {}, kNotNegative);
+    const double coefficient = pair.number("coefficient", {}, range);
     std::string material[2];
     for (int side = 0; side < 2; ++side) {
-      const char* const key = side == 0 ? "material_a" : "material_b";
-      material[side] = pair.text(key);
+      const char* const which = side == 0 ? "material_a" : "material_b";
+      material[side] = pair.text(which);
       const auto& known = scene.materials;
       if (std::find(known.begin(), known.end(), material[side]) == known.end())
-        pair.fail(key, "no body is of this material", fmt::format("\"{}\"", material[side]),
+        pair.fail(which, "no body is of this material", fmt::format("\"{}\"", material[side]),
                   "the material of a [[body]]");
     }
     for (std::size_t a = 0; a < bodies; ++a)
       for (std::size_t b = 0; b < bodies; ++b)
         if (scene.materials[a] == material[0] && scene.materials[b] == material[1])
-          friction.coefficients[a * bodies + b] = friction.coefficients[b * bodies + a] = coefficient;
+          table.coefficients[a * bodies + b] = table.coefficients[b * bodies + a] = coefficient;
   }
+}
+
+void read_impacts(const TomlReader& root, Scene& scene) {
+  Impacts& impacts = scene.settings.impacts;
+  read_pairs(root, "restitution", {0.0, 1.0}, scene, impacts.restitution);
+  const TomlReader table = root.table("impacts", {"expansion_s", "amplification"});
+  const double longest = static_cast<double>(ImpulseDisplay::kMostFrames) * scene.settings.dt_s;
+  impacts.expansion_s = table.number("expansion_s", impacts.expansion_s, {0.0, longest});
+  impacts.amplification = table.number("amplification", impacts.amplification, {0.0, 10.0});
 }
 
 void read_feel(const TomlReader& root, Shading& shading, SmoothingSettings& smoothing) {
@@ -161,7 +171,19 @@ void read_tool(const TomlReader& root, Scene& scene) {
 
   Vec3 handle_W = Vec3::Zero();
   if (root.has("tool")) {
-    const TomlReader table = root.table("tool", {"body", "grasp", "radius_m", "angle_deg", "pos_m"});
+    const TomlReader table =
+        root.table("tool", {"body", "grasp", "radius_m", "angle_deg", "pos_m", "picks", "reach_m"});
+    Tool& tool = scene.settings.tool;
+    tool.picks = table.flag("picks", false);
+    tool.reach_m = table.number("reach_m", tool.reach_m, kPositive);
+    if (tool.picks) {
+      for (const char* key : {"body", "grasp", "radius_m", "angle_deg", "pos_m"})
+        if (table.has(key))
+          table.fail(key, fmt::format("\"{}\" does not go with \"picks\"", key), "both", "one of them");
+      workspace.X_WD.p = space.vector3("pos_m", handle_W);
+      return;
+    }
+    if (table.has("reach_m")) table.fail("reach_m", "\"reach_m\" is for picks = true only");
     const int held = body_called(table, "body", scene.world);
     if (held < 0) return;
     const Body& body = scene.world.bodies[static_cast<std::size_t>(held)];
@@ -170,7 +192,6 @@ void read_tool(const TomlReader& root, Scene& scene) {
                  "a free or hinged body");
       return;
     }
-    Tool& tool = scene.settings.tool;
     tool.body = held;
     tool.X_BH.p = read_grasp(table, body, scene.p_BP[static_cast<std::size_t>(held)]);
     tool.X_BH.R = body.X_WB.R.transpose() * workspace.X_WD.R;
@@ -188,7 +209,8 @@ void read_settings(const TomlReader& root, Scene& scene) {
   scene.settings.response = response_of(root);
   read_penalty(root, scene.settings.penalty);
   read_constraint(root, scene.settings.constraint);
-  read_friction(root, scene);
+  read_pairs(root, "friction", kNotNegative, scene, scene.settings.friction);
+  read_impacts(root, scene);
   read_feel(root, scene.settings.shading, scene.settings.smoothing);
   read_safety(root, scene.safety);
   read_budget(root, scene.settings.budget);

@@ -39,11 +39,12 @@ Result<Scene> parse_scene(std::string_view text, const std::string& name, const 
   Scene scene;
   scene.name = name;
   FirstError errors;
-  const TomlReader root(document, file, "",
-                        {"schema", "description", "gravity_m_per_s2", "dt_s", "device", "workspace",
-                         "coupling", "response", "penalty", "constraint", "friction", "shading", "smoothing",
-                         "safety", "budget", "body", "tool", "hand", "goal"},
-                        errors);
+  const TomlReader root(
+      document, file, "",
+      {"schema",    "description", "gravity_m_per_s2", "dt_s",     "device",      "workspace", "coupling",
+       "response",  "penalty",     "constraint",       "friction", "restitution", "impacts",   "shading",
+       "smoothing", "safety",      "budget",           "body",     "tool",        "hand",      "goal"},
+      errors);
   read_root(root, mesh_folders, scene);
   if (errors) return errors.error();
   return scene;

@@ -1,0 +1,69 @@
+#include "tactum/haptics/picking.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tactum/haptics/frame_state.h"
+
+namespace tactum {
+namespace {
+
+using Index = std::size_t;
+
+/// How far a point of the body's frame is outside the piece: 0 inside.
+double outside(const Polytope& piece, const Vec3& p) {
+  double farthest = 0.0;
+  for (const Polytope::Face& face : piece.faces)
+    farthest = std::max(farthest, face.normal.dot(p) - face.offset);
+  return farthest;
+}
+
+double outside(const Part& part, const Vec3& p) {
+  if (part.is_surface()) {
+    double least_sq = std::numeric_limits<double>::infinity();
+    for (const Vec3& vertex : part.surface.vertices)
+      least_sq = std::min(least_sq, (p - vertex).squaredNorm());
+    return std::sqrt(least_sq);
+  }
+  double least = std::numeric_limits<double>::infinity();
+  for (const Polytope& piece : part.pieces) least = std::min(least, outside(piece, p));
+  return least;
+}
+
+void let_go(FrameState& state) {
+  state.tool.body = -1;
+  state.constraint.felt = {};
+}
+
+void pick(int body, FrameState& state) {
+  state.tool.body = body;
+  state.tool.X_BH = relative_pose(state.world.X_WB[Index(body)], state.hand.X_WH);
+}
+
+}  // namespace
+
+int nearest_body(const World& world, std::span<const Pose> X_WB, const Vec3& p_W, double reach_m) noexcept {
+  int nearest = -1;
+  double least = reach_m;
+  for (Index i = 0; i < world.bodies.size(); ++i) {
+    const Body& body = world.bodies[i];
+    if (!body.moves() || (p_W - X_WB[i].p).norm() > body.part->radius + least) continue;
+    const double distance = outside(*body.part, rotated_back(X_WB[i].R, p_W - X_WB[i].p));
+    if (distance > least || (distance == least && nearest >= 0)) continue;
+    nearest = static_cast<int>(i);
+    least = distance;
+  }
+  return nearest;
+}
+
+void pick_or_let_go(const World& world, const Tool& tool, std::uint32_t buttons, FrameState& state) noexcept {
+  const bool pressed = (buttons & 1u) != 0;
+  const bool was_pressed = state.hand.pressed;
+  state.hand.pressed = pressed;
+  if (!tool.picks || pressed == was_pressed) return;
+  if (!pressed) return let_go(state);
+  const int body = nearest_body(world, state.world.X_WB, state.hand.X_WH.p, tool.reach_m);
+  if (body >= 0) pick(body, state);
+}
+
+}  // namespace tactum

@@ -1,0 +1,25 @@
+#pragma once
+/// Picking up, holding and letting go with the device's primary button. While it is pressed, the hand holds
+/// the body that was nearest to the handle when it was pressed; where in the body, and in which orientation,
+/// stays as it was in that moment, so nothing is pulled and no force steps. A hinged gear taken at its rim is
+/// so turned like a wheel by its spoke, taken at its middle by the torque of the wrist alone [Gregory 2000,
+/// 6.2]. A body that is let go keeps the velocity it had: it is thrown.
+
+#include <span>
+
+#include "tactum/dynamics/world.h"
+#include "tactum/haptics/settings.h"
+
+namespace tactum {
+
+struct FrameState;
+
+/// The body that moves and is nearest to a point of the world, and no farther than `reach_m`; -1 when there
+/// is none. The distance is to the nearest plane of the nearest convex piece, so it is short beside edges; of
+/// a part without pieces, to its nearest vertex. Cost: linear in faces, when the button is pressed.
+int nearest_body(const World& world, std::span<const Pose> X_WB, const Vec3& p_W, double reach_m) noexcept;
+
+/// When the button has been pressed or let go since the last frame.
+void pick_or_let_go(const World& world, const Tool& tool, std::uint32_t buttons, FrameState& state) noexcept;
+
+}  // namespace tactum
