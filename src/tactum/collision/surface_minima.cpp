@@ -31,14 +31,17 @@ MinimaWork lanes::surface_minima(const Kernels& kernels, const SurfaceTree& a, c
                                  std::vector<SurfaceMinimum>& minima) noexcept {
   FeatureComparison features(a, b, X_AB, query, minima);
   const Bounds bounds = bounds_of(query, a.size() + b.size());
-  SurfaceWalk walk(a, b, X_AB, bounds, kernels, features);
   using Tree = SurfaceTree;
-  walk.run(Tree::kEdges, Tree::kEdges);
-  walk.run(Tree::kVertices, Tree::kFaces);
-  walk.run(Tree::kFaces, Tree::kVertices);
-  walk.run(Tree::kVertices, Tree::kEdges);
-  walk.run(Tree::kEdges, Tree::kVertices);
-  walk.run(Tree::kVertices, Tree::kVertices);
+  {
+    SurfaceWalk walk(a, b, X_AB.inverse(), false, bounds, kernels, features);
+    walk.run<Tree::kEdges, Tree::kEdges>();
+    walk.run<Tree::kVertices, Tree::kFaces>();
+    walk.run<Tree::kVertices, Tree::kEdges>();
+    walk.run<Tree::kVertices, Tree::kVertices>();
+  }
+  SurfaceWalk back(b, a, X_AB, true, bounds, kernels, features);
+  back.run<Tree::kVertices, Tree::kFaces>();
+  back.run<Tree::kVertices, Tree::kEdges>();
   features.finish();
   return features.work;
 }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 
 #include "tactum/base/tolerances.h"
 
@@ -18,10 +17,12 @@ Feature face_of(std::int32_t corner) noexcept { return {FeatureKind::kFace, corn
 InCone worst(InCone x, InCone y) noexcept { return x < y ? x : y; }
 
 bool in_order(const SurfaceMinimum& x, const SurfaceMinimum& y) noexcept {
-  const auto key = [](const SurfaceMinimum& m) {
-    return std::tie(m.a.kind, m.a.index, m.b.kind, m.b.index, m.p_a.x(), m.p_a.y(), m.p_a.z());
+  const auto number = [](const Feature& f) {
+    return std::uint64_t(f.kind) << 32 | static_cast<std::uint32_t>(f.index);
   };
-  return key(x) < key(y);
+  if (number(x.a) != number(y.a)) return number(x.a) < number(y.a);
+  if (number(x.b) != number(y.b)) return number(x.b) < number(y.b);
+  return std::lexicographical_compare(x.p_a.begin(), x.p_a.end(), y.p_a.begin(), y.p_a.end());
 }
 
 bool nearer(const SurfaceMinimum& x, const SurfaceMinimum& y) noexcept {

@@ -16,7 +16,7 @@ class FeatureComparison {
                     std::vector<SurfaceMinimum>& minima) noexcept;
 
   /// A vertex of the first with a feature of the second, the first being A unless `swapped`. Features are
-  /// told by corners, as in SurfaceTree::Leaf.
+  /// told by corners, as in the leaves of a SurfaceTree.
   void vertex_face(bool swapped, std::int32_t vertex, std::int32_t face) noexcept;
   void vertex_edge(bool swapped, std::int32_t vertex, std::int32_t edge) noexcept;
   void vertex_vertex(std::int32_t a, std::int32_t b) noexcept;
