@@ -8,6 +8,8 @@
 namespace tactum {
 namespace {
 
+constexpr double kDiagonal = 1.42;  // a little more than the root of two
+
 lanes::Bounds bounds_of(const MinimaQuery& query, double size) noexcept {
   const double grown = tolerances::kSingle * size;
   lanes::Bounds q{};
@@ -15,7 +17,8 @@ lanes::Bounds bounds_of(const MinimaQuery& query, double size) noexcept {
   q.reach = static_cast<float>(query.reach + grown);
   q.depth = static_cast<float>(query.depth + grown);
   q.far = std::max(q.reach, q.depth);
-  q.slack = static_cast<float>(query.cone_slack + tolerances::kSingle);
+  // The normal of parallel edges may leave an edge's cone by the slack to two sides at once.
+  q.slack = static_cast<float>(kDiagonal * query.cone_slack + tolerances::kSingle);
   return q;
 }
 

@@ -67,6 +67,10 @@ class FeatureComparison {
   InCone falls_away(double value, double length_sq) const noexcept;
   InCone in_edge_cone(const Side& side, const Edge& edge, const Vec3& u) const noexcept;
   InCone in_vertex_cone(const Side& side, std::int32_t corner, const Vec3& u) const noexcept;
+  /// Whether u is within the slack of the true cone.
+  bool near_vertex_cone(const SurfaceTree& tree, int vertex, const Vec3& u) const noexcept;
+  /// What must fall away from a vertex at p, as SurfaceTree::around() names it.
+  static Vec3 falling(const SurfaceTree& tree, const Vec3& p, std::int32_t w) noexcept;
   void take(const Touch& touch, int triangle_a, int triangle_b) noexcept;
   bool in_range(double distance) const noexcept {
     return distance <= query_.reach && distance >= -query_.depth;

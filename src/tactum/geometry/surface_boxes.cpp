@@ -31,9 +31,13 @@ std::size_t power_of_lanes(std::size_t value) {
   return power;
 }
 
-/// The axis along which values spread most about their mean.
+/// The axes of the spread of values about their mean, the longest last.
+struct Spread {
+  std::array<Vec3, 3> axis;
+  std::array<double, 3> square;  ///< of the spread along them
+};
 template <class Values>
-Vec3 longest_spread(const Values& value, std::size_t first, std::size_t last) {
+Spread spread_of(const Values& value, std::size_t first, std::size_t last) {
   Vec3 mean = Vec3::Zero();
   for (std::size_t i = first; i < last; ++i) mean += value(i);
   mean /= static_cast<double>(last - first);
@@ -42,7 +46,10 @@ Vec3 longest_spread(const Values& value, std::size_t first, std::size_t last) {
     const Vec3 off = value(i) - mean;
     moments += off * off.transpose();
   }
-  return Eigen::SelfAdjointEigenSolver<Mat3>(moments).eigenvectors().col(2);
+  const Eigen::SelfAdjointEigenSolver<Mat3> solver(moments);
+  const Mat3& axes = solver.eigenvectors();
+  const Vec3& squares = solver.eigenvalues();
+  return {{axes.col(0), axes.col(1), axes.col(2)}, {squares[0], squares[1], squares[2]}};
 }
 
 }  // namespace
@@ -160,9 +167,32 @@ void SurfaceBoxes::split(Range range, std::size_t unit, std::vector<Range>& part
   split({middle, range.second}, unit, parts);
 }
 
+/// Halves whose boxes are smallest, by the squares of their diagonals: cut across the longest spread of
+/// places, or where others are nearly as long across one of them, or half-way between.
 void SurfaceBoxes::sort_halves(Range range, std::size_t halfway) {
-  const Vec3 axis =
-      longest_spread([&](std::size_t i) { return middle(order_[i]); }, range.first, range.second);
+  constexpr double kNearly = 0.3;
+  const Spread spread =
+      spread_of([&](std::size_t i) { return middle(order_[i]); }, range.first, range.second);
+  const auto& [shortest, second, longest] = spread.axis;
+  std::vector<Vec3> axes = {longest};
+  if (spread.square[1] > kNearly * spread.square[2])
+    axes.insert(axes.end(), {second, (longest + second).normalized(), (longest - second).normalized()});
+  if (spread.square[0] > kNearly * spread.square[2]) axes.push_back(shortest);
+  Vec3 best = longest;
+  double least = 1e300;
+  for (const Vec3& axis : axes) {
+    cut_across(axis, range, halfway);
+    if (axes.size() == 1) return;
+    const double size =
+        span({range.first, halfway}).half.squaredNorm() + span({halfway, range.second}).half.squaredNorm();
+    if (size >= least) continue;
+    least = size;
+    best = axis;
+  }
+  cut_across(best, range, halfway);
+}
+
+void SurfaceBoxes::cut_across(const Vec3& axis, Range range, std::size_t halfway) {
   for (std::size_t i = range.first; i < range.second; ++i)
     keyed_[i] = {middle(order_[i]).dot(axis), order_[i]};
   const auto at = [&](std::size_t i) { return keyed_.begin() + static_cast<std::ptrdiff_t>(i); };
@@ -172,40 +202,53 @@ void SurfaceBoxes::sort_halves(Range range, std::size_t halfway) {
   for (std::size_t i = range.first; i < range.second; ++i) order_[i] = keyed_[i].second;
 }
 
-void SurfaceBoxes::make_box(SurfaceTree::Node& node, std::size_t lane, Range range) {
+SurfaceBoxes::Span SurfaceBoxes::span(Range range) const {
   Vec3 up = Vec3::Zero();
   for (std::size_t i = range.first; i < range.second; ++i) up += order_[i].axis;
   const double length = up.norm();
   up = length > tolerances::kSameNormal ? Vec3(up / length) : Vec3::UnitZ();
+  const auto at = [&](std::size_t i) {
+    return point(order_[i / points()].corner, i % points(), Vec3::Zero());
+  };
   // In the plane square to it, along the longest spread of the points.
   const auto flat_point = [&](std::size_t i) {
-    const Vec3 p = point(order_[i / points()].corner, i % points(), Vec3::Zero());
+    const Vec3 p = at(i);
     return Vec3(p - up * up.dot(p));
   };
-  const Vec3 spread = longest_spread(flat_point, points() * range.first, points() * range.second);
+  const std::size_t first = points() * range.first;
+  const std::size_t last = points() * range.second;
+  const Vec3 spread = spread_of(flat_point, first, last).axis[2];
   Vec3 along = spread - up * up.dot(spread);
   along = along.norm() > 0.5 ? Vec3(along.normalized()) : any_orthogonal(up);
-  const std::array<Vec3, 3> axis = {along, up.cross(along), up};
+  Span box;
+  box.axis = {along, up.cross(along), up};
   Vec3 low = Vec3::Constant(1e300);
   Vec3 high = Vec3::Constant(-1e300);
+  for (std::size_t i = first; i < last; ++i) {
+    const Vec3 p = at(i);
+    const Vec3 told(box.axis[0].dot(p), box.axis[1].dot(p), box.axis[2].dot(p));
+    low = low.cwiseMin(told);
+    high = high.cwiseMax(told);
+  }
+  box.half = 0.5 * (high - low);
+  const Vec3 middle_told = 0.5 * (low + high);
+  box.center = box.axis[0] * middle_told[0] + box.axis[1] * middle_told[1] + box.axis[2] * middle_told[2];
+  return box;
+}
+
+void SurfaceBoxes::make_box(SurfaceTree::Node& node, std::size_t lane, Range range) {
+  const Span box = span(range);
+  const Vec3& up = box.axis[2];
   double width = 0.0;
   for (std::size_t i = range.first; i < range.second; ++i) {
-    for (std::size_t k = 0; k < points(); ++k) {
-      const Vec3 p = point(order_[i].corner, k, Vec3::Zero());
-      const Vec3 told(axis[0].dot(p), axis[1].dot(p), axis[2].dot(p));
-      low = low.cwiseMin(told);
-      high = high.cwiseMax(told);
-    }
     const Vec3& own = order_[i].axis;
     width = std::max(width, std::atan2(up.cross(own).norm(), up.dot(own)) + order_[i].width);
   }
-  const Vec3 middle_told = 0.5 * (low + high);
-  const Vec3 half = 0.5 * (high - low) + Vec3::Constant(grown_);
-  put_lane(node.at.center, lane,
-           axis[0] * middle_told[0] + axis[1] * middle_told[1] + axis[2] * middle_told[2]);
-  put_lane(node.at.up, lane, axis[2]);
-  put_lane(node.at.along, lane, axis[0]);
-  put_lane(node.at.across, lane, axis[1]);
+  const Vec3 half = box.half + Vec3::Constant(grown_);
+  put_lane(node.at.center, lane, box.center);
+  put_lane(node.at.along, lane, box.axis[0]);
+  put_lane(node.at.across, lane, box.axis[1]);
+  put_lane(node.at.up, lane, up);
   put_lane(node.half, lane, half);
   node.cone[lane] = grown_angle(width);
   node.extent[lane] = (kNarrow + node.cone[lane]) * static_cast<float>(half.maxCoeff());

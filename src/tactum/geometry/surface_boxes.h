@@ -36,9 +36,16 @@ class SurfaceBoxes {
   template <class Leaf>
   std::int32_t add_leaf(std::vector<Leaf>& leaves, Range range, const Vec3& middle);
   std::int32_t make_node(Range range);
+  /// The oriented box around a range of features, its third axis along the mean direction of their cones.
+  struct Span {
+    std::array<Vec3, 3> axis;
+    Vec3 center, half;  ///< [m]
+  };
+  Span span(Range range) const;
   void make_box(SurfaceTree::Node& node, std::size_t lane, Range range);
   void split(Range range, std::size_t unit, std::vector<Range>& parts);
   void sort_halves(Range range, std::size_t halfway);
+  void cut_across(const Vec3& axis, Range range, std::size_t halfway);
 
   std::size_t points() const { return std::size_t(kind_) + 1; }  ///< of a feature of the kind at hand
   /// The corner of a triangle that is `after` this one, from a place told from the center.
