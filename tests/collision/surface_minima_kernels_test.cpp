@@ -5,6 +5,7 @@
 
 #include <bit>
 #include <cstdio>
+#include <cstring>
 
 #include "collision/cases.h"
 #include "support/sample_meshes.h"
@@ -42,20 +43,15 @@ class Draw {
     }
     return axis;
   }
-  lanes::Box box() {
-    lanes::Box box{three(5e-3), axes(), {}, number(0.0, 2.0), {}};
-    for (float& h : box.half) h = number(0.0, 3e-3);
-    box.pad = {number(0.0, 1e-3), 1e-3F, 2e-4F};
-    return box;
-  }
   SurfaceTree::Node node() {
     SurfaceTree::Node node;
-    fill(node.center, 5e-3);
+    fill(node.at.center, 5e-3);
     for (std::size_t lane = 0; lane < lanes::kLanes; ++lane) {
       const std::array<Three, 3> axis = axes();
       for (std::size_t k = 0; k < 3; ++k) {
-        node.along[k][lane] = axis[0][k];
-        node.up[k][lane] = axis[2][k];
+        node.at.along[k][lane] = axis[0][k];
+        node.at.across[k][lane] = axis[1][k];
+        node.at.up[k][lane] = axis[2][k];
         node.half[k][lane] = number(0.0, 3e-3);
       }
       node.cone[lane] = number(0.0, 2.0);
@@ -63,20 +59,48 @@ class Draw {
     }
     return node;
   }
+  SurfaceTree::Corners corners() {
+    SurfaceTree::Corners corner{};
+    for (std::int32_t& c : corner) c = number(0.0, 1.0) < 0.9F ? 1 : -1;
+    return corner;
+  }
+  SurfaceTree::VertexLeaf vertices() {
+    SurfaceTree::VertexLeaf leaf{};
+    fill(leaf.point, 2e-3);
+    leaf.corner = corners();
+    return leaf;
+  }
+  SurfaceTree::EdgeLeaf edges() {
+    SurfaceTree::EdgeLeaf leaf{};
+    fill(leaf.point, 2e-3);
+    fill(leaf.along, 3e-3);
+    leaf.corner = corners();
+    return leaf;
+  }
+  SurfaceTree::FaceLeaf faces() {
+    SurfaceTree::FaceLeaf leaf{};
+    fill(leaf.normal, 1.0);
+    for (float& level : leaf.level) level = number(-1e-3, 1e-3);
+    for (std::size_t k = 0; k < 3; ++k) {
+      fill(leaf.inward[k], 1.0);
+      for (float& limit : leaf.limit[k]) limit = number(-1e-3, 0.0);
+    }
+    leaf.corner = corners();
+    return leaf;
+  }
 
  private:
   Random random_;
 };
 
-lanes::Faces faces_of(Draw& draw) {
-  lanes::Faces faces{};
-  draw.fill(faces.normal, 1.0);
-  for (float& level : faces.level) level = draw.number(-1e-3, 1e-3);
-  for (std::size_t k = 0; k < 3; ++k) {
-    draw.fill(faces.inward[k], 1e-3);
-    for (float& limit : faces.limit[k]) limit = draw.number(-1e-6, 0.0);
+/// No match is of a lane without a feature.
+void expect_of_features(lanes::Matches matches, const SurfaceTree::Corners& ones,
+                        const SurfaceTree::Corners& others) {
+  for (; matches != 0; matches &= matches - 1) {
+    const auto bit = std::size_t(std::countr_zero(matches));
+    EXPECT_GE(ones[bit / lanes::kLanes], 0);
+    EXPECT_GE(others[bit % lanes::kLanes], 0);
   }
-  return faces;
 }
 
 TEST(SurfaceMinimaKernels, TellTheSameOfBoxesInFourLanesAndInEight) {
@@ -87,10 +111,11 @@ TEST(SurfaceMinimaKernels, TellTheSameOfBoxesInFourLanesAndInEight) {
   int set = 0;
   constexpr int kRounds = 20000;
   for (int i = 0; i < kRounds; ++i) {
-    const lanes::Box box = draw.box();
+    const SurfaceTree::Node held = draw.node();
     const SurfaceTree::Node node = draw.node();
-    const std::uint32_t bits = narrow.facing(box, node, kBounds);
-    ASSERT_EQ(bits, wide->facing(box, node, kBounds)) << "round " << i;
+    const lanes::Box box = {&held, &held.at, std::size_t(i) % lanes::kLanes};
+    const std::uint32_t bits = narrow.facing(box, node, node.at, kBounds);
+    ASSERT_EQ(bits, wide->facing(box, node, node.at, kBounds)) << "round " << i;
     for (std::size_t lane = 0; lane < lanes::kLanes; ++lane) {
       EXPECT_TRUE((bits >> lane & 1u) == 0 || node.child[lane] != 0);
     }
@@ -105,44 +130,56 @@ TEST(SurfaceMinimaKernels, TellTheSameOfFeaturesInFourLanesAndInEight) {
   if (!wide) GTEST_SKIP() << "this processor has no AVX2: nothing to compare";
   const Kernels& narrow = lanes::narrow_kernels();
   Draw draw(32);
-  std::array<int, 6> set{};
-  constexpr int kRounds = 5000;
+  std::array<int, 4> set{};
+  constexpr int kRounds = 20000;
   for (int i = 0; i < kRounds; ++i) {
-    lanes::Vertices vertices{};
-    lanes::Vertices others{};
-    lanes::Edges edges{};
-    lanes::Edges many{};
-    draw.fill(vertices.point, 2e-3);
-    draw.fill(others.point, 2e-3);
-    draw.fill(edges.point, 2e-3);
-    draw.fill(edges.along, 3e-3);
-    draw.fill(many.point, 2e-3);
-    draw.fill(many.along, 3e-3);
-    const lanes::Faces faces = faces_of(draw);
+    const SurfaceTree::Node node = draw.node();
+    const lanes::Box box = {&node, &node.at, 2};
+    const lanes::Box other = {&node, &node.at, 5};
     const Three off = draw.three(1e-3);
-    const lanes::Box box = draw.box();
-    const std::uint32_t near = narrow.vertices_near(vertices, off, box);
-    const std::uint32_t near_edges = narrow.edges_near(edges, off, box);
-    ASSERT_EQ(near, wide->vertices_near(vertices, off, box));
-    ASSERT_EQ(near_edges, wide->edges_near(edges, off, box));
-    set[0] += std::popcount(near);
-    set[1] += std::popcount(near_edges);
-    const auto same = [&](auto test, const auto& ones, const auto& of, int& count) {
-      lanes::Matches four{};
-      lanes::Matches eight{};
-      (narrow.*test)(ones, off, 0xA7u, of, kBounds, four);
-      (wide->*test)(ones, off, 0xA7u, of, kBounds, eight);
-      EXPECT_EQ(four, eight);
-      for (std::uint8_t bits : four) count += std::popcount(bits);
+    const SurfaceTree::VertexLeaf vertices = draw.vertices();
+    const auto same = [&](auto test, const auto& of, int& count) {
+      const lanes::Matches four = (narrow.*test)(vertices, off, box, of, kBounds);
+      EXPECT_EQ(four, (wide->*test)(vertices, off, box, of, kBounds));
+      expect_of_features(four, vertices.corner, of.corner);
+      count += std::popcount(four);
     };
-    same(&Kernels::vertex_vertex, vertices, others, set[2]);
-    same(&Kernels::vertex_edge, vertices, many, set[3]);
-    same(&Kernels::vertex_face, vertices, faces, set[4]);
-    same(&Kernels::edge_edge, edges, many, set[5]);
+    same(&Kernels::vertex_vertex, draw.vertices(), set[0]);
+    same(&Kernels::vertex_edge, draw.edges(), set[1]);
+    same(&Kernels::vertex_face, draw.faces(), set[2]);
+    const SurfaceTree::EdgeLeaf edges = draw.edges();
+    const SurfaceTree::EdgeLeaf many = draw.edges();
+    const lanes::Matches four = narrow.edge_edge(edges, box, off, many, other, kBounds);
+    EXPECT_EQ(four, wide->edge_edge(edges, box, off, many, other, kBounds));
+    expect_of_features(four, edges.corner, many.corner);
+    set[3] += std::popcount(four);
   }
   for (int count : set) {
     EXPECT_GT(count, 0);
     EXPECT_LT(count, 40 * kRounds);
+  }
+}
+
+TEST(SurfaceMinimaKernels, TurnTheSameInFourLanesAndInEight) {
+  const Kernels* wide = lanes::wide_kernels();
+  if (!wide) GTEST_SKIP() << "this processor has no AVX2: nothing to compare";
+  const Kernels& narrow = lanes::narrow_kernels();
+  Draw draw(34);
+  Random random(35);
+  for (int i = 0; i < 1000; ++i) {
+    const lanes::Frame frame({cases::random_rotation(random), cases::random_vector(random, 0.1)});
+    const SurfaceTree::Node node = draw.node();
+    const auto same = [&](auto turn, const auto& from) {
+      auto four = from;
+      auto eight = from;
+      (narrow.*turn)(from, frame, four);
+      (wide->*turn)(from, frame, eight);
+      EXPECT_EQ(std::memcmp(&four, &eight, sizeof four), 0);
+      EXPECT_NE(std::memcmp(&four, &from, sizeof four), 0);
+    };
+    same(&Kernels::turn_stand, node.at);
+    same(&Kernels::turn_vertices, draw.vertices());
+    same(&Kernels::turn_edges, draw.edges());
   }
 }
 

@@ -8,9 +8,13 @@
 #include "collision/cases.h"
 #include "oracles/minima_referee.h"
 #include "support/allocation_guard.h"
+#include "support/real_data.h"
 #include "support/sample_meshes.h"
 #include "support/surface_shapes.h"
 #include "tactum/collision/surface_distance.h"
+#include "tactum/devices/motion_file.h"
+#include "tactum/geometry/mesh_import.h"
+#include "tactum/geometry/weld.h"
 
 namespace tactum {
 namespace {
@@ -182,6 +186,41 @@ TEST(SurfaceMinima, OfANutOnABoltAreThoseOfEveryPairOfFeatures) {
     X.R = exp_rotation(cases::random_vector(random, 2e-3)) * X.R;
     X.p += cases::random_vector(random, 2e-5);
     EXPECT_GT(expect_as_referee(bolt, nut, X, {2e-4, 5e-5, i % 2 ? 0.004 : 0.0}), 10);
+  }
+}
+
+struct RealPair {
+  const char *a, *b, *motion;
+  double reach;
+};
+
+/// Slivers a hundred times as long as wide, edges parallel to a thousandth, flat sides side by side.
+TEST(SurfaceMinima, OfRealPartsAreThoseOfEveryPairOfFeatures) {
+  TACTUM_NEEDS_REAL_DATA();
+  for (const RealPair& real : {RealPair{"industreal_gear_medium.obj", "industreal_gear_small.obj",
+                                        "gears_medium_small_motion.csv", 1e-4},
+                               RealPair{"factory_bolt_m16_loose.obj", "factory_nut_m16_loose_subdiv_3x.obj",
+                                        "m16_loose_screw_motion.csv", 2e-4}}) {
+    SCOPED_TRACE(real.motion);
+    const auto mesh = [](const char* name) {
+      const Result<ImportedMesh> read = import_mesh(testing::find_real(name).string());
+      EXPECT_TRUE(read) << name;
+      WeldOptions options;
+      options.drop_zero_area = options.drop_duplicates = true;
+      return weld(read->mesh, options).mesh;
+    };
+    const TriangleMesh a = mesh(real.a);
+    const TriangleMesh b = mesh(real.b);
+    const Result<TwoBodyMotion> motion = read_two_body_motion(testing::find_real(real.motion).string());
+    ASSERT_TRUE(motion);
+    const std::size_t step = testing::full_run() ? 5 : 66;
+    int found = 0;
+    for (std::size_t i = step / 3; i < motion->frame.size(); i += step) {
+      SCOPED_TRACE(i);
+      found +=
+          expect_as_referee(a, b, relative_pose(motion->X_WA[i], motion->X_WB[i]), {real.reach, 0.0, 4e-3});
+    }
+    EXPECT_GT(found, 0);
   }
 }
 

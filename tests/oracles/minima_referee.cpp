@@ -1,6 +1,7 @@
 #include "oracles/minima_referee.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <set>
@@ -18,10 +19,16 @@ struct Edge {
   double width = 0.0;
 };
 
+constexpr double kThin = 1e-5;  // [rad]
+
 struct Corner {
   int v = 0;
   std::vector<Vec3> edges;  ///< unit; what must fall away
+  std::vector<Vec3> rays;   ///< unit; the extreme directions from which all edges fall away
   Vec3 outward;             ///< unit
+  /// So thin a cone is that of a vertex in the middle of an edge that is straight but for rounding: whether
+  /// it is one may be told either way.
+  bool thin = false;
 };
 
 struct Face {
@@ -119,7 +126,7 @@ class Features {
   }
   /// Whether the directions from which all edges fall away have an inside that is outside the surface. Their
   /// extreme ones are square to two edges.
-  static bool has_inside(const Corner& corner) {
+  static bool has_inside(Corner& corner) {
     Vec3 middle = Vec3::Zero();
     for (const Vec3& e : corner.edges) {
       for (const Vec3& f : corner.edges) {
@@ -127,8 +134,10 @@ class Features {
         if (u.norm() < 1e-9) continue;
         u.normalize();
         if (std::all_of(corner.edges.begin(), corner.edges.end(),
-                        [&](const Vec3& g) { return g.dot(u) <= 1e-9; }))
+                        [&](const Vec3& g) { return g.dot(u) <= 1e-9; })) {
           middle += u;
+          corner.rays.push_back(u);
+        }
       }
     }
     const double length = middle.norm();
@@ -136,6 +145,7 @@ class Features {
     middle /= length;
     for (const Vec3& e : corner.edges) {
       if (e.dot(middle) >= -1e-9) return false;
+      corner.thin = corner.thin || e.dot(middle) > -kThin;
     }
     return middle.dot(corner.outward) > 0.0;
   }
@@ -150,10 +160,99 @@ double edge_margin(const Edge& edge, const Vec3& u, double slack) {
   return 0.5 * edge.width - std::abs(off) + slack;
 }
 
+/// Sine of the angle from u to the cone of these rays: to one of them, or to the sector between two.
+double sine_to_cone(const std::vector<Vec3>& rays, const Vec3& u) {
+  double least = 1.0;
+  for (const Vec3& r : rays) {
+    if (r.dot(u) > 0.0) least = std::min(least, (u - r * r.dot(u)).norm());
+    for (const Vec3& s : rays) {
+      const double c = r.dot(s);
+      const double det = 1.0 - c * c;
+      if (det < 1e-15) continue;
+      const double of_r = (r.dot(u) - c * s.dot(u)) / det;
+      const double of_s = (s.dot(u) - c * r.dot(u)) / det;
+      if (of_r >= 0.0 && of_s >= 0.0) least = std::min(least, (u - of_r * r - of_s * s).norm());
+    }
+  }
+  return least;
+}
+
 double corner_margin(const Corner& corner, const Vec3& u, double slack) {
-  double margin = u.dot(corner.outward) + slack;
-  for (const Vec3& e : corner.edges) margin = std::min(margin, slack - e.dot(u));
-  return margin;
+  double inside = 1.0;
+  for (const Vec3& e : corner.edges) inside = std::min(inside, -e.dot(u));
+  const double margin = inside >= 0.0 ? inside + slack : slack - sine_to_cone(corner.rays, u);
+  return std::min({margin, u.dot(corner.outward) + slack, corner.thin ? 0.0 : 1.0});
+}
+
+/// Boxes of features in a grid of cells: which may be near another box. A feature stands in every cell its
+/// box touches.
+class Grid {
+ public:
+  Grid(std::vector<Aabb> boxes, double grown) : boxes_(std::move(boxes)), seen_(boxes_.size(), -1) {
+    for (Aabb& box : boxes_) {
+      box.min -= Vec3::Constant(grown);
+      box.max += Vec3::Constant(grown);
+      all_.extend(box.min);
+      all_.extend(box.max);
+    }
+    for (std::size_t i = 0; i < boxes_.size(); ++i)
+      for_each_cell(boxes_[i], [&](std::vector<int>& cell) { cell.push_back(static_cast<int>(i)); });
+  }
+  template <class Visit>
+  void for_each_near(const Aabb& box, const Visit& visit) {
+    ++round_;
+    for_each_cell(box, [&](const std::vector<int>& cell) {
+      for (int i : cell) {
+        const Aabb& other = boxes_[std::size_t(i)];
+        if (seen_[std::size_t(i)] == round_ || (box.min.array() > other.max.array()).any() ||
+            (box.max.array() < other.min.array()).any())
+          continue;
+        seen_[std::size_t(i)] = round_;
+        visit(std::size_t(i));
+      }
+    });
+  }
+
+ private:
+  static constexpr int kCells = 64;
+  template <class Visit>
+  void for_each_cell(const Aabb& box, const Visit& visit) {
+    std::array<int, 3> low{};
+    std::array<int, 3> high{};
+    for (int k = 0; k < 3; ++k) {
+      const double per_cell = kCells / std::max(all_.max[k] - all_.min[k], 1e-300);
+      low[std::size_t(k)] = std::clamp(int((box.min[k] - all_.min[k]) * per_cell), 0, kCells - 1);
+      high[std::size_t(k)] = std::clamp(int((box.max[k] - all_.min[k]) * per_cell), 0, kCells - 1);
+    }
+    for (int x = low[0]; x <= high[0]; ++x) {
+      for (int y = low[1]; y <= high[1]; ++y) {
+        for (int z = low[2]; z <= high[2]; ++z) visit(cells_[std::size_t((x * kCells + y) * kCells + z)]);
+      }
+    }
+  }
+  std::vector<Aabb> boxes_;
+  std::vector<int> seen_;
+  int round_ = 0;
+  Aabb all_;
+  std::vector<std::vector<int>> cells_{std::size_t(kCells) * kCells * kCells};
+};
+
+Aabb box_of(const Features& f, const Corner& corner) { return {f.points[corner.v], f.points[corner.v]}; }
+Aabb box_of(const Features& f, const Edge& edge) {
+  Aabb box;
+  for (int v : {edge.v, edge.w}) box.extend(f.points[v]);
+  return box;
+}
+Aabb box_of(const Features& f, const Face& face) {
+  Aabb box;
+  for (int v : face.v) box.extend(f.points[v]);
+  return box;
+}
+template <class List>
+std::vector<Aabb> boxes_of(const Features& f, const List& list) {
+  std::vector<Aabb> boxes;
+  for (const auto& feature : list) boxes.push_back(box_of(f, feature));
+  return boxes;
 }
 
 class Search {
@@ -162,22 +261,36 @@ class Search {
       : a_(a), b_(b), query_(query), doubt_(doubt) {}
 
   std::vector<RefereeMinimum> run() {
-    for (const Corner& corner : a_.corners) {
-      for (const Face& face : b_.faces) corner_face(a_, corner, b_, face, false);
-      for (const Edge& edge : b_.edges) corner_edge(a_, corner, b_, edge, false);
-      for (const Corner& other : b_.corners) corner_corner(corner, other);
-    }
-    for (const Corner& corner : b_.corners) {
-      for (const Face& face : a_.faces) corner_face(b_, corner, a_, face, true);
-      for (const Edge& edge : a_.edges) corner_edge(b_, corner, a_, edge, true);
-    }
-    for (const Edge& e : a_.edges) {
-      for (const Edge& f : b_.edges) edge_edge(e, f);
-    }
+    meet(a_, a_.corners, b_, b_.faces,
+         [&](const Corner& x, const Face& y) { corner_face(a_, x, b_, y, false); });
+    meet(a_, a_.corners, b_, b_.edges,
+         [&](const Corner& x, const Edge& y) { corner_edge(a_, x, b_, y, false); });
+    meet(a_, a_.corners, b_, b_.corners, [&](const Corner& x, const Corner& y) { corner_corner(x, y); });
+    meet(b_, b_.corners, a_, a_.faces,
+         [&](const Corner& x, const Face& y) { corner_face(b_, x, a_, y, true); });
+    meet(b_, b_.corners, a_, a_.edges,
+         [&](const Corner& x, const Edge& y) { corner_edge(b_, x, a_, y, true); });
+    meet(a_, a_.edges, b_, b_.edges, [&](const Edge& x, const Edge& y) { edge_edge(x, y); });
     return std::move(found_);
   }
 
  private:
+  /// Every pair; of large meshes every pair whose boxes are within twice the tolerance of each other.
+  template <class Ones, class Others, class Compare>
+  void meet(const Features& f, const Ones& ones, const Features& g, const Others& others,
+            const Compare& compare) const {
+    constexpr std::size_t kFew = 1 << 22;
+    if (ones.size() * others.size() < kFew) {
+      for (const auto& x : ones) {
+        for (const auto& y : others) compare(x, y);
+      }
+      return;
+    }
+    Grid grid(boxes_of(g, others), 2.0 * std::max(query_.reach, query_.depth));
+    for (const auto& x : ones)
+      grid.for_each_near(box_of(f, x), [&](std::size_t i) { compare(x, others[i]); });
+  }
+
   double range_margin(double distance) const {
     return std::min(query_.reach - distance, distance + query_.depth) / query_.reach;
   }

@@ -8,6 +8,8 @@
 namespace tactum {
 namespace {
 
+constexpr double kDiagonal = 1.42;  // a little more than the root of two
+
 lanes::Bounds bounds_of(const MinimaQuery& query, double size) noexcept {
   const double grown = tolerances::kSingle * size;
   lanes::Bounds q{};
@@ -15,7 +17,8 @@ lanes::Bounds bounds_of(const MinimaQuery& query, double size) noexcept {
   q.reach = static_cast<float>(query.reach + grown);
   q.depth = static_cast<float>(query.depth + grown);
   q.far = std::max(q.reach, q.depth);
-  q.slack = static_cast<float>(query.cone_slack + tolerances::kSingle);
+  // The normal of parallel edges may leave an edge's cone by the slack to two sides at once.
+  q.slack = static_cast<float>(kDiagonal * query.cone_slack + tolerances::kSingle);
   return q;
 }
 
@@ -31,14 +34,17 @@ MinimaWork lanes::surface_minima(const Kernels& kernels, const SurfaceTree& a, c
                                  std::vector<SurfaceMinimum>& minima) noexcept {
   FeatureComparison features(a, b, X_AB, query, minima);
   const Bounds bounds = bounds_of(query, a.size() + b.size());
-  SurfaceWalk walk(a, b, X_AB, bounds, kernels, features);
   using Tree = SurfaceTree;
-  walk.run(Tree::kEdges, Tree::kEdges);
-  walk.run(Tree::kVertices, Tree::kFaces);
-  walk.run(Tree::kFaces, Tree::kVertices);
-  walk.run(Tree::kVertices, Tree::kEdges);
-  walk.run(Tree::kEdges, Tree::kVertices);
-  walk.run(Tree::kVertices, Tree::kVertices);
+  {
+    SurfaceWalk walk(a, b, X_AB.inverse(), false, bounds, kernels, features);
+    walk.run<Tree::kEdges, Tree::kEdges>();
+    walk.run<Tree::kVertices, Tree::kFaces>();
+    walk.run<Tree::kVertices, Tree::kEdges>();
+    walk.run<Tree::kVertices, Tree::kVertices>();
+  }
+  SurfaceWalk back(b, a, X_AB, true, bounds, kernels, features);
+  back.run<Tree::kVertices, Tree::kFaces>();
+  back.run<Tree::kVertices, Tree::kEdges>();
   features.finish();
   return features.work;
 }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 
 #include "tactum/base/tolerances.h"
 
@@ -18,10 +17,12 @@ Feature face_of(std::int32_t corner) noexcept { return {FeatureKind::kFace, corn
 InCone worst(InCone x, InCone y) noexcept { return x < y ? x : y; }
 
 bool in_order(const SurfaceMinimum& x, const SurfaceMinimum& y) noexcept {
-  const auto key = [](const SurfaceMinimum& m) {
-    return std::tie(m.a.kind, m.a.index, m.b.kind, m.b.index, m.p_a.x(), m.p_a.y(), m.p_a.z());
+  const auto number = [](const Feature& f) {
+    return std::uint64_t(f.kind) << 32 | static_cast<std::uint32_t>(f.index);
   };
-  return key(x) < key(y);
+  if (number(x.a) != number(y.a)) return number(x.a) < number(y.a);
+  if (number(x.b) != number(y.b)) return number(x.b) < number(y.b);
+  return std::lexicographical_compare(x.p_a.begin(), x.p_a.end(), y.p_a.begin(), y.p_a.end());
 }
 
 bool nearer(const SurfaceMinimum& x, const SurfaceMinimum& y) noexcept {
@@ -178,13 +179,16 @@ InCone FeatureComparison::falls_away(double value, double length_sq) const noexc
   return value * value <= slack_sq_ * length_sq ? InCone::kInflated : InCone::kOutside;
 }
 
-/// u is unit and square to the edge. The neighbours first: they turn most away and cost least.
+/// u is unit and square to the edge, to within the slack where edges are parallel. The neighbours first: they
+/// turn most away and cost least.
 InCone FeatureComparison::in_edge_cone(const Side& side, const Edge& edge, const Vec3& u) const noexcept {
-  // What counts is a face's direction square to the edge: e . u needs no more, its length does.
-  const auto face_falls = [&](const Vec3& e) {
+  // What counts is a face's direction square to the edge. Along it a sliver's other corner may be a hundred
+  // times as far as across, so that the little by which u leans would decide.
+  const double per_length_sq = 1.0 / edge.along.squaredNorm();
+  const auto face_falls = [&](const Vec3& to_corner) {
+    const Vec3 e = to_corner - edge.along * (to_corner.dot(edge.along) * per_length_sq);
     const double value = e.dot(u);
-    return value <= 0.0 ? InCone::kStrict
-                        : falls_away(value, e.cross(edge.along).squaredNorm() / edge.along.squaredNorm());
+    return value <= 0.0 ? InCone::kStrict : falls_away(value, e.squaredNorm());
   };
   InCone cone = face_falls(side.point(edge.corner, 2) - edge.from);
   if (cone == InCone::kOutside) return cone;
@@ -195,6 +199,12 @@ InCone FeatureComparison::in_edge_cone(const Side& side, const Edge& edge, const
   return worst(cone, falls_away(-side.normal(edge.corner).dot(u), 1.0));
 }
 
+Vec3 FeatureComparison::falling(const SurfaceTree& tree, const Vec3& p, std::int32_t w) noexcept {
+  if (w >= 0) return tree.vertex(w) - p;
+  const Triangle& t = tree.triangle(~w);
+  return (tree.vertex(t[2]) - tree.vertex(t[0])).cross(tree.vertex(t[1]) - tree.vertex(t[0]));
+}
+
 InCone FeatureComparison::in_vertex_cone(const Side& side, std::int32_t corner,
                                          const Vec3& u) const noexcept {
   const SurfaceTree& tree = side.tree;
@@ -203,18 +213,41 @@ InCone FeatureComparison::in_vertex_cone(const Side& side, std::int32_t corner,
   const Vec3 direction = side.is_a ? u : rotated_back(side.R, u);
   InCone cone = InCone::kStrict;
   for (std::int32_t w : tree.around(index)) {
-    if (w >= 0) {
-      const Vec3 e = tree.vertex(w) - p;
-      cone = worst(cone, falls_away(e.dot(direction), e.squaredNorm()));
-    } else {
-      const Triangle& t = tree.triangle(~w);
-      const Vec3 wall = (tree.vertex(t[2]) - tree.vertex(t[0])).cross(tree.vertex(t[1]) - tree.vertex(t[0]));
-      cone = worst(cone, falls_away(wall.dot(direction), wall.squaredNorm()));
-    }
+    const Vec3 e = falling(tree, p, w);
+    cone = worst(cone, falls_away(e.dot(direction), e.squaredNorm()));
     if (cone == InCone::kOutside) return cone;
   }
+  if (cone == InCone::kInflated && !near_vertex_cone(tree, index, direction)) return InCone::kOutside;
   if (!tree.narrow_vertex(corner)) return cone;
   return worst(cone, falls_away(-side.normal(corner).dot(u), 1.0));
+}
+
+/// What is nearest to u in the cone lies on one of its planes, or where one meets another; of these u lies
+/// before one at least. Where planes meet at a sharp angle, u may be near each but far from both.
+bool FeatureComparison::near_vertex_cone(const SurfaceTree& tree, int vertex, const Vec3& u) const noexcept {
+  const Vec3& p = tree.vertex(vertex);
+  const auto around = tree.around(vertex);
+  const auto in_cone = [&](const Vec3& v) {
+    return std::all_of(around.begin(), around.end(), [&](std::int32_t w) {
+      const Vec3 e = falling(tree, p, w);
+      return e.dot(v) <= tolerances::kSameNormal * e.norm();
+    });
+  };
+  for (std::int32_t w : around) {
+    const Vec3 e = falling(tree, p, w);
+    const double value = e.dot(u);
+    if (value <= 0.0) continue;
+    if (in_cone(u - e * (value / e.squaredNorm()))) return true;
+    for (std::int32_t other : around) {
+      const Vec3 ray = e.cross(falling(tree, p, other));
+      const double length_sq = ray.squaredNorm();
+      if (!(length_sq > 0.0)) continue;
+      const double along = ray.dot(u);
+      if ((u - ray * (along / length_sq)).squaredNorm() > slack_sq_) continue;
+      if (in_cone(ray * ((along < 0.0 ? -1.0 : 1.0) / std::sqrt(length_sq)))) return true;
+    }
+  }
+  return false;
 }
 
 void FeatureComparison::take(const Touch& touch, int triangle_a, int triangle_b) noexcept {

@@ -16,7 +16,7 @@ class FeatureComparison {
                     std::vector<SurfaceMinimum>& minima) noexcept;
 
   /// A vertex of the first with a feature of the second, the first being A unless `swapped`. Features are
-  /// told by corners, as in SurfaceTree::Leaf.
+  /// told by corners, as in the leaves of a SurfaceTree.
   void vertex_face(bool swapped, std::int32_t vertex, std::int32_t face) noexcept;
   void vertex_edge(bool swapped, std::int32_t vertex, std::int32_t edge) noexcept;
   void vertex_vertex(std::int32_t a, std::int32_t b) noexcept;
@@ -67,6 +67,10 @@ class FeatureComparison {
   InCone falls_away(double value, double length_sq) const noexcept;
   InCone in_edge_cone(const Side& side, const Edge& edge, const Vec3& u) const noexcept;
   InCone in_vertex_cone(const Side& side, std::int32_t corner, const Vec3& u) const noexcept;
+  /// Whether u is within the slack of the true cone.
+  bool near_vertex_cone(const SurfaceTree& tree, int vertex, const Vec3& u) const noexcept;
+  /// What must fall away from a vertex at p, as SurfaceTree::around() names it.
+  static Vec3 falling(const SurfaceTree& tree, const Vec3& p, std::int32_t w) noexcept;
   void take(const Touch& touch, int triangle_a, int triangle_b) noexcept;
   bool in_range(double distance) const noexcept {
     return distance <= query_.reach && distance >= -query_.depth;

@@ -53,15 +53,21 @@ class KernelsOf {
  public:
   static constexpr Kernels table() noexcept {
     return {facing,
-            vertices_near,
-            edges_near,
-            match<Vertices, Vertices>,
-            match<Vertices, Edges>,
-            match<Vertices, Faces>,
-            match<Edges, Edges>};
+            of_vertices<VertexLeaf>,
+            of_vertices<EdgeLeaf>,
+            of_vertices<FaceLeaf>,
+            edge_edge,
+            turn_stand,
+            turn_vertices,
+            turn_edges};
   }
 
  private:
+  using Node = SurfaceTree::Node;
+  using Stand = SurfaceTree::Stand;
+  using VertexLeaf = SurfaceTree::VertexLeaf;
+  using EdgeLeaf = SurfaceTree::EdgeLeaf;
+  using FaceLeaf = SurfaceTree::FaceLeaf;
   using W = Wide<Width>;
   using Float = typename W::Float;
   using Int = typename W::Int;
@@ -83,6 +89,7 @@ class KernelsOf {
     std::memcpy(&v, &from[first], sizeof v);
     return v;
   }
+  static void store(Float v, Lanes& to, std::size_t first) noexcept { std::memcpy(&to[first], &v, sizeof v); }
   static Vector load(const Lanes3& v, std::size_t first) noexcept {
     return {load(v[0], first), load(v[1], first), load(v[2], first)};
   }
@@ -105,139 +112,209 @@ class KernelsOf {
     return found;
   }
 
-  // ---- boxes ----
-
-  static std::uint32_t facing(const Box& box, const SurfaceTree::Node& node, const Bounds& q) noexcept {
-    return every_lane([&](std::size_t first) { return facing_from(box, node, first, q); });
+  static Three lane_of(const Lanes3& v, std::size_t lane) noexcept {
+    return {v[0][lane], v[1][lane], v[2][lane]};
+  }
+  static Vector spread(const Lanes3& v, std::size_t lane) noexcept {
+    return {all(v[0][lane]), all(v[1][lane]), all(v[2][lane])};
   }
 
-  /// Some of the lanes, from `first` on. The most telling axes come first: mostly no lane is left before the
+  /// How far the other end of a minimum may be from a box or a feature, along its axes: a minimum is as long
+  /// as the reach along a direction in both cones, so within narrow ones it hardly leans to the side, and it
+  /// never starts behind the surface by more than the depth.
+  struct Pad {
+    float side;          ///< along the first two axes [m]
+    float above, below;  ///< before and behind the surface [m]
+  };
+  static Pad pad_of(float cone, const Bounds& q) noexcept {
+    const float width = cone + q.slack;
+    const bool leans = width < kRightAngle;
+    return {(width < 1.0F ? width : 1.0F) * q.far, leans ? q.reach : q.far, leans ? q.depth : q.far};
+  }
+
+  // ---- boxes ----
+
+  static std::uint32_t facing(const Box& box, const Node& node, const Stand& at, const Bounds& q) noexcept {
+    return every_lane([&](std::size_t first) { return facing_from(box, node, at, first, q); });
+  }
+
+  /// Some of the lanes, from `first` on. The most telling axes come first: often no lane is left before the
   /// others.
-  static std::uint32_t facing_from(const Box& box, const SurfaceTree::Node& node, std::size_t first,
+  static std::uint32_t facing_from(const Box& box, const Node& node, const Stand& at, std::size_t first,
                                    const Bounds& q) noexcept {
-    const std::array<Vector, 3> own = {all(box.axis[0]), all(box.axis[1]), all(box.axis[2])};
-    const Vector up = load(node.up, first);
+    const float box_cone = box.node->cone[box.lane];
+    const Three box_half = lane_of(box.node->half, box.lane);
+    const Pad box_pad = pad_of(box_cone, q);
+    const Vector own_up = spread(box.at->up, box.lane);
+    const Vector own_along = spread(box.at->along, box.lane);
+    const Vector own_across = spread(box.at->across, box.lane);
+    const Vector up = load(at.up, first);
     const Float cone = load(node.cone, first);
-    const Float opposite = dot(own[2], up);
-    const Float sum = cone + (box.cone + 2.0F * q.slack);
-    std::int32_t child[Width];
-    std::memcpy(child, &node.child[first], sizeof child);
-    Int fine = std::bit_cast<Int>(child) != 0;
-    fine &= 2.0F + 2.0F * opposite <= sum * sum + float(tolerances::kSingle);
-    if (bits(fine) == 0) return 0;
+    const Float opposite = dot(own_up, up);
+    const Float sum = cone + (box_cone + 2.0F * q.slack);
+    Int child;
+    std::memcpy(&child, &node.child[first], sizeof child);
+    Int fine = (child != 0) & (2.0F + 2.0F * opposite <= sum * sum + float(tolerances::kSingle));
 
     // How far the box reaches along an axis of the lanes, and the lanes along one of the box.
     const auto box_reach = [&](Float x, Float y, Float z) {
-      return absolute(x) * box.half[0] + absolute(y) * box.half[1] + absolute(z) * box.half[2];
+      return absolute(x) * box_half[0] + absolute(y) * box_half[1] + absolute(z) * box_half[2];
     };
     const Vector half = load(node.half, first);
     const auto lane_reach = [&](Float x, Float y, Float z) {
       return absolute(x) * half.x + absolute(y) * half.y + absolute(z) * half.z;
     };
-    const Vector off = all(box.center) - load(node.center, first);
+    const Vector off = spread(box.at->center, box.lane) - load(at.center, first);
     const Float width = cone + q.slack;
     const Int leans = width < kRightAngle;
-    const Float up0 = dot(own[0], up);
-    const Float up1 = dot(own[1], up);
+    const Float along_up = dot(own_along, up);
+    const Float across_up = dot(own_across, up);
     const Float height = dot(off, up);
-    const Float thick = box_reach(up0, up1, opposite) + half.z;
+    const Float thick = box_reach(along_up, across_up, opposite) + half.z;
     fine &= (height <= thick + (leans ? all(q.reach) : all(q.far))) &
             (-height <= thick + (leans ? all(q.depth) : all(q.far)));
-    if (bits(fine) == 0) return 0;
 
-    const Vector along = load(node.along, first);
-    const Vector across = cross(up, along);
-    const Float own2_along = dot(own[2], along);
-    const Float own2_across = dot(own[2], across);
-    const Float depth = dot(off, own[2]);
-    const Float deep = lane_reach(own2_along, own2_across, opposite) + box.half[2];
-    fine &= (-depth <= deep + box.pad.above) & (depth <= deep + box.pad.below);
+    const Vector along = load(at.along, first);
+    const Vector across = load(at.across, first);
+    const Float up_along = dot(own_up, along);
+    const Float up_across = dot(own_up, across);
+    const Float depth = dot(off, own_up);
+    const Float deep = lane_reach(up_along, up_across, opposite) + box_half[2];
+    fine &= (-depth <= deep + box_pad.above) & (depth <= deep + box_pad.below);
     if (bits(fine) == 0) return 0;
 
     const Float side = (width < 1.0F ? width : all(1.0F)) * q.far;
-    const Float own0_along = dot(own[0], along);
-    const Float own1_along = dot(own[1], along);
-    const Float own0_across = dot(own[0], across);
-    const Float own1_across = dot(own[1], across);
-    fine &= (absolute(dot(off, along)) <= box_reach(own0_along, own1_along, own2_along) + half.x + side) &
-            (absolute(dot(off, across)) <= box_reach(own0_across, own1_across, own2_across) + half.y + side);
-    fine &= (absolute(dot(off, own[0])) <=
-             lane_reach(own0_along, own0_across, up0) + (box.half[0] + box.pad.side)) &
-            (absolute(dot(off, own[1])) <=
-             lane_reach(own1_along, own1_across, up1) + (box.half[1] + box.pad.side));
+    const Float along_along = dot(own_along, along);
+    const Float across_along = dot(own_across, along);
+    const Float along_across = dot(own_along, across);
+    const Float across_across = dot(own_across, across);
+    fine &= (absolute(dot(off, along)) <= box_reach(along_along, across_along, up_along) + half.x + side) &
+            (absolute(dot(off, across)) <= box_reach(along_across, across_across, up_across) + half.y + side);
+    fine &= (absolute(dot(off, own_along)) <=
+             lane_reach(along_along, along_across, along_up) + (box_half[0] + box_pad.side)) &
+            (absolute(dot(off, own_across)) <=
+             lane_reach(across_along, across_across, across_up) + (box_half[1] + box_pad.side));
     return bits(fine);
   }
 
   // ---- features near a box ----
 
-  static std::uint32_t vertices_near(const Vertices& ones, const Three& off, const Box& box) noexcept {
+  /// Lanes with a feature.
+  static Int used(const SurfaceTree::Corners& corner, std::size_t first) noexcept {
+    Int c;
+    std::memcpy(&c, &corner[first], sizeof c);
+    return c >= 0;
+  }
+
+  static std::uint32_t near(const VertexLeaf& ones, const Three& off, const Box& box,
+                            const Bounds& q) noexcept {
+    const Pad pad = pad_of(box.node->cone[box.lane], q);
+    const Three half = lane_of(box.node->half, box.lane);
     return every_lane([&](std::size_t first) {
       const Vector r = load(ones.point, first) + all(off);
-      const Float height = dot(r, all(box.axis[2]));
-      return bits((absolute(dot(r, all(box.axis[0]))) <= box.half[0] + box.pad.side) &
-                  (absolute(dot(r, all(box.axis[1]))) <= box.half[1] + box.pad.side) &
-                  (height <= box.half[2] + box.pad.above) & (-height <= box.half[2] + box.pad.below));
+      const Float height = dot(r, spread(box.at->up, box.lane));
+      return bits(used(ones.corner, first) &
+                  (absolute(dot(r, spread(box.at->along, box.lane))) <= half[0] + pad.side) &
+                  (absolute(dot(r, spread(box.at->across, box.lane))) <= half[1] + pad.side) &
+                  (height <= half[2] + pad.above) & (-height <= half[2] + pad.below));
     });
   }
 
-  static std::uint32_t edges_near(const Edges& ones, const Three& off, const Box& box) noexcept {
+  static std::uint32_t near(const EdgeLeaf& ones, const Three& off, const Box& box,
+                            const Bounds& q) noexcept {
+    const Pad pad = pad_of(box.node->cone[box.lane], q);
+    const Three half = lane_of(box.node->half, box.lane);
     return every_lane([&](std::size_t first) {
       const Vector along = load(ones.along, first);
-      const Vector half = {0.5F * along.x, 0.5F * along.y, 0.5F * along.z};
-      const Vector middle = load(ones.point, first) + all(off) + half;
-      const auto share = [&](std::size_t i) { return absolute(dot(half, all(box.axis[i]))) + box.half[i]; };
-      const Float height = dot(middle, all(box.axis[2]));
-      const Float thick = share(2);
-      return bits((absolute(dot(middle, all(box.axis[0]))) <= share(0) + box.pad.side) &
-                  (absolute(dot(middle, all(box.axis[1]))) <= share(1) + box.pad.side) &
-                  (height <= thick + box.pad.above) & (-height <= thick + box.pad.below));
+      const Vector to_end = {0.5F * along.x, 0.5F * along.y, 0.5F * along.z};
+      const Vector middle = load(ones.point, first) + all(off) + to_end;
+      const auto fits = [&](const Lanes3& axes, float room) {
+        const Vector axis = spread(axes, box.lane);
+        return absolute(dot(middle, axis)) <= absolute(dot(to_end, axis)) + room;
+      };
+      const Vector up = spread(box.at->up, box.lane);
+      const Float height = dot(middle, up);
+      const Float thick = absolute(dot(to_end, up)) + half[2];
+      return bits(used(ones.corner, first) & fits(box.at->along, half[0] + pad.side) &
+                  fits(box.at->across, half[1] + pad.side) & (height <= thick + pad.above) &
+                  (-height <= thick + pad.below));
     });
   }
 
   // ---- features near each other ----
 
-  template <class One, class Many>
-  static void match(const One& ones, const Three& off, std::uint32_t set, const Many& many, const Bounds& q,
-                    Matches& matches) noexcept {
-    for (std::size_t i = 0; i < kLanes; ++i) {
-      if ((set >> i & 1u) == 0) continue;
-      const Three p = {ones.point[0][i] + off[0], ones.point[1][i] + off[1], ones.point[2][i] + off[2]};
-      matches[i] = static_cast<std::uint8_t>(every_lane([&](std::size_t first) {
-        if constexpr (requires { ones.along; }) {
-          return near_edge(all(p), all(Three{ones.along[0][i], ones.along[1][i], ones.along[2][i]}), many,
-                           first, q);
-        } else {
-          return near_vertex(all(p), many, first, q);
-        }
-      }));
+  template <class Leaf>
+  static Matches of_vertices(const VertexLeaf& ones, const Three& off, const Box& box, const Leaf& others,
+                             const Bounds& q) noexcept {
+    Matches matches = 0;
+    for (std::uint32_t left = near(ones, off, box, q); left != 0; left &= left - 1) {
+      const auto i = std::size_t(std::countr_zero(left));
+      const Vector p = {all(ones.point[0][i] + off[0]), all(ones.point[1][i] + off[1]),
+                        all(ones.point[2][i] + off[2])};
+      const std::uint32_t found = every_lane([&](std::size_t first) {
+        return bits(used(others.corner, first) & near_vertex(p, others, first, q));
+      });
+      matches |= Matches(found) << (kLanes * i);
     }
+    return matches;
   }
 
-  static std::uint32_t near_vertex(const Vector& p, const Vertices& many, std::size_t first,
-                                   const Bounds& q) noexcept {
+  /// Of either leaf only the edges near the other's box, and from the side that has fewer.
+  static Matches edge_edge(const EdgeLeaf& ones, const Box& box_of_ones, const Three& off,
+                           const EdgeLeaf& others, const Box& box_of_others, const Bounds& q) noexcept {
+    const std::uint32_t near_ones = near(ones, off, box_of_others, q);
+    if (near_ones == 0) return 0;
+    const Three back = {-off[0], -off[1], -off[2]};
+    const std::uint32_t near_others = near(others, back, box_of_ones, q);
+    if (near_others == 0) return 0;
+    Matches matches = 0;
+    if (std::popcount(near_ones) <= std::popcount(near_others)) {
+      for (std::uint32_t left = near_ones; left != 0; left &= left - 1) {
+        const auto i = std::size_t(std::countr_zero(left));
+        matches |= Matches(near_one(ones, i, off, others, q) & near_others) << (kLanes * i);
+      }
+      return matches;
+    }
+    for (std::uint32_t left = near_others; left != 0; left &= left - 1) {
+      const auto i = std::size_t(std::countr_zero(left));
+      for (std::uint32_t found = near_one(others, i, back, ones, q) & near_ones; found != 0;
+           found &= found - 1)
+        matches |= Matches(1) << (kLanes * std::size_t(std::countr_zero(found)) + i);
+    }
+    return matches;
+  }
+
+  static std::uint32_t near_one(const EdgeLeaf& ones, std::size_t i, const Three& off, const EdgeLeaf& many,
+                                const Bounds& q) noexcept {
+    const Vector p = {all(ones.point[0][i] + off[0]), all(ones.point[1][i] + off[1]),
+                      all(ones.point[2][i] + off[2])};
+    const Vector u = spread(ones.along, i);
+    return every_lane([&](std::size_t first) { return near_edge(p, u, many, first, q); });
+  }
+
+  static Int near_vertex(const Vector& p, const VertexLeaf& many, std::size_t first,
+                         const Bounds& q) noexcept {
     const Vector r = p - load(many.point, first);
-    return bits(dot(r, r) <= all(q.reach * q.reach));
+    return dot(r, r) <= all(q.reach * q.reach);
   }
 
-  static std::uint32_t near_vertex(const Vector& p, const Edges& many, std::size_t first,
-                                   const Bounds& q) noexcept {
+  static Int near_vertex(const Vector& p, const EdgeLeaf& many, std::size_t first, const Bounds& q) noexcept {
     const Vector w = load(many.along, first);
     const Vector r = p - load(many.point, first);
     const Float at = dot(r, w);
     const Float pad = q.grown * at_most(w);
-    return bits((at >= -pad) & (at <= dot(w, w) + pad) & near_line(cross(r, w), w, all(q.reach)));
+    return (at >= -pad) & (at <= dot(w, w) + pad) & near_line(cross(r, w), w, all(q.reach));
   }
 
-  static std::uint32_t near_vertex(const Vector& p, const Faces& many, std::size_t first,
-                                   const Bounds& q) noexcept {
+  static Int near_vertex(const Vector& p, const FaceLeaf& many, std::size_t first, const Bounds& q) noexcept {
     const Float height = dot(p, load(many.normal, first)) - load(many.level, first);
     Int fine = (height <= q.reach) & (height >= -q.depth);
     for (std::size_t k = 0; k < 3; ++k)
-      fine &= dot(p, load(many.inward[k], first)) >= load(many.limit[k], first);
-    return bits(fine);
+      fine &= dot(p, load(many.inward[k], first)) >= load(many.limit[k], first) - 2.0F * q.grown;
+    return fine;
   }
 
-  static std::uint32_t near_edge(const Vector& p, const Vector& u, const Edges& many, std::size_t first,
+  static std::uint32_t near_edge(const Vector& p, const Vector& u, const EdgeLeaf& many, std::size_t first,
                                  const Bounds& q) noexcept {
     // Below this sine single precision cannot tell where lines come nearest; their distance alone is asked.
     const float slack = 1.01F * q.slack;
@@ -265,6 +342,34 @@ class KernelsOf {
   /// start to the point with w.
   static Int near_line(const Vector& off, const Vector& w, Float reach) noexcept {
     return dot(off, off) <= reach * reach * dot(w, w);
+  }
+
+  // ---- the other tree's frame ----
+
+  static void turn(const Lanes3& from, const Frame& frame, Lanes3& to, std::size_t first) noexcept {
+    const Vector v = load(from, first);
+    for (std::size_t k = 0; k < 3; ++k) store(dot(all(frame.R[k]), v), to[k], first);
+  }
+  static void turn_stand(const Stand& at, const Frame& frame, Stand& turned) noexcept {
+    for (std::size_t first = 0; first < kLanes; first += Width) {
+      turn(at.up, frame, turned.up, first);
+      turn(at.along, frame, turned.along, first);
+      turn(at.across, frame, turned.across, first);
+      const Vector c = load(at.center, first);
+      for (std::size_t k = 0; k < 3; ++k)
+        store(dot(all(frame.R[k]), c) + all(frame.p[k]), turned.center[k], first);
+    }
+  }
+  static void turn_vertices(const VertexLeaf& leaf, const Frame& frame, VertexLeaf& turned) noexcept {
+    for (std::size_t first = 0; first < kLanes; first += Width) turn(leaf.point, frame, turned.point, first);
+    turned.corner = leaf.corner;
+  }
+  static void turn_edges(const EdgeLeaf& leaf, const Frame& frame, EdgeLeaf& turned) noexcept {
+    for (std::size_t first = 0; first < kLanes; first += Width) {
+      turn(leaf.point, frame, turned.point, first);
+      turn(leaf.along, frame, turned.along, first);
+    }
+    turned.corner = leaf.corner;
   }
 };
 

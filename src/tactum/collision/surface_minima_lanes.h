@@ -4,13 +4,17 @@
 /// arithmetic in one order, so the answers are the same bits on every build and processor; they err on the
 /// safe side only, and what they let through is tested exactly.
 ///
-///     leaf of A           box of B's leaf         leaf of B
+///     leaf of one        box of the other's leaf         leaf of the other
 ///     eight features ──► which are near it? ──► each against eight: a bit for a pair that may be a minimum
+///
+/// Everything is told in the frame of the other tree, from its center. Nodes and leaves of the one are turned
+/// into it eight lanes at a time; those of the other are taken as they are stored.
 
 #include <array>
 #include <cstdint>
 
 #include "tactum/geometry/surface_tree.h"
+#include "tactum/math/pose.h"
 
 namespace tactum::lanes {
 
@@ -26,60 +30,52 @@ struct Bounds {
   float grown;              ///< by which lengths are grown [m]
 };
 
-/// How far the other end of a minimum may be from a box or a feature, along its axes: a minimum is as long as
-/// the reach along a direction in both cones, so within narrow ones it hardly leans to the side, and it never
-/// starts behind the surface by more than the depth.
-struct Pad {
-  float side;          ///< along the first two axes [m]
-  float above, below;  ///< before and behind the surface [m]
+/// The pose of one tree's center in the other's, in single precision.
+struct Frame {
+  std::array<Three, 3> R{};
+  Three p{};
+  explicit Frame(const Pose& X) noexcept {
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t j = 0; j < 3; ++j) R[i][j] = static_cast<float>(X.R(int(i), int(j)));
+      p[i] = static_cast<float>(X.p[int(i)]);
+    }
+  }
 };
 
-/// One lane of a node, in its own tree's frame or the other's.
+/// One lane of a node: how large it is, and where it stands in the frame of the test.
 struct Box {
-  Three center;
-  std::array<Three, 3> axis;
-  Three half;
-  float cone;
-  Pad pad;
+  const SurfaceTree::Node* node;
+  const SurfaceTree::Stand* at;
+  std::size_t lane;
 };
 
-/// The features of a leaf in eight lanes, told from the middle of its box; lanes without a feature are far
-/// away.
-struct Vertices {
-  Lanes3 point;
-};
-struct Edges {
-  Lanes3 point, along;  ///< where it starts, and from there to its end
-};
-/// By planes: a point p is at the height  normal . p - level  and inside where  inward . p >= limit  for all
-/// three sides.
-struct Faces {
-  Lanes3 normal;
-  Lanes level;
-  std::array<Lanes3, 3> inward;  ///< square to side and normal, as long as the side
-  std::array<Lanes, 3> limit;    ///< a little outside
-};
-
-/// Of each of the eight features of a leaf, a bit for each of another's that it may be a minimum with.
-using Matches = std::array<std::uint8_t, kLanes>;
+/// Of two leaves, a bit 8 i + k for the feature i of the one and k of the other that may be a minimum.
+using Matches = std::uint64_t;
 
 /// The tests, for one kind of processor.
 struct Kernels {
-  /// A bit for each lane of a node whose cones face those of the box, and whose box overlaps the other along
-  /// the axes of either when padded.
-  std::uint32_t (*facing)(const Box& box, const SurfaceTree::Node& node, const Bounds& q) noexcept;
-  /// A bit for each feature that, moved by `off`, overlaps the box along the box's own axes when padded.
-  std::uint32_t (*vertices_near)(const Vertices& ones, const Three& off, const Box& box) noexcept;
-  std::uint32_t (*edges_near)(const Edges& ones, const Three& off, const Box& box) noexcept;
-  /// For each of the ones whose bit is set, moved by `off`: which of the many are near it, by place alone.
-  void (*vertex_vertex)(const Vertices& ones, const Three& off, std::uint32_t set, const Vertices& many,
-                        const Bounds& q, Matches& matches) noexcept;
-  void (*vertex_edge)(const Vertices& ones, const Three& off, std::uint32_t set, const Edges& many,
-                      const Bounds& q, Matches& matches) noexcept;
-  void (*vertex_face)(const Vertices& ones, const Three& off, std::uint32_t set, const Faces& many,
-                      const Bounds& q, Matches& matches) noexcept;
-  void (*edge_edge)(const Edges& ones, const Three& off, std::uint32_t set, const Edges& many,
-                    const Bounds& q, Matches& matches) noexcept;
+  /// A bit for each lane of a node that stands there whose cones face those of the box, and whose box
+  /// overlaps the other along the axes of either when padded.
+  std::uint32_t (*facing)(const Box& box, const SurfaceTree::Node& node, const SurfaceTree::Stand& at,
+                          const Bounds& q) noexcept;
+  /// The vertices of a leaf, their middle `off` from the other leaf's, with the features of the other leaf,
+  /// whose box is told.
+  Matches (*vertex_vertex)(const SurfaceTree::VertexLeaf& ones, const Three& off, const Box& box,
+                           const SurfaceTree::VertexLeaf& others, const Bounds& q) noexcept;
+  Matches (*vertex_edge)(const SurfaceTree::VertexLeaf& ones, const Three& off, const Box& box,
+                         const SurfaceTree::EdgeLeaf& others, const Bounds& q) noexcept;
+  Matches (*vertex_face)(const SurfaceTree::VertexLeaf& ones, const Three& off, const Box& box,
+                         const SurfaceTree::FaceLeaf& others, const Bounds& q) noexcept;
+  /// The edges of two leaves, each against the other's box first.
+  Matches (*edge_edge)(const SurfaceTree::EdgeLeaf& ones, const Box& box_of_ones, const Three& off,
+                       const SurfaceTree::EdgeLeaf& others, const Box& box_of_others,
+                       const Bounds& q) noexcept;
+  /// In the other tree's frame; leaves keep the middle they are told from.
+  void (*turn_stand)(const SurfaceTree::Stand& at, const Frame& frame, SurfaceTree::Stand& turned) noexcept;
+  void (*turn_vertices)(const SurfaceTree::VertexLeaf& leaf, const Frame& frame,
+                        SurfaceTree::VertexLeaf& turned) noexcept;
+  void (*turn_edges)(const SurfaceTree::EdgeLeaf& leaf, const Frame& frame,
+                     SurfaceTree::EdgeLeaf& turned) noexcept;
 };
 
 /// Four lanes at a time, on any processor.

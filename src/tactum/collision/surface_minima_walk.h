@@ -5,20 +5,20 @@
 #include <array>
 
 #include "tactum/collision/surface_minima_features.h"
-#include "tactum/collision/surface_minima_leaves.h"
+#include "tactum/collision/surface_minima_lanes.h"
 
 namespace tactum {
 
-/// Boxes and leaves in the form the tests want, kept for the pairs that follow, which mostly ask for the same
+/// What was turned into the other's frame, kept for the pairs that follow, which mostly ask for the same
 /// again. The room is filled as far as it is used.
 template <class Value, std::size_t Room>
 class Kept {
  public:
-  Kept() noexcept { key_.fill(-1); }  // NOLINT(cppcoreguidelines-pro-type-member-init)
+  Kept() noexcept { key_.fill(~0U); }  // NOLINT(cppcoreguidelines-pro-type-member-init)
   /// The value with this key, which make(value) makes when it is not there.
   template <class Make>
-  const Value& get(std::int32_t key, const Make& make) noexcept {
-    const std::size_t slot = std::size_t(key) % Room;
+  const Value& get(std::uint32_t key, const Make& make) noexcept {
+    const std::size_t slot = key % Room;
     if (key_[slot] != key) {
       key_[slot] = key;
       make(value_[slot]);
@@ -27,64 +27,58 @@ class Kept {
   }
 
  private:
-  std::array<std::int32_t, Room> key_;
+  std::array<std::uint32_t, Room> key_;
   std::array<Value, Room> value_;
 };
 
-/// Everything is told in B's frame, from B's center; only boxes of B that are held against A's nodes are told
-/// in A's.
+/// Everything is told in the frame of the other surface, from its center.
 class SurfaceWalk {
  public:
-  SurfaceWalk(const SurfaceTree& a, const SurfaceTree& b, const Pose& X_AB, const lanes::Bounds& bounds,
-              const lanes::Kernels& kernels, FeatureComparison& features) noexcept;
-  /// All minima of features of one kind of A with those of another kind of B.
-  void run(SurfaceTree::Kind kind_a, SurfaceTree::Kind kind_b) noexcept;
+  /// One surface and the other with the one at X_OtherOne. `swapped`: the one is B.
+  SurfaceWalk(const SurfaceTree& one, const SurfaceTree& other, const Pose& X_OtherOne, bool swapped,
+              const lanes::Bounds& bounds, const lanes::Kernels& kernels,
+              FeatureComparison& features) noexcept;
+  /// All minima of edges with edges, or of vertices of the one with features of the other.
+  template <SurfaceTree::Kind One, SurfaceTree::Kind Other>
+  void run() noexcept;
 
  private:
   using Index = std::size_t;
   using Set = std::uint32_t;
 
-  /// A lane of a node: its number among all, what is below, and half the longest side of its box.
-  struct Place {
-    std::int32_t lane, child;
-    float extent;
-  };
+  /// A lane of a node, as its number among all, of either tree.
   struct Pair {
-    Place a, b;
+    std::uint32_t one, other;
   };
-  /// The leaves of one surface in lanes.
-  struct Leaves {
-    Kept<lanes::Vertices, 128> vertices;
-    Kept<lanes::Edges, 128> edges;
-    Kept<lanes::Faces, 64> faces;
-  };
-  static Place place(const SurfaceTree& tree, std::int32_t node, int lane) noexcept;
-  static Vec3 middle(const SurfaceTree& tree, const Place& at) noexcept;
-  const lanes::Box& box_of_a(const Place& at) noexcept;
-  const lanes::Box& box_of_b(const Place& at) noexcept;
-  const lanes::Box& box_of_b_in_a(const Place& at) noexcept;
-  template <class Lanes>
-  void put(const Place& at, bool of_a, Lanes& to) noexcept;
-  const lanes::Vertices& vertices(const Place& at, bool of_a) noexcept;
-  const lanes::Edges& edges(const Place& at, bool of_a) noexcept;
-  const lanes::Faces& faces(const Place& at, bool of_a) noexcept;
+  static const SurfaceTree::Node& node_of(const SurfaceTree& tree, std::uint32_t lane) noexcept {
+    return tree.nodes()[lane / lanes::kLanes];
+  }
+  lanes::Box box_of_one(std::uint32_t lane) noexcept {
+    return {&node_of(one_, lane), &turned(lane / lanes::kLanes), lane % lanes::kLanes};
+  }
+  lanes::Box box_of_other(std::uint32_t lane) const noexcept {
+    const SurfaceTree::Node& node = node_of(other_, lane);
+    return {&node, &node.at, lane % lanes::kLanes};
+  }
+  /// Where the boxes of a node of the one stand in the other's frame.
+  const SurfaceTree::Stand& turned(std::uint32_t node) noexcept {
+    return stands_.get(
+        node, [&](SurfaceTree::Stand& to) { kernels_.turn_stand(one_.nodes()[node].at, frame_, to); });
+  }
 
+  template <SurfaceTree::Kind One, SurfaceTree::Kind Other>
   void compare_leaves(const Pair& pair) noexcept;
-  void compare_edges(const Pair& pair, const lanes::Three& off) noexcept;
-  /// The vertices of a leaf of A, or else of B, with the other's features; `off`: from the middle of the
-  /// other's leaf to that of theirs [m].
-  void compare_vertices(const Pair& pair, bool of_a, const lanes::Three& off) noexcept;
 
-  const SurfaceTree& a_;
-  const SurfaceTree& b_;
-  Pose X_BA_;  // from center to center
-  lanes::Frame a_in_b_, b_in_a_;
+  const SurfaceTree& one_;
+  const SurfaceTree& other_;
+  bool swapped_;
+  lanes::Frame frame_;
   const lanes::Bounds& bounds_;
   const lanes::Kernels& kernels_;
   FeatureComparison& features_;
-  SurfaceTree::Kind kind_a_{}, kind_b_{};
-  Kept<lanes::Box, 64> boxes_a_, boxes_b_, boxes_b_in_a_;
-  Leaves leaves_a_, leaves_b_;
+  Kept<SurfaceTree::Stand, 128> stands_;
+  Kept<SurfaceTree::VertexLeaf, 128> vertices_;
+  Kept<SurfaceTree::EdgeLeaf, 128> edges_;
 };
 
 }  // namespace tactum

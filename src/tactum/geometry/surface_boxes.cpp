@@ -10,7 +10,13 @@ namespace tactum {
 namespace {
 
 constexpr std::size_t kLanes = SurfaceTree::kLanes;
-void put(SurfaceTree::Lanes3& lanes, std::size_t lane, const Vec3& v) {
+constexpr float kNowhere = 1e18F;  // where lanes without a feature are put
+
+/// Of two boxes the larger is opened, or rather the one with the wider cone: its children face less. Beside
+/// this angle widths do not count [rad].
+constexpr float kNarrow = 0.02F;
+
+void put_lane(SurfaceTree::Lanes3& lanes, std::size_t lane, const Vec3& v) {
   for (std::size_t i = 0; i < 3; ++i) lanes[i][lane] = static_cast<float>(v[static_cast<int>(i)]);
 }
 
@@ -25,9 +31,13 @@ std::size_t power_of_lanes(std::size_t value) {
   return power;
 }
 
-/// The axis along which values spread most about their mean.
+/// The axes of the spread of values about their mean, the longest last.
+struct Spread {
+  std::array<Vec3, 3> axis;
+  std::array<double, 3> square;  ///< of the spread along them
+};
 template <class Values>
-Vec3 longest_spread(const Values& value, std::size_t first, std::size_t last) {
+Spread spread_of(const Values& value, std::size_t first, std::size_t last) {
   Vec3 mean = Vec3::Zero();
   for (std::size_t i = first; i < last; ++i) mean += value(i);
   mean /= static_cast<double>(last - first);
@@ -36,7 +46,10 @@ Vec3 longest_spread(const Values& value, std::size_t first, std::size_t last) {
     const Vec3 off = value(i) - mean;
     moments += off * off.transpose();
   }
-  return Eigen::SelfAdjointEigenSolver<Mat3>(moments).eigenvectors().col(2);
+  const Eigen::SelfAdjointEigenSolver<Mat3> solver(moments);
+  const Mat3& axes = solver.eigenvectors();
+  const Vec3& squares = solver.eigenvalues();
+  return {{axes.col(0), axes.col(1), axes.col(2)}, {squares[0], squares[1], squares[2]}};
 }
 
 }  // namespace
@@ -44,9 +57,12 @@ Vec3 longest_spread(const Values& value, std::size_t first, std::size_t last) {
 SurfaceBoxes::SurfaceBoxes(const TriangleMesh& mesh, const SurfaceCones& cones, const Vec3& center)
     : mesh_(mesh), center_(center) {
   grown_ = tolerances::kSingle * bounds(mesh.vertices).diagonal();
-  std::size_t leaf_count = 0;
-  for (const auto& features : cones.features) leaf_count += (features.size() + kLanes - 1) / kLanes;
-  leaves.reserve(leaf_count);
+  const auto leaf_count = [&](SurfaceTree::Kind kind) {
+    return (cones.features[kind].size() + kLanes - 1) / kLanes;
+  };
+  vertex_leaves.reserve(leaf_count(SurfaceTree::kVertices));
+  edge_leaves.reserve(leaf_count(SurfaceTree::kEdges));
+  face_leaves.reserve(leaf_count(SurfaceTree::kFaces));
   for (const SurfaceTree::Kind kind : {SurfaceTree::kVertices, SurfaceTree::kEdges, SurfaceTree::kFaces}) {
     kind_ = kind;
     order_ = cones.features[kind];
@@ -57,27 +73,74 @@ SurfaceBoxes::SurfaceBoxes(const TriangleMesh& mesh, const SurfaceCones& cones, 
 
 Vec3 SurfaceBoxes::middle(const ConedFeature& feature) const {
   Vec3 sum = Vec3::Zero();
-  for (std::size_t i = 0; i < points(); ++i) sum += point(feature, i);
+  for (std::size_t i = 0; i < points(); ++i) sum += point(feature.corner, i, Vec3::Zero());
   return sum / static_cast<double>(points());
 }
 
 std::int32_t SurfaceBoxes::make_tree() {
-  const Range all{0, order_.size()};
   const std::size_t index = nodes.size();
   nodes.emplace_back();
-  make_box(nodes[index], 0, all);
-  const std::int32_t below = order_.size() <= kLanes ? make_leaf(all) : make_node(all);
-  nodes[index].child[0] = below;
+  make_child(index, 0, {0, order_.size()});
   return static_cast<std::int32_t>(index);
 }
 
-std::int32_t SurfaceBoxes::make_leaf(Range range) {
-  SurfaceTree::Leaf& leaf = leaves.emplace_back();
-  leaf.corner.fill(-1);
-  for (std::size_t i = range.first; i < range.second; ++i) leaf.corner[i - range.first] = order_[i].corner;
-  std::sort(leaf.corner.begin(),
-            leaf.corner.begin() + static_cast<std::ptrdiff_t>(range.second - range.first));
+/// The box of a range and what is below it. Nodes move while others are made.
+void SurfaceBoxes::make_child(std::size_t node, std::size_t lane, Range range) {
+  make_box(nodes[node], lane, range);
+  const SurfaceTree::Lanes3& center = nodes[node].at.center;
+  const Vec3 middle(center[0][lane], center[1][lane], center[2][lane]);
+  const bool leaf = range.second - range.first <= kLanes;
+  const std::int32_t below = leaf ? make_leaf(range, middle) : make_node(range);
+  nodes[node].child[lane] = below;
+}
+
+std::int32_t SurfaceBoxes::make_leaf(Range range, const Vec3& middle) {
+  const auto begin = order_.begin() + static_cast<std::ptrdiff_t>(range.first);
+  std::sort(begin, begin + static_cast<std::ptrdiff_t>(range.second - range.first),
+            [](const ConedFeature& x, const ConedFeature& y) { return x.corner < y.corner; });
+  if (kind_ == SurfaceTree::kVertices) return add_leaf(vertex_leaves, range, middle);
+  if (kind_ == SurfaceTree::kEdges) return add_leaf(edge_leaves, range, middle);
+  return add_leaf(face_leaves, range, middle);
+}
+
+template <class Leaf>
+std::int32_t SurfaceBoxes::add_leaf(std::vector<Leaf>& leaves, Range range, const Vec3& middle) {
+  Leaf& leaf = leaves.emplace_back();
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    const std::size_t i = range.first + lane;
+    leaf.corner[lane] = i < range.second ? order_[i].corner : -1;
+    put(leaf, lane, middle);
+  }
   return ~static_cast<std::int32_t>(leaves.size() - 1);
+}
+
+void SurfaceBoxes::put(SurfaceTree::VertexLeaf& leaf, std::size_t lane, const Vec3& middle) const {
+  const std::int32_t corner = leaf.corner[lane];
+  put_lane(leaf.point, lane, corner < 0 ? Vec3(Vec3::Constant(kNowhere)) : point(corner, 0, middle));
+}
+
+void SurfaceBoxes::put(SurfaceTree::EdgeLeaf& leaf, std::size_t lane, const Vec3& middle) const {
+  const std::int32_t corner = leaf.corner[lane];
+  const Vec3 from = corner < 0 ? Vec3(Vec3::Constant(kNowhere)) : point(corner, 0, middle);
+  put_lane(leaf.point, lane, from);
+  put_lane(leaf.along, lane, corner < 0 ? from : Vec3(point(corner, 1, middle) - from));
+}
+
+void SurfaceBoxes::put(SurfaceTree::FaceLeaf& leaf, std::size_t lane, const Vec3& middle) const {
+  if (leaf.corner[lane] < 0) {
+    leaf.level[lane] = kNowhere;
+    return;
+  }
+  std::array<Vec3, 3> corner;
+  for (std::size_t k = 0; k < 3; ++k) corner[k] = point(leaf.corner[lane], k, middle);
+  const Vec3 normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]).normalized();
+  put_lane(leaf.normal, lane, normal);
+  leaf.level[lane] = static_cast<float>(normal.dot(corner[0]));
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3 inward = normal.cross(corner[(k + 1) % 3] - corner[k]).normalized();
+    put_lane(leaf.inward[k], lane, inward);
+    leaf.limit[k][lane] = static_cast<float>(inward.dot(corner[k]));
+  }
 }
 
 std::int32_t SurfaceBoxes::make_node(Range range) {
@@ -87,12 +150,7 @@ std::int32_t SurfaceBoxes::make_node(Range range) {
   split(range, unit, parts);
   const std::size_t index = nodes.size();
   nodes.emplace_back();
-  for (std::size_t lane = 0; lane < parts.size(); ++lane) {
-    make_box(nodes[index], lane, parts[lane]);
-    const bool leaf = parts[lane].second - parts[lane].first <= kLanes;
-    const std::int32_t below = leaf ? make_leaf(parts[lane]) : make_node(parts[lane]);
-    nodes[index].child[lane] = below;
-  }
+  for (std::size_t lane = 0; lane < parts.size(); ++lane) make_child(index, lane, parts[lane]);
   return static_cast<std::int32_t>(index);
 }
 
@@ -109,9 +167,32 @@ void SurfaceBoxes::split(Range range, std::size_t unit, std::vector<Range>& part
   split({middle, range.second}, unit, parts);
 }
 
+/// Halves whose boxes are smallest, by the squares of their diagonals: cut across the longest spread of
+/// places, or where others are nearly as long across one of them, or half-way between.
 void SurfaceBoxes::sort_halves(Range range, std::size_t halfway) {
-  const Vec3 axis =
-      longest_spread([&](std::size_t i) { return middle(order_[i]); }, range.first, range.second);
+  constexpr double kNearly = 0.3;
+  const Spread spread =
+      spread_of([&](std::size_t i) { return middle(order_[i]); }, range.first, range.second);
+  const auto& [shortest, second, longest] = spread.axis;
+  std::vector<Vec3> axes = {longest};
+  if (spread.square[1] > kNearly * spread.square[2])
+    axes.insert(axes.end(), {second, (longest + second).normalized(), (longest - second).normalized()});
+  if (spread.square[0] > kNearly * spread.square[2]) axes.push_back(shortest);
+  Vec3 best = longest;
+  double least = 1e300;
+  for (const Vec3& axis : axes) {
+    cut_across(axis, range, halfway);
+    if (axes.size() == 1) return;
+    const double size =
+        span({range.first, halfway}).half.squaredNorm() + span({halfway, range.second}).half.squaredNorm();
+    if (size >= least) continue;
+    least = size;
+    best = axis;
+  }
+  cut_across(best, range, halfway);
+}
+
+void SurfaceBoxes::cut_across(const Vec3& axis, Range range, std::size_t halfway) {
   for (std::size_t i = range.first; i < range.second; ++i)
     keyed_[i] = {middle(order_[i]).dot(axis), order_[i]};
   const auto at = [&](std::size_t i) { return keyed_.begin() + static_cast<std::ptrdiff_t>(i); };
@@ -121,39 +202,56 @@ void SurfaceBoxes::sort_halves(Range range, std::size_t halfway) {
   for (std::size_t i = range.first; i < range.second; ++i) order_[i] = keyed_[i].second;
 }
 
-void SurfaceBoxes::make_box(SurfaceTree::Node& node, std::size_t lane, Range range) {
+SurfaceBoxes::Span SurfaceBoxes::span(Range range) const {
   Vec3 up = Vec3::Zero();
   for (std::size_t i = range.first; i < range.second; ++i) up += order_[i].axis;
   const double length = up.norm();
   up = length > tolerances::kSameNormal ? Vec3(up / length) : Vec3::UnitZ();
+  const auto at = [&](std::size_t i) {
+    return point(order_[i / points()].corner, i % points(), Vec3::Zero());
+  };
   // In the plane square to it, along the longest spread of the points.
   const auto flat_point = [&](std::size_t i) {
-    const Vec3 p = point(order_[i / points()], i % points());
+    const Vec3 p = at(i);
     return Vec3(p - up * up.dot(p));
   };
-  const Vec3 spread = longest_spread(flat_point, points() * range.first, points() * range.second);
+  const std::size_t first = points() * range.first;
+  const std::size_t last = points() * range.second;
+  const Vec3 spread = spread_of(flat_point, first, last).axis[2];
   Vec3 along = spread - up * up.dot(spread);
   along = along.norm() > 0.5 ? Vec3(along.normalized()) : any_orthogonal(up);
-  const std::array<Vec3, 3> axis = {along, up.cross(along), up};
+  Span box;
+  box.axis = {along, up.cross(along), up};
   Vec3 low = Vec3::Constant(1e300);
   Vec3 high = Vec3::Constant(-1e300);
+  for (std::size_t i = first; i < last; ++i) {
+    const Vec3 p = at(i);
+    const Vec3 told(box.axis[0].dot(p), box.axis[1].dot(p), box.axis[2].dot(p));
+    low = low.cwiseMin(told);
+    high = high.cwiseMax(told);
+  }
+  box.half = 0.5 * (high - low);
+  const Vec3 middle_told = 0.5 * (low + high);
+  box.center = box.axis[0] * middle_told[0] + box.axis[1] * middle_told[1] + box.axis[2] * middle_told[2];
+  return box;
+}
+
+void SurfaceBoxes::make_box(SurfaceTree::Node& node, std::size_t lane, Range range) {
+  const Span box = span(range);
+  const Vec3& up = box.axis[2];
   double width = 0.0;
   for (std::size_t i = range.first; i < range.second; ++i) {
-    for (std::size_t k = 0; k < points(); ++k) {
-      const Vec3 p = point(order_[i], k);
-      const Vec3 told(axis[0].dot(p), axis[1].dot(p), axis[2].dot(p));
-      low = low.cwiseMin(told);
-      high = high.cwiseMax(told);
-    }
     const Vec3& own = order_[i].axis;
     width = std::max(width, std::atan2(up.cross(own).norm(), up.dot(own)) + order_[i].width);
   }
-  const Vec3 middle_told = 0.5 * (low + high);
-  put(node.center, lane, axis[0] * middle_told[0] + axis[1] * middle_told[1] + axis[2] * middle_told[2]);
-  put(node.up, lane, up);
-  put(node.along, lane, along);
-  put(node.half, lane, 0.5 * (high - low) + Vec3::Constant(grown_));
+  const Vec3 half = box.half + Vec3::Constant(grown_);
+  put_lane(node.at.center, lane, box.center);
+  put_lane(node.at.along, lane, box.axis[0]);
+  put_lane(node.at.across, lane, box.axis[1]);
+  put_lane(node.at.up, lane, up);
+  put_lane(node.half, lane, half);
   node.cone[lane] = grown_angle(width);
+  node.extent[lane] = (kNarrow + node.cone[lane]) * static_cast<float>(half.maxCoeff());
 }
 
 }  // namespace tactum

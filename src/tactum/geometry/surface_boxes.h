@@ -18,23 +18,40 @@ class SurfaceBoxes {
   SurfaceBoxes(const TriangleMesh& mesh, const SurfaceCones& cones, const Vec3& center);
 
   std::vector<SurfaceTree::Node> nodes;
-  std::vector<SurfaceTree::Leaf> leaves;
+  std::vector<SurfaceTree::VertexLeaf> vertex_leaves;
+  std::vector<SurfaceTree::EdgeLeaf> edge_leaves;
+  std::vector<SurfaceTree::FaceLeaf> face_leaves;
   std::array<std::int32_t, 3> root{-1, -1, -1};  ///< SurfaceTree::root
 
  private:
   using Range = std::pair<std::size_t, std::size_t>;  ///< of order_
 
   std::int32_t make_tree();
-  std::int32_t make_leaf(Range range);
+  /// The features of a range, told from the middle of their box.
+  std::int32_t make_leaf(Range range, const Vec3& middle);
+  void make_child(std::size_t node, std::size_t lane, Range range);
+  void put(SurfaceTree::VertexLeaf& leaf, std::size_t lane, const Vec3& middle) const;
+  void put(SurfaceTree::EdgeLeaf& leaf, std::size_t lane, const Vec3& middle) const;
+  void put(SurfaceTree::FaceLeaf& leaf, std::size_t lane, const Vec3& middle) const;
+  template <class Leaf>
+  std::int32_t add_leaf(std::vector<Leaf>& leaves, Range range, const Vec3& middle);
   std::int32_t make_node(Range range);
+  /// The oriented box around a range of features, its third axis along the mean direction of their cones.
+  struct Span {
+    std::array<Vec3, 3> axis;
+    Vec3 center, half;  ///< [m]
+  };
+  Span span(Range range) const;
   void make_box(SurfaceTree::Node& node, std::size_t lane, Range range);
   void split(Range range, std::size_t unit, std::vector<Range>& parts);
   void sort_halves(Range range, std::size_t halfway);
+  void cut_across(const Vec3& axis, Range range, std::size_t halfway);
 
   std::size_t points() const { return std::size_t(kind_) + 1; }  ///< of a feature of the kind at hand
-  Vec3 point(const ConedFeature& feature, std::size_t i) const {
-    const Triangle& t = mesh_.triangles[feature.corner / 3];
-    return mesh_.vertices[t[(std::size_t(feature.corner) + i) % 3]] - center_;
+  /// The corner of a triangle that is `after` this one, from a place told from the center.
+  Vec3 point(std::int32_t corner, std::size_t after, const Vec3& place) const {
+    const Triangle& t = mesh_.triangles[corner / 3];
+    return mesh_.vertices[t[(std::size_t(corner) + after) % 3]] - center_ - place;
   }
   Vec3 middle(const ConedFeature& feature) const;
 

@@ -12,7 +12,7 @@ namespace tactum {
 
 /// A feature that can be nearest to something, with the cone around its normal cone.
 struct ConedFeature {
-  std::int32_t corner = -1;  ///< as in SurfaceTree::Leaf
+  std::int32_t corner = -1;  ///< as in the leaves of a SurfaceTree
   Vec3 axis;                 ///< unit [-]
   double width = 0.0;        ///< largest angle from the axis to a direction of the cone [rad]
 };

@@ -21,13 +21,12 @@ SurfaceTree::SurfaceTree(const TriangleMesh& welded, const std::vector<int>& gro
   SurfaceBoxes boxes(welded, cones, center);
   beyond_ = std::move(cones.beyond);
   narrow_ = std::move(cones.narrow);
-  normal_.reserve(triangles_.size());
-  for (const Vec3& n : cones.normal)
-    normal_.push_back({static_cast<float>(n.x()), static_cast<float>(n.y()), static_cast<float>(n.z())});
   first_around_ = std::move(cones.first_around);
   around_ = std::move(cones.around);
   nodes_ = std::move(boxes.nodes);
-  leaves_ = std::move(boxes.leaves);
+  vertex_leaves_ = std::move(boxes.vertex_leaves);
+  edge_leaves_ = std::move(boxes.edge_leaves);
+  face_leaves_ = std::move(boxes.face_leaves);
   nodes_.shrink_to_fit();
   scalars_.root = boxes.root;
 }
@@ -38,15 +37,32 @@ std::size_t SurfaceTree::memory() const noexcept {
   return bytes;
 }
 
+template <class Leaf>
+bool SurfaceTree::sound(std::int32_t first, std::int32_t last,
+                        const std::vector<Leaf>& leaves) const noexcept {
+  // Children stand behind their parents, so no walk goes round.
+  for (std::int32_t i = first; i < last; ++i) {
+    for (std::int32_t child : nodes_[std::size_t(i)].child) {
+      if (child > 0 ? child <= i || child >= last : child < 0 && std::size_t(~child) >= leaves.size())
+        return false;
+    }
+  }
+  return std::all_of(leaves.begin(), leaves.end(), [&](const Leaf& leaf) {
+    return std::all_of(leaf.corner.begin(), leaf.corner.end(), [&](std::int32_t corner) {
+      return corner == -1 || (corner >= 0 && corner / 3 < triangle_count());
+    });
+  });
+}
+
 bool SurfaceTree::sound() const noexcept {
-  if (empty()) return nodes_.empty() && leaves_.empty();
+  if (empty())
+    return nodes_.empty() && vertex_leaves_.empty() && edge_leaves_.empty() && face_leaves_.empty();
   const int triangles = triangle_count();
   const int vertices = vertex_count();
   const auto is_triangle = [&](std::int32_t t) { return t >= 0 && t < triangles; };
   const auto is_vertex = [&](std::int32_t v) { return v >= 0 && v < vertices; };
   const std::size_t count = triangles_.size();
-  if (group_.size() != count || beyond_.size() != count || narrow_.size() != count || normal_.size() != count)
-    return false;
+  if (group_.size() != count || beyond_.size() != count || narrow_.size() != count) return false;
   if (first_around_.size() != vertices_.size() + 1) return false;
   if (first_around_.front() != 0 || std::size_t(first_around_.back()) != around_.size()) return false;
   if (!std::is_sorted(first_around_.begin(), first_around_.end())) return false;
@@ -59,24 +75,15 @@ bool SurfaceTree::sound() const noexcept {
                      [&](std::int32_t w) { return w == kWall || is_vertex(w); }))
       return false;
   }
-  for (const Leaf& leaf : leaves_) {
-    for (std::int32_t corner : leaf.corner) {
-      if (corner != -1 && (corner < 0 || !is_triangle(corner / 3))) return false;
-    }
+  // Nodes of a kind begin with its root and end with the next kind's.
+  std::array<std::int32_t, 4> first{0, 0, 0, static_cast<std::int32_t>(nodes_.size())};
+  for (std::size_t kind = 3; kind-- > 0;) {
+    const std::int32_t root = scalars_.root[kind];
+    if (root < -1 || root >= first[kind + 1]) return false;
+    first[kind] = root < 0 ? first[kind + 1] : root;
   }
-  for (std::int32_t root : scalars_.root) {
-    if (root < -1 || root >= static_cast<std::int32_t>(nodes_.size())) return false;
-  }
-  // Children stand behind their parents, so no walk goes round.
-  for (std::size_t i = 0; i < nodes_.size(); ++i) {
-    for (std::int32_t child : nodes_[i].child) {
-      const bool fine = child > 0   ? std::size_t(child) > i && std::size_t(child) < nodes_.size()
-                        : child < 0 ? std::size_t(~child) < leaves_.size()
-                                    : true;
-      if (!fine) return false;
-    }
-  }
-  return true;
+  return first[0] == 0 && sound(first[0], first[1], vertex_leaves_) &&
+         sound(first[1], first[2], edge_leaves_) && sound(first[2], first[3], face_leaves_);
 }
 
 }  // namespace tactum

@@ -20,7 +20,7 @@
 /// Names of features: vertices and triangles keep the numbers of the mesh; the edge from corner k of triangle
 /// t to the next corner is 3 t + k, named by the one of its two triangles that owns it.
 ///
-/// Memory: at most 120 bytes a triangle on closed meshes, all of it in flat arrays of plain data that a file
+/// Memory: at most 210 bytes a triangle on closed meshes, all of it in flat arrays of plain data that a file
 /// can hold as they are. Building: n log n, some microseconds a triangle, with some 500 bytes a
 /// triangle for a while.
 
@@ -63,34 +63,54 @@ class SurfaceTree {
   static constexpr int kLanes = 8;
   using Lanes = std::array<float, kLanes>;
   using Lanes3 = std::array<Lanes, 3>;
+  using Corners = std::array<std::int32_t, kLanes>;
+  enum Kind : std::uint8_t { kVertices, kEdges, kFaces };
 
-  /// Eight oriented boxes, told from the mesh's center, in the order in which the query asks. A box's axes
-  /// are `along`, up x along and `up`, the mean direction of the cones within; `cone` is the largest angle
-  /// from it to one of them.
-  struct Node {
-    Lanes3 up{};                               ///< unit [-]
-    Lanes cone{};                              ///< [rad]
-    Lanes3 center{};                           ///< [m]
-    Lanes3 half{};                             ///< half the sides along the axes [m]
-    Lanes3 along{};                            ///< unit, square to `up` [-]
-    std::array<std::int32_t, kLanes> child{};  ///< a node, or ~leaf; 0: no box
+  /// Where eight oriented boxes stand: their middles and axes, `across` being up x along.
+  struct Stand {
+    Lanes3 up, center, along, across;  ///< axes are units [-], the center [m]
   };
-  /// Eight features of one kind, each as a corner 3 t + k of the triangle that owns it: a vertex is that
-  /// corner, an edge starts there, a face is the triangle. -1: none, behind all others.
-  struct Leaf {
-    std::array<std::int32_t, kLanes> corner{};
+  /// Eight boxes, told from the mesh's center. `up` is the mean direction of the cones within; `cone` is the
+  /// largest angle from it to one of them.
+  struct Node {
+    Stand at{};
+    Lanes3 half{};    ///< half the sides along `along`, `across` and `up` [m]
+    Lanes cone{};     ///< [rad]
+    Lanes extent{};   ///< of two boxes the one where it is larger is opened
+    Corners child{};  ///< a node; ~n: the leaf n of this kind; 0: no box
+  };
+
+  /// Leaves hold eight features of one kind, told from the middle of the leaf's box, and as corners 3 t + k
+  /// of the triangles that own them: a vertex is that corner, an edge starts there, a face is the triangle.
+  /// -1: none, behind all others and far away.
+  struct VertexLeaf {
+    Lanes3 point;  ///< [m]
+    Corners corner;
+  };
+  struct EdgeLeaf {
+    Lanes3 point, along;  ///< where it starts, and from there to its end [m]
+    Corners corner;
+  };
+  /// By planes: a point p is at the height  normal . p - level  and inside where  inward . p >= limit  for
+  /// all three sides.
+  struct FaceLeaf {
+    Lanes3 normal;                 ///< unit [-]
+    Lanes level;                   ///< [m]
+    std::array<Lanes3, 3> inward;  ///< square to side and normal, unit [-]
+    std::array<Lanes, 3> limit;    ///< [m]
+    Corners corner;
   };
   const std::vector<Node>& nodes() const noexcept { return nodes_; }
-  const std::vector<Leaf>& leaves() const noexcept { return leaves_; }
-  /// The node whose first lane is the box around all vertices, edges or faces; -1: there are none.
-  enum Kind : std::uint8_t { kVertices, kEdges, kFaces };
+  const std::vector<VertexLeaf>& vertex_leaves() const noexcept { return vertex_leaves_; }
+  const std::vector<EdgeLeaf>& edge_leaves() const noexcept { return edge_leaves_; }
+  const std::vector<FaceLeaf>& face_leaves() const noexcept { return face_leaves_; }
+  /// The node whose first lane is the box around all vertices, edges or faces; -1: there are none. Nodes of a
+  /// kind stand together, the root before the others.
   std::int32_t root(Kind kind) const noexcept { return scalars_.root[kind]; }
 
   int vertex_at(std::int32_t corner) const noexcept {
     return triangles_[std::size_t(corner) / 3][std::size_t(corner) % 3];
   }
-  /// Unit, outward, in single precision.
-  const std::array<float, 3>& normal(int triangle) const noexcept { return normal_[std::size_t(triangle)]; }
 
   /// Of the features a triangle owns, one bit for each of its three edges, then each of its three corners:
   /// whether it is narrow, that is, no direction of its cone lies behind the triangle.
@@ -136,6 +156,11 @@ class SurfaceTree {
   bool sound() const noexcept;
 
  private:
+  /// Whether nodes [first, last) of one kind point behind themselves and to leaves that there are, and these
+  /// to triangles.
+  template <class Leaf>
+  bool sound(std::int32_t first, std::int32_t last, const std::vector<Leaf>& leaves) const noexcept;
+
   template <class Self, class Visitor>
   static void arrays(Self& self, Visitor&& visitor) {
     visitor(self.vertices_);
@@ -143,11 +168,12 @@ class SurfaceTree {
     visitor(self.group_);
     visitor(self.beyond_);
     visitor(self.narrow_);
-    visitor(self.normal_);
     visitor(self.first_around_);
     visitor(self.around_);
     visitor(self.nodes_);
-    visitor(self.leaves_);
+    visitor(self.vertex_leaves_);
+    visitor(self.edge_leaves_);
+    visitor(self.face_leaves_);
   }
 
   bool narrow_bit(std::int32_t corner, std::uint32_t first) const noexcept {
@@ -160,11 +186,12 @@ class SurfaceTree {
   std::vector<std::int32_t> group_;
   std::vector<std::array<std::int32_t, 3>> beyond_;
   std::vector<std::uint8_t> narrow_;
-  std::vector<std::array<float, 3>> normal_;
   std::vector<std::int32_t> first_around_;  // per vertex, and the end
   std::vector<std::int32_t> around_;
   std::vector<Node> nodes_;
-  std::vector<Leaf> leaves_;
+  std::vector<VertexLeaf> vertex_leaves_;
+  std::vector<EdgeLeaf> edge_leaves_;
+  std::vector<FaceLeaf> face_leaves_;
 };
 
 }  // namespace tactum
