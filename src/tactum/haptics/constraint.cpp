@@ -237,13 +237,16 @@ double advance(const World& world, const FrameSettings& settings, double dt_s, F
 }
 
 /// The contacts as they push: normal forces of corners, and of friction the edges of its cones.
-void report_rows(double dt_s, FrameState& state, FrameReport& report) {
+void report_rows(const World& world, double dt_s, FrameState& state, FrameReport& report) {
   const int held = state.tool.body;
   if (state.constraint.shades) exchange_normals(state);
   report.contact_points = static_cast<int>(state.contacts.rows.size());
   for (const ContactRow& row : state.contacts.rows)
     report.held_contact_points += row.impulse > 0.0 && (row.body_a == held || row.body_b == held) ? 1 : 0;
-  const ConstraintState& c = state.constraint;
+  ConstraintState& c = state.constraint;
+  use_of_friction(world, c.friction, state.finder.patches(), c.first_row, c.problem, state.contacts.rows,
+                  c.friction_uses);
+  report.friction = sum_of(c.friction_uses);
   const Vec3 torque = c.friction.add_forces(held, dt_s, c.problem, state.contacts.rows);
   if (held < 0) return;
   report.restoring = contact_wrench(state.contacts.rows, held, c.problem.movers().front().origin, dt_s);
@@ -307,7 +310,7 @@ void respond_constrained(const World& world, const FrameSettings& settings, doub
   for (Index i = 0; i < world.bodies.size(); ++i)
     if (world.bodies[i].moves())
       state.world.V_WB[i] = twist_between(state.X_WB_start[i], state.world.X_WB[i], dt_s);
-  report_rows(dt_s, state, report);
+  report_rows(world, dt_s, state, report);
 }
 
 }  // namespace tactum

@@ -16,6 +16,7 @@
 #include "tactum/haptics/constraint_problem.h"
 #include "tactum/haptics/frame_report.h"
 #include "tactum/haptics/friction.h"
+#include "tactum/haptics/friction_use.h"
 
 namespace tactum {
 
@@ -32,6 +33,7 @@ struct ConstraintState {
   double trust_m;  ///< how far a point of a body may move in the next frame [m]
   Vec6 wanted;     ///< what the coupling asked of the handle [m, rad]
   Wrench felt;     ///< of the contact forces, at the handle, world axes [N, N m]
+  FrictionUses friction_uses;  ///< what friction does, for displays
   /// Names of the rows that held last.
   StaticVector<std::uint64_t, kMostUnknowns> held;
 

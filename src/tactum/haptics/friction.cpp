@@ -28,24 +28,10 @@ Slide slide_of(const FrictionPatch& patch, const ConstraintProblem& problem) {
   return slide;
 }
 
-/// Edge k of the cone: directions around the normal, then the two senses of turning.
-Push edge_of(const FrictionPatch& patch, Index k) {
-  Push push{patch.centre_W, patch.n_BA_W, Vec3::Zero()};
-  if (k >= Friction::kDirections) {
-    const double sense = k == Friction::kDirections ? 1.0 : -1.0;
-    push.torque = -sense * patch.coefficient * patch.radius_m * patch.n_BA_W;
-    return push;
-  }
-  const double angle = 2.0 * kPi * static_cast<double>(k) / static_cast<double>(Friction::kDirections);
-  const Vec3 across = patch.n_BA_W.cross(patch.along_W);
-  push.force -= patch.coefficient * (std::cos(angle) * patch.along_W + std::sin(angle) * across);
-  return push;
-}
-
 /// How much less than the gap a row asks for, by the slip allowed and the anchor's distance.
 double allowance(const FrictionPatch& patch, Index k) {
   if (k >= Friction::kDirections) return patch.coefficient * patch.radius_m * patch.slip_rad;
-  return patch.coefficient * patch.slip_m + (edge_of(patch, k).force - patch.n_BA_W).dot(patch.apart_W);
+  return patch.coefficient * patch.slip_m + (cone_edge(patch, k).force - patch.n_BA_W).dot(patch.apart_W);
 }
 
 /// A lift, or a gap, of less than this share of the skin is none. What slides without lifting (on the way to
@@ -62,13 +48,26 @@ double gap_beyond(double distance_m, double skin_m) {
   return distance_m - skin_m > kSettled * skin_m ? distance_m - skin_m : 0.0;
 }
 
-PatchKey key_of(const World& world, const ContactPatch& patch) {
+}  // namespace
+
+PatchKey key_of(const World& world, const ContactPatch& patch) noexcept {
   return {patch.body_a, patch.body_b,
           world.bodies[Index(patch.body_a)].part->surface_group[Index(patch.piece_a)],
           world.bodies[Index(patch.body_b)].part->surface_group[Index(patch.piece_b)]};
 }
 
-}  // namespace
+Push cone_edge(const FrictionPatch& patch, Index k) noexcept {
+  Push push{patch.centre_W, patch.n_BA_W, Vec3::Zero()};
+  if (k >= Friction::kDirections) {
+    const double sense = k == Friction::kDirections ? 1.0 : -1.0;
+    push.torque = -sense * patch.coefficient * patch.radius_m * patch.n_BA_W;
+    return push;
+  }
+  const double angle = 2.0 * kPi * static_cast<double>(k) / static_cast<double>(Friction::kDirections);
+  const Vec3 across = patch.n_BA_W.cross(patch.along_W);
+  push.force -= patch.coefficient * (std::cos(angle) * patch.along_W + std::sin(angle) * across);
+  return push;
+}
 
 FrictionPatch* Friction::patch_of(const PatchKey& key) noexcept {
   const auto found = std::find_if(patches_.begin(), patches_.end(),
@@ -174,7 +173,7 @@ void Friction::anchor(FrictionPatch& patch, std::span<const Pose> X_WB, double s
 void Friction::add_rows(FrictionPatch& patch, ConstraintProblem& problem) noexcept {
   patch.first_row = problem.rows();
   for (Index k = 0; k < kRowsAPatch; ++k)
-    problem.add_row(patch.key.body_a, patch.key.body_b, edge_of(patch, k),
+    problem.add_row(patch.key.body_a, patch.key.body_b, cone_edge(patch, k),
                     -patch.gap_m - allowance(patch, k));
 }
 
@@ -215,7 +214,7 @@ void Friction::forget_anchors(ConstraintProblem& problem) noexcept {
     if (!patch.acts) continue;
     const Vec3 apart = patch.apart_W;
     for (Index k = 0; k < kDirections; ++k)
-      problem.tighten(patch.first_row + k, (edge_of(patch, k).force - patch.n_BA_W).dot(apart));
+      problem.tighten(patch.first_row + k, (cone_edge(patch, k).force - patch.n_BA_W).dot(apart));
     patch.apart_W.setZero();
   }
 }
@@ -260,7 +259,7 @@ Vec3 Friction::add_forces(int body, double dt_s, const ConstraintProblem& proble
     for (const FrictionPatch& patch : patches_) {
       const Index row = Index(active.row);
       if (row < patch.first_row || row >= patch.first_row + kRowsAPatch || !patch.acts) continue;
-      const Push push = edge_of(patch, row - patch.first_row);
+      const Push push = cone_edge(patch, row - patch.first_row);
       if (patch.key.body_a == body) torque += active.multiplier * push.torque;
       if (patch.key.body_b == body) torque -= active.multiplier * push.torque;
       if (rows.size() == rows.capacity()) continue;
@@ -268,6 +267,7 @@ Vec3 Friction::add_forces(int body, double dt_s, const ConstraintProblem& proble
       force.body_a = patch.key.body_a;
       force.body_b = patch.key.body_b;
       force.patch = patch.finder_patch;
+      force.grip = static_cast<int>(&patch - patches_.begin());
       force.p_W = patch.centre_W;
       force.n_BA_W = push.force.normalized();
       force.distance = patch.gap_m;

@@ -54,6 +54,10 @@ struct FrictionPatch {
   std::size_t first_row = 0;
 };
 
+PatchKey key_of(const World& world, const ContactPatch& patch) noexcept;
+/// What pushes along edge k of the cone: directions around the normal, then the two senses of turning.
+Push cone_edge(const FrictionPatch& patch, std::size_t k) noexcept;
+
 class Friction {
  public:
   static constexpr std::size_t kMostPatches = 16;
@@ -77,6 +81,7 @@ class Friction {
                   std::vector<ContactRow>& rows) const noexcept;
 
   bool acts() const noexcept { return !patches_.empty(); }
+  std::span<const FrictionPatch> patches() const noexcept { return {patches_.begin(), patches_.end()}; }
   /// Nothing acts.
   void clear() noexcept { patches_.clear(); }
 
