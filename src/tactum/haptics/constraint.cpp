@@ -236,17 +236,34 @@ double advance(const World& world, const FrameSettings& settings, double dt_s, F
   return 0.0;
 }
 
+/// The points at which something pushes the body: corners, and the centre of a patch whose load friction's
+/// cone carries alone.
+int pushing_points(std::span<const ContactRow> corners, int body, const ConstraintState& c) {
+  int points = 0;
+  std::array<bool, Friction::kMostPatches> counted{};
+  for (const ContactRow& row : corners) {
+    if (!(row.impulse > 0.0) || (row.body_a != body && row.body_b != body)) continue;
+    ++points;
+    if (row.grip >= 0) counted[Index(row.grip)] = true;
+  }
+  for (Index i = 0; i < c.friction_uses.size(); ++i) {
+    const PatchKey& key = c.friction.patches()[i].key;
+    if (c.friction_uses[i].load_N > 0.0 && !counted[i] && (key.body_a == body || key.body_b == body))
+      ++points;
+  }
+  return points;
+}
+
 /// The contacts as they push: normal forces of corners, and of friction the edges of its cones.
 void report_rows(const World& world, double dt_s, FrameState& state, FrameReport& report) {
   const int held = state.tool.body;
   if (state.constraint.shades) exchange_normals(state);
   report.contact_points = static_cast<int>(state.contacts.rows.size());
-  for (const ContactRow& row : state.contacts.rows)
-    report.held_contact_points += row.impulse > 0.0 && (row.body_a == held || row.body_b == held) ? 1 : 0;
   ConstraintState& c = state.constraint;
   use_of_friction(world, c.friction, state.finder.patches(), c.first_row, c.problem, state.contacts.rows,
                   c.friction_uses);
   report.friction = sum_of(c.friction_uses);
+  report.held_contact_points = pushing_points(state.contacts.rows, held, c);
   const Vec3 torque = c.friction.add_forces(held, dt_s, c.problem, state.contacts.rows);
   if (held < 0) return;
   report.restoring = contact_wrench(state.contacts.rows, held, c.problem.movers().front().origin, dt_s);

@@ -29,10 +29,10 @@ struct ConstraintState {
   ConstraintProblem problem;  ///< of the forces, and of the way unless normals are shaded
   ConstraintProblem way;      ///< where they are: to where the forces would have it
   Friction friction;
-  double skin_m;   ///< the gap contacts are held at [m]
-  double trust_m;  ///< how far a point of a body may move in the next frame [m]
-  Vec6 wanted;     ///< what the coupling asked of the handle [m, rad]
-  Wrench felt;     ///< of the contact forces, at the handle, world axes [N, N m]
+  double skin_m;               ///< the gap contacts are held at [m]
+  double trust_m;              ///< how far a point of a body may move in the next frame [m]
+  Vec6 wanted;                 ///< what the coupling asked of the handle [m, rad]
+  Wrench felt;                 ///< of the contact forces, at the handle, world axes [N, N m]
   FrictionUses friction_uses;  ///< what friction does, for displays
   /// Names of the rows that held last.
   StaticVector<std::uint64_t, kMostUnknowns> held;

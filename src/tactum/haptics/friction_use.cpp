@@ -40,8 +40,7 @@ void use_of_friction(const World& world, const Friction& friction, std::span<con
     const Index row = Index(active.row);
     if (row < first_row || !(active.multiplier > 0.0)) continue;
     const bool of_contact = row - first_row < rows.size();
-    const PatchKey key =
-        of_contact ? key_of(world, patches[Index(rows[row - first_row].patch)]) : PatchKey{};
+    const PatchKey key = of_contact ? key_of(world, patches[Index(rows[row - first_row].patch)]) : PatchKey{};
     for (Index i = 0; i < rubbing.size(); ++i) {
       const FrictionPatch& patch = rubbing[i];
       if (!patch.acts) continue;

@@ -1,6 +1,6 @@
 #pragma once
-/// What friction does at every patch of a frame, told for displays: whether it sticks or slips, and how much of
-/// its cone the forces use.
+/// What friction does at every patch of a frame, told for displays: whether it sticks or slips, and how much
+/// of its cone the forces use.
 ///
 ///        \  |  /       cone used:  ( |F_t| + |T_n| / r )  /  (mu F_n)
 ///         \ | * F
@@ -26,8 +26,8 @@ struct FrictionUse {
 /// By number of ContactRow::grip; empty where nothing rubs.
 using FrictionUses = StaticVector<FrictionUse, Friction::kMostPatches>;
 
-/// Fills `uses` from the problem's answer, and gives every row that pushes the number of the patch it counts to.
-/// The rows are the contact rows of the problem, that begin at `first_row`.
+/// Fills `uses` from the problem's answer, and gives every row that pushes the number of the patch it counts
+/// to. The rows are the contact rows of the problem, that begin at `first_row`.
 void use_of_friction(const World& world, const Friction& friction, std::span<const ContactPatch> patches,
                      std::size_t first_row, const ConstraintProblem& problem, std::span<ContactRow> rows,
                      FrictionUses& uses) noexcept;

@@ -116,7 +116,6 @@ export class Charts {
   showEnergy(on: boolean) {
     this.showsEnergy = on;
     this.build();
-    if (on) this.strips.at(-1)?.box.scrollIntoView({ block: "nearest" });
   }
 
   private chosen(): Strip[] {
@@ -131,9 +130,8 @@ export class Charts {
     const title = this.alsoChoice.selectedOptions[0]?.text ?? "";
     if (also[0] === "c") strips.push(channelStrip(run.channels, also.slice(1), samples));
     else if (also) strips.push(wrenchStrip(Number(also.slice(1)), also[0] === "f" ? 0 : 3, title, also[0] === "f" ? "N" : "N m"));
-    if (this.showsEnergy)
-      for (const group of energies) if (also !== `c${group}`) strips.push(channelStrip(run.channels, group, samples));
-    return strips;
+    const energy = this.showsEnergy ? energies.filter((group) => also !== `c${group}`) : [];
+    return [...energy.map((group) => channelStrip(run.channels, group, samples)), ...strips];
   }
 
   setTheme(isDark: boolean) {
@@ -287,7 +285,10 @@ export class Charts {
     const rows = Math.ceil(count / columns);
     this.root.style.setProperty("--columns", String(columns));
     const height = Math.max(118, Math.floor(this.root.clientHeight / rows) - 20);
-    for (const { plot, box } of this.strips) plot.setSize({ width: Math.max(120, box.clientWidth), height });
+    for (const { plot, box } of this.strips) {
+      const key = box.querySelector<HTMLElement>(".key")?.offsetHeight ?? 0;
+      plot.setSize({ width: Math.max(120, box.clientWidth), height: Math.max(100, height - key) });
+    }
   }
 
   /** The samples in the window, every number, as text that reads back to the same values. */
