@@ -170,17 +170,31 @@ INSTANTIATE_TEST_SUITE_P(Constraint, PegInItsHole,
                            return name;
                          });
 
-TEST(Constraint, ScenesOfThePenaltyResponseReachTheirGoalsWithoutEntering) {
+TEST(Constraint, ScenesOfThePaperReachTheirGoalsWithoutEntering) {
   for (const char* name : {"gears", "gears-rim", "block-on-plate", "peg-in-hole"}) {
     Result<Scene> scene = open_scene(name);
     ASSERT_TRUE(scene) << scene.error().message();
-    scene->settings.response = ResponseModel::kConstraint;
+    ASSERT_EQ(scene->settings.response, ResponseModel::kConstraint) << name;
     Result<std::unique_ptr<Session>> session = Session::open(std::move(*scene), {});
     ASSERT_TRUE(session);
     ASSERT_TRUE(
         (*session)->run_virtual(static_cast<std::uint64_t>(frames_of_motion((*session)->scene())), nullptr));
     EXPECT_TRUE((*session)->goals().all_met()) << name;
     EXPECT_EQ((*session)->record().penetrating_frames, 0u) << name;
+    EXPECT_EQ((*session)->record().flags, 0u) << name;
+  }
+}
+
+TEST(Penalty, ScenesOfThePaperReachTheirGoalsInThePublishedResponse) {
+  for (const char* name : {"gears", "gears-rim", "block-on-plate", "peg-in-hole"}) {
+    Result<Scene> scene = open_scene(name);
+    ASSERT_TRUE(scene) << scene.error().message();
+    scene->settings.response = ResponseModel::kPenalty;
+    Result<std::unique_ptr<Session>> session = Session::open(std::move(*scene), {});
+    ASSERT_TRUE(session);
+    ASSERT_TRUE(
+        (*session)->run_virtual(static_cast<std::uint64_t>(frames_of_motion((*session)->scene())), nullptr));
+    EXPECT_TRUE((*session)->goals().all_met()) << name;
     EXPECT_EQ((*session)->record().flags, 0u) << name;
   }
 }

@@ -42,7 +42,6 @@ async function keep(page, name) {
 /** The block on its plate, and friction between them. */
 function rubbingBlock() {
   const scene = readFileSync(join(root, "scenes/block-on-plate.toml"), "utf8")
-    .replace(/response = "penalty"/, 'response = "constraint"')
     .replaceAll(/^(\[\[body\]\])$/gm, '$1\nmaterial = "steel"');
   const file = join(mkdtempSync(join(tmpdir(), "tactum-scene-")), "rubbing.toml");
   writeFileSync(file, `${scene}\n[[friction]]\nmaterial_a = "steel"\nmaterial_b = "steel"\ncoefficient = 0.4\n`);
