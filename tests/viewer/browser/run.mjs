@@ -27,6 +27,7 @@ async function pressDown(page, force_N) {
   const [x, y] = await heldAt(page);
   await page.mouse.move(x, y);
   await page.mouse.down();
+  await pause(0.5); // until the scripted hand has let go
   let down = 0;
   for (; down < 200 && Number((await state(page)).force) < force_N; down += 2) {
     await page.mouse.move(x, y + down);
