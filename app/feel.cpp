@@ -24,6 +24,7 @@ struct FeelOptions {
   std::uint64_t updates = 0;
   std::string device;
   std::string hand;
+  std::string response;
   std::string json;
   bool virtual_clock = false;
   bool view = false;
@@ -101,8 +102,10 @@ Summary feel_viewed_virtually(Viewer& viewer, std::uint64_t frames) {
 }
 
 void tell_what_is_felt(std::FILE* out, const Session& session, const std::string& grip) {
-  fmt::print(out, "{}: {}\n{} at {:.0f} Hz, hand {}\n", session.scene().name, session.scene().description,
-             session.device().name, session.rate_Hz(), grip.empty() ? session.scene().grip : grip);
+  const Scene& scene = session.scene();
+  fmt::print(out, "{}: {}\n{} at {:.0f} Hz, hand {}, response {}\n", scene.name, scene.description,
+             session.device().name, session.rate_Hz(), grip.empty() ? scene.grip : grip,
+             scene.settings.response == ResponseModel::kPenalty ? "penalty" : "constraint");
   fmt::print(out, "{}{}\n",
              margin_sentence(session.scene().settings.coupling, session.device(), session.rate_Hz()),
              session.scene().coupling_by_device ? "; chosen for this device and rate" : "");
@@ -138,6 +141,9 @@ void feel(const FeelOptions& options) {
   Result<Scene> scene = open_scene(options.scene);
   if (!scene) fail(scene.error());
   for (const std::string& remark : scene->remarks) fmt::print(stderr, "{}\n", remark);
+  if (!options.response.empty())
+    scene->settings.response =
+        options.response == "penalty" ? ResponseModel::kPenalty : ResponseModel::kConstraint;
   watch_for_interrupts();
   // With --json - the standard output is for machines alone.
   std::FILE* out = options.json == "-" ? stderr : stdout;
@@ -171,6 +177,11 @@ void add_feel(CLI::App& app) {
   command->add_option("--device", options->device,
                       "see: tactum devices; by default the scene's simulated one");
   command->add_option("--hand", options->hand, "grip of the simulated hand: loose, medium or firm");
+  command
+      ->add_option(
+          "--response", options->response,
+          "constraint (nothing is entered) or penalty (the published springs), instead of the scene's")
+      ->check(CLI::IsMember({"constraint", "penalty"}));
   command->add_option("--json", options->json, "write the summary to this file (- for standard output)");
   command->add_flag("--virtual-clock", options->virtual_clock,
                     "as fast as the machine can, with the same result on every machine");

@@ -51,6 +51,20 @@ TEST(FeelCommand, EveryGripAndSimulatedDeviceRuns) {
   }
 }
 
+TEST(FeelCommand, TheResponseCanBeChosen) {
+  // Pressed into the plate the published springs let the block enter; by default nothing is entered.
+  const std::string feel = "feel block-on-plate --virtual-clock --updates 3000 --json -";
+  const ProgramRun plain = run_tactum(feel);
+  const ProgramRun constraint = run_tactum(feel + " --response constraint");
+  const ProgramRun penalty = run_tactum(feel + " --response penalty");
+  ASSERT_EQ(penalty.exit_code, 0) << penalty.err;
+  EXPECT_NE(penalty.err.find("response penalty"), std::string::npos) << penalty.err;
+  EXPECT_GT(Json::parse(penalty.out)["penetrating_frames"], 100);
+  EXPECT_EQ(Json::parse(constraint.out)["penetrating_frames"], 0);
+  EXPECT_EQ(Json::parse(plain.out)["frame_hash"], Json::parse(constraint.out)["frame_hash"]);
+  EXPECT_EQ(run_tactum(feel + " --response rubber").exit_code, 2);
+}
+
 TEST(FeelCommand, InterruptedItEndsCleanlyWithItsSummary) {
   const ProgramRun run =
       run_tactum("feel gears --duration 600 & tactum=$!; sleep 1; kill -INT $tactum; wait $tactum");

@@ -64,6 +64,45 @@ TEST(Passivity, TheLedgerOfASampledSpringIsKnownExactly) {
   EXPECT_LT(spring.report.ledger_J, spring.K * 0.5 * x.squaredNorm()) << "sampling makes energy";
 }
 
+TEST(Passivity, TheTotalsAreTheWorkEitherWayAndWhatTheControllerTookOut) {
+  for (const double most : {0.0, 50.0}) {
+    Random random(13);
+    Spring spring;
+    spring.settings.max_injected_Ns_per_m = most;
+    spring.settings.max_injected_Nms_per_rad = 0.1 * most;
+    double from_hand = 0.0, to_hand = 0.0, damped = 0.0, turned = 0.0, turned_damped = 0.0;
+    Vec3 x = Vec3::Zero(), turn = Vec3::Zero();
+    spring.go({});
+    Wrench damper;  // what the controller added to the spring
+    for (int i = 0; i < 5000; ++i) {
+      const Vec3 before = x;
+      const double turn_before = turn.z();
+      const Wrench sent = spring.sent;
+      x = 0.3 * x + 1e-3 * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+      turn.z() = 0.3 * turn.z() + random.uniform(-0.01, 0.01);
+      spring.go({exp_rotation(turn), x});
+      const double work = sent.f.dot(x - before);
+      (work > 0.0 ? to_hand : from_hand) += std::abs(work);
+      damped -= damper.f.dot(x - before);
+      turned += sent.t.z() * (turn.z() - turn_before);
+      turned_damped -= damper.t.z() * (turn.z() - turn_before);
+      damper = {spring.sent.f + spring.K * x, spring.sent.t + spring.K_turning * turn};
+    }
+    const EnergyTotals& total = spring.report.total;
+    const EnergyTotals& turning = spring.report.total_turning;
+    EXPECT_NEAR(total.from_hand_J, from_hand, 1e-9);
+    EXPECT_NEAR(total.to_hand_J, to_hand, 1e-9);
+    EXPECT_NEAR(total.damped_J, damped, 1e-9);
+    EXPECT_NEAR(turning.to_hand_J - turning.from_hand_J, turned, 1e-9);
+    EXPECT_NEAR(turning.damped_J, turned_damped, 1e-9);
+    EXPECT_EQ(total.damped_J != 0.0, most > 0.0);
+    // Without bounds the two ledgers together are what came less what went.
+    const double kept = total.from_hand_J - total.to_hand_J + turning.from_hand_J - turning.to_hand_J;
+    EXPECT_NEAR(spring.report.ledger_J + spring.report.ledger_turning_J, kept, 1e-9);
+    EXPECT_GT(total.to_hand_J, 0.1);
+  }
+}
+
 TEST(Passivity, DampingOfHalfThePeriodTimesStiffnessIsEnoughAndNecessary) {
   // [Colgate and Schenkel 1994]: b > K T / 2, here as an identity of the ledger, for any way whatever.
   for (const double share : {1.0, 0.9}) {

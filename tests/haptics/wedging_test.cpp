@@ -118,5 +118,22 @@ TEST(Wedging, AJammedPegIsFreedByTurningItStraight) {
   EXPECT_EQ(pull.slot.penetrating_frames, 0);
 }
 
+TEST(Wedging, AWedgeThatNoTurningSqueezesHoldsNothing) {
+  // Pulled so hard that the way along the walls hides how it comes off them: only that the hand no longer
+  // turns the peg against its walls tells that nothing presses them.
+  for (const double mu_of_limit : {1.1, 1.3, 2.0}) {
+    const double depth = 0.006;
+    Pull pull(depth, mu_of_limit * 0.5 * depth / (0.5 * kWidth), 1.0);
+    ASSERT_LT(pull.way(), kStuck_m) << mu_of_limit;
+    const Vec3 pulled = pull.slot.X_DH.p;
+    pull.slot.go(turned(tilt_at(depth) + 0.2 * kSqueeze_rad, pulled), 500);
+    pull.slot.go(pull.slot.X_DH, 500);
+    EXPECT_LT(pull.way(), kStuck_m) << "squeezed a fifth as hard it still holds, " << mu_of_limit;
+    pull.slot.go(turned(0.5 * tilt_at(depth), pulled), 500);
+    EXPECT_GT(pull.slot.X_WB().p.z() - pull.p_jammed.z(), depth) << mu_of_limit;
+    EXPECT_EQ(pull.slot.penetrating_frames, 0);
+  }
+}
+
 }  // namespace
 }  // namespace tactum

@@ -242,6 +242,47 @@ TEST(FrameFeed, TheForcesOfAPictureAddUpToTheContactStage) {
   EXPECT_LT(watch.worst, 1e-5 * watch.largest);  // single precision
 }
 
+TEST(FrameFeed, APictureTellsWhichContactsStickAndHowMuchOfTheirConeIsUsed) {
+  Result<Scene> scene = open_scene("block-on-plate");
+  ASSERT_TRUE(scene);
+  scene->settings.response = ResponseModel::kConstraint;
+  const std::size_t bodies = scene->world.bodies.size();
+  scene->settings.friction = {std::vector<double>(bodies * bodies, 0.3), static_cast<int>(bodies)};
+  Result<std::unique_ptr<Session>> session = Session::open(std::move(*scene), {});
+  ASSERT_TRUE(session);
+  FrameFeed feed(bodies, 1000.0);
+  class Watch final : public LoopObserver {
+   public:
+    Watch(FrameFeed& feed, const Session& session) : feed_(feed), session_(session) {}
+    bool after_frame(const FrameRecord&) noexcept override {
+      if (!feed_.look() || feed_.picture().index != session_.last_report().index) return true;
+      double most = 0.0;
+      bool slips = false;
+      for (const ShownContact& contact : feed_.picture().contacts) {
+        if (!(contact.force_N > 0.0)) continue;
+        ++by_grip[static_cast<std::size_t>(contact.grip)];
+        most = std::max(most, contact.cone_used);
+        slips |= contact.grip == Grip::kSlips;
+      }
+      const FrictionReport& told = session_.last_report().friction;
+      disagree += most != told.cone_used || slips != (told.slipping > 0) ? 1 : 0;
+      return true;
+    }
+    std::array<int, 3> by_grip{};
+    int disagree = 0;
+
+   private:
+    FrameFeed& feed_;
+    const Session& session_;
+  } watch(feed, **session);
+  (*session)->show_to(&feed);
+  ASSERT_TRUE((*session)->run_virtual(6000, &watch));
+  EXPECT_EQ(watch.by_grip[static_cast<std::size_t>(Grip::kNone)], 0) << "everything here rubs";
+  EXPECT_GT(watch.by_grip[static_cast<std::size_t>(Grip::kSticks)], 50);
+  EXPECT_GT(watch.by_grip[static_cast<std::size_t>(Grip::kSlips)], 50);
+  EXPECT_EQ(watch.disagree, 0);
+}
+
 TEST(Page, IsThereAndSmall) {
   std::size_t bytes = 0;
   for (const PageFile& file : page_files()) bytes += file.gzip.size();

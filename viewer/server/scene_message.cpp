@@ -307,6 +307,8 @@ void write_picture(const FramePicture& picture, std::string& out) {
     wire::put(out, contact.n_W);
     for (double number : {contact.distance_m, contact.tolerance_m, contact.force_N})
       wire::put(out, static_cast<float>(number));
+    wire::put(out, static_cast<std::int32_t>(contact.grip));
+    wire::put(out, static_cast<float>(contact.cone_used));
   }
 }
 

@@ -24,6 +24,7 @@ namespace tactum {
 struct ContactRow {
   int body_a = -1, body_b = -1;
   int patch = -1;              ///< the caller's number of the patch it stands for; the solver ignores it
+  int grip = -1;               ///< ... and of the friction it takes part in
   Vec3 n_BA_W = Vec3::Zero();  ///< unit [-]
   Vec3 p_W = Vec3::Zero();     ///< where the force acts [m]
   double distance = 0.0;       ///< signed, at the start of the step [m]

@@ -5,6 +5,7 @@
 #include "tactum/base/tolerances.h"
 #include "tactum/haptics/constraint_rows.h"
 #include "tactum/haptics/frame_state.h"
+#include "tactum/haptics/held_part.h"
 #include "tactum/math/screw.h"
 
 namespace tactum {
@@ -249,14 +250,34 @@ void move_held_island(const World& world, const FrameSettings& settings, double 
       state.world.V_WB[i] = twist_between(state.X_WB_start[i], state.world.X_WB[i], dt_s);
 }
 
+/// The points at which something pushes the body: corners, and the centre of a patch whose load friction's
+/// cone carries alone.
+int pushing_points(std::span<const ContactRow> corners, int body, const ConstraintState& c) {
+  int points = 0;
+  std::array<bool, Friction::kMostPatches> counted{};
+  for (const ContactRow& row : corners) {
+    if (!(row.impulse > 0.0) || (row.body_a != body && row.body_b != body)) continue;
+    ++points;
+    if (row.grip >= 0) counted[Index(row.grip)] = true;
+  }
+  for (Index i = 0; i < c.friction_uses.size(); ++i) {
+    const PatchKey& key = c.friction.patches()[i].key;
+    if (c.friction_uses[i].load_N > 0.0 && !counted[i] && (key.body_a == body || key.body_b == body))
+      ++points;
+  }
+  return points;
+}
+
 /// The contacts as they push: normal forces of corners, and of friction the edges of its cones.
-void report_rows(double dt_s, FrameState& state, FrameReport& report) {
+void report_rows(const World& world, double dt_s, FrameState& state, FrameReport& report) {
   const int held = state.tool.body;
   const ConstraintState& c = state.constraint;
   if (c.shades) exchange_normals(state);
   report.contact_points = static_cast<int>(c.names.size());
-  for (const ContactRow& row : state.contacts.rows)
-    report.held_contact_points += row.impulse > 0.0 && (row.body_a == held || row.body_b == held) ? 1 : 0;
+  use_of_friction(world, c.friction, state.finder.patches(), c.first_row, c.problem, own_rows(state),
+                  state.constraint.friction_uses);
+  report.friction = sum_of(c.friction_uses);
+  report.held_contact_points = pushing_points(state.contacts.rows, held, c);
   Vec3 torque = Vec3::Zero();
   Vec3 origin = held < 0 ? Vec3(Vec3::Zero()) : state.X_WB_start[Index(held)].p;
   if (state.free.held_island >= 0) {
@@ -286,31 +307,6 @@ ConstraintState::ConstraintState(const World& world, const FrameSettings& settin
   shaded.reserve(rows);
   gap.reserve(settings.budget.rooms.patches);
   gap_trial.reserve(settings.budget.rooms.patches);
-}
-
-Vec6 wanted_by_hand(const FrameSettings& settings, double dt_s, const FrameState& state) noexcept {
-  const Pose X_WH_proxy = state.world.X_WB[Index(state.tool.body)] * state.tool.X_BH;
-  return balanced_step(settings.coupling, dt_s, X_WH_proxy, state.hand.X_WH, state.hand.V_WH);
-}
-
-Vec6 with_weight(const World& world, const FrameSettings& settings, double dt_s, const FrameState& state,
-                 const Vec6& wanted) noexcept {
-  const Index held = Index(state.tool.body);
-  const Vec3 weight = world.bodies[held].mass_kg * world.gravity_W;
-  const Vec3 lever = -(state.world.X_WB[held].R * state.tool.X_BH.p);  // from the handle
-  const HeldMetric metric = held_metric(settings.coupling, dt_s);
-  Vec6 sunk = wanted;
-  sunk.head<3>() += weight / metric.stiffness_N_per_m;
-  sunk.tail<3>() += lever.cross(weight) / metric.stiffness_Nm_per_rad;
-  return sunk;
-}
-
-void feel(const FrameSettings& settings, double dt_s, const Vec6& displacement, FrameState& state) noexcept {
-  // M (x - x*) at the handle: with a free held part, exactly the sum of the contact forces and its weight.
-  const HeldMetric metric = held_metric(settings.coupling, dt_s);
-  const Vec6 off = displacement - state.constraint.wanted;
-  state.constraint.felt = {metric.stiffness_N_per_m * off.head<3>(),
-                           metric.stiffness_Nm_per_rad * off.tail<3>()};
 }
 
 bool may_become(double now, double then, double skin) noexcept {
@@ -349,7 +345,7 @@ void respond_constrained(const World& world, const FrameSettings& settings, doub
     c.friction.forget();
   }
   end_turning(world, state);
-  report_rows(dt_s, state, report);
+  report_rows(world, dt_s, state, report);
 }
 
 }  // namespace tactum

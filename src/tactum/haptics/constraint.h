@@ -16,6 +16,7 @@
 #include "tactum/haptics/constraint_problem.h"
 #include "tactum/haptics/frame_report.h"
 #include "tactum/haptics/friction.h"
+#include "tactum/haptics/friction_use.h"
 
 namespace tactum {
 
@@ -28,10 +29,11 @@ struct ConstraintState {
   ConstraintProblem problem;  ///< of the forces, and of the way unless normals are shaded
   ConstraintProblem way;      ///< where they are: to where the forces would have it
   Friction friction;
-  double skin_m;   ///< the gap contacts are held at [m]
-  double trust_m;  ///< how far a point of a body may move in the next frame [m]
-  Vec6 wanted;     ///< what the coupling asked of the handle [m, rad]
-  Wrench felt;     ///< of the contact forces, at the handle, world axes [N, N m]
+  double skin_m;               ///< the gap contacts are held at [m]
+  double trust_m;              ///< how far a point of a body may move in the next frame [m]
+  Vec6 wanted;                 ///< what the coupling asked of the handle [m, rad]
+  Wrench felt;                 ///< of the contact forces, at the handle, world axes [N, N m]
+  FrictionUses friction_uses;  ///< what friction does, for displays
   /// Names of the rows that held last.
   StaticVector<std::uint64_t, kMostUnknowns> held;
 
@@ -55,14 +57,6 @@ struct ConstraintState {
 /// How far points may move in the frame: the trusted length for the held part and, on top of their own way,
 /// for what it may push. Fills state.reach.
 void trusted_reach(const World& world, double dt_s, FrameState& state) noexcept;
-
-/// The displacement of the handle that the coupling asks for, (m, rad).
-Vec6 wanted_by_hand(const FrameSettings& settings, double dt_s, const FrameState& state) noexcept;
-/// ... and where the held part's weight pulls it from there.
-Vec6 with_weight(const World& world, const FrameSettings& settings, double dt_s, const FrameState& state,
-                 const Vec6& wanted) noexcept;
-/// What the hand feels when the handle moves so: sets state.constraint.felt.
-void feel(const FrameSettings& settings, double dt_s, const Vec6& displacement, FrameState& state) noexcept;
 
 /// A gap may become `then` after `now`: open, and if it must shrink below half the skin, then by no more than
 /// half. Held to the exact last gap, a part that is a rounding too near could never move again.

@@ -249,6 +249,11 @@ Vec6 ConstraintProblem::displacement_at_centre(const Mover& mover) const noexcep
   return mover.wanted + column(mover.per_way * along, mover.turns * about);
 }
 
+Vec3 ConstraintProblem::wanted_turn(int body) const noexcept {
+  const Mover* const mover = mover_of(body);
+  return mover != nullptr ? Vec3(mover->wanted.tail<3>()) : Vec3::Zero();
+}
+
 Vec6 ConstraintProblem::displacement(int body) const noexcept {
   const Mover* const mover = mover_of(body);
   if (mover == nullptr) return Vec6::Zero();

@@ -100,7 +100,9 @@ class ConstraintProblem {
   std::span<const Mover> movers() const noexcept { return {movers_, mover_count_}; }
   /// Displacement of a body's origin in the last answer; zero when it was not added [m, rad].
   Vec6 displacement(int body) const noexcept;
-  /// The same at the mover's centre.
+  /// How far a body wants to turn; not at all when it was not added [rad].
+  Vec3 wanted_turn(int body) const noexcept;
+  /// The displacement at the mover's centre.
   Vec6 displacement_at_centre(const Mover& mover) const noexcept;
 
  private:

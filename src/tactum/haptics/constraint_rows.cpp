@@ -150,12 +150,21 @@ double gap_at_trial(const ContactRow& row, const FrameState& state) noexcept {
 void feed_back(double share, FrameState& state) noexcept {
   ConstraintState& c = state.constraint;
   ConstraintProblem& problem = c.moves();
-  for (Index r = 0; r < c.own_rows; ++r) {
-    const ContactRow& row = state.contacts.rows[r];
-    const double linear = problem.opening(row.body_a, row.body_b, push_of(row));
-    const double missing = (row.distance + share * linear - gap_at_trial(row, state)) / share;
-    problem.tighten(c.first_row + r, missing - c.feedback[r]);
-    c.feedback[r] = missing;
+  const std::span<const ContactRow> rows = own_rows(state);
+  for (Index first = 0, end = 0; first < rows.size(); first = end) {
+    // What the rows of a patch tell of its gap may be too much: the normal of two edges turns with both. Then
+    // the exact distance holds for all of them.
+    double least = gap_at_trial(rows[first], state);
+    for (end = first + 1; end < rows.size() && rows[end].patch == rows[first].patch; ++end)
+      least = std::min(least, gap_at_trial(rows[end], state));
+    const double too_much = std::max(0.0, least - c.gap_trial[Index(rows[first].patch)]);
+    for (Index r = first; r < end; ++r) {
+      const double linear = problem.opening(rows[r].body_a, rows[r].body_b, push_of(rows[r]));
+      const double gap = gap_at_trial(rows[r], state) - too_much;
+      const double missing = (rows[r].distance + share * linear - gap) / share;
+      problem.tighten(c.first_row + r, missing - c.feedback[r]);
+      c.feedback[r] = missing;
+    }
   }
 }
 

@@ -32,6 +32,8 @@ void add_to(Hash& hash, const FrameReport& report) noexcept {
   hash.add(report.port.ledger_turning_J + 0.0);
   hash.add(report.port.injected_Ns_per_m + 0.0);
   hash.add(report.port.injected_Nms_per_rad + 0.0);
+  for (const EnergyTotals& total : {report.port.total, report.port.total_turning})
+    for (double energy_J : {total.from_hand_J, total.to_hand_J, total.damped_J}) hash.add(energy_J + 0.0);
   add(hash, report.shown);
   hash.add(report.tolerance_m);
   hash.add(report.min_distance_m);
@@ -41,6 +43,9 @@ void add_to(Hash& hash, const FrameReport& report) noexcept {
   hash.add(report.active_constraints);
   hash.add(report.validation_tests);
   hash.add(report.validation_retries);
+  hash.add(report.friction.sticking);
+  hash.add(report.friction.slipping);
+  hash.add(report.friction.cone_used + 0.0);
   hash.add(report.work.near_pairs);
   hash.add(report.work.exact_tests);
   hash.add(report.work.feature_steps);

@@ -26,6 +26,13 @@ inline constexpr std::uint32_t kNoHand = 1u
                                          << 5;  ///< no valid sample yet: nothing is held, the wrench is zero
 }  // namespace frame_flag
 
+/// Dry friction of one frame, over all patches that push (constraint response); friction_use.h tells of each.
+struct FrictionReport {
+  int sticking = 0;        ///< patches
+  int slipping = 0;        ///< patches
+  double cone_used = 0.0;  ///< largest share of a friction cone in use; 1: at its edge [-]
+};
+
 struct FrameReport {
   std::uint64_t index = 0;   ///< frames since the start
   std::uint32_t flags = 0;   ///< frame_flag
@@ -51,6 +58,7 @@ struct FrameReport {
   int active_constraints = 0;  ///< rows that hold the bodies (constraint response)
   int validation_tests = 0;    ///< exact tests of poses before they were taken
   int validation_retries = 0;  ///< steps that were not taken as they came
+  FrictionReport friction;     ///< what patches do that rub
   ContactWork work;
 
   bool in_contact() const { return work.patches > 0; }

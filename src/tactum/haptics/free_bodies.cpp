@@ -8,6 +8,7 @@
 #include "tactum/haptics/coupling.h"
 #include "tactum/haptics/energy.h"
 #include "tactum/haptics/frame_state.h"
+#include "tactum/haptics/held_part.h"
 
 namespace tactum {
 namespace {

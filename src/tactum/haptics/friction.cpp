@@ -8,44 +8,10 @@ namespace {
 
 using Index = std::size_t;
 
-/// What a patch slides by in the step of an answer, from its anchor, and turns by about its normal.
-struct Slide {
-  Vec3 way = Vec3::Zero();
-  double turn = 0.0;
-  double lift = 0.0;  // off the other surface
-};
-
-Slide slide_of(const FrictionPatch& patch, const ConstraintProblem& problem) {
-  Slide slide;
-  for (int i = 0; i < 3; ++i)
-    slide.way[i] =
-        problem.opening(patch.key.body_a, patch.key.body_b, {patch.centre_W, Vec3::Unit(i), Vec3::Zero()});
-  slide.lift = patch.n_BA_W.dot(slide.way) + patch.gap_m;
-  slide.way += patch.apart_W;
-  slide.way -= patch.n_BA_W * patch.n_BA_W.dot(slide.way);
-  slide.turn =
-      problem.opening(patch.key.body_a, patch.key.body_b, {patch.centre_W, Vec3::Zero(), patch.n_BA_W});
-  return slide;
-}
-
-/// Edge k of the cone: directions around the normal, then the two senses of turning.
-Push edge_of(const FrictionPatch& patch, Index k) {
-  Push push{patch.centre_W, patch.n_BA_W, Vec3::Zero()};
-  if (k >= Friction::kDirections) {
-    const double sense = k == Friction::kDirections ? 1.0 : -1.0;
-    push.torque = -sense * patch.coefficient * patch.radius_m * patch.n_BA_W;
-    return push;
-  }
-  const double angle = 2.0 * kPi * static_cast<double>(k) / static_cast<double>(Friction::kDirections);
-  const Vec3 across = patch.n_BA_W.cross(patch.along_W);
-  push.force -= patch.coefficient * (std::cos(angle) * patch.along_W + std::sin(angle) * across);
-  return push;
-}
-
 /// How much less than the gap a row asks for, by the slip allowed and the anchor's distance.
 double allowance(const FrictionPatch& patch, Index k) {
   if (k >= Friction::kDirections) return patch.coefficient * patch.radius_m * patch.slip_rad;
-  return patch.coefficient * patch.slip_m + (edge_of(patch, k).force - patch.n_BA_W).dot(patch.apart_W);
+  return patch.coefficient * patch.slip_m + (cone_edge(patch, k).force - patch.n_BA_W).dot(patch.apart_W);
 }
 
 /// A lift, or a gap, of less than this share of the skin is none. What slides without lifting (on the way to
@@ -60,12 +26,6 @@ constexpr double kPeeling = 0.15;
 /// How far beyond the skin a patch is.
 double gap_beyond(double distance_m, double skin_m) {
   return distance_m - skin_m > kSettled * skin_m ? distance_m - skin_m : 0.0;
-}
-
-PatchKey key_of(const World& world, const ContactPatch& patch) {
-  return {patch.body_a, patch.body_b,
-          world.bodies[Index(patch.body_a)].part->surface_group[Index(patch.piece_a)],
-          world.bodies[Index(patch.body_b)].part->surface_group[Index(patch.piece_b)]};
 }
 
 }  // namespace
@@ -139,6 +99,37 @@ void Friction::find_holding(const World& world, const PairCoefficients& settings
   }
 }
 
+/// How fast the turning that the bodies want takes the patch off, about the middle of all patches on the
+/// body; negative: it squeezes it.
+double Friction::taken_off(const FrictionPatch& patch, const ConstraintProblem& problem) const noexcept {
+  double off = 0.0;
+  for (const int body : {patch.key.body_a, patch.key.body_b}) {
+    const Vec3 turn = problem.wanted_turn(body);
+    if (turn.isZero(0.0)) continue;
+    Vec3 sum = Vec3::Zero();
+    int count = 0;
+    for (const FrictionPatch& other : patches_) {
+      if (other.key.body_a != body && other.key.body_b != body) continue;
+      sum += other.centre_W;
+      ++count;
+    }
+    const double rate = patch.n_BA_W.dot(turn.cross(patch.centre_W - sum / count));
+    off += body == patch.key.body_a ? rate : -rate;
+  }
+  return off;
+}
+
+/// Takes those out that only held and that no turning squeezes.
+void Friction::drop_unsqueezed(const ConstraintProblem& problem) noexcept {
+  std::array<bool, kMostPatches> stays{};
+  for (Index i = 0; i < patches_.size(); ++i)
+    stays[i] = patches_[i].load_N > 0.0 || !(taken_off(patches_[i], problem) > 0.0);
+  Index kept = 0;
+  for (Index i = 0; i < patches_.size(); ++i)
+    if (stays[i]) patches_[kept++] = patches_[i];
+  while (patches_.size() > kept) patches_.pop_back();
+}
+
 bool Friction::begin(const World& world, const PairCoefficients& settings, std::span<const ContactRow> rows,
                      std::span<const ContactPatch> patches, std::span<const Pose> X_WB, double skin_m,
                      std::size_t first_row, ConstraintProblem& problem) noexcept {
@@ -146,6 +137,7 @@ bool Friction::begin(const World& world, const PairCoefficients& settings, std::
   if (settings.coefficients.empty()) return false;
   find_pushing(world, settings, rows, patches, skin_m, first_row, problem);
   find_holding(world, settings, rows, patches, X_WB, skin_m, problem);
+  drop_unsqueezed(problem);
   for (FrictionPatch& patch : patches_) {
     anchor(patch, X_WB, kSettled * skin_m);
     const Slide free = slide_of(patch, problem);
@@ -174,7 +166,7 @@ void Friction::anchor(FrictionPatch& patch, std::span<const Pose> X_WB, double s
 void Friction::add_rows(FrictionPatch& patch, ConstraintProblem& problem) noexcept {
   patch.first_row = problem.rows();
   for (Index k = 0; k < kRowsAPatch; ++k)
-    problem.add_row(patch.key.body_a, patch.key.body_b, edge_of(patch, k),
+    problem.add_row(patch.key.body_a, patch.key.body_b, cone_edge(patch, k),
                     -patch.gap_m - allowance(patch, k));
 }
 
@@ -215,7 +207,7 @@ void Friction::forget_anchors(ConstraintProblem& problem) noexcept {
     if (!patch.acts) continue;
     const Vec3 apart = patch.apart_W;
     for (Index k = 0; k < kDirections; ++k)
-      problem.tighten(patch.first_row + k, (edge_of(patch, k).force - patch.n_BA_W).dot(apart));
+      problem.tighten(patch.first_row + k, (cone_edge(patch, k).force - patch.n_BA_W).dot(apart));
     patch.apart_W.setZero();
   }
 }
@@ -260,7 +252,7 @@ Vec3 Friction::add_forces(int body, double dt_s, const ConstraintProblem& proble
     for (const FrictionPatch& patch : patches_) {
       const Index row = Index(active.row);
       if (row < patch.first_row || row >= patch.first_row + kRowsAPatch || !patch.acts) continue;
-      const Push push = edge_of(patch, row - patch.first_row);
+      const Push push = cone_edge(patch, row - patch.first_row);
       if (patch.key.body_a == body) torque += active.multiplier * push.torque;
       if (patch.key.body_b == body) torque -= active.multiplier * push.torque;
       if (rows.size() == rows.capacity()) continue;
@@ -268,6 +260,7 @@ Vec3 Friction::add_forces(int body, double dt_s, const ConstraintProblem& proble
       force.body_a = patch.key.body_a;
       force.body_b = patch.key.body_b;
       force.patch = patch.finder_patch;
+      force.grip = static_cast<int>(&patch - patches_.begin());
       force.p_W = patch.centre_W;
       force.n_BA_W = push.force.normalized();
       force.distance = patch.gap_m;

@@ -21,43 +21,19 @@
 /// touch: where the line between two of these lies inside both cones no motion is left, and the part is
 /// wedged though nothing presses it there [Simunovic 1975; Whitney 1982]. Forces within the cones could hold
 /// it against a turn that takes the points off their walls as well, for ever; so of those that only held, one
-/// that the hand peels off is let go, and one that would have to slip.
+/// that the hand peels off is let go, one that would have to slip, and one that the hand's turning does not
+/// squeeze: a force through two contacts on opposite walls is what a torque has pressed in, as a push or a
+/// pull takes off the one wall what it adds to the other.
 
-#include "tactum/dynamics/contact_solver.h"
-#include "tactum/haptics/constraint_problem.h"
+#include "tactum/haptics/friction_cone.h"
 #include "tactum/haptics/settings.h"
 
 namespace tactum {
 
-/// Which surfaces touch.
-struct PatchKey {
-  int body_a = -1, body_b = -1, group_a = -1, group_b = -1;
-  bool operator==(const PatchKey&) const = default;
-};
-
-/// A patch that pushes, in this frame.
-struct FrictionPatch {
-  PatchKey key;
-  int finder_patch = -1;         ///< one of the finder's patches that make it up
-  double coefficient = 0.0;      ///< mu [-]
-  double load_N = 0.0;           ///< N without friction; 0: it only held in the last frame [N]
-  bool acts = true;              ///< false: let go
-  double radius_m = 0.0;         ///< r, of the forces about their centre [m]
-  double gap_m = 0.0;            ///< at the centre, beyond the skin; none where it is too small to count [m]
-  Vec3 n_BA_W = Vec3::Zero();    ///< [-]
-  Vec3 centre_W = Vec3::Zero();  ///< c [m]
-  Vec3 apart_W = Vec3::Zero();   ///< a; none where it is too small to count [m]
-  Vec3 left_W = Vec3::Zero();    ///< how far the anchor has come apart that was too small to count [m]
-  Vec3 along_W = Vec3::Zero();   ///< the first direction d, unit [-]
-  double slip_m = 0.0;           ///< allowed without lifting [m]
-  double slip_rad = 0.0;         ///< of turning about the normal [rad]
-  std::size_t first_row = 0;
-};
-
 class Friction {
  public:
   static constexpr std::size_t kMostPatches = 16;
-  static constexpr std::size_t kDirections = 12;
+  static constexpr std::size_t kDirections = kConeDirections;
   static constexpr std::size_t kRowsAPatch = kDirections + 2;
 
   /// The patches that push in the last answer, whose contact rows begin at `first_row`; their rows are added
@@ -77,6 +53,7 @@ class Friction {
                   std::vector<ContactRow>& rows) const noexcept;
 
   bool acts() const noexcept { return !patches_.empty(); }
+  std::span<const FrictionPatch> patches() const noexcept { return {patches_.begin(), patches_.end()}; }
   /// Nothing acts, and nothing is remembered.
   void forget() noexcept {
     patches_.clear();
@@ -100,6 +77,8 @@ class Friction {
   void find_holding(const World& world, const PairCoefficients& settings, std::span<const ContactRow> rows,
                     std::span<const ContactPatch> patches, std::span<const Pose> X_WB, double skin_m,
                     const ConstraintProblem& problem) noexcept;
+  double taken_off(const FrictionPatch& patch, const ConstraintProblem& problem) const noexcept;
+  void drop_unsqueezed(const ConstraintProblem& problem) noexcept;
   FrictionPatch* patch_of(const PatchKey& key) noexcept;
   void add_rows(FrictionPatch& patch, ConstraintProblem& problem) noexcept;
   void let_go(FrictionPatch& patch, ConstraintProblem& problem) noexcept;

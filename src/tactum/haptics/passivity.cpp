@@ -1,6 +1,7 @@
 #include "tactum/haptics/passivity.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "tactum/math/screw.h"
 
@@ -23,6 +24,13 @@ void book(const Step& step, double& ledger_J) noexcept {
   const double passed_J =
       -step.sent.dot(step.way) + step.damping * step.way.squaredNorm() / step.dt_s + step.given_J;
   ledger_J = std::clamp(ledger_J + passed_J, -step.credit_J, step.highest_J);
+}
+
+/// What the wrench and the controller's part of it have done over the way.
+void add_up(const Vec3& way, const Vec3& sent, const Vec3& damper, EnergyTotals& total) noexcept {
+  const double work_J = sent.dot(way);
+  (work_J > 0.0 ? total.to_hand_J : total.from_hand_J) += std::abs(work_J);
+  total.damped_J -= damper.dot(way);
 }
 
 /// A thread turns one kind of work into the other: what one ledger owes, the other pays as far as it can.
@@ -66,6 +74,8 @@ Wrench passive_wrench(const PortSettings& settings, PortState& state, const Devi
                       settings.credit_turning_J,
                       settings.actuates_torque ? settings.max_injected_Nms_per_rad : 0.0,
                       input.dt_s};
+    add_up(way.v, input.sent.f, state.damper.f, state.total);
+    add_up(way.w, input.sent.t, state.damper.t, state.total_turning);
     book(moved, state.ledger_J);
     book(turned, state.ledger_turning_J);
     if (settings.actuates_torque) {
@@ -74,12 +84,17 @@ Wrench passive_wrench(const PortSettings& settings, PortState& state, const Devi
     }
     report.injected_Ns_per_m = injected(moved, state.ledger_J);
     report.injected_Nms_per_rad = injected(turned, state.ledger_turning_J);
-    F.f -= report.injected_Ns_per_m / input.dt_s * way.v;
-    F.t -= report.injected_Nms_per_rad / input.dt_s * way.w;
+    state.damper = {-report.injected_Ns_per_m / input.dt_s * way.v,
+                    -report.injected_Nms_per_rad / input.dt_s * way.w};
+    F = F + state.damper;
     state.X_DH = sample.X_DH;
     state.bodies_J = input.bodies_J;
     state.known = true;
+  } else {
+    state.damper = {};
   }
+  report.total = state.total;
+  report.total_turning = state.total_turning;
   report.ledger_J = state.ledger_J;
   report.ledger_turning_J = state.ledger_turning_J;
   return F;

@@ -40,12 +40,21 @@ struct PortSettings {
   double credit_turning_J = 1e-4 /* J */;  ///< ... and of rotation [J]
 };
 
+/// Work that has passed one half of the port since the start; unlike the ledger never cut [J].
+struct EnergyTotals {
+  double from_hand_J = 0.0;  ///< that the hand put in, moving against the wrench [J]
+  double to_hand_J = 0.0;    ///< that it was given, moved along by the wrench [J]
+  double damped_J = 0.0;     ///< that the controller's damping took out, before limits and ramps [J]
+};
+
 struct PortState {
   double ledger_J = 0.0;          ///< of translation; negative: energy was made [J]
   double ledger_turning_J = 0.0;  ///< of rotation [J]
   double bodies_J = 0.0;          ///< energy of the scene's moving bodies in the last frame [J]
   Pose X_DH;                      ///< of the last good sample [m]
   bool known = false;             ///< there has been one
+  EnergyTotals total, total_turning;
+  Wrench damper;  ///< the controller's part of the last wrench, axes of D, at the handle [N, N m]
 };
 
 struct PortInput {
@@ -62,6 +71,8 @@ struct PortReport {
   double ledger_turning_J = 0.0;      ///< [J]
   double injected_Ns_per_m = 0.0;     ///< damping added in this frame [N s/m]
   double injected_Nms_per_rad = 0.0;  ///< [N m s/rad]
+  EnergyTotals total;                 ///< of translation
+  EnergyTotals total_turning;         ///< of rotation
 };
 
 /// The wrench that makes no energy as far as the settings allow. A sample that is invalid or implausible is

@@ -70,6 +70,11 @@ void FrameFeed::draw(const FrameSource& frame, FramePicture& picture) noexcept {
     contact.tolerance_m = row.tolerance;
     contact.force_N = rest > 0.0 ? row.impulse / rest : 0.0;
     contact.patch = row.patch;
+    if (row.grip >= 0) {
+      const FrictionUse& use = state.constraint.friction_uses[Index(row.grip)];
+      contact.grip = use.sticks ? Grip::kSticks : Grip::kSlips;
+      contact.cone_used = use.cone_used;
+    }
     if (row.patch < 0 || Index(row.patch) >= patches.size()) continue;
     const ContactPatch& patch = patches[Index(row.patch)];
     contact.piece_a = patch.piece_a;

@@ -30,6 +30,9 @@ struct FrameSample {
 /// How many of FrameSample::values are used.
 int sample_size() noexcept;
 
+/// What friction does where a contact point pushes.
+enum class Grip : std::int32_t { kNone, kSticks, kSlips };
+
 /// A contact point that pushes, or would if it were nearer.
 struct ShownContact {
   std::int32_t body_a = -1, body_b = -1, piece_a = -1, piece_b = -1;
@@ -40,6 +43,8 @@ struct ShownContact {
   double tolerance_m = 0.0;  ///< pushes below this [m]
   double force_N = 0.0;      ///< along n on A [N]
   std::int32_t patch = -1;   ///< points of one patch have one number
+  Grip grip = Grip::kNone;   ///< of the surfaces it is part of
+  double cone_used = 0.0;    ///< the share of their friction cone in use, 0 to 1 [-]
 };
 
 /// Where everything is in one frame.

@@ -2,14 +2,17 @@
 // and a click picks the moment that the rest of the page then shows.
 import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
-import { lines } from "./look";
+import { make } from "./dom";
+import { lines, rawLine } from "./look";
 import type { ChannelInfo, Run } from "./protocol";
 import type { Samples } from "./samples";
 import { axisUnit, withUnit } from "./units";
 
 interface Line { label: string; colour: number; value(samples: Samples, at: number): number }
-interface Strip { key: string; title: string; unit: string; lines: Line[]; tail?: boolean }
+interface Strip { key: string; title: string; unit: string; lines: Line[]; tail?: boolean; named?: boolean }
 
+const turningEnergy = "energy of turning";
+const energies = ["energy", turningEnergy]; // groups of channels
 const spans = [0.5, 1, 2, 5, 10, 20, 40]; // [s]
 const gapHeight = 26;
 
@@ -30,14 +33,25 @@ function wrenchStrip(stage: number, half: 0 | 3, title: string, unit: string): S
   };
 }
 
+/** What was computed and what was sent, as two curves. */
+function rawStrip(raw: number, shown: number, half: 0 | 3, title: string, unit: string): Strip {
+  const size = (stage: number) => (samples: Samples, at: number) => samples.length(stage, half, at);
+  return {
+    key: title, title, unit, named: true,
+    lines: [{ label: "raw", colour: rawLine, value: size(raw) }, { label: "shown", colour: 3, value: size(shown) }],
+  };
+}
+
 function channelStrip(channels: ChannelInfo[], group: string, samples: Samples): Strip {
   const members = channels.filter((channel) => channel.group === group);
-  const names: Record<string, string> = { stretch: "Stretch", frame: "Frame", contacts: "Contacts" };
+  const names: Record<string, string> =
+    { stretch: "Stretch", frame: "Frame", contacts: "Contacts", energy: "Energy", [turningEnergy]: "Energy of turning" };
   return {
     key: group, title: names[group] ?? members.map((m) => m.name)[0], unit: members[0].unit, tail: group === "frame",
+    named: energies.includes(group),
     lines: members.map((channel, i) => {
       const column = samples.column(channel.key);
-      return { label: members.length > 1 ? channel.name : "", colour: members.length > 1 ? i : 3, value: (s, at) => s.at(column, at) };
+      return { label: members.length > 1 ? channel.name.replace(/, turning$/, "") : "", colour: members.length > 1 ? i : 3, value: (s, at) => s.at(column, at) };
     }),
   };
 }
@@ -91,12 +105,33 @@ export class Charts {
   }
   private run: Run | null = null;
 
+  private showsRaw = false;
+  private showsEnergy = false;
+
+  /** The force and torque charts then have the raw wrench beside the shown one, instead of the axes. */
+  showRaw(on: boolean) {
+    this.showsRaw = on;
+    this.build();
+  }
+  showEnergy(on: boolean) {
+    this.showsEnergy = on;
+    this.build();
+  }
+
   private chosen(): Strip[] {
+    const { run, samples } = this;
+    if (!run || !samples) return this.all;
+    const strips = [...this.all];
+    const raw = run.stages.findIndex((stage) => stage.key === "coupling");
+    const shown = run.stages.length - 1;
+    if (this.showsRaw && raw >= 0)
+      strips.splice(0, 2, rawStrip(raw, shown, 0, "Force", "N"), rawStrip(raw, shown, 3, "Torque", "N m"));
     const also = this.alsoChoice.value;
-    if (!also || !this.run || !this.samples) return this.all;
-    const title = this.alsoChoice.selectedOptions[0].text;
-    if (also[0] === "c") return [...this.all, channelStrip(this.run.channels, also.slice(1), this.samples)];
-    return [...this.all, wrenchStrip(Number(also.slice(1)), also[0] === "f" ? 0 : 3, title, also[0] === "f" ? "N" : "N m")];
+    const title = this.alsoChoice.selectedOptions[0]?.text ?? "";
+    if (also[0] === "c") strips.push(channelStrip(run.channels, also.slice(1), samples));
+    else if (also) strips.push(wrenchStrip(Number(also.slice(1)), also[0] === "f" ? 0 : 3, title, also[0] === "f" ? "N" : "N m"));
+    const energy = this.showsEnergy ? energies.filter((group) => also !== `c${group}`) : [];
+    return [...energy.map((group) => channelStrip(run.channels, group, samples)), ...strips];
   }
 
   setTheme(isDark: boolean) {
@@ -120,6 +155,11 @@ export class Charts {
     box.append(title);
     this.root.append(box);
     const palette = this.isDark ? lines.dark : lines.light;
+    if (strip.named) box.append(make("div", { class: "key" }, ...strip.lines.map((line) => {
+      const name = make("span", {}, line.label);
+      name.style.color = palette[line.colour % palette.length];
+      return name;
+    })));
     const ink = this.isDark ? "#9fb0bf" : "#4a5a68";
     const rule = { stroke: this.isDark ? "#26323d" : "#d5dde4", width: 1 };
     const entry = { strip, box, note, factor: 1, plot: null as unknown as uPlot };
@@ -245,7 +285,10 @@ export class Charts {
     const rows = Math.ceil(count / columns);
     this.root.style.setProperty("--columns", String(columns));
     const height = Math.max(118, Math.floor(this.root.clientHeight / rows) - 20);
-    for (const { plot, box } of this.strips) plot.setSize({ width: Math.max(120, box.clientWidth), height });
+    for (const { plot, box } of this.strips) {
+      const key = box.querySelector<HTMLElement>(".key")?.offsetHeight ?? 0;
+      plot.setSize({ width: Math.max(120, box.clientWidth), height: Math.max(100, height - key) });
+    }
   }
 
   /** The samples in the window, every number, as text that reads back to the same values. */
@@ -281,6 +324,15 @@ export class Charts {
     let top = 0;
     this.strips.forEach(({ strip, note }, i) => {
       ctx.fillText(`${strip.title}${note.textContent ?? ""}`, 8 * ratio, top + 15 * ratio);
+      const palette = this.isDark ? lines.dark : lines.light;
+      let right = width - 8 * ratio;
+      for (const line of strip.named ? [...strip.lines].reverse() : []) {
+        right -= ctx.measureText(line.label).width + 8 * ratio;
+        ctx.save();
+        ctx.fillStyle = palette[line.colour % palette.length];
+        ctx.fillText(line.label, right, top + 15 * ratio);
+        ctx.restore();
+      }
       ctx.drawImage(plots[i], 0, top + title);
       top += plots[i].height + title;
     });

@@ -145,6 +145,7 @@ function showSummary(sample: number) {
   body.dataset.force = String(force);
   body.dataset.torque = String(torque);
   body.dataset.peakForce = String(samples.peakForce);
+  body.dataset.grips = view.grips.join(",");
   body.dataset.samples = String(samples.count);
   body.dataset.gaps = String(samples.gaps);
   body.dataset.newest = String(samples.frameOf(samples.count - 1));
@@ -165,7 +166,9 @@ function tick(time: number) {
   const picture = past ? samples.picture(samples.frameOf(sample)) : newest;
   if (picture && (picture !== view.picture || past)) view.show(picture, !past);
   if (picture) {
-    view.showWrench(samples.wrench(run.stages.length - 1, sample));
+    const raw = pressed("raw") ? run.stages.findIndex((stage) => stage.key === "coupling") : -1;
+    view.showWrench(samples.wrench(run.stages.length - 1, sample), raw >= 0 ? samples.wrench(raw, sample) : null);
+    get("grip-legend").hidden = view.grips.length === 0;
     hand.drawPull(picture);
   }
   view.draw();
@@ -241,6 +244,12 @@ const actions: [string, string, () => void][] = [
   ["edges", "e", () => showKinds(toggle("edges"))],
   ["see-through", "x", () => view.bodies?.showThrough(toggle("see-through"))],
   ["trail", "t", () => (view.overlay.showsTrail = toggle("trail"))],
+  ["raw", "w", () => {
+    const on = toggle("raw");
+    get("raw-legend").hidden = !on;
+    charts.showRaw(on);
+  }],
+  ["energy", "n", () => charts.showEnergy(toggle("energy"))],
   ["picture", "", () => void view.png().then((png) => download(`tactum-${run?.scene ?? "scene"}.png`, png))],
   ["mode", "m", () => { hand.turns = toggle("mode"); showHint(); }],
   ["grasp", "g", grasp],
@@ -334,6 +343,7 @@ const helpRows: [string, string][] = [
   ["Drag beside it, wheel, right drag", "look around, zoom, shift the view"],
   ["1 2 3 4", "slanted, front, side, top"],
   ["P, E, X, T", "pieces, kinds of edges, glass, trail"],
+  ["W, N", "the raw wrench beside the shown one, energy charts"],
   ["Space", "STOP: zero force and torque, at once led to nothing"],
   ["C, click on a chart", "pause; show that moment"],
   ["L, R", "back to now; start again"],
@@ -346,7 +356,7 @@ function showHelp(on: boolean) {
   const close = make("button", { "aria-label": "Close" }, "×");
   close.onclick = () => showHelp(false);
   help.append(close, make("h2", {}, "How to"), make("dl", {}, ...helpRows.flatMap(([key, what]) => [make("dt", {}, key), make("dd", {}, what)])),
-    make("p", { class: "quiet" }, "Orange: the part in your hand. Blue ghost: where the device is. Red arrow: force on the hand. Pink arc: torque. White discs: contact points."));
+    make("p", { class: "quiet" }, "Orange: the part in your hand. Blue ghost: where the device is. Red arrow: force on the hand. Pink arc: torque. White discs: contact points. Arrows at contacts are green where friction sticks, yellow where it slips."));
 }
 
 const prefersDark = window.matchMedia("(prefers-color-scheme: dark)");

@@ -2,7 +2,7 @@
 // the stretch between the two, and the way the hand has gone. Everything here is in view units (the scene's radius is one).
 import * as THREE from "three";
 import type { Look } from "./look";
-import type { Contact } from "./protocol";
+import type { Contact, Grip } from "./protocol";
 import type { Push } from "./pushes";
 
 const mostContacts = 256;
@@ -90,11 +90,13 @@ export class Overlay {
   readonly root = new THREE.Group();
   readonly ghostMaterial = new THREE.MeshStandardMaterial({ transparent: true, opacity: 0.3, depthWrite: false, roughness: 0.6 });
   private readonly materials = {
-    force: plain(), torque: plain(), contact: plain(0.95), patch: plain(0.35), stretch: plain(), trail: new THREE.LineBasicMaterial(
+    force: plain(), torque: plain(), contact: plain(0.95), arrow: plain(), raw: plain(0.5), patch: plain(0.35), stretch: plain(), trail: new THREE.LineBasicMaterial(
       { vertexColors: true, transparent: true, toneMapped: false }), handle: plain(), pull: plain(0.7),
   };
   private readonly force = new Arrow(0.013, this.materials.force);
   private readonly torque = new Arc(0.2, 0.011, this.materials.torque);
+  private readonly rawForce = new Arrow(0.021, this.materials.raw); // around the shown one where they agree
+  private readonly rawTorque = new Arc(0.2, 0.018, this.materials.raw);
   private readonly stretch = new Rod(0.006, this.materials.stretch);
   private readonly pull = new Rod(0.004, this.materials.pull);
   private readonly handle = new THREE.Mesh(new THREE.SphereGeometry(0.02, 20, 14), this.materials.handle);
@@ -107,14 +109,15 @@ export class Overlay {
   private trailPoints: THREE.Vector3[] = [];
   private ghost: THREE.Mesh | null = null;
   private readonly trailColour = new THREE.Color();
+  private gripColours: Record<Grip, THREE.Color> = { none: new THREE.Color(), sticks: new THREE.Color(), slips: new THREE.Color() };
   showsTrail = true;
   chosen = -1; // number of the chosen patch
 
   constructor(look: Look) {
     const flat = new THREE.CylinderGeometry(1, 1, 0.25, 20);
     this.discs = new THREE.InstancedMesh(flat, this.materials.contact, mostContacts);
-    this.shafts = new THREE.InstancedMesh(new THREE.CylinderGeometry(1, 1, 1, 8).translate(0, 0.5, 0), this.materials.force, mostContacts);
-    this.heads = new THREE.InstancedMesh(new THREE.ConeGeometry(1, 2.4, 12).translate(0, 1.2, 0), this.materials.force, mostContacts);
+    this.shafts = new THREE.InstancedMesh(new THREE.CylinderGeometry(1, 1, 1, 8).translate(0, 0.5, 0), this.materials.arrow, mostContacts);
+    this.heads = new THREE.InstancedMesh(new THREE.ConeGeometry(1, 2.4, 12).translate(0, 1.2, 0), this.materials.arrow, mostContacts);
     for (const mesh of [this.discs, this.shafts, this.heads]) {
       mesh.frustumCulled = false;
       mesh.renderOrder = 6;
@@ -128,7 +131,8 @@ export class Overlay {
     this.trail = new THREE.Line(geometry, this.materials.trail);
     this.trail.frustumCulled = false;
     this.handle.renderOrder = this.anchor.renderOrder = 9;
-    this.root.add(this.force.root, this.torque.root, this.stretch.mesh, this.pull.mesh, this.handle, this.anchor, this.discs, this.shafts,
+    this.rawForce.root.visible = this.rawTorque.root.visible = false;
+    this.root.add(this.force.root, this.torque.root, this.rawForce.root, this.rawTorque.root, this.stretch.mesh, this.pull.mesh, this.handle, this.anchor, this.discs, this.shafts,
       this.heads, this.patches, this.trail);
     this.pull.mesh.visible = false;
     this.setLook(look);
@@ -137,6 +141,10 @@ export class Overlay {
   setLook(look: Look) {
     this.materials.force.color.set(look.force);
     this.materials.torque.color.set(look.torque);
+    this.materials.raw.color.set(look.raw);
+    this.gripColours = {
+      none: new THREE.Color(look.force), sticks: new THREE.Color(look.sticks), slips: new THREE.Color(look.slips),
+    };
     this.materials.contact.color.set(look.contact);
     this.materials.patch.color.set(look.force);
     this.materials.stretch.color.set(look.stretch);
@@ -194,14 +202,21 @@ export class Overlay {
     position.needsUpdate = colour.needsUpdate = true;
   }
 
-  /** The shown wrench at the hand; `towards` turns world axes into view axes (they are the same but for scale). */
-  setWrench(at: THREE.Vector3, wrench: number[], scales: Scales): { force: THREE.Vector3; torque: THREE.Vector3 | null } {
+  /** The shown wrench at the hand, and beside it the raw one if that is wanted. */
+  setWrench(at: THREE.Vector3, wrench: number[], raw: number[] | null, scales: Scales): { force: THREE.Vector3; torque: THREE.Vector3 | null } {
+    const force = this.setPair(this.force, this.torque, at, wrench, scales);
+    if (raw) this.setPair(this.rawForce, this.rawTorque, at, raw, scales);
+    else this.rawForce.root.visible = this.rawTorque.root.visible = false;
+    return { force: at.clone().add(force), torque: this.torque.root.visible ? this.torque.tip : null };
+  }
+
+  private setPair(arrow: Arrow, arc: Arc, at: THREE.Vector3, wrench: number[], scales: Scales): THREE.Vector3 {
     const force = new THREE.Vector3(wrench[0], wrench[1], wrench[2]).multiplyScalar(scales.force);
-    this.force.set(at, force);
+    arrow.set(at, force);
     const torque = new THREE.Vector3(wrench[3], wrench[4], wrench[5]);
     const size = torque.length();
-    this.torque.set(at, size > 0 ? torque.divideScalar(size) : up, Math.min(5.6, size * scales.torque));
-    return { force: at.clone().add(force), torque: this.torque.root.visible ? this.torque.tip : null };
+    arc.set(at, size > 0 ? torque.divideScalar(size) : up, Math.min(5.6, size * scales.torque));
+    return force;
   }
 
   /** The spring from where the part was taken to where the pointer is. */
@@ -241,12 +256,14 @@ export class Overlay {
       const thick = push.patch === this.chosen ? 0.011 : 0.0075;
       const head = Math.min(0.024, length / 4);
       this.shafts.setMatrixAt(arrows, matrix.compose(at, turn, size.set(thick, length - 2.3 * head, thick)));
+      for (const mesh of [this.shafts, this.heads]) mesh.setColorAt(arrows, this.gripColours[push.grip]);
       at.addScaledVector(along, length - 2.4 * head);
       this.heads.setMatrixAt(arrows++, matrix.compose(at, turn, size.setScalar(head)));
     }
     this.discs.count = count;
     this.shafts.count = this.heads.count = arrows;
     for (const mesh of [this.discs, this.shafts, this.heads]) mesh.instanceMatrix.needsUpdate = true;
+    for (const { instanceColor } of [this.shafts, this.heads]) if (instanceColor) instanceColor.needsUpdate = true;
     this.setPatches([...corners.values()]);
   }
 

@@ -41,7 +41,10 @@ export type Told =
 export interface Contact {
   bodies: [number, number]; pieces: [number, number]; kinds: [number, number]; features: [number, number];
   patch: number; p: Vec; n: Vec; distance: number; tolerance: number; force: number;
+  grip: Grip; coneUsed: number; // the share of the friction cone that the surfaces use, 0 to 1
 }
+export const grips = ["none", "sticks", "slips"] as const;
+export type Grip = (typeof grips)[number];
 /** Where everything is in one frame. */
 export interface Picture {
   index: number; held: boolean; hand: Float32Array; proxy: Float32Array; bodies: Float32Array; // seven numbers a pose
@@ -54,7 +57,7 @@ export interface Frames {
 }
 
 const headerWords = 8;
-const contactWords = 18;
+const contactWords = 20;
 
 function readPicture(words: Int32Array, floats: Float32Array): Picture {
   const bodies = words[2];
@@ -72,6 +75,7 @@ function readPicture(words: Int32Array, floats: Float32Array): Picture {
       kinds: [words[at + 4], words[at + 6]], features: [words[at + 5], words[at + 7]], patch: words[at + 8],
       p: [floats[at + 9], floats[at + 10], floats[at + 11]], n: [floats[at + 12], floats[at + 13], floats[at + 14]],
       distance: floats[at + 15], tolerance: floats[at + 16], force: floats[at + 17],
+      grip: grips[words[at + 18]] ?? "none", coneUsed: floats[at + 19],
     });
   }
   return picture;

@@ -1,5 +1,5 @@
 // The contact points of a picture, gathered by patch: one push each, with its place and what it adds to the held part.
-import type { Contact, Picture } from "./protocol";
+import type { Contact, Grip, Picture } from "./protocol";
 
 export interface Push {
   patch: number;
@@ -9,6 +9,8 @@ export interface Push {
   distance: number; // least [m]
   points: number;
   onHeld: boolean;
+  grip: Grip; // of the surfaces, and the share of their friction cone in use
+  coneUsed: number;
 }
 
 export function pushesOf(picture: Picture, held: number): Push[] {
@@ -19,9 +21,11 @@ export function pushesOf(picture: Picture, held: number): Push[] {
     const sign = contact.bodies[1] === held ? -1 : 1;
     let push = pushes.get(key);
     if (!push) {
-      push = { patch: contact.patch, contact, force: [0, 0, 0], at: [0, 0, 0], distance: Infinity, points: 0, onHeld: contact.bodies.includes(held) };
+      push = { patch: contact.patch, contact, force: [0, 0, 0], at: [0, 0, 0], distance: Infinity, points: 0, onHeld: contact.bodies.includes(held),
+        grip: "none", coneUsed: 0 };
       pushes.set(key, push);
     }
+    if (contact.grip !== "none") [push.grip, push.coneUsed] = [contact.grip, contact.coneUsed];
     const weight = contact.force + 1e-9;
     for (let k = 0; k < 3; ++k) {
       push.force[k] += sign * contact.force * contact.n[k];

@@ -4,7 +4,7 @@ import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { Bodies } from "./bodies";
 import { dark, light, type Look } from "./look";
 import { Overlay } from "./overlay";
-import type { Picture, Pose, Run, Shape, Vec } from "./protocol";
+import type { Grip, Picture, Pose, Run, Shape, Vec } from "./protocol";
 import { pushesOf } from "./pushes";
 import { withUnit } from "./units";
 
@@ -256,6 +256,9 @@ export class View {
     };
   }
 
+  /** Of the surfaces that push and rub, as shown now. */
+  grips: Grip[] = [];
+
   show(picture: Picture, live: boolean) {
     this.picture = picture;
     if (!this.bodies || !this.run) return;
@@ -276,30 +279,34 @@ export class View {
     return matrixAt(picture.proxy, 0).invert().multiply(matrixAt(picture.bodies, held));
   }
 
-  /** The wrench at the hand, and the contacts' share; arrows grow until the largest of late fills half the view. */
-  showWrench(wrench: number[]) {
+  /** The wrench at the hand (and the raw one beside it), and the contacts' share; arrows grow until the largest of late
+   * fills half the view. */
+  showWrench(wrench: number[], raw: number[] | null) {
     if (!this.picture || !this.run) return;
     const force = Math.hypot(wrench[0], wrench[1], wrench[2]);
     const torque = Math.hypot(wrench[3], wrench[4], wrench[5]);
     const pushes = pushesOf(this.picture, this.run.held);
-    const largest = pushes.reduce((most, push) => Math.max(most, Math.hypot(...push.force)), force); // one scale for all arrows
+    const arrows = [...pushes.map((push) => push.force), raw?.slice(0, 3) ?? []]; // one scale for all
+    const largest = arrows.reduce((most, arrow) => Math.max(most, Math.hypot(...arrow)), force);
+    const largestTorque = Math.max(torque, Math.hypot(...(raw?.slice(3) ?? [])));
     this.recentForce = Math.max(largest, 0.985 * this.recentForce);
-    this.recentTorque = Math.max(torque, 0.985 * this.recentTorque);
+    this.recentTorque = Math.max(largestTorque, 0.985 * this.recentTorque);
     const fullForce = Math.max(0.02, this.recentForce);
     const fullTorque = Math.max(0.001, this.recentTorque);
     const wantedForce = round125(0.6 / fullForce);
     const wantedTorque = 4.2 / round125(2 * fullTorque);
     if (this.arrowForce === 0 || largest * this.arrowForce > 0.65 || wantedForce > 2.4 * this.arrowForce) this.arrowForce = wantedForce;
-    if (this.arrowTorque === 0 || torque * this.arrowTorque > 5.2 || wantedTorque > 2.4 * this.arrowTorque) this.arrowTorque = wantedTorque;
+    if (this.arrowTorque === 0 || largestTorque * this.arrowTorque > 5.2 || wantedTorque > 2.4 * this.arrowTorque) this.arrowTorque = wantedTorque;
     const hand = this.pointOf(this.picture.proxy);
-    const tips = this.overlay.setWrench(hand, wrench, { force: this.arrowForce, torque: this.arrowTorque });
+    const tips = this.overlay.setWrench(hand, wrench, raw, { force: this.arrowForce, torque: this.arrowTorque });
     this.overlay.setContacts(this.picture.contacts, pushes, this.run.held, this.toView, this.arrowForce);
     this.label(this.forceLabel, tips.force, force, "N", force * this.arrowForce > 0.03);
     this.label(this.torqueLabel, tips.torque, torque, "N m", tips.torque !== null);
+    this.grips = pushes.filter((push) => push.grip !== "none" && Math.hypot(...push.force) > 0).map((push) => push.grip);
     const newton = 1 / (this.arrowForce / this.scale);
-    const arrows = this.run.held < 0 ? "" :
+    const told = this.run.held < 0 ? "" :
       ` · arrow ${withUnit(newton * 0.01, "N")} per cm · arc ${withUnit(1 / this.arrowTorque * Math.PI, "N m")} per half turn`;
-    this.scaleNote.textContent = `grid ${withUnit(this.spacing, "m")}${arrows}`;
+    this.scaleNote.textContent = `grid ${withUnit(this.spacing, "m")}${told}`;
   }
 
   private label(element: HTMLElement, at: THREE.Vector3 | null, value: number, unit: string, visible: boolean) {

@@ -9,6 +9,15 @@ import { withUnit } from "./units";
 const kinds = ["vertex", "edge", "face"];
 const mostRows = 12;
 
+/** Name, channel, meaning; the first is the head. */
+const energyRows: [string, string, string][] = [
+  ["", "", ""],
+  ["from the hand", "energy_from_hand_J", "work the hand put in, moving against the wrench"],
+  ["to the hand", "energy_to_hand_J", "work the hand was given, moved along by the wrench"],
+  ["taken out by the controller", "energy_damped_J", "by the damping that the passivity controller added"],
+  ["ledger now", "port_ledger_J", "what the scene may give back; below zero, energy was made and the controller takes it out"],
+];
+
 const size = (v: number[]) => Math.hypot(v[0], v[1], v[2]);
 const dot = (a: number[], b: number[]) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 
@@ -32,13 +41,14 @@ export class Why {
   private readonly more = make("p", { class: "quiet" });
   private rows: Push[] = [];
   private readonly ladder = make("table", { class: "ladder" });
+  private readonly energy = make("table", { class: "energy" });
   private readonly flags = make("ul", { class: "flags" });
   private readonly numbers = make("dl", { class: "numbers" });
 
   constructor(root: HTMLElement) {
     const more = make("details", {}, make("summary", {}, "Every number of this frame"), this.numbers);
     root.append(this.sentence, make("h2", {}, "What pushes"), this.table, this.more, make("h2", {}, "From the contact to your hand"), this.ladder,
-      this.flags, more);
+      this.flags, make("h2", {}, "Energy since the start"), this.energy, more);
   }
 
   begin(run: Run) {
@@ -57,6 +67,7 @@ export class Why {
     this.showContacts(pushes, sum, picture);
     this.showLadder(samples, sample);
     this.showFlags(samples, sample);
+    this.showEnergy(samples, sample);
     this.showNumbers(samples, sample);
   }
 
@@ -108,6 +119,7 @@ export class Why {
       row.classList.toggle("chosen", chosen);
       const [button, force, place] = [...row.cells].map((cell) => cell.firstElementChild as HTMLElement);
       button.setAttribute("aria-pressed", String(chosen));
+      this.showGrip(row.cells[0].lastElementChild as HTMLElement, push);
       button.textContent = `${this.feature(push.contact, 0)}\n${this.feature(push.contact, 1)}`;
       force.textContent = `${withUnit(size(push.force), "N")}\n${Number.isNaN(share) ? "to others" : `${Math.round(100 * share)} %`.replace("-", "−")}`;
       (row.cells[1].lastElementChild as HTMLElement).style.width = `${Math.round(100 * Math.min(1, Math.max(0, share || 0)))}%`;
@@ -125,8 +137,24 @@ export class Why {
       this.chosen = this.chosen === push.patch ? -1 : push.patch;
       this.onChoose?.(this.chosen < 0 ? null : push.contact);
     };
-    return make("tr", {}, make("td", {}, choose), make("td", { class: "number" }, make("span"), make("span", { class: "bar" })),
+    return make("tr", {}, make("td", {}, choose, make("span", { class: "grip" })), make("td", { class: "number" }, make("span"), make("span", { class: "bar" })),
       make("td", { class: "number" }, make("span")));
+  }
+
+  /** Sticking or slipping, where there is friction. */
+  private showGrip(element: HTMLElement, push: Push) {
+    element.hidden = push.grip === "none";
+    element.classList.toggle("slips", push.grip === "slips");
+    element.textContent = `${push.grip}, ${Math.round(100 * push.coneUsed)} % of its friction`;
+  }
+
+  private showEnergy(samples: Samples, sample: number) {
+    const [head, ...rows] = energyRows.map(([name, key, meaning]) => {
+      const value = (suffix: string) => withUnit(samples.at(samples.column(key.replace("_J", suffix)), sample), "J");
+      return key === "" ? make("tr", {}, ...["", "moving", "turning"].map((text) => make("th", { scope: "col" }, text)))
+        : make("tr", { title: meaning }, make("td", {}, name), make("td", { class: "number" }, value("_J")), make("td", { class: "number" }, value("_turning_J")));
+    });
+    this.energy.replaceChildren(head, ...rows);
   }
 
   private showLadder(samples: Samples, sample: number) {

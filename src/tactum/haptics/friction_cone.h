@@ -1,0 +1,48 @@
+#pragma once
+/// A patch of contact that rubs: which surfaces, where, and the cone its force lies in (friction.h draws it).
+
+#include "tactum/collision/contact_patch.h"
+#include "tactum/haptics/constraint_problem.h"
+
+namespace tactum {
+
+inline constexpr std::size_t kConeDirections = 12;  ///< edges of the cone; two more are for turning
+
+/// Which surfaces touch.
+struct PatchKey {
+  int body_a = -1, body_b = -1, group_a = -1, group_b = -1;
+  bool operator==(const PatchKey&) const = default;
+};
+
+/// A patch that pushes, in this frame.
+struct FrictionPatch {
+  PatchKey key;
+  int finder_patch = -1;         ///< one of the finder's patches that make it up
+  double coefficient = 0.0;      ///< mu [-]
+  double load_N = 0.0;           ///< N without friction; 0: it only held in the last frame [N]
+  bool acts = true;              ///< false: let go
+  double radius_m = 0.0;         ///< r, of the forces about their centre [m]
+  double gap_m = 0.0;            ///< at the centre, beyond the skin; none where it is too small to count [m]
+  Vec3 n_BA_W = Vec3::Zero();    ///< [-]
+  Vec3 centre_W = Vec3::Zero();  ///< c [m]
+  Vec3 apart_W = Vec3::Zero();   ///< a; none where it is too small to count [m]
+  Vec3 left_W = Vec3::Zero();    ///< how far the anchor has come apart that was too small to count [m]
+  Vec3 along_W = Vec3::Zero();   ///< the first direction d, unit [-]
+  double slip_m = 0.0;           ///< allowed without lifting [m]
+  double slip_rad = 0.0;         ///< of turning about the normal [rad]
+  std::size_t first_row = 0;
+};
+
+/// What a patch slides by in the step of an answer, from its anchor, and turns by about its normal.
+struct Slide {
+  Vec3 way = Vec3::Zero();  ///< [m]
+  double turn = 0.0;        ///< [rad]
+  double lift = 0.0;        ///< off the other surface [m]
+};
+
+PatchKey key_of(const World& world, const ContactPatch& patch) noexcept;
+/// What pushes along edge k of the cone: directions around the normal, then the two senses of turning.
+Push cone_edge(const FrictionPatch& patch, std::size_t k) noexcept;
+Slide slide_of(const FrictionPatch& patch, const ConstraintProblem& problem) noexcept;
+
+}  // namespace tactum
