@@ -3,10 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <map>
 #include <tuple>
 
+#include "support/sample_meshes.h"
+#include "support/surface_shapes.h"
 #include "tactum/base/random.h"
+#include "tactum/base/tolerances.h"
 #include "tactum/collision/closest_features.h"
 #include "tactum/math/screw.h"
 
@@ -102,6 +107,43 @@ TEST(ContactFinder, FindsEveryPatchThatTestingAllPairsFinds) {
     }
     EXPECT_EQ(finder.work().uncertified, 0);
   }
+}
+
+/// Two rings that come near, part and come near again: what is felt is what a query of its own finds, and far
+/// away hardly anything is asked.
+TEST(ContactFinder, AsksSurfacesThatAreApartSeldom) {
+  const Result<Part> ring =
+      part_from_mesh(testing::torus(40, 20, 0.02, 0.006), {.pieces = PieceSource::kSurface});
+  ASSERT_TRUE(ring);
+  const double tolerance = 1e-4;
+  const auto pose = [](int frame) {
+    return Pose{exp_rotation(Vec3(0.001, 0.002, 0.3)), {0, 0, 0.01255 + 5e-4 * std::cos(frame * 2e-3 * kPi)}};
+  };
+  const CollisionBody body{&*ring, true};
+  std::vector<Pose> X = {Pose(), pose(0)};
+  ContactFinder finder({body, body}, X);
+  std::vector<SurfaceMinimum> minima;
+  minima.reserve(10000);
+  std::array<int, 2> queries{};  // apart, near
+  std::array<int, 2> frames{};
+  for (int frame = 0; frame < 2000; ++frame) {
+    X[1] = pose(frame);
+    finder.find_near_pairs(X, std::vector<double>(2, 0.0), tolerance);
+    finder.find_patches(X, 1000, PatchPoints::kClosest);
+    surface_minima(ring->tree, ring->tree, X[1], {tolerance, 0.0, tolerances::kConeSlack}, minima);
+    ASSERT_EQ(finder.patches().empty(), minima.empty()) << frame;
+    const std::size_t near = minima.empty() ? 0 : 1;
+    queries[near] += finder.work().surface_queries;
+    ++frames[near];
+    for (const ContactPatch& patch : finder.patches()) {
+      EXPECT_TRUE(std::any_of(minima.begin(), minima.end(), [&](const SurfaceMinimum& m) {
+        return m.a == patch.manifold.a && m.b == patch.manifold.b && m.distance == patch.distance;
+      }));
+    }
+  }
+  EXPECT_GT(frames[1], 200);
+  EXPECT_GT(frames[0], 500);
+  EXPECT_LT(queries[0], frames[0] / 5);
 }
 
 TEST(ContactFinder, ABudgetLeavesTheLeastUrgentPairs) {

@@ -117,6 +117,7 @@ class ContactFinder {
     bool cut_short = false;      ///< the room was full: pairs are missing
     std::int64_t renewal = -1;   ///< the renewal it was last part of
     double free_until = -1e300;  ///< of two surfaces: as in Pair
+    bool apart = false;          ///< ... and nothing was within the tolerance when last asked
   };
 
   void move_boxes(std::span<const Pose> X_WB) noexcept;

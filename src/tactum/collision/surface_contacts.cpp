@@ -17,6 +17,10 @@ constexpr double kSurfaceDepth = 0.02;
 /// At the end of a step only gaps below this share of the tolerance are looked for: the others are open.
 constexpr double kWatched = 0.15;
 
+/// Of surfaces that were apart it is asked first how far, up to so many tolerances: that far they need not be
+/// asked again.
+constexpr double kFarther = 8.0;
+
 }  // namespace
 
 void ContactFinder::test_surfaces(int a, int b, std::span<const Pose> X_WB) noexcept {
@@ -32,13 +36,24 @@ void ContactFinder::test_surfaces(int a, int b, std::span<const Pose> X_WB) noex
       .reach = reach,
       .depth = may_cross ? kSurfaceDepth * std::min(part_a.size, part_b.size) : kWatched * reach,
       .cone_slack = tolerances::kConeSlack};
-  const MinimaWork found =
-      surface_minima(part_a.tree, part_b.tree, relative_pose(X_WB[Index(a)], X_WB[Index(b)]), query, minima_);
+  const Pose X_AB = relative_pose(X_WB[Index(a)], X_WB[Index(b)]);
+  if (list.apart) {
+    MinimaQuery farther = query;
+    farther.reach *= kFarther;
+    MinimaWork work;
+    const double clearance = surface_clearance(part_a.tree, part_b.tree, X_AB, farther, work);
+    ++work_.surface_queries;
+    work_.feature_steps += work.feature_pairs;
+    list.free_until = odometers(a, b) + clearance;
+    if (clearance > reach) return;
+  }
+  const MinimaWork found = surface_minima(part_a.tree, part_b.tree, X_AB, query, minima_);
   ++work_.surface_queries;
   work_.minima += found.minima;
   work_.feature_steps += found.feature_pairs;
   work_.rooms_full |= found.full;
-  list.free_until = odometers(a, b) + (minima_.empty() ? reach : 0.0);
+  list.apart = minima_.empty();
+  list.free_until = odometers(a, b) + (list.apart ? reach : 0.0);
   Index kept = minima_.size();
   if (kept > kept_minima_) {
     reduction_scratch_.resize(kept);  // within what was reserved

@@ -29,11 +29,11 @@ MinimaWork surface_minima(const SurfaceTree& a, const SurfaceTree& b, const Pose
   return lanes::surface_minima(lanes::kernels(), a, b, X_AB, query, minima);
 }
 
-MinimaWork lanes::surface_minima(const Kernels& kernels, const SurfaceTree& a, const SurfaceTree& b,
-                                 const Pose& X_AB, const MinimaQuery& query,
-                                 std::vector<SurfaceMinimum>& minima) noexcept {
-  FeatureComparison features(a, b, X_AB, query, minima);
-  const Bounds bounds = bounds_of(query, a.size() + b.size());
+namespace {
+
+void walk_all(const lanes::Kernels& kernels, const SurfaceTree& a, const SurfaceTree& b, const Pose& X_AB,
+              const MinimaQuery& query, FeatureComparison& features) noexcept {
+  lanes::Bounds bounds = bounds_of(query, a.size() + b.size());
   using Tree = SurfaceTree;
   {
     SurfaceWalk walk(a, b, X_AB.inverse(), false, bounds, kernels, features);
@@ -45,8 +45,29 @@ MinimaWork lanes::surface_minima(const Kernels& kernels, const SurfaceTree& a, c
   SurfaceWalk back(b, a, X_AB, true, bounds, kernels, features);
   back.run<Tree::kVertices, Tree::kFaces>();
   back.run<Tree::kVertices, Tree::kEdges>();
+}
+
+}  // namespace
+
+MinimaWork lanes::surface_minima(const Kernels& kernels, const SurfaceTree& a, const SurfaceTree& b,
+                                 const Pose& X_AB, const MinimaQuery& query,
+                                 std::vector<SurfaceMinimum>& minima) noexcept {
+  FeatureComparison features(a, b, X_AB, query, minima);
+  walk_all(kernels, a, b, X_AB, query, features);
   features.finish();
   return features.work;
+}
+
+double surface_clearance(const SurfaceTree& a, const SurfaceTree& b, const Pose& X_AB,
+                         const MinimaQuery& query, MinimaWork& work) noexcept {
+  constexpr double kShort = 0.9;
+  std::vector<SurfaceMinimum> none;  // without room: takes no memory
+  FeatureComparison features(a, b, X_AB, query, none);
+  features.narrow_by(kShort);
+  walk_all(lanes::kernels(), a, b, X_AB, query, features);
+  work = features.work;
+  work.full = false;
+  return features.reach();
 }
 
 }  // namespace tactum

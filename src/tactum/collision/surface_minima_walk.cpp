@@ -1,5 +1,6 @@
 #include "tactum/collision/surface_minima_walk.h"
 
+#include <algorithm>
 #include <bit>
 
 namespace tactum {
@@ -25,7 +26,7 @@ const auto& leaf(const Tree& tree, std::uint32_t index) noexcept {
 }  // namespace
 
 SurfaceWalk::SurfaceWalk(const Tree& one, const Tree& other, const Pose& X_OtherOne, bool swapped,
-                         const lanes::Bounds& bounds, const lanes::Kernels& kernels,
+                         lanes::Bounds& bounds, const lanes::Kernels& kernels,
                          FeatureComparison& features) noexcept
     : one_(one),
       other_(other),
@@ -101,6 +102,7 @@ void SurfaceWalk::compare_leaves(const Pair& pair) noexcept {
     if constexpr (Other == Tree::kEdges) left = kernels_.vertex_edge(turned, off, box_other, others, bounds_);
     if constexpr (Other == Tree::kFaces) left = kernels_.vertex_face(turned, off, box_other, others, bounds_);
   }
+  if (left == 0) return;
   for (; left != 0; left &= left - 1) {
     const Index bit = Index(std::countr_zero(left));
     const std::int32_t one = ones.corner[bit / kLanes];
@@ -112,6 +114,8 @@ void SurfaceWalk::compare_leaves(const Pair& pair) noexcept {
       features_.vertex_edge(swapped_, one, other);
     if constexpr (One == Tree::kVertices && Other == Tree::kVertices) features_.vertex_vertex(one, other);
   }
+  bounds_.reach = static_cast<float>(features_.reach()) + bounds_.grown;
+  bounds_.far = std::max(bounds_.reach, bounds_.depth);
 }
 
 template void SurfaceWalk::run<Tree::kEdges, Tree::kEdges>() noexcept;

@@ -36,8 +36,7 @@ class SurfaceWalk {
  public:
   /// One surface and the other with the one at X_OtherOne. `swapped`: the one is B.
   SurfaceWalk(const SurfaceTree& one, const SurfaceTree& other, const Pose& X_OtherOne, bool swapped,
-              const lanes::Bounds& bounds, const lanes::Kernels& kernels,
-              FeatureComparison& features) noexcept;
+              lanes::Bounds& bounds, const lanes::Kernels& kernels, FeatureComparison& features) noexcept;
   /// All minima of edges with edges, or of vertices of the one with features of the other.
   template <SurfaceTree::Kind One, SurfaceTree::Kind Other>
   void run() noexcept;
@@ -73,7 +72,7 @@ class SurfaceWalk {
   const SurfaceTree& other_;
   bool swapped_;
   lanes::Frame frame_;
-  const lanes::Bounds& bounds_;
+  lanes::Bounds& bounds_;  // narrower when the features are
   const lanes::Kernels& kernels_;
   FeatureComparison& features_;
   Kept<SurfaceTree::Stand, 128> stands_;

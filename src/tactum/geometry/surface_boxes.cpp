@@ -34,7 +34,7 @@ std::size_t power_of_lanes(std::size_t value) {
 /// The axes of the spread of values about their mean, the longest last.
 struct Spread {
   std::array<Vec3, 3> axis;
-  std::array<double, 3> square;  ///< of the spread along them
+  std::array<double, 3> square{};  ///< of the spread along them
 };
 template <class Values>
 Spread spread_of(const Values& value, std::size_t first, std::size_t last) {
