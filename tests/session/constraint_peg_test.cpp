@@ -71,6 +71,7 @@ struct Placed {
 };
 
 bool parts(const Vec3& n, const Placed& a, const Placed& b) {
+  if (n.norm() < 1e-6) return false;  // of parallel edges: no plane
   double lowest_a = 1e9, highest_a = -1e9, lowest_b = 1e9, highest_b = -1e9;
   for (const Vec3& p : a.corners) {
     lowest_a = std::min(lowest_a, n.dot(p));
@@ -160,8 +161,9 @@ TEST(PegReferee, SeesAnOverlapOfAHairAndNoneInTheHole) {
     ASSERT_TRUE(scene);
     const World& world = scene->world;
     const double play_m = std::string(name) == "peg-7um" ? 3.5e-6 : 12e-6;  // of a peg in the middle
-    for (const double off_m : {0.0, 0.9 * play_m, 1.1 * play_m, 1e-3}) {
-      const Pose X_WB{Mat3::Identity(), {off_m, 0.0, 0.035}};
+    for (const double off_m : {0.0, 0.9 * play_m, 4.0 * play_m, 1e-3}) {
+      Pose X_WB = world.bodies[1].X_WB;  // 5 mm above the block; from there 20 mm into the hole
+      X_WB.p = {off_m, 0.0, X_WB.p.z() - 0.025};
       int overlaps = 0;
       for (const Polytope& wall : world.bodies[0].part->pieces)
         for (const Polytope& piece : world.bodies[1].part->pieces) {
