@@ -111,8 +111,8 @@ TEST(Picking, ABlowOnTheHeldBlockIsFeltAsAPulseOfTheSameMomentum) {
     largest = std::max(largest, hand.report.coupling.f.norm());
   }
   const Vec3 lost = mass * (Vec3(-1.0, 0, 0) - hand.V(hand.far_block).v);
-  EXPECT_NEAR(hand.V(hand.far_block).v.x(), 0.5, 1e-9) << "back from what is held fast, at e = 0.5";
-  EXPECT_LT((felt - lost).norm(), 1e-9);
+  EXPECT_NEAR(hand.V(hand.far_block).v.x(), 0.5, 1e-7) << "back from what is held fast, at e = 0.5";
+  EXPECT_LT((felt - lost).norm(), 1e-9);  // [N s] of 0.012
   EXPECT_NEAR(largest, 2.0 * lost.norm() / 0.02, 0.05 * largest) << "spread over 20 ms";
 }
 

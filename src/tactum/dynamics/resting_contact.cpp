@@ -158,25 +158,33 @@ void RestingContact::accelerate(const Range& island, double& last_gradient, std:
   }
 }
 
-SolverResult RestingContact::solve_island(const Range& island, int max_sweeps, std::span<Twist> V) noexcept {
+SolverResult RestingContact::solve_island(const Range& island, int max_sweeps, double harmless,
+                                          std::span<Twist> V) noexcept {
   SolverResult result;
+  double fastest = 0.0;
+  for (int i = 0; i < island.count; ++i) {
+    const Row& row = rows_[Index(order_[Index(island.first + i)])];
+    fastest = std::max({fastest, V[Index(row.body_a)].v.norm(), V[Index(row.body_b)].v.norm()});
+  }
+  const double enough = tolerances::kRestingVelocity + tolerances::kContactVelocity * fastest;
   double last_gradient = 0.0;  // squared
   while (result.iterations < max_sweeps) {
     ++result.iterations;
-    result.converged = sweep(island, V) <= tolerances::kRestingVelocity;
-    if (result.converged || result.iterations == max_sweeps) break;
+    const double change = sweep(island, V);
+    result.converged = change <= harmless;
+    if (change <= enough || result.iterations == max_sweeps) break;
     accelerate(island, last_gradient, V);
   }
   return result;
 }
 
-SolverResult RestingContact::solve(int max_sweeps, std::span<const char> settled,
+SolverResult RestingContact::solve(int max_sweeps, double harmless, std::span<const char> settled,
                                    std::span<Twist> V) noexcept {
   if (!started_) arrange(V);
   SolverResult result{.iterations = 0, .converged = true};
   for (Index i = 0; i < islands_.size(); ++i) {
     if (settled[i] != 0 || islands_[i].count + islands_[i].joint_count == 0) continue;
-    const SolverResult solved = solve_island(islands_[i], max_sweeps, V);
+    const SolverResult solved = solve_island(islands_[i], max_sweeps, harmless, V);
     result.iterations = std::max(result.iterations, solved.iterations);
     result.converged &= solved.converged;
   }

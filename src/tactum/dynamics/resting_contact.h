@@ -48,8 +48,11 @@ class RestingContact {
   void tighten(int index, double by_m, double h) noexcept;
 
   /// Changes the twists of the islands that are not settled, each by at most so many sweeps; may be called
-  /// again after tighten(). The result's iterations are those of the island that took most.
-  SolverResult solve(int max_sweeps, std::span<const char> settled, std::span<Twist> V) noexcept;
+  /// again after tighten(). They have converged when the last sweep changed no velocity by more than
+  /// `harmless` [m/s]; sweeps go on to far less. The result's iterations are those of the island that took
+  /// most.
+  SolverResult solve(int max_sweeps, double harmless, std::span<const char> settled,
+                     std::span<Twist> V) noexcept;
   /// The impulses that act on body_a of the contact added as `index`, world axes, the normal one's size.
   template <class Visit>
   void for_each(const Visit& visit) const {
@@ -87,7 +90,8 @@ class RestingContact {
   void arrange(std::span<Twist> V) noexcept;
   double sweep(const Range& island, std::span<Twist> V) noexcept;
   void accelerate(const Range& island, double& last_gradient, std::span<Twist> V) noexcept;
-  SolverResult solve_island(const Range& island, int max_sweeps, std::span<Twist> V) noexcept;
+  SolverResult solve_island(const Range& island, int max_sweeps, double harmless,
+                            std::span<Twist> V) noexcept;
 
   std::vector<Row> rows_;
   std::vector<Last> last_;

@@ -273,8 +273,9 @@ void move_free_bodies(const World& world, const FrameSettings& settings, double 
   if (f.held_here) lend_held(world, settings, dt_s, state);
   add_rows(world, dt_s, state);
   const auto solve = [&] {
+    // What is left moves nothing by more than the skin, and every step is looked at before it is taken.
     const SolverResult solved =
-        f.resting.solve(settings.budget.solver_iterations, f.settled, state.world.V_WB);
+        f.resting.solve(settings.budget.solver_iterations, c.skin_m / dt_s, f.settled, state.world.V_WB);
     report.solver_iterations += solved.iterations;
     if (!solved.converged) report.flags |= frame_flag::kSolverBounded;
   };
