@@ -124,11 +124,12 @@ TEST(ContactFinder, AsksSurfacesThatAreApartSeldom) {
   ContactFinder finder({body, body}, X);
   std::vector<SurfaceMinimum> minima;
   minima.reserve(10000);
+  const std::vector<double> reach(2, 0.0);
   std::array<int, 2> queries{};  // apart, near
   std::array<int, 2> frames{};
   for (int frame = 0; frame < 2000; ++frame) {
     X[1] = pose(frame);
-    finder.find_near_pairs(X, std::vector<double>(2, 0.0), tolerance);
+    finder.find_near_pairs(X, reach, tolerance);
     finder.find_patches(X, 1000, PatchPoints::kClosest);
     surface_minima(ring->tree, ring->tree, X[1], {tolerance, 0.0, tolerances::kConeSlack}, minima);
     ASSERT_EQ(finder.patches().empty(), minima.empty()) << frame;
