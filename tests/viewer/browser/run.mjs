@@ -124,6 +124,29 @@ const topics = {
     check(page.complaints.length === 0, page.complaints.join("; "));
   },
 
+  async picking(browser) {
+    const program = await Program.start(tactum, "moving-objects");
+    const page = await openPage(browser, program);
+    const places = async () => JSON.parse((await state(page)).bodiesAt);
+    check(Object.keys(await places()).length === 13, "thirteen bodies move");
+    const [x, y] = (await places())["cube 1"];
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    await until("the cube is held", async () => (await state(page)).held === "cube 1");
+    for (let i = 1; i <= 30; ++i) {
+      await page.mouse.move(x + i, y - 5 * i);
+      await pause(0.03);
+    }
+    await until("it has been lifted", async () => y - (await places())["cube 1"][1] > 80);
+    await keep(page, "picking");
+    for (let i = 1; i <= 6; ++i) await page.mouse.move(x + 30 + 25 * i, y - 150);
+    await page.mouse.up();
+    await until("the hand is empty again", async () => (await state(page)).held === "");
+    await until("what was thrown lies on the floor", async () => y - (await places())["cube 1"][1] < 40);
+    check(page.complaints.length === 0, page.complaints.join("; "));
+    await program.end();
+  },
+
   async inspect(browser) {
     // An L without its lid: eight sharp edges and more, one reflex edge, six open ones around the lid.
     const outline = [[0, 0], [40, 0], [40, 20], [20, 20], [20, 40], [0, 40]];
@@ -589,6 +612,11 @@ const topics = {
       await page.mouse.click(chart.x + best[1] * chart.width, chart.y + chart.height / 2);
       await page.mouse.move(700, 500);
       await pause(1.5);
+    });
+    await take("moving-objects", {}, async (page) => {
+      await until("the stick is among the others", async () => Number((await state(page)).newest) % 16180 > 6200, 60);
+      await page.keyboard.press("e");
+      await pause(0.5);
     });
     await take("nut-bolt", {}, async (page) => {
       await page.keyboard.press("e");

@@ -4,6 +4,7 @@
 //   drag            moves in the plane of the view (a hinged part turns about its hinge)
 //   shift + drag    turns about the part's handle
 //   wheel, dragging nearer and farther
+//   where bodies can be picked up, the hand goes to where one is pressed on and holds it until the pointer is let go
 //   arrows          fine steps, page up and down in depth, with shift turns
 import * as THREE from "three";
 import type { Picture, Run } from "./protocol";
@@ -14,6 +15,7 @@ const farthestLead = 1.0; // how far an aim may turn ahead of a hinged part [rad
 const fineStep = 0.006; // of the scene's radius
 const fineTurn = (0.5 * Math.PI) / 180; // [rad]
 const sendEvery_ms = 16;
+const nearEnough_m = 0.004; // of the hand to what it shall pick up
 
 export interface HandTalk {
   /** Makes sure that this page steers; false when it cannot. */
@@ -34,6 +36,7 @@ export class Hand {
   private p = new THREE.Vector3(); // the aim: the handle in the world [m]
   private q = new THREE.Quaternion();
   private aimed = false; // the aim is ours
+  private reaching = false; // on the way to what is to be picked up
   private drag: Drag | null = null;
   private lastSent = 0;
   private waiting = 0;
@@ -63,7 +66,7 @@ export class Hand {
     return this.drag !== null;
   }
   get canFeel() {
-    return this.run !== null && this.run.held >= 0 && this.run.device.can_be_led;
+    return this.run !== null && (this.run.held >= 0 || this.run.picks) && this.run.device.can_be_led;
   }
 
   /** From where the handle is, or from where we last wanted it. */
@@ -83,18 +86,21 @@ export class Hand {
     if (event.button !== 0 || this.drag || !this.canFeel) return;
     const ray = this.view.rayAt(event.clientX, event.clientY);
     const hit = this.view.bodies?.pick(ray);
-    if (!hit || hit.body !== this.run?.held || !this.takeUp()) return;
+    if (!hit || !this.run || !(this.run.picks ? this.run.bodies[hit.body].moves : hit.body === this.run.held)) return;
+    if (!this.takeUp()) return;
     event.stopImmediatePropagation(); // the camera stays where it is
     this.view.controls.enabled = false;
     this.canvas.setPointerCapture(event.pointerId);
     this.canvas.classList.add("holding");
     const point = hit.point.clone().applyMatrix4(this.view.toWorld);
-    const body = this.run.bodies[this.run.held];
-    const hinged = body.joint === "hinge" && !event.altKey;
+    const body = this.run.bodies[hit.body];
+    const hinged = body.joint === "hinge" && !event.altKey && !this.run.picks;
     const sight = this.view.camera.getWorldDirection(new THREE.Vector3());
     const normal = hinged && body.axis_W ? new THREE.Vector3(...body.axis_W) : sight.clone();
     if (hinged && Math.abs(normal.dot(ray.ray.direction)) < 0.12) normal.copy(sight);
-    const held = this.view.bodies?.matrices[this.run.held] ?? new THREE.Matrix4();
+    const held = this.view.bodies?.matrices[hit.body] ?? new THREE.Matrix4();
+    this.reaching = this.run.picks;
+    if (this.reaching) this.p.copy(point);
     this.drag = {
       pointer: event.pointerId, from: point, plane: new THREE.Plane().setFromNormalAndCoplanarPoint(normal, point),
       start: point.clone(), x: event.clientX, y: event.clientY, p0: this.p.clone(), q0: this.q.clone(), angle: 0, last: 0,
@@ -119,7 +125,7 @@ export class Hand {
       if (event.buttons === 0) this.hover(event);
       return;
     }
-    if (event.pointerId !== drag.pointer) return;
+    if (event.pointerId !== drag.pointer || this.reaching) return;
     if (event.shiftKey || this.turns) {
       this.turnBy((event.clientX - drag.x) * turnPerPixel, (event.clientY - drag.y) * turnPerPixel);
       drag.p0.copy(this.p);
@@ -173,6 +179,11 @@ export class Hand {
   }
   private letGo() {
     this.drag = null;
+    this.reaching = false;
+    if (this.run?.picks && this.buttons !== 0) {
+      this.buttons = 0;
+      if (this.aimed) this.send(true);
+    }
     this.view.controls.enabled = true;
     this.canvas.classList.remove("holding");
     this.view.overlay.setPull(null, null);
@@ -193,7 +204,8 @@ export class Hand {
   private hover(event: PointerEvent) {
     if (event.pointerType === "touch") return;
     const hit = this.canFeel ? this.view.bodies?.pick(this.view.rayAt(event.clientX, event.clientY)) : null;
-    this.canvas.classList.toggle("can-hold", hit?.body === this.run?.held);
+    const holds = hit && this.run && (this.run.picks ? this.run.bodies[hit.body].moves : hit.body === this.run.held);
+    this.canvas.classList.toggle("can-hold", Boolean(holds));
   }
 
   private key(event: KeyboardEvent) {
@@ -240,10 +252,30 @@ export class Hand {
     this.talk.send({ do: "aim", p: [p.x, p.y, p.z], q: [q.w, q.x, q.y, q.z], buttons: this.buttons });
   }
 
+  /** Presses the button when the hand has come near enough, and drags from there once something is held. */
+  private reach(picture: Picture) {
+    const drag = this.drag as Drag;
+    const away = this.p.distanceTo(new THREE.Vector3(picture.hand[0], picture.hand[1], picture.hand[2]));
+    if (this.buttons === 0 && away < nearEnough_m) {
+      this.buttons = 1;
+      this.send(true);
+    }
+    const held = this.view.bodies?.matrices[picture.body];
+    if (!held || this.buttons === 0) return;
+    this.reaching = false;
+    drag.p0.copy(this.p);
+    drag.q0.copy(this.q);
+    drag.start.copy(this.p);
+    drag.from.copy(this.p);
+    drag.plane.setFromNormalAndCoplanarPoint(drag.plane.normal, this.p);
+    drag.grabbed.copy(this.p).applyMatrix4(held.clone().invert());
+  }
+
   /** The spring from the place that was taken to the pointer. */
   drawPull(picture: Picture) {
     const drag = this.drag;
     if (!drag || !this.run) return;
+    if (this.reaching) this.reach(picture);
     const held = this.view.bodies?.matrices[this.run.held];
     if (!held) return;
     const from = drag.grabbed.clone().applyMatrix4(held);

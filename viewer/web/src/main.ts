@@ -149,7 +149,11 @@ function showSummary(sample: number) {
   body.dataset.samples = String(samples.count);
   body.dataset.gaps = String(samples.gaps);
   body.dataset.newest = String(samples.frameOf(samples.count - 1));
-  if (run.held >= 0) body.dataset.heldAt = view.onScreen(run.held).map(Math.round).join(",");
+  body.dataset.heldAt = run.held >= 0 ? view.onScreen(run.held).map(Math.round).join(",") : "";
+  if (run.picks) {
+    body.dataset.held = run.held >= 0 ? run.bodies[run.held].name : "";
+    body.dataset.bodiesAt = JSON.stringify(Object.fromEntries(run.bodies.flatMap((one, i) => one.moves ? [[one.name, view.onScreen(i).map(Math.round)]] : [])));
+  }
   const now = performance.now();
   if (now - lastSpoken > 3000 && document.activeElement === canvas) {
     lastSpoken = now;
@@ -207,6 +211,7 @@ function showHint() {
   const held = run && run.held >= 0 ? run.bodies[run.held].name : "";
   const hinged = run && run.held >= 0 && run.bodies[run.held].joint === "hinge";
   get("hint").textContent = !run ? ""
+    : run.picks && hand.canFeel ? "Press on anything that moves to pick it up, drag it against the others, let go to throw it. Drag beside it to look around."
     : run.held < 0 ? "Drag to look around, wheel to zoom. Pieces and Edges colour what the part is made of."
     : !hand.canFeel ? "This device is not led by the mouse: look, or choose a simulated device in the settings."
     : `Drag the orange part (${held}) to ${hinged || hand.turns ? "turn" : "move"} it and feel it push back; until you do, a scripted hand moves it. Drag beside it to look around.`;

@@ -155,8 +155,8 @@ export class Overlay {
   }
 
   /** Null when nothing is held: then there is no hand to show. */
-  setGhost(mesh: THREE.Mesh | null) {
-    this.handle.visible = mesh !== null;
+  setGhost(mesh: THREE.Mesh | null, handle: boolean) {
+    this.handle.visible = handle;
     if (this.ghost) this.root.parent?.remove(this.ghost);
     this.ghost = mesh;
     if (mesh) mesh.renderOrder = 3;

@@ -75,6 +75,7 @@ export class View {
   private readonly box = new THREE.Box3(); // of the scene as it starts
   private look: Look = dark;
   private run: Run | null = null;
+  private ghost: THREE.Mesh | null = null;
   private readonly X_HB = new THREE.Matrix4(); // held body from the handle
   private arrowForce = 0; // view units a newton
   private arrowTorque = 0; // radians a newton metre
@@ -144,15 +145,20 @@ export class View {
     this.X_HB.copy(matrixOf(run.X_BH)).invert();
     this.fit(run, shapes);
     this.overlay.clearTrail();
-    this.overlay.setGhost(null);
-    if (run.held >= 0) {
-      const ghost = this.bodies.copyOf(run.held, this.overlay.ghostMaterial);
-      this.bodies.root.add(ghost);
-      this.overlay.setGhost(ghost);
-    }
+    this.hold(run.held);
     this.picture = null;
     this.arrowForce = this.arrowTorque = this.recentForce = this.recentTorque = 0;
     if (!again) this.look_from("iso");
+  }
+
+  /** The hand has this body now; -1: none. */
+  private hold(body: number) {
+    if (!this.run || !this.bodies) return;
+    this.run.held = body;
+    this.ghost?.removeFromParent();
+    this.ghost = body >= 0 ? this.bodies.copyOf(body, this.overlay.ghostMaterial) : null;
+    if (this.ghost) this.bodies.root.add(this.ghost);
+    this.overlay.setGhost(this.ghost, body >= 0 || this.run.picks);
   }
 
   private fit(run: Run, shapes: Shape[]) {
@@ -262,6 +268,7 @@ export class View {
   show(picture: Picture, live: boolean) {
     this.picture = picture;
     if (!this.bodies || !this.run) return;
+    if (this.run.picks && picture.body !== this.run.held) this.hold(picture.body);
     this.bodies.place(picture.bodies, this.camera, this.canvas.clientHeight, this.toView);
     this.bodies.followMark();
     const hand = this.pointOf(picture.hand);
