@@ -133,16 +133,14 @@ const topics = {
     await page.mouse.move(x, y);
     await page.mouse.down();
     await until("the cube is held", async () => (await state(page)).held === "cube 1");
-    for (let i = 1; i <= 30; ++i) {
-      await page.mouse.move(x + i, y - 5 * i);
-      await pause(0.03);
-    }
+    for (let i = 1; i <= 10; ++i) await page.mouse.move(x + 3 * i, y - 15 * i);
     await until("it has been lifted", async () => y - (await places())["cube 1"][1] > 80);
     await keep(page, "picking");
-    for (let i = 1; i <= 6; ++i) await page.mouse.move(x + 30 + 25 * i, y - 150);
+    const lifted = (await places())["cube 1"][1];
+    for (let i = 1; i <= 4; ++i) await page.mouse.move(x + 30 + 30 * i, y - 150);
     await page.mouse.up();
     await until("the hand is empty again", async () => (await state(page)).held === "");
-    await until("what was thrown lies on the floor", async () => y - (await places())["cube 1"][1] < 40);
+    await until("what was thrown has fallen", async () => (await places())["cube 1"][1] - lifted > 50);
     check(page.complaints.length === 0, page.complaints.join("; "));
     await program.end();
   },
