@@ -2,6 +2,7 @@
 /// A contact point's three directions and how two bodies answer pushes along them; shared by impacts and by
 /// resting contact.
 
+#include <array>
 #include <cmath>
 
 #include "tactum/dynamics/contact_solver.h"
@@ -37,8 +38,8 @@ struct PushRow {
 
 /// A point with a normal and two tangents, and the impulse that acts on A there.
 struct FrictionRow {
-  PushRow along[3];  ///< normal, then the tangents
-  Vec3 direction[3];
+  std::array<PushRow, 3> along;  ///< normal, then the tangents
+  std::array<Vec3, 3> direction{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
   Vec3 impulse = Vec3::Zero();  ///< along these [N s]
   double friction = 0.0;
 
@@ -49,7 +50,7 @@ struct FrictionRow {
     direction[1] = any_orthogonal(row.n_BA_W);
     direction[2] = row.n_BA_W.cross(direction[1]);
     friction = row.friction;
-    for (int i = 0; i < (friction > 0.0 ? 3 : 1); ++i)
+    for (std::size_t i = 0; i < (friction > 0.0 ? 3u : 1u); ++i)
       along[i].set(direction[i], row.p_W - X_WB[a].p, row.p_W - X_WB[b].p, W[a], W[b]);
     impulse.setZero();
   }
@@ -67,7 +68,7 @@ struct FrictionRow {
     impulse[0] = normal;
     if (!(friction > 0.0)) return change;
     Vec3 after = impulse;
-    for (int i = 1; i < 3; ++i)
+    for (std::size_t i = 1; i < 3; ++i)
       if (along[i].mobility > 0.0) after[i] -= along[i].velocity(a, b) / along[i].mobility;
     const double across = std::sqrt(after[1] * after[1] + after[2] * after[2]);
     const double most = friction * normal;
@@ -75,7 +76,7 @@ struct FrictionRow {
       after[1] *= most / across;
       after[2] *= most / across;
     }
-    for (int i = 1; i < 3; ++i) {
+    for (std::size_t i = 1; i < 3; ++i) {
       change = std::max(change, std::abs(after[i] - impulse[i]) * along[i].mobility);
       along[i].push(after[i] - impulse[i], a, b);
       impulse[i] = after[i];

@@ -23,8 +23,8 @@ double approach(const ContactRow& row, std::span<const Pose> X_WB, std::span<con
 
 struct Corner {
   FrictionRow row;
-  Vec3 p_W;
-  double wanted;  // normal velocity after the impact [m/s]
+  Vec3 p_W = Vec3::Zero();
+  double wanted = 0.0;  // normal velocity after the impact [m/s]
 };
 
 /// All corners of the pair of `first` that close within h.

@@ -36,7 +36,7 @@ void RestingContact::add(const ContactRow& row, int index, int island, std::uint
     if (last_[i].name != name) continue;
     Vec3& impulse = next.contact.impulse;
     for (int d = 0; d < (next.contact.friction > 0.0 ? 3 : 1); ++d)
-      impulse[d] = next.contact.direction[d].dot(last_[i].impulse_W);
+      impulse[d] = next.contact.direction[Index(d)].dot(last_[i].impulse_W);
     impulse[0] = std::max(0.0, impulse[0]);
     next_ = i + 1;
     break;
@@ -75,7 +75,7 @@ void RestingContact::tighten(int index, double by_m, double h) noexcept {
 
 void RestingContact::push(const Row& row, const Vec3& impulse, std::span<Twist> V) noexcept {
   for (int d = 0; d < (row.contact.friction > 0.0 ? 3 : 1); ++d)
-    row.contact.along[d].push(impulse[d], V[Index(row.body_a)], V[Index(row.body_b)]);
+    row.contact.along[Index(d)].push(impulse[d], V[Index(row.body_a)], V[Index(row.body_b)]);
 }
 
 /// Groups the rows by island and gives the bodies the impulses they begin with.

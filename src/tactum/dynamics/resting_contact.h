@@ -65,9 +65,9 @@ class RestingContact {
   static constexpr std::size_t kMostJointRows = 4;  // of a body
 
   struct Row {
-    int body_a, body_b, index, island;
-    std::uint64_t name;
-    double wanted;  // least normal velocity [m/s]
+    int body_a = -1, body_b = -1, index = -1, island = -1;
+    std::uint64_t name = 0;
+    double wanted = 0.0;  // least normal velocity [m/s]
     FrictionRow contact;
     Vec3 before = Vec3::Zero(), course = Vec3::Zero();  // impulses of the last sweep; the way they go
   };
