@@ -13,10 +13,6 @@ namespace {
 
 using Index = std::size_t;
 
-// How a step is brought to a pose where everything is open: exact gaps are fed back so often, then the step
-// is halved so often.
-constexpr int kFeedbacks = 2;
-constexpr int kHalvings = 3;
 /// How often patches that slid are let slip further: what is left of the error is mu^2 a round.
 constexpr int kSlipRounds = 6;
 /// The trusted length after a step, in lengths of that step.
@@ -238,16 +234,24 @@ void move_held_island(const World& world, const FrameSettings& settings, double 
     state.free.patch_asked.push_back(state.free.of_held(patch) ? 1 : 0);
   restore(world, settings, dt_s, state, report);
   const double share = advance(world, settings, dt_s, state, report);
-  double way = 0.0;
-  for (const Mover& mover : c.moves().movers()) way = std::max(way, share * way_of(state, mover));
   if (share > 0.0) take_trial(state);
   c.friction.end(share, own_rows(state), c.first_row, c.problem, state.world.X_WB);
-  const Constraint& limits = settings.constraint;
-  const double most = state.finder.work().minima > 0 ? limits.max_step_on_surfaces_m : limits.max_step_m;
-  c.trust_m = std::clamp(kTrustGrowth * way, std::min(limits.least_step_m, most), most);
   for (Index i = 0; i < world.bodies.size(); ++i)
     if (state.free.near_held[i])
       state.world.V_WB[i] = twist_between(state.X_WB_start[i], state.world.X_WB[i], dt_s);
+}
+
+/// The length that is trusted in the next frame, from what the held part's island did in this one.
+void trust_step(const FrameSettings& settings, FrameState& state) {
+  double way = 0.0;
+  for (Index i = 0; i < state.free.near_held.size(); ++i) {
+    if (!state.free.near_held[i]) continue;
+    const Twist step = twist_between(state.X_WB_start[i], state.world.X_WB[i], 1.0);
+    way = std::max(way, step.v.norm() + step.w.norm() * state.finder.radius(static_cast<int>(i)));
+  }
+  const Constraint& limits = settings.constraint;
+  const double most = state.finder.work().minima > 0 ? limits.max_step_on_surfaces_m : limits.max_step_m;
+  state.constraint.trust_m = std::clamp(kTrustGrowth * way, std::min(limits.least_step_m, most), most);
 }
 
 /// The points at which something pushes the body: corners, and the centre of a patch whose load friction's
@@ -277,7 +281,7 @@ void report_rows(const World& world, double dt_s, FrameState& state, FrameReport
   use_of_friction(world, c.friction, state.finder.patches(), c.first_row, c.problem, own_rows(state),
                   state.constraint.friction_uses);
   report.friction = sum_of(c.friction_uses);
-  report.held_contact_points = pushing_points(state.contacts.rows, held, c);
+  report.held_contact_points = pushing_points({state.contacts.rows.data(), c.names.size()}, held, c);
   Vec3 torque = Vec3::Zero();
   Vec3 origin = held < 0 ? Vec3(Vec3::Zero()) : state.X_WB_start[Index(held)].p;
   if (state.free.held_island >= 0) {
@@ -344,6 +348,7 @@ void respond_constrained(const World& world, const FrameSettings& settings, doub
   } else {
     c.friction.forget();
   }
+  trust_step(settings, state);
   end_turning(world, state);
   report_rows(world, dt_s, state, report);
 }

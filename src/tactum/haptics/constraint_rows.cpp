@@ -1,6 +1,7 @@
 #include "tactum/haptics/constraint_rows.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "tactum/collision/patch_corners.h"
@@ -147,17 +148,19 @@ double gap_at_trial(const ContactRow& row, const FrameState& state) noexcept {
   return normal.dot(carried(row.body_a, row.p_W + half) - carried(row.body_b, row.p_W - half));
 }
 
+double overstated_at_trial(std::span<const ContactRow> rows_of_patch, const FrameState& state) noexcept {
+  double least = std::numeric_limits<double>::infinity();
+  for (const ContactRow& row : rows_of_patch) least = std::min(least, gap_at_trial(row, state));
+  return std::max(0.0, least - state.constraint.gap_trial[Index(rows_of_patch.front().patch)]);
+}
+
 void feed_back(double share, FrameState& state) noexcept {
   ConstraintState& c = state.constraint;
   ConstraintProblem& problem = c.moves();
   const std::span<const ContactRow> rows = own_rows(state);
   for (Index first = 0, end = 0; first < rows.size(); first = end) {
-    // What the rows of a patch tell of its gap may be too much: the normal of two edges turns with both. Then
-    // the exact distance holds for all of them.
-    double least = gap_at_trial(rows[first], state);
-    for (end = first + 1; end < rows.size() && rows[end].patch == rows[first].patch; ++end)
-      least = std::min(least, gap_at_trial(rows[end], state));
-    const double too_much = std::max(0.0, least - c.gap_trial[Index(rows[first].patch)]);
+    for (end = first + 1; end < rows.size() && rows[end].patch == rows[first].patch;) ++end;
+    const double too_much = overstated_at_trial(rows.subspan(first, end - first), state);
     for (Index r = first; r < end; ++r) {
       const double linear = problem.opening(rows[r].body_a, rows[r].body_b, push_of(rows[r]));
       const double gap = gap_at_trial(rows[r], state) - too_much;

@@ -31,9 +31,18 @@ void add_contact_rows(bool opening, ConstraintProblem& problem, FrameState& stat
 /// The rows take their shaded normals, or their true ones back.
 void exchange_normals(FrameState& state) noexcept;
 
+// How a step is brought to a pose where everything is open: exact gaps are fed back so often, then the step
+// is halved so often.
+inline constexpr int kFeedbacks = 2;
+inline constexpr int kHalvings = 3;
+
 /// The gap of a row at the trial: its points go with their bodies, its normal with the face that makes it
 /// [m].
 double gap_at_trial(const ContactRow& row, const FrameState& state) noexcept;
+
+/// By how much the rows of one patch tell its gap at the trial too large: the normal of two edges turns with
+/// both, and then the exact distance holds for all of them [m].
+double overstated_at_trial(std::span<const ContactRow> rows_of_patch, const FrameState& state) noexcept;
 
 /// Second-order correction: what the trial's gaps differ from what the rows said is added to the rows.
 void feed_back(double share, FrameState& state) noexcept;

@@ -15,8 +15,6 @@ namespace {
 
 using Index = std::size_t;
 
-constexpr int kFeedbacks = 2;
-constexpr int kHalvings = 3;
 /// Blows in a frame, for every contact point; what is left then is taken as rest, without restitution.
 constexpr int kBlowsAPoint = 8;
 /// A gap below the skin opens by this share of what is missing in a frame.
@@ -151,18 +149,24 @@ bool look(FrameState& state, FrameReport& report) {
 /// Second-order correction, as in constraint_rows.h.
 void correct(double dt_s, FrameState& state) {
   FreeBodies& f = state.free;
-  ConstraintState& c = state.constraint;
-  for (Index r = c.own_rows; r < state.contacts.rows.size(); ++r) {
-    const ContactRow& row = state.contacts.rows[r];
-    const Index island = Index(f.islands.of_contact(row.body_a, row.body_b));
+  const std::vector<Twist>& V_WB = state.world.V_WB;
+  const std::vector<Pose>& X_WB = state.world.X_WB;
+  const std::span<const ContactRow> rows = state.contacts.rows;
+  for (Index first = state.constraint.own_rows, end = first; first < rows.size(); first = end) {
+    for (end = first + 1; end < rows.size() && rows[end].patch == rows[first].patch;) ++end;
+    const Index a = Index(rows[first].body_a);
+    const Index b = Index(rows[first].body_b);
+    const Index island = Index(f.islands.of_contact(rows[first].body_a, rows[first].body_b));
     if (f.settled[island]) continue;
-    const Index a = Index(row.body_a);
-    const Index b = Index(row.body_b);
-    const double speed = row.n_BA_W.dot(velocity_at(state.world.V_WB[a], row.p_W - state.world.X_WB[a].p) -
-                                        velocity_at(state.world.V_WB[b], row.p_W - state.world.X_WB[b].p));
+    const double too_much = overstated_at_trial(rows.subspan(first, end - first), state);
     const double share = f.share[island];
-    const double missing = (row.distance + share * speed * dt_s - gap_at_trial(row, state)) / share;
-    if (missing > 0.0) f.resting.tighten(static_cast<int>(r), missing, dt_s);
+    for (Index r = first; r < end; ++r) {
+      const double speed = rows[r].n_BA_W.dot(velocity_at(V_WB[a], rows[r].p_W - X_WB[a].p) -
+                                              velocity_at(V_WB[b], rows[r].p_W - X_WB[b].p));
+      const double gap = gap_at_trial(rows[r], state) - too_much;
+      const double missing = (rows[r].distance + share * speed * dt_s - gap) / share;
+      if (missing > 0.0) f.resting.tighten(static_cast<int>(r), missing, dt_s);
+    }
   }
 }
 
