@@ -11,7 +11,7 @@
 #include "support/sample_meshes.h"
 #include "support/surface_shapes.h"
 #include "tactum/collision/surface_minima.h"
-#include "tactum/collision/surface_minima_lanes.h"
+#include "tactum/collision/surface_minima_leaves.h"
 
 namespace tactum {
 namespace {
@@ -29,9 +29,10 @@ class Draw {
   Three three(double largest) {
     return {number(-largest, largest), number(-largest, largest), number(-largest, largest)};
   }
-  void fill(Lanes3& v, double largest) {
-    for (lanes::Lanes& axis : v) {
-      for (float& x : axis) x = number(-largest, largest);
+  template <class Number>
+  void fill(std::array<std::array<Number, lanes::kLanes>, 3>& v, double largest) {
+    for (auto& axis : v) {
+      for (Number& x : axis) x = static_cast<Number>(random_.uniform(-largest, largest));
     }
   }
   /// Axes of a box, the third along `up`.
@@ -64,21 +65,22 @@ class Draw {
     for (std::int32_t& c : corner) c = number(0.0, 1.0) < 0.9F ? 1 : -1;
     return corner;
   }
-  SurfaceTree::VertexLeaf vertices() {
-    SurfaceTree::VertexLeaf leaf{};
+  lanes::VertexLeaf vertices() {
+    lanes::VertexLeaf leaf{};
     fill(leaf.point, 2e-3);
     leaf.corner = corners();
     return leaf;
   }
-  SurfaceTree::EdgeLeaf edges() {
-    SurfaceTree::EdgeLeaf leaf{};
+  lanes::EdgeLeaf edges() {
+    lanes::EdgeLeaf leaf{};
     fill(leaf.point, 2e-3);
     fill(leaf.along, 3e-3);
+    for (Lanes3& falling : leaf.falling) fill(falling, 1.0);
     leaf.corner = corners();
     return leaf;
   }
-  SurfaceTree::FaceLeaf faces() {
-    SurfaceTree::FaceLeaf leaf{};
+  lanes::FaceLeaf faces() {
+    lanes::FaceLeaf leaf{};
     fill(leaf.normal, 1.0);
     for (float& level : leaf.level) level = number(-1e-3, 1e-3);
     for (std::size_t k = 0; k < 3; ++k) {
@@ -137,20 +139,25 @@ TEST(SurfaceMinimaKernels, TellTheSameOfFeaturesInFourLanesAndInEight) {
     const lanes::Box box = {&node, &node.at, 2};
     const lanes::Box other = {&node, &node.at, 5};
     const Three off = draw.three(1e-3);
-    const SurfaceTree::VertexLeaf vertices = draw.vertices();
+    const lanes::VertexLeaf vertices = draw.vertices();
+    const std::uint32_t some = narrow.vertices_near(vertices, off, box, kBounds);
+    EXPECT_EQ(some, wide->vertices_near(vertices, off, box, kBounds));
     const auto same = [&](auto test, const auto& of, int& count) {
-      const lanes::Matches four = (narrow.*test)(vertices, off, box, of, kBounds);
-      EXPECT_EQ(four, (wide->*test)(vertices, off, box, of, kBounds));
+      const lanes::Matches four = (narrow.*test)(vertices, some, off, of, kBounds);
+      EXPECT_EQ(four, (wide->*test)(vertices, some, off, of, kBounds));
       expect_of_features(four, vertices.corner, of.corner);
       count += std::popcount(four);
     };
     same(&Kernels::vertex_vertex, draw.vertices(), set[0]);
     same(&Kernels::vertex_edge, draw.edges(), set[1]);
     same(&Kernels::vertex_face, draw.faces(), set[2]);
-    const SurfaceTree::EdgeLeaf edges = draw.edges();
-    const SurfaceTree::EdgeLeaf many = draw.edges();
-    const lanes::Matches four = narrow.edge_edge(edges, box, off, many, other, kBounds);
-    EXPECT_EQ(four, wide->edge_edge(edges, box, off, many, other, kBounds));
+    const lanes::EdgeLeaf edges = draw.edges();
+    const lanes::EdgeLeaf many = draw.edges();
+    const std::uint32_t some_edges = narrow.edges_near(edges, off, box, kBounds);
+    EXPECT_EQ(some_edges, wide->edges_near(edges, off, box, kBounds));
+    const std::uint32_t others = narrow.edges_near(many, draw.three(1e-3), other, kBounds);
+    const lanes::Matches four = narrow.edge_edge(edges, some_edges, off, many, others, kBounds);
+    EXPECT_EQ(four, wide->edge_edge(edges, some_edges, off, many, others, kBounds));
     expect_of_features(four, edges.corner, many.corner);
     set[3] += std::popcount(four);
   }
@@ -160,7 +167,7 @@ TEST(SurfaceMinimaKernels, TellTheSameOfFeaturesInFourLanesAndInEight) {
   }
 }
 
-TEST(SurfaceMinimaKernels, TurnTheSameInFourLanesAndInEight) {
+TEST(SurfaceMinimaKernels, TurnAndLayOutTheSameInFourLanesAndInEight) {
   const Kernels* wide = lanes::wide_kernels();
   if (!wide) GTEST_SKIP() << "this processor has no AVX2: nothing to compare";
   const Kernels& narrow = lanes::narrow_kernels();
@@ -169,18 +176,86 @@ TEST(SurfaceMinimaKernels, TurnTheSameInFourLanesAndInEight) {
   for (int i = 0; i < 1000; ++i) {
     const lanes::Frame frame({cases::random_rotation(random), cases::random_vector(random, 0.1)});
     const SurfaceTree::Node node = draw.node();
-    const auto same = [&](auto turn, const auto& from) {
+    const auto same = [&](const auto& turn, const auto& from) {
       auto four = from;
       auto eight = from;
-      (narrow.*turn)(from, frame, four);
-      (wide->*turn)(from, frame, eight);
+      turn(narrow, four);
+      turn(*wide, eight);
       EXPECT_EQ(std::memcmp(&four, &eight, sizeof four), 0);
       EXPECT_NE(std::memcmp(&four, &from, sizeof four), 0);
     };
-    same(&Kernels::turn_stand, node.at);
-    same(&Kernels::turn_vertices, draw.vertices());
-    same(&Kernels::turn_edges, draw.edges());
+    same([&](const Kernels& kernels, auto& to) { kernels.turn_stand(node.at, frame, to); }, node.at);
+    same([&](const Kernels& kernels, auto& to) { kernels.turn_vertices(frame, to); }, draw.vertices());
+    same([&](const Kernels& kernels, auto& to) { kernels.turn_edges(frame, to); }, draw.edges());
+    std::array<lanes::Points, 4> points{};
+    for (lanes::Points& point : points) draw.fill(point, 3e-3);
+    same([&](const Kernels& kernels, auto& to) { kernels.lay_edges(points, to); }, draw.edges());
+    same(
+        [&](const Kernels& kernels, auto& to) {
+          kernels.lay_faces({points[0], points[1], points[2]}, 1e-7F, to);
+        },
+        draw.faces());
   }
+}
+
+/// What leaves show in lanes is what the mesh says of their features.
+TEST(SurfaceMinimaKernels, LayLeavesOutAsTheMeshSays) {
+  Random random(2);
+  const SurfaceTree tree(testing::bumpy_sheet(random, 9, 0.03, 1e-3));
+  const double near = 1e-6 * tree.size();
+  const auto at_lane = [](const Lanes3& v, std::size_t lane) {
+    return Vec3(v[0][lane], v[1][lane], v[2][lane]);
+  };
+  int features = 0;
+  for (const SurfaceTree::Node& node : tree.nodes()) {
+    const auto index = static_cast<std::int32_t>(&node - tree.nodes().data());
+    for (std::size_t box_lane = 0; box_lane < lanes::kLanes; ++box_lane) {
+      if (node.child[box_lane] >= 0) continue;
+      const lanes::Box box = {&node, &node.at, box_lane};
+      const Vec3 middle = tree.center() + at_lane(node.at.center, box_lane);
+      const auto corner = [&](std::int32_t c, std::size_t after) {
+        return Vec3(tree.vertex(tree.triangle(c / 3)[(std::size_t(c) + after) % 3]) - middle);
+      };
+      lanes::VertexLeaf vertices;
+      lanes::EdgeLeaf edges;
+      lanes::FaceLeaf faces;
+      lanes::lay_out(tree, box, vertices);
+      lanes::lay_out(tree, box, lanes::kernels(), edges);
+      lanes::lay_out(tree, box, lanes::kernels(), 0.0F, faces);
+      for (std::size_t lane = 0; lane < lanes::kLanes; ++lane) {
+        const std::int32_t c = tree.leaves()[lanes::leaf_under(box)][lane];
+        ASSERT_EQ(vertices.corner[lane], c);
+        ASSERT_EQ(edges.corner[lane], c);
+        ASSERT_EQ(faces.corner[lane], c);
+        if (c < 0) continue;
+        ++features;
+        EXPECT_LT((at_lane(vertices.point, lane) - corner(c, 0)).norm(), near);
+        const Vec3 along = corner(c, 1) - corner(c, 0);
+        EXPECT_LT((at_lane(edges.point, lane) - corner(c, 0)).norm(), near);
+        EXPECT_LT((at_lane(edges.along, lane) - along).norm(), near);
+        for (std::size_t k = 0; k < 2; ++k) {
+          const std::int32_t beyond = tree.beyond(c);
+          const Vec3 to_other = k == 0 || beyond == SurfaceTree::kWall
+                                    ? Vec3(corner(c, 2) - corner(c, 0))
+                                    : Vec3(tree.vertex(beyond) - middle - corner(c, 0));
+          const Vec3 falling = at_lane(edges.falling[k], lane);
+          EXPECT_NEAR(falling.norm(), 1.0, 1e-6);
+          EXPECT_NEAR(falling.dot(along.normalized()), 0.0, 1e-6);
+          EXPECT_NEAR(falling.dot(to_other), to_other.cross(along.normalized()).norm(), near);
+        }
+        if (index < tree.root(SurfaceTree::kFaces)) continue;
+        const Vec3 inside = (corner(c, 0) + corner(c, 1) + corner(c, 2)) / 3.0;
+        for (std::size_t k = 0; k < 3; ++k) {
+          EXPECT_NEAR(at_lane(faces.normal, lane).dot(corner(c, k)), faces.level[lane], near);
+          const Vec3 inward = at_lane(faces.inward[k], lane);
+          EXPECT_NEAR(inward.dot(corner(c, k)), faces.limit[k][lane], near);
+          EXPECT_NEAR(inward.dot(corner(c, k + 1)), faces.limit[k][lane], near);
+          EXPECT_GT(inward.dot(inside), faces.limit[k][lane]);
+        }
+      }
+    }
+  }
+  EXPECT_GT(features, 2 * tree.triangle_count());
 }
 
 TEST(SurfaceMinimaKernels, FindTheSameMinimaInFourLanesAndInEight) {

@@ -141,7 +141,7 @@ TEST(PartFile, AnotherVersionAsksToPrepareAgain) {
   ASSERT_FALSE(part);
   EXPECT_EQ(
       part.error().message(),
-      "old.tactum: the part cannot be read: found version 99 of the format, expected version 3: prepare it "
+      "old.tactum: the part cannot be read: found version 99 of the format, expected version 4: prepare it "
       "again");
 }
 

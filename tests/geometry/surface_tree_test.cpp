@@ -15,19 +15,13 @@
 namespace tactum {
 namespace {
 
-const SurfaceTree::Corners& leaf_of(const SurfaceTree& tree, SurfaceTree::Kind kind, std::int32_t child) {
-  const auto leaf = std::size_t(~child);
-  if (kind == SurfaceTree::kVertices) return tree.vertex_leaves()[leaf].corner;
-  return kind == SurfaceTree::kEdges ? tree.edge_leaves()[leaf].corner : tree.face_leaves()[leaf].corner;
-}
-
 std::array<std::set<std::int32_t>, 3> features_of(const SurfaceTree& tree) {
   std::array<std::set<std::int32_t>, 3> found;
   const auto walk = [&](const auto& self, std::int32_t at, SurfaceTree::Kind kind) -> void {
     for (std::int32_t child : tree.nodes()[std::size_t(at)].child) {
       if (child > 0) self(self, child, kind);
       if (child >= 0) continue;
-      for (std::int32_t corner : leaf_of(tree, kind, child)) {
+      for (std::int32_t corner : tree.leaves()[std::size_t(~child)]) {
         if (corner < 0) continue;
         EXPECT_TRUE(found[kind].insert(corner).second);
       }
@@ -72,7 +66,7 @@ TEST(SurfaceTree, BoxesHoldWhatIsBelowThem) {
       std::vector<Vec3> below;
       if (node.child[lane] > 0) below = self(self, node.child[lane], kind);
       if (node.child[lane] < 0) {
-        for (std::int32_t corner : leaf_of(tree, kind, node.child[lane])) {
+        for (std::int32_t corner : tree.leaves()[std::size_t(~node.child[lane])]) {
           if (corner < 0) continue;
           for (std::size_t k = 0; k < points; ++k)
             below.push_back(tree.vertex(tree.triangle(corner / 3)[(std::size_t(corner) + k) % 3]));
@@ -99,60 +93,6 @@ TEST(SurfaceTree, BoxesHoldWhatIsBelowThem) {
   check(check, tree.root(SurfaceTree::kVertices), SurfaceTree::kVertices);
 }
 
-/// What leaves hold in lanes is what the mesh says of their features.
-TEST(SurfaceTree, LeavesHoldTheirFeaturesInLanes) {
-  Random random(2);
-  const SurfaceTree tree(testing::bumpy_sheet(random, 9, 0.03, 1e-3));
-  const double near = 1e-6 * tree.size();
-  const auto at_lane = [](const SurfaceTree::Lanes3& v, std::size_t lane) {
-    return Vec3(v[0][lane], v[1][lane], v[2][lane]);
-  };
-  int features = 0;
-  for (const SurfaceTree::Node& node : tree.nodes()) {
-    for (std::size_t box = 0; box < std::size_t(SurfaceTree::kLanes); ++box) {
-      if (node.child[box] >= 0) continue;
-      const auto leaf = std::size_t(~node.child[box]);
-      const Vec3 middle = tree.center() + at_lane(node.at.center, box);
-      const auto corner = [&](std::int32_t c, std::size_t after) {
-        return Vec3(tree.vertex(tree.triangle(c / 3)[(std::size_t(c) + after) % 3]) - middle);
-      };
-      const auto index = static_cast<std::int32_t>(&node - tree.nodes().data());
-      for (std::size_t lane = 0; lane < std::size_t(SurfaceTree::kLanes); ++lane) {
-        if (index >= tree.root(SurfaceTree::kFaces)) {
-          const SurfaceTree::FaceLeaf& faces = tree.face_leaves()[leaf];
-          if (faces.corner[lane] < 0) continue;
-          ++features;
-          const Vec3 normal = at_lane(faces.normal, lane);
-          const Vec3 inside = (corner(faces.corner[lane], 0) + corner(faces.corner[lane], 1) +
-                               corner(faces.corner[lane], 2)) /
-                              3.0;
-          for (std::size_t k = 0; k < 3; ++k) {
-            const Vec3 p = corner(faces.corner[lane], k);
-            EXPECT_NEAR(normal.dot(p), faces.level[lane], near);
-            const Vec3 inward = at_lane(faces.inward[k], lane);
-            EXPECT_NEAR(inward.dot(p), faces.limit[k][lane], near);
-            EXPECT_NEAR(inward.dot(corner(faces.corner[lane], k + 1)), faces.limit[k][lane], near);
-            EXPECT_GT(inward.dot(inside), faces.limit[k][lane]);
-          }
-        } else if (index >= tree.root(SurfaceTree::kEdges)) {
-          const SurfaceTree::EdgeLeaf& edges = tree.edge_leaves()[leaf];
-          if (edges.corner[lane] < 0) continue;
-          ++features;
-          const Vec3 from = corner(edges.corner[lane], 0);
-          EXPECT_LT((at_lane(edges.point, lane) - from).norm(), near);
-          EXPECT_LT((at_lane(edges.along, lane) - corner(edges.corner[lane], 1) + from).norm(), near);
-        } else {
-          const SurfaceTree::VertexLeaf& vertices = tree.vertex_leaves()[leaf];
-          if (vertices.corner[lane] < 0) continue;
-          ++features;
-          EXPECT_LT((at_lane(vertices.point, lane) - corner(vertices.corner[lane], 0)).norm(), near);
-        }
-      }
-    }
-  }
-  EXPECT_GT(features, 2 * tree.triangle_count());
-}
-
 TEST(SurfaceTree, PolarConesAreSquareToTheirEdges) {
   // Of a cube's corner: the octant opposite.
   const std::vector<Vec3> rays = polar_cone({Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()});
@@ -172,14 +112,14 @@ TEST(SurfaceTree, PolarConesAreSquareToTheirEdges) {
   EXPECT_TRUE(polar_cone({Vec3::UnitX(), -Vec3::UnitX(), Vec3::UnitY()}).empty());
 }
 
-TEST(SurfaceTree, TakesAtMost210BytesATriangle) {
+TEST(SurfaceTree, TakesAtMost120BytesATriangle) {
   for (const TriangleMesh& mesh : {testing::icosphere(5), testing::torus(100, 60, 0.02, 0.006)}) {
     const SurfaceTree tree(mesh);
-    EXPECT_LE(double(tree.memory()), 210.0 * tree.triangle_count());
+    EXPECT_LE(double(tree.memory()), 120.0 * tree.triangle_count());
   }
 }
 
-TEST(SurfaceTree, OfRealPartsTakesAtMost210BytesATriangle) {
+TEST(SurfaceTree, OfRealPartsTakesAtMost120BytesATriangle) {
   TACTUM_NEEDS_REAL_DATA();
   for (const char* name : {"industreal_gear_small.obj", "factory_bolt_m16_loose.obj", "spot.obj"}) {
     const Result<ImportedMesh> mesh = import_mesh(testing::find_real(name).string());
@@ -188,7 +128,7 @@ TEST(SurfaceTree, OfRealPartsTakesAtMost210BytesATriangle) {
     options.drop_zero_area = options.drop_duplicates = true;
     const SurfaceTree tree(weld(mesh->mesh, options).mesh);
     EXPECT_TRUE(tree.sound());
-    EXPECT_LE(double(tree.memory()), 210.0 * tree.triangle_count()) << name;
+    EXPECT_LE(double(tree.memory()), 120.0 * tree.triangle_count()) << name;
   }
 }
 

@@ -17,7 +17,7 @@
 
 namespace tactum::lanes {
 
-/// Vectors of so many numbers, as g++ and clang++ share them.
+/// Vectors of so many numbers, as g++ and clang++ share them; of doubles half as many.
 template <std::size_t Width>
 struct Wide;
 
@@ -25,7 +25,16 @@ template <>
 struct Wide<4> {
   using Float = float __attribute__((vector_size(16)));
   using Int = std::int32_t __attribute__((vector_size(16)));
+  using Double = double __attribute__((vector_size(16)));
+  using HalfFloat = float __attribute__((vector_size(8)));
   static Float all(float x) noexcept { return Float{x, x, x, x}; }
+  static Double root(Double x) noexcept {
+#ifdef __SSE2__
+    return std::bit_cast<Double>(_mm_sqrt_pd(std::bit_cast<__m128d>(x)));
+#else
+    return Double{__builtin_sqrt(x[0]), __builtin_sqrt(x[1])};
+#endif
+  }
   /// A bit a lane of a mask.
   static std::uint32_t bits(Int mask) noexcept {
 #ifdef __SSE2__
@@ -41,7 +50,12 @@ template <>
 struct Wide<8> {
   using Float = float __attribute__((vector_size(32)));
   using Int = std::int32_t __attribute__((vector_size(32)));
+  using Double = double __attribute__((vector_size(32)));
+  using HalfFloat = float __attribute__((vector_size(16)));
   static Float all(float x) noexcept { return Float{x, x, x, x, x, x, x, x}; }
+  static Double root(Double x) noexcept {
+    return std::bit_cast<Double>(_mm256_sqrt_pd(std::bit_cast<__m256d>(x)));
+  }
   static std::uint32_t bits(Int mask) noexcept {
     return static_cast<std::uint32_t>(_mm256_movemask_ps(std::bit_cast<__m256>(mask)));
   }
@@ -53,24 +67,26 @@ class KernelsOf {
  public:
   static constexpr Kernels table() noexcept {
     return {facing,
+            near,
+            near,
             of_vertices<VertexLeaf>,
             of_vertices<EdgeLeaf>,
             of_vertices<FaceLeaf>,
             edge_edge,
             turn_stand,
             turn_vertices,
-            turn_edges};
+            turn_edges,
+            lay_edges,
+            lay_faces};
   }
 
  private:
   using Node = SurfaceTree::Node;
   using Stand = SurfaceTree::Stand;
-  using VertexLeaf = SurfaceTree::VertexLeaf;
-  using EdgeLeaf = SurfaceTree::EdgeLeaf;
-  using FaceLeaf = SurfaceTree::FaceLeaf;
   using W = Wide<Width>;
   using Float = typename W::Float;
   using Int = typename W::Int;
+  using Double = typename W::Double;
 
   static constexpr float kRightAngle = 1.57F;  // a little less
 
@@ -244,11 +260,11 @@ class KernelsOf {
   // ---- features near each other ----
 
   template <class Leaf>
-  static Matches of_vertices(const VertexLeaf& ones, const Three& off, const Box& box, const Leaf& others,
+  static Matches of_vertices(const VertexLeaf& ones, std::uint32_t some, const Three& off, const Leaf& others,
                              const Bounds& q) noexcept {
     Matches matches = 0;
-    for (std::uint32_t left = near(ones, off, box, q); left != 0; left &= left - 1) {
-      const auto i = std::size_t(std::countr_zero(left));
+    for (; some != 0; some &= some - 1) {
+      const auto i = std::size_t(std::countr_zero(some));
       const Vector p = {all(ones.point[0][i] + off[0]), all(ones.point[1][i] + off[1]),
                         all(ones.point[2][i] + off[2])};
       const std::uint32_t found = every_lane([&](std::size_t first) {
@@ -259,26 +275,20 @@ class KernelsOf {
     return matches;
   }
 
-  /// Of either leaf only the edges near the other's box, and from the side that has fewer.
-  static Matches edge_edge(const EdgeLeaf& ones, const Box& box_of_ones, const Three& off,
-                           const EdgeLeaf& others, const Box& box_of_others, const Bounds& q) noexcept {
-    const std::uint32_t near_ones = near(ones, off, box_of_others, q);
-    if (near_ones == 0) return 0;
-    const Three back = {-off[0], -off[1], -off[2]};
-    const std::uint32_t near_others = near(others, back, box_of_ones, q);
-    if (near_others == 0) return 0;
+  static Matches edge_edge(const EdgeLeaf& ones, std::uint32_t some, const Three& off, const EdgeLeaf& others,
+                           std::uint32_t some_others, const Bounds& q) noexcept {
     Matches matches = 0;
-    if (std::popcount(near_ones) <= std::popcount(near_others)) {
-      for (std::uint32_t left = near_ones; left != 0; left &= left - 1) {
+    if (std::popcount(some) <= std::popcount(some_others)) {
+      for (std::uint32_t left = some; left != 0; left &= left - 1) {
         const auto i = std::size_t(std::countr_zero(left));
-        matches |= Matches(near_one(ones, i, off, others, q) & near_others) << (kLanes * i);
+        matches |= Matches(near_one(ones, i, off, others, q) & some_others) << (kLanes * i);
       }
       return matches;
     }
-    for (std::uint32_t left = near_others; left != 0; left &= left - 1) {
+    const Three back = {-off[0], -off[1], -off[2]};
+    for (std::uint32_t left = some_others; left != 0; left &= left - 1) {
       const auto i = std::size_t(std::countr_zero(left));
-      for (std::uint32_t found = near_one(others, i, back, ones, q) & near_ones; found != 0;
-           found &= found - 1)
+      for (std::uint32_t found = near_one(others, i, back, ones, q) & some; found != 0; found &= found - 1)
         matches |= Matches(1) << (kLanes * std::size_t(std::countr_zero(found)) + i);
     }
     return matches;
@@ -286,10 +296,17 @@ class KernelsOf {
 
   static std::uint32_t near_one(const EdgeLeaf& ones, std::size_t i, const Three& off, const EdgeLeaf& many,
                                 const Bounds& q) noexcept {
-    const Vector p = {all(ones.point[0][i] + off[0]), all(ones.point[1][i] + off[1]),
-                      all(ones.point[2][i] + off[2])};
-    const Vector u = spread(ones.along, i);
-    return every_lane([&](std::size_t first) { return near_edge(p, u, many, first, q); });
+    const Edge one = {
+        {all(ones.point[0][i] + off[0]), all(ones.point[1][i] + off[1]), all(ones.point[2][i] + off[2])},
+        spread(ones.along, i),
+        {spread(ones.falling[0], i), spread(ones.falling[1], i)}};
+    return every_lane([&](std::size_t first) {
+      return near_edge(one,
+                       {load(many.point, first),
+                        load(many.along, first),
+                        {load(many.falling[0], first), load(many.falling[1], first)}},
+                       q);
+    });
   }
 
   static Int near_vertex(const Vector& p, const VertexLeaf& many, std::size_t first,
@@ -303,24 +320,43 @@ class KernelsOf {
     const Vector r = p - load(many.point, first);
     const Float at = dot(r, w);
     const Float pad = q.grown * at_most(w);
-    return (at >= -pad) & (at <= dot(w, w) + pad) & near_line(cross(r, w), w, all(q.reach));
+    const Vector off = cross(r, w);
+    const Int fine = (at >= -pad) & (at <= dot(w, w) + pad) & near_line(off, w, all(q.reach));
+    if (bits(fine) == 0) return fine;
+    // Both faces fall away from the way to the point.
+    const Float length_sq = dot(w, w);
+    const Float room = lean(q) * lean(q) * dot(off, off);
+    const auto falls = [&](const Lanes3& falling) {
+      const Float up = dot(load(falling, first), r) - q.grown;
+      return (up <= 0.0F) | (up * up * length_sq <= room);
+    };
+    return fine & falls(many.falling[0]) & falls(many.falling[1]);
   }
+
+  /// How far a face may lean up towards a direction of its edge's cone [rad]: what single precision cannot
+  /// tell comes on top of the slack.
+  static float lean(const Bounds& q) noexcept { return q.slack + 1e-4F; }
 
   static Int near_vertex(const Vector& p, const FaceLeaf& many, std::size_t first, const Bounds& q) noexcept {
     const Float height = dot(p, load(many.normal, first)) - load(many.level, first);
     Int fine = (height <= q.reach) & (height >= -q.depth);
     for (std::size_t k = 0; k < 3; ++k)
-      fine &= dot(p, load(many.inward[k], first)) >= load(many.limit[k], first) - 2.0F * q.grown;
+      fine &= dot(p, load(many.inward[k], first)) >= load(many.limit[k], first);
     return fine;
   }
 
-  static std::uint32_t near_edge(const Vector& p, const Vector& u, const EdgeLeaf& many, std::size_t first,
-                                 const Bounds& q) noexcept {
+  struct Edge {
+    Vector point, along;
+    std::array<Vector, 2> falling;
+  };
+
+  static std::uint32_t near_edge(const Edge& one, const Edge& other, const Bounds& q) noexcept {
     // Below this sine single precision cannot tell where lines come nearest; their distance alone is asked.
     const float slack = 1.01F * q.slack;
     const float parallel = slack > 0.01F ? slack : 0.01F;
-    const Vector w = load(many.along, first);
-    const Vector r = load(many.point, first) - p;
+    const Vector& u = one.along;
+    const Vector& w = other.along;
+    const Vector r = other.point - one.point;
     const Vector c = cross(u, w);
     const Float sine_sq = dot(c, c);
     const Float height = dot(r, c);
@@ -334,8 +370,19 @@ class KernelsOf {
     const Float length = q.grown * at_most(c);
     const Float pad_u = length * at_most(w);
     const Float pad_w = length * at_most(u);
-    return bits(together | (level & (on_u >= -pad_u) & (on_u <= sine_sq + pad_u) & (on_w >= -pad_w) &
-                            (on_w <= sine_sq + pad_w)));
+    const Int cross_there =
+        level & (on_u >= -pad_u) & (on_u <= sine_sq + pad_u) & (on_w >= -pad_w) & (on_w <= sine_sq + pad_w);
+    if (bits(cross_there) == 0) return bits(together);
+    // All four faces fall away from c, towards the other edge, or all from -c.
+    const Float room = lean(q) * lean(q) * sine_sq;
+    const auto fall = [&](const Edge& edge, const Vector& n) {
+      const Float x = dot(edge.falling[0], n);
+      const Float y = dot(edge.falling[1], n);
+      return ((x <= 0.0F) | (x * x <= room)) & ((y <= 0.0F) | (y * y <= room));
+    };
+    const Vector back = {-c.x, -c.y, -c.z};
+    const Int faces = (fall(one, c) & fall(other, back)) | (fall(one, back) & fall(other, c));
+    return bits(together | (cross_there & faces));
   }
 
   /// Whether points are within `reach` of lines along w; `off`: the cross product of the way from a line's
@@ -360,16 +407,80 @@ class KernelsOf {
         store(dot(all(frame.R[k]), c) + all(frame.p[k]), turned.center[k], first);
     }
   }
-  static void turn_vertices(const VertexLeaf& leaf, const Frame& frame, VertexLeaf& turned) noexcept {
-    for (std::size_t first = 0; first < kLanes; first += Width) turn(leaf.point, frame, turned.point, first);
-    turned.corner = leaf.corner;
+  static void turn_vertices(const Frame& frame, VertexLeaf& leaf) noexcept {
+    for (std::size_t first = 0; first < kLanes; first += Width) turn(leaf.point, frame, leaf.point, first);
   }
-  static void turn_edges(const EdgeLeaf& leaf, const Frame& frame, EdgeLeaf& turned) noexcept {
+  static void turn_edges(const Frame& frame, EdgeLeaf& leaf) noexcept {
     for (std::size_t first = 0; first < kLanes; first += Width) {
-      turn(leaf.point, frame, turned.point, first);
-      turn(leaf.along, frame, turned.along, first);
+      turn(leaf.point, frame, leaf.point, first);
+      turn(leaf.along, frame, leaf.along, first);
+      for (Lanes3& falling : leaf.falling) turn(falling, frame, falling, first);
     }
-    turned.corner = leaf.corner;
+  }
+
+  // ---- leaves, in double precision: single would not tell where a sliver looks ----
+
+  struct DoubleVector {
+    Double x, y, z;
+    friend DoubleVector operator-(const DoubleVector& a, const DoubleVector& b) noexcept {
+      return {a.x - b.x, a.y - b.y, a.z - b.z};
+    }
+  };
+  static Double dot(const DoubleVector& a, const DoubleVector& b) noexcept {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+  }
+  static DoubleVector cross(const DoubleVector& a, const DoubleVector& b) noexcept {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+  }
+  static void store(Double v, Lanes& to, std::size_t first) noexcept {
+    const auto rounded = __builtin_convertvector(v, typename W::HalfFloat);
+    std::memcpy(&to[first], &rounded, sizeof rounded);
+  }
+  static void store(const DoubleVector& v, Lanes3& to, std::size_t first) noexcept {
+    store(v.x, to[0], first);
+    store(v.y, to[1], first);
+    store(v.z, to[2], first);
+  }
+
+  static DoubleVector load(const Points& from, std::size_t first) noexcept {
+    DoubleVector v;
+    std::memcpy(&v.x, &from[0][first], sizeof v.x);
+    std::memcpy(&v.y, &from[1][first], sizeof v.y);
+    std::memcpy(&v.z, &from[2][first], sizeof v.z);
+    return v;
+  }
+  static DoubleVector times(const Double& scale, const DoubleVector& v) noexcept {
+    return {scale * v.x, scale * v.y, scale * v.z};
+  }
+  static DoubleVector unit(const DoubleVector& v) noexcept { return times(1.0 / W::root(dot(v, v)), v); }
+
+  static void lay_edges(const std::array<Points, 4>& points, EdgeLeaf& leaf) noexcept {
+    for (std::size_t first = 0; first < kLanes; first += Width / 2) {
+      const DoubleVector start = load(points[0], first);
+      const DoubleVector along = load(points[1], first) - start;
+      const Double length_sq = dot(along, along);
+      store(start, leaf.point, first);
+      store(along, leaf.along, first);
+      for (std::size_t k = 0; k < 2; ++k) {
+        const DoubleVector e = load(points[2 + k], first) - start;
+        store(unit(e - times(dot(e, along) / length_sq, along)), leaf.falling[k], first);
+      }
+    }
+  }
+
+  static void lay_faces(const std::array<Points, 3>& corners, float grown, FaceLeaf& leaf) noexcept {
+    for (std::size_t first = 0; first < kLanes; first += Width / 2) {
+      const std::array<DoubleVector, 3> p = {load(corners[0], first), load(corners[1], first),
+                                             load(corners[2], first)};
+      const DoubleVector normal = unit(cross(p[1] - p[0], p[2] - p[0]));
+      store(normal, leaf.normal, first);
+      store(dot(normal, p[0]), leaf.level, first);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const DoubleVector inward = unit(cross(normal, p[(k + 1) % 3] - p[k]));
+        store(inward, leaf.inward[k], first);
+        store(dot(inward, p[k]) - 2.0 * double(grown), leaf.limit[k], first);
+      }
+    }
   }
 };
 

@@ -5,10 +5,11 @@
 /// safe side only, and what they let through is tested exactly.
 ///
 ///     leaf of one        box of the other's leaf         leaf of the other
-///     eight features ──► which are near it? ──► each against eight: a bit for a pair that may be a minimum
+///     eight features ──► which are near it? ──► these against eight: a bit for a pair that may be a minimum
 ///
 /// Everything is told in the frame of the other tree, from its center. Nodes and leaves of the one are turned
-/// into it eight lanes at a time; those of the other are taken as they are stored.
+/// into it eight lanes at a time. Trees store of a leaf only which features it holds; where they are is laid
+/// out in lanes when a leaf is first asked for.
 
 #include <array>
 #include <cstdint>
@@ -21,6 +22,7 @@ namespace tactum::lanes {
 inline constexpr std::size_t kLanes = SurfaceTree::kLanes;
 using Lanes = SurfaceTree::Lanes;
 using Lanes3 = SurfaceTree::Lanes3;
+using Corners = SurfaceTree::Corners;
 using Three = std::array<float, 3>;
 
 /// What every quick test needs of the query, grown so that rounding loses nothing.
@@ -49,6 +51,29 @@ struct Box {
   std::size_t lane;
 };
 
+/// Leaves laid out: eight features of one kind, told from the middle of the leaf's box. Lanes whose corner is
+/// -1 hold no feature but numbers all the same.
+struct VertexLeaf {
+  Lanes3 point;  ///< [m]
+  Corners corner;
+};
+struct EdgeLeaf {
+  Lanes3 point, along;            ///< where it starts, and from there to its end [m]
+  std::array<Lanes3, 2> falling;  ///< square to it into its two faces, at a rim twice into one, units [-]
+  Corners corner;
+};
+/// By planes: a point p is at the height  normal . p - level  and inside where  inward . p >= limit  for all
+/// three sides.
+struct FaceLeaf {
+  Lanes3 normal;                 ///< unit [-]
+  Lanes level;                   ///< [m]
+  std::array<Lanes3, 3> inward;  ///< square to side and normal, unit [-]
+  std::array<Lanes, 3> limit;    ///< grown by what rounding may take [m]
+  Corners corner;
+};
+/// Points of eight features before they are rounded: along which axis, of which lane [m].
+using Points = std::array<std::array<double, kLanes>, 3>;
+
 /// Of two leaves, a bit 8 i + k for the feature i of the one and k of the other that may be a minimum.
 using Matches = std::uint64_t;
 
@@ -58,24 +83,29 @@ struct Kernels {
   /// overlaps the other along the axes of either when padded.
   std::uint32_t (*facing)(const Box& box, const SurfaceTree::Node& node, const SurfaceTree::Stand& at,
                           const Bounds& q) noexcept;
-  /// The vertices of a leaf, their middle `off` from the other leaf's, with the features of the other leaf,
-  /// whose box is told.
-  Matches (*vertex_vertex)(const SurfaceTree::VertexLeaf& ones, const Three& off, const Box& box,
-                           const SurfaceTree::VertexLeaf& others, const Bounds& q) noexcept;
-  Matches (*vertex_edge)(const SurfaceTree::VertexLeaf& ones, const Three& off, const Box& box,
-                         const SurfaceTree::EdgeLeaf& others, const Bounds& q) noexcept;
-  Matches (*vertex_face)(const SurfaceTree::VertexLeaf& ones, const Three& off, const Box& box,
-                         const SurfaceTree::FaceLeaf& others, const Bounds& q) noexcept;
-  /// The edges of two leaves, each against the other's box first.
-  Matches (*edge_edge)(const SurfaceTree::EdgeLeaf& ones, const Box& box_of_ones, const Three& off,
-                       const SurfaceTree::EdgeLeaf& others, const Box& box_of_others,
-                       const Bounds& q) noexcept;
-  /// In the other tree's frame; leaves keep the middle they are told from.
+  /// A bit for each feature of a leaf, its middle `off` from that of a box, that is near the box.
+  std::uint32_t (*vertices_near)(const VertexLeaf& ones, const Three& off, const Box& box,
+                                 const Bounds& q) noexcept;
+  std::uint32_t (*edges_near)(const EdgeLeaf& ones, const Three& off, const Box& box,
+                              const Bounds& q) noexcept;
+  /// Some features of a leaf, its middle `off` from the other leaf's, with the features of the other leaf.
+  Matches (*vertex_vertex)(const VertexLeaf& ones, std::uint32_t some, const Three& off,
+                           const VertexLeaf& others, const Bounds& q) noexcept;
+  Matches (*vertex_edge)(const VertexLeaf& ones, std::uint32_t some, const Three& off, const EdgeLeaf& others,
+                         const Bounds& q) noexcept;
+  Matches (*vertex_face)(const VertexLeaf& ones, std::uint32_t some, const Three& off, const FaceLeaf& others,
+                         const Bounds& q) noexcept;
+  /// The same of edges, with some of the other leaf, from the side that has fewer.
+  Matches (*edge_edge)(const EdgeLeaf& ones, std::uint32_t some, const Three& off, const EdgeLeaf& others,
+                       std::uint32_t some_others, const Bounds& q) noexcept;
+  /// Into the other tree's frame; leaves keep the middle they are told from.
   void (*turn_stand)(const SurfaceTree::Stand& at, const Frame& frame, SurfaceTree::Stand& turned) noexcept;
-  void (*turn_vertices)(const SurfaceTree::VertexLeaf& leaf, const Frame& frame,
-                        SurfaceTree::VertexLeaf& turned) noexcept;
-  void (*turn_edges)(const SurfaceTree::EdgeLeaf& leaf, const Frame& frame,
-                     SurfaceTree::EdgeLeaf& turned) noexcept;
+  void (*turn_vertices)(const Frame& frame, VertexLeaf& leaf) noexcept;
+  void (*turn_edges)(const Frame& frame, EdgeLeaf& leaf) noexcept;
+  /// All of a leaf but the names of its features: from the ends of edges and the other corners of the faces
+  /// beside them; from the corners of triangles, limits grown by that length.
+  void (*lay_edges)(const std::array<Points, 4>& points, EdgeLeaf& leaf) noexcept;
+  void (*lay_faces)(const std::array<Points, 3>& corners, float grown, FaceLeaf& leaf) noexcept;
 };
 
 /// Four lanes at a time, on any processor.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 
+#include "tactum/collision/surface_minima_leaves.h"
+
 namespace tactum {
 namespace {
 
@@ -14,13 +16,6 @@ constexpr std::size_t kStack = 256;  // eleven levels of each, seven more pairs 
 /// From one tree's center, in the other's frame from its center.
 Pose between_centers(const Tree& from, const Tree& to, const Pose& X) noexcept {
   return {X.R, X * from.center() - to.center()};
-}
-
-template <Tree::Kind Kind>
-const auto& leaf(const Tree& tree, std::uint32_t index) noexcept {
-  if constexpr (Kind == Tree::kVertices) return tree.vertex_leaves()[index];
-  if constexpr (Kind == Tree::kEdges) return tree.edge_leaves()[index];
-  if constexpr (Kind == Tree::kFaces) return tree.face_leaves()[index];
 }
 
 }  // namespace
@@ -77,36 +72,67 @@ void SurfaceWalk::run() noexcept {
   }
 }
 
+template <Tree::Kind Kind>
+const auto& SurfaceWalk::leaf_of_one(const lanes::Box& box) noexcept {
+  if constexpr (Kind == Tree::kEdges) {
+    return edges_of_one_.get(lanes::leaf_under(box), [&](lanes::EdgeLeaf& leaf) {
+      lanes::lay_out(one_, box, kernels_, leaf);
+      kernels_.turn_edges(frame_, leaf);
+    });
+  } else {
+    return vertices_of_one_.get(lanes::leaf_under(box), [&](lanes::VertexLeaf& leaf) {
+      lanes::lay_out(one_, box, leaf);
+      kernels_.turn_vertices(frame_, leaf);
+    });
+  }
+}
+
+template <Tree::Kind Kind>
+const auto& SurfaceWalk::leaf_of_other(const lanes::Box& box) noexcept {
+  const std::uint32_t index = lanes::leaf_under(box);
+  if constexpr (Kind == Tree::kFaces) {
+    return faces_of_other_.get(
+        index, [&](lanes::FaceLeaf& leaf) { lanes::lay_out(other_, box, kernels_, bounds_.grown, leaf); });
+  } else if constexpr (Kind == Tree::kEdges) {
+    return edges_of_other_.get(index,
+                               [&](lanes::EdgeLeaf& leaf) { lanes::lay_out(other_, box, kernels_, leaf); });
+  } else {
+    return vertices_of_other_.get(index, [&](lanes::VertexLeaf& leaf) { lanes::lay_out(other_, box, leaf); });
+  }
+}
+
 template <Tree::Kind One, Tree::Kind Other>
 void SurfaceWalk::compare_leaves(const Pair& pair) noexcept {
   ++features_.work.leaf_pairs;
   const lanes::Box box_one = box_of_one(pair.one);
   const lanes::Box box_other = box_of_other(pair.other);
-  const auto index = std::uint32_t(~box_one.node->child[box_one.lane]);
-  const auto& ones = leaf<One>(one_, index);
-  const auto& others = leaf<Other>(other_, std::uint32_t(~box_other.node->child[box_other.lane]));
   const auto apart = [&](Index axis) {
     return box_one.at->center[axis][box_one.lane] - box_other.at->center[axis][box_other.lane];
   };
   const lanes::Three off = {apart(0), apart(1), apart(2)};
+  // Often nothing of the one leaf is near the other's box, and the other need not be laid out.
+  const auto& ones = leaf_of_one<One>(box_one);
   lanes::Matches left = 0;
   if constexpr (One == Tree::kEdges) {
-    const Tree::EdgeLeaf& turned =
-        edges_.get(index, [&](Tree::EdgeLeaf& to) { kernels_.turn_edges(ones, frame_, to); });
-    left = kernels_.edge_edge(turned, box_one, off, others, box_other, bounds_);
+    const Set some = kernels_.edges_near(ones, off, box_other, bounds_);
+    if (some == 0) return;
+    const auto& others = leaf_of_other<Other>(box_other);
+    const Set some_others = kernels_.edges_near(others, {-off[0], -off[1], -off[2]}, box_one, bounds_);
+    if (some_others == 0) return;
+    left = kernels_.edge_edge(ones, some, off, others, some_others, bounds_);
   } else {
-    const Tree::VertexLeaf& turned =
-        vertices_.get(index, [&](Tree::VertexLeaf& to) { kernels_.turn_vertices(ones, frame_, to); });
-    if constexpr (Other == Tree::kVertices)
-      left = kernels_.vertex_vertex(turned, off, box_other, others, bounds_);
-    if constexpr (Other == Tree::kEdges) left = kernels_.vertex_edge(turned, off, box_other, others, bounds_);
-    if constexpr (Other == Tree::kFaces) left = kernels_.vertex_face(turned, off, box_other, others, bounds_);
+    const Set some = kernels_.vertices_near(ones, off, box_other, bounds_);
+    if (some == 0) return;
+    const auto& others = leaf_of_other<Other>(box_other);
+    if constexpr (Other == Tree::kVertices) left = kernels_.vertex_vertex(ones, some, off, others, bounds_);
+    if constexpr (Other == Tree::kEdges) left = kernels_.vertex_edge(ones, some, off, others, bounds_);
+    if constexpr (Other == Tree::kFaces) left = kernels_.vertex_face(ones, some, off, others, bounds_);
   }
   if (left == 0) return;
   for (; left != 0; left &= left - 1) {
     const Index bit = Index(std::countr_zero(left));
-    const std::int32_t one = ones.corner[bit / kLanes];
-    const std::int32_t other = others.corner[bit % kLanes];
+    const std::int32_t one = one_.leaves()[lanes::leaf_under(box_one)][bit / kLanes];
+    const std::int32_t other = other_.leaves()[lanes::leaf_under(box_other)][bit % kLanes];
     if constexpr (One == Tree::kEdges) features_.edge_edge(one, other);
     if constexpr (One == Tree::kVertices && Other == Tree::kFaces)
       features_.vertex_face(swapped_, one, other);

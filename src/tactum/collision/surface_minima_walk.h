@@ -67,6 +67,11 @@ class SurfaceWalk {
 
   template <SurfaceTree::Kind One, SurfaceTree::Kind Other>
   void compare_leaves(const Pair& pair) noexcept;
+  /// Leaves laid out, those of the one in the other's frame.
+  template <SurfaceTree::Kind Kind>
+  const auto& leaf_of_one(const lanes::Box& box) noexcept;
+  template <SurfaceTree::Kind Kind>
+  const auto& leaf_of_other(const lanes::Box& box) noexcept;
 
   const SurfaceTree& one_;
   const SurfaceTree& other_;
@@ -75,9 +80,12 @@ class SurfaceWalk {
   lanes::Bounds& bounds_;  // narrower when the features are
   const lanes::Kernels& kernels_;
   FeatureComparison& features_;
+  template <class Value>
+  using Some = Kept<Value, 64>;
   Kept<SurfaceTree::Stand, 128> stands_;
-  Kept<SurfaceTree::VertexLeaf, 128> vertices_;
-  Kept<SurfaceTree::EdgeLeaf, 128> edges_;
+  Some<lanes::VertexLeaf> vertices_of_one_, vertices_of_other_;
+  Some<lanes::EdgeLeaf> edges_of_one_, edges_of_other_;
+  Some<lanes::FaceLeaf> faces_of_other_;
 };
 
 }  // namespace tactum

@@ -16,7 +16,7 @@
 namespace tactum {
 
 /// Raised whenever the arrays of a part change.
-inline constexpr std::uint32_t kPartFileVersion = 3;
+inline constexpr std::uint32_t kPartFileVersion = 4;
 
 struct PartFile {
   Part part;                          ///< told from its centre of mass

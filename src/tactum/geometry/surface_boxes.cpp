@@ -10,7 +10,6 @@ namespace tactum {
 namespace {
 
 constexpr std::size_t kLanes = SurfaceTree::kLanes;
-constexpr float kNowhere = 1e18F;  // where lanes without a feature are put
 
 /// Of two boxes the larger is opened, or rather the one with the wider cone: its children face less. Beside
 /// this angle widths do not count [rad].
@@ -57,12 +56,9 @@ Spread spread_of(const Values& value, std::size_t first, std::size_t last) {
 SurfaceBoxes::SurfaceBoxes(const TriangleMesh& mesh, const SurfaceCones& cones, const Vec3& center)
     : mesh_(mesh), center_(center) {
   grown_ = tolerances::kSingle * bounds(mesh.vertices).diagonal();
-  const auto leaf_count = [&](SurfaceTree::Kind kind) {
-    return (cones.features[kind].size() + kLanes - 1) / kLanes;
-  };
-  vertex_leaves.reserve(leaf_count(SurfaceTree::kVertices));
-  edge_leaves.reserve(leaf_count(SurfaceTree::kEdges));
-  face_leaves.reserve(leaf_count(SurfaceTree::kFaces));
+  std::size_t leaf_count = 0;
+  for (const auto& features : cones.features) leaf_count += (features.size() + kLanes - 1) / kLanes;
+  leaves.reserve(leaf_count);
   for (const SurfaceTree::Kind kind : {SurfaceTree::kVertices, SurfaceTree::kEdges, SurfaceTree::kFaces}) {
     kind_ = kind;
     order_ = cones.features[kind];
@@ -73,7 +69,7 @@ SurfaceBoxes::SurfaceBoxes(const TriangleMesh& mesh, const SurfaceCones& cones, 
 
 Vec3 SurfaceBoxes::middle(const ConedFeature& feature) const {
   Vec3 sum = Vec3::Zero();
-  for (std::size_t i = 0; i < points(); ++i) sum += point(feature.corner, i, Vec3::Zero());
+  for (std::size_t i = 0; i < points(); ++i) sum += point(feature.corner, i);
   return sum / static_cast<double>(points());
 }
 
@@ -87,60 +83,18 @@ std::int32_t SurfaceBoxes::make_tree() {
 /// The box of a range and what is below it. Nodes move while others are made.
 void SurfaceBoxes::make_child(std::size_t node, std::size_t lane, Range range) {
   make_box(nodes[node], lane, range);
-  const SurfaceTree::Lanes3& center = nodes[node].at.center;
-  const Vec3 middle(center[0][lane], center[1][lane], center[2][lane]);
   const bool leaf = range.second - range.first <= kLanes;
-  const std::int32_t below = leaf ? make_leaf(range, middle) : make_node(range);
+  const std::int32_t below = leaf ? make_leaf(range) : make_node(range);
   nodes[node].child[lane] = below;
 }
 
-std::int32_t SurfaceBoxes::make_leaf(Range range, const Vec3& middle) {
-  const auto begin = order_.begin() + static_cast<std::ptrdiff_t>(range.first);
-  std::sort(begin, begin + static_cast<std::ptrdiff_t>(range.second - range.first),
-            [](const ConedFeature& x, const ConedFeature& y) { return x.corner < y.corner; });
-  if (kind_ == SurfaceTree::kVertices) return add_leaf(vertex_leaves, range, middle);
-  if (kind_ == SurfaceTree::kEdges) return add_leaf(edge_leaves, range, middle);
-  return add_leaf(face_leaves, range, middle);
-}
-
-template <class Leaf>
-std::int32_t SurfaceBoxes::add_leaf(std::vector<Leaf>& leaves, Range range, const Vec3& middle) {
-  Leaf& leaf = leaves.emplace_back();
-  for (std::size_t lane = 0; lane < kLanes; ++lane) {
-    const std::size_t i = range.first + lane;
-    leaf.corner[lane] = i < range.second ? order_[i].corner : -1;
-    put(leaf, lane, middle);
-  }
+std::int32_t SurfaceBoxes::make_leaf(Range range) {
+  SurfaceTree::Corners& leaf = leaves.emplace_back();
+  leaf.fill(-1);
+  const std::size_t count = range.second - range.first;
+  for (std::size_t lane = 0; lane < count; ++lane) leaf[lane] = order_[range.first + lane].corner;
+  std::sort(leaf.begin(), leaf.begin() + static_cast<std::ptrdiff_t>(count));
   return ~static_cast<std::int32_t>(leaves.size() - 1);
-}
-
-void SurfaceBoxes::put(SurfaceTree::VertexLeaf& leaf, std::size_t lane, const Vec3& middle) const {
-  const std::int32_t corner = leaf.corner[lane];
-  put_lane(leaf.point, lane, corner < 0 ? Vec3(Vec3::Constant(kNowhere)) : point(corner, 0, middle));
-}
-
-void SurfaceBoxes::put(SurfaceTree::EdgeLeaf& leaf, std::size_t lane, const Vec3& middle) const {
-  const std::int32_t corner = leaf.corner[lane];
-  const Vec3 from = corner < 0 ? Vec3(Vec3::Constant(kNowhere)) : point(corner, 0, middle);
-  put_lane(leaf.point, lane, from);
-  put_lane(leaf.along, lane, corner < 0 ? from : Vec3(point(corner, 1, middle) - from));
-}
-
-void SurfaceBoxes::put(SurfaceTree::FaceLeaf& leaf, std::size_t lane, const Vec3& middle) const {
-  if (leaf.corner[lane] < 0) {
-    leaf.level[lane] = kNowhere;
-    return;
-  }
-  std::array<Vec3, 3> corner;
-  for (std::size_t k = 0; k < 3; ++k) corner[k] = point(leaf.corner[lane], k, middle);
-  const Vec3 normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]).normalized();
-  put_lane(leaf.normal, lane, normal);
-  leaf.level[lane] = static_cast<float>(normal.dot(corner[0]));
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Vec3 inward = normal.cross(corner[(k + 1) % 3] - corner[k]).normalized();
-    put_lane(leaf.inward[k], lane, inward);
-    leaf.limit[k][lane] = static_cast<float>(inward.dot(corner[k]));
-  }
 }
 
 std::int32_t SurfaceBoxes::make_node(Range range) {
@@ -207,9 +161,7 @@ SurfaceBoxes::Span SurfaceBoxes::span(Range range) const {
   for (std::size_t i = range.first; i < range.second; ++i) up += order_[i].axis;
   const double length = up.norm();
   up = length > tolerances::kSameNormal ? Vec3(up / length) : Vec3::UnitZ();
-  const auto at = [&](std::size_t i) {
-    return point(order_[i / points()].corner, i % points(), Vec3::Zero());
-  };
+  const auto at = [&](std::size_t i) { return point(order_[i / points()].corner, i % points()); };
   // In the plane square to it, along the longest spread of the points.
   const auto flat_point = [&](std::size_t i) {
     const Vec3 p = at(i);

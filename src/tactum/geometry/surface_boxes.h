@@ -18,23 +18,15 @@ class SurfaceBoxes {
   SurfaceBoxes(const TriangleMesh& mesh, const SurfaceCones& cones, const Vec3& center);
 
   std::vector<SurfaceTree::Node> nodes;
-  std::vector<SurfaceTree::VertexLeaf> vertex_leaves;
-  std::vector<SurfaceTree::EdgeLeaf> edge_leaves;
-  std::vector<SurfaceTree::FaceLeaf> face_leaves;
+  std::vector<SurfaceTree::Corners> leaves;
   std::array<std::int32_t, 3> root{-1, -1, -1};  ///< SurfaceTree::root
 
  private:
   using Range = std::pair<std::size_t, std::size_t>;  ///< of order_
 
   std::int32_t make_tree();
-  /// The features of a range, told from the middle of their box.
-  std::int32_t make_leaf(Range range, const Vec3& middle);
+  std::int32_t make_leaf(Range range);
   void make_child(std::size_t node, std::size_t lane, Range range);
-  void put(SurfaceTree::VertexLeaf& leaf, std::size_t lane, const Vec3& middle) const;
-  void put(SurfaceTree::EdgeLeaf& leaf, std::size_t lane, const Vec3& middle) const;
-  void put(SurfaceTree::FaceLeaf& leaf, std::size_t lane, const Vec3& middle) const;
-  template <class Leaf>
-  std::int32_t add_leaf(std::vector<Leaf>& leaves, Range range, const Vec3& middle);
   std::int32_t make_node(Range range);
   /// The oriented box around a range of features, its third axis along the mean direction of their cones.
   struct Span {
@@ -48,10 +40,10 @@ class SurfaceBoxes {
   void cut_across(const Vec3& axis, Range range, std::size_t halfway);
 
   std::size_t points() const { return std::size_t(kind_) + 1; }  ///< of a feature of the kind at hand
-  /// The corner of a triangle that is `after` this one, from a place told from the center.
-  Vec3 point(std::int32_t corner, std::size_t after, const Vec3& place) const {
+  /// The corner of a triangle that is `after` this one, from the center.
+  Vec3 point(std::int32_t corner, std::size_t after) const {
     const Triangle& t = mesh_.triangles[corner / 3];
-    return mesh_.vertices[t[(std::size_t(corner) + after) % 3]] - center_ - place;
+    return mesh_.vertices[t[(std::size_t(corner) + after) % 3]] - center_;
   }
   Vec3 middle(const ConedFeature& feature) const;
 

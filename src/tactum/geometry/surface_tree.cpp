@@ -24,9 +24,7 @@ SurfaceTree::SurfaceTree(const TriangleMesh& welded, const std::vector<int>& gro
   first_around_ = std::move(cones.first_around);
   around_ = std::move(cones.around);
   nodes_ = std::move(boxes.nodes);
-  vertex_leaves_ = std::move(boxes.vertex_leaves);
-  edge_leaves_ = std::move(boxes.edge_leaves);
-  face_leaves_ = std::move(boxes.face_leaves);
+  leaves_ = std::move(boxes.leaves);
   nodes_.shrink_to_fit();
   scalars_.root = boxes.root;
 }
@@ -37,26 +35,19 @@ std::size_t SurfaceTree::memory() const noexcept {
   return bytes;
 }
 
-template <class Leaf>
-bool SurfaceTree::sound(std::int32_t first, std::int32_t last,
-                        const std::vector<Leaf>& leaves) const noexcept {
+bool SurfaceTree::sound(std::int32_t first, std::int32_t last) const noexcept {
   // Children stand behind their parents, so no walk goes round.
   for (std::int32_t i = first; i < last; ++i) {
     for (std::int32_t child : nodes_[std::size_t(i)].child) {
-      if (child > 0 ? child <= i || child >= last : child < 0 && std::size_t(~child) >= leaves.size())
+      if (child > 0 ? child <= i || child >= last : child < 0 && std::size_t(~child) >= leaves_.size())
         return false;
     }
   }
-  return std::all_of(leaves.begin(), leaves.end(), [&](const Leaf& leaf) {
-    return std::all_of(leaf.corner.begin(), leaf.corner.end(), [&](std::int32_t corner) {
-      return corner == -1 || (corner >= 0 && corner / 3 < triangle_count());
-    });
-  });
+  return true;
 }
 
 bool SurfaceTree::sound() const noexcept {
-  if (empty())
-    return nodes_.empty() && vertex_leaves_.empty() && edge_leaves_.empty() && face_leaves_.empty();
+  if (empty()) return nodes_.empty() && leaves_.empty();
   const int triangles = triangle_count();
   const int vertices = vertex_count();
   const auto is_triangle = [&](std::int32_t t) { return t >= 0 && t < triangles; };
@@ -75,6 +66,10 @@ bool SurfaceTree::sound() const noexcept {
                      [&](std::int32_t w) { return w == kWall || is_vertex(w); }))
       return false;
   }
+  const auto is_corner = [&](std::int32_t c) { return c == -1 || (c >= 0 && is_triangle(c / 3)); };
+  if (!std::all_of(leaves_.begin(), leaves_.end(),
+                   [&](const Corners& leaf) { return std::all_of(leaf.begin(), leaf.end(), is_corner); }))
+    return false;
   // Nodes of a kind begin with its root and end with the next kind's.
   std::array<std::int32_t, 4> first{0, 0, 0, static_cast<std::int32_t>(nodes_.size())};
   for (std::size_t kind = 3; kind-- > 0;) {
@@ -82,8 +77,7 @@ bool SurfaceTree::sound() const noexcept {
     if (root < -1 || root >= first[kind + 1]) return false;
     first[kind] = root < 0 ? first[kind + 1] : root;
   }
-  return first[0] == 0 && sound(first[0], first[1], vertex_leaves_) &&
-         sound(first[1], first[2], edge_leaves_) && sound(first[2], first[3], face_leaves_);
+  return first[0] == 0 && sound(first[0], first[1]) && sound(first[1], first[2]) && sound(first[2], first[3]);
 }
 
 }  // namespace tactum

@@ -20,7 +20,7 @@
 /// Names of features: vertices and triangles keep the numbers of the mesh; the edge from corner k of triangle
 /// t to the next corner is 3 t + k, named by the one of its two triangles that owns it.
 ///
-/// Memory: at most 210 bytes a triangle on closed meshes, all of it in flat arrays of plain data that a file
+/// Memory: at most 120 bytes a triangle on closed meshes, all of it in flat arrays of plain data that a file
 /// can hold as they are. Building: n log n, some microseconds a triangle, with some 500 bytes a
 /// triangle for a while.
 
@@ -77,33 +77,13 @@ class SurfaceTree {
     Lanes3 half{};    ///< half the sides along `along`, `across` and `up` [m]
     Lanes cone{};     ///< [rad]
     Lanes extent{};   ///< of two boxes the one where it is larger is opened
-    Corners child{};  ///< a node; ~n: the leaf n of this kind; 0: no box
+    Corners child{};  ///< a node; ~n: the leaf n; 0: no box
   };
 
-  /// Leaves hold eight features of one kind, told from the middle of the leaf's box, and as corners 3 t + k
-  /// of the triangles that own them: a vertex is that corner, an edge starts there, a face is the triangle.
-  /// -1: none, behind all others and far away.
-  struct VertexLeaf {
-    Lanes3 point;  ///< [m]
-    Corners corner;
-  };
-  struct EdgeLeaf {
-    Lanes3 point, along;  ///< where it starts, and from there to its end [m]
-    Corners corner;
-  };
-  /// By planes: a point p is at the height  normal . p - level  and inside where  inward . p >= limit  for
-  /// all three sides.
-  struct FaceLeaf {
-    Lanes3 normal;                 ///< unit [-]
-    Lanes level;                   ///< [m]
-    std::array<Lanes3, 3> inward;  ///< square to side and normal, unit [-]
-    std::array<Lanes, 3> limit;    ///< [m]
-    Corners corner;
-  };
   const std::vector<Node>& nodes() const noexcept { return nodes_; }
-  const std::vector<VertexLeaf>& vertex_leaves() const noexcept { return vertex_leaves_; }
-  const std::vector<EdgeLeaf>& edge_leaves() const noexcept { return edge_leaves_; }
-  const std::vector<FaceLeaf>& face_leaves() const noexcept { return face_leaves_; }
+  /// Leaves hold eight features of one kind as corners 3 t + k of the triangles that own them: a vertex is
+  /// that corner, an edge starts there, a face is the triangle, k = 0. -1: none, behind all others.
+  const std::vector<Corners>& leaves() const noexcept { return leaves_; }
   /// The node whose first lane is the box around all vertices, edges or faces; -1: there are none. Nodes of a
   /// kind stand together, the root before the others.
   std::int32_t root(Kind kind) const noexcept { return scalars_.root[kind]; }
@@ -156,10 +136,8 @@ class SurfaceTree {
   bool sound() const noexcept;
 
  private:
-  /// Whether nodes [first, last) of one kind point behind themselves and to leaves that there are, and these
-  /// to triangles.
-  template <class Leaf>
-  bool sound(std::int32_t first, std::int32_t last, const std::vector<Leaf>& leaves) const noexcept;
+  /// Whether nodes [first, last) of one kind point behind themselves and to leaves that there are.
+  bool sound(std::int32_t first, std::int32_t last) const noexcept;
 
   template <class Self, class Visitor>
   static void arrays(Self& self, Visitor&& visitor) {
@@ -171,9 +149,7 @@ class SurfaceTree {
     visitor(self.first_around_);
     visitor(self.around_);
     visitor(self.nodes_);
-    visitor(self.vertex_leaves_);
-    visitor(self.edge_leaves_);
-    visitor(self.face_leaves_);
+    visitor(self.leaves_);
   }
 
   bool narrow_bit(std::int32_t corner, std::uint32_t first) const noexcept {
@@ -189,9 +165,7 @@ class SurfaceTree {
   std::vector<std::int32_t> first_around_;  // per vertex, and the end
   std::vector<std::int32_t> around_;
   std::vector<Node> nodes_;
-  std::vector<VertexLeaf> vertex_leaves_;
-  std::vector<EdgeLeaf> edge_leaves_;
-  std::vector<FaceLeaf> face_leaves_;
+  std::vector<Corners> leaves_;
 };
 
 }  // namespace tactum
