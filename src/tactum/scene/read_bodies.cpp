@@ -113,10 +113,17 @@ void read_body(const TomlReader& reader, const SearchFolders& folders, Scene& sc
   if (body.name.empty())
     reader.fail("name", "a body without a name in " + reader.section(), "\"\"", "a text");
 
-  const Vec3 p_WP = reader.vector3("pos_m", Vec3::Zero());
-  const Pose X_WP{reader.rotation(), p_WP};
+  // Told in the world, or in the frame of the part it stands on.
+  Pose X_WP{reader.rotation(), reader.vector3("pos_m", Vec3::Zero())};
+  if (reader.has("on")) {
+    const int on = body_called(reader, "on", scene.world);
+    if (on < 0) return;
+    const auto index = static_cast<std::size_t>(on);
+    X_WP = part_pose(scene, index, scene.world.bodies[index].X_WB) * X_WP;
+  }
   body.joint = read_joint(reader, X_WP);
-  const Shape shape = read_shape(reader, folders);
+  const Shape shape =
+      reader.has("component") ? read_components(reader, folders) : read_shape(reader, folders);
   if (reader.errors()) return;
   Vec3 p_BP = Vec3::Zero();
   read_solid(reader, shape, X_WP, body, p_BP);
@@ -132,7 +139,7 @@ void read_body(const TomlReader& reader, const SearchFolders& folders, Scene& sc
 
 void read_bodies(const TomlReader& root, const SearchFolders& folders, Scene& scene) {
   const auto readers = root.tables("body", {"name", "part", "pos_m", "quat_wxyz", "rpy_deg", "mass_kg",
-                                            "density_kg_per_m3", "joint", "material"});
+                                            "density_kg_per_m3", "joint", "material", "on", "component"});
   if (readers.empty()) root.fail(nullptr, "the scene has no [[body]]", "none", "at least one");
   for (const TomlReader& reader : readers) read_body(reader, folders, scene);
 }

@@ -17,6 +17,10 @@ using SearchFolders = std::vector<std::string>;
 /// `part = { gear = {...} }` and its kin, of the body's table.
 Shape read_shape(const TomlReader& body, const SearchFolders& folders);
 
+/// `[[body.component]]` of the body's table: shapes placed in the body's frame or on one another, as one
+/// shape of convex pieces.
+Shape read_components(const TomlReader& body, const SearchFolders& folders);
+
 /// The keys of `part` whose shapes are made by rule.
 const std::vector<std::string>& made_shapes();
 

@@ -620,6 +620,17 @@ const topics = {
       await page.keyboard.press("e");
       await until("the nut has been turned for a while", async () => Number((await state(page)).newest) > 1000, 60);
     });
+    // Of scenes that tell their story by themselves: the frame to wait for.
+    for (const [scene, frame, options] of [["dominoes", 2350, {}], ["scale", 6000, { colorScheme: "light" }], ["lock", 5200, {}],
+      ["shaft", 16600, { colorScheme: "light" }]]) {
+      await take(scene, options, async (page) => {
+        await page.keyboard.press("e");
+        if (scene === "shaft" || scene === "lock") await page.click("#see-through");
+        await until(`${scene} has come so far`, async () => Number((await state(page)).newest) > frame, 120);
+        await page.click("#pause");
+        await pause(1);
+      });
+    }
     // A bracket like an F, as it falls into pieces.
     const outline = [[0, 0], [12, 0], [12, 30], [34, 30], [34, 42], [12, 42], [12, 56], [44, 56], [44, 68], [0, 68]];
     const n = outline.length;
