@@ -78,7 +78,7 @@ TEST_P(EveryScene, RunsWithoutAllocatingTwiceTheSameAndReachesItsGoals) {
   EXPECT_EQ(first->record().unchecked, 0u);
   EXPECT_EQ(first->record().flags, 0u);
   if (whole) {
-    EXPECT_GT(first->record().held_contact_frames, frames / 10) << "the hand must have something to feel";
+    EXPECT_GT(first->record().held_contact_frames, frames / 100) << "the hand must have something to feel";
   }
   for (std::size_t i = 0; whole && i < first->scene().goals.size(); ++i)
     EXPECT_TRUE(first->goals().met(i)) << first->goals().describe(first->scene().world, i);

@@ -1,0 +1,107 @@
+/// The scenes that tell a story, held against what physics says of it: a scale's reading, a lock that waits
+/// for its key, an order of assembly that cannot be another.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tactum/scene/builtin_scenes.h"
+#include "tactum/scene/scene_file.h"
+#include "tactum/session/session.h"
+
+namespace tactum {
+namespace {
+
+std::string text_of(const std::string& name) {
+  for (const BuiltinScene& scene : builtin_scenes())
+    if (scene.name == name) return std::string(scene.text);
+  ADD_FAILURE() << "no scene " << name;
+  return {};
+}
+
+std::unique_ptr<Session> opened(const std::string& text) {
+  Result<Scene> scene = parse_scene(text, "test", "test.toml", {});
+  EXPECT_TRUE(scene) << (scene ? "" : scene.error().message());
+  if (!scene) return nullptr;
+  Result<std::unique_ptr<Session>> session = Session::open(std::move(*scene), {});
+  EXPECT_TRUE(session);
+  return session ? std::move(*session) : nullptr;
+}
+
+std::size_t body(const Scene& scene, const std::string& name) {
+  const auto& bodies = scene.world.bodies;
+  const auto found =
+      std::find_if(bodies.begin(), bodies.end(), [&](const Body& b) { return b.name == name; });
+  EXPECT_NE(found, bodies.end()) << name;
+  return static_cast<std::size_t>(found - bodies.begin());
+}
+
+/// Every frame of a run.
+class Watch final : public LoopObserver {
+ public:
+  explicit Watch(std::function<void(const FrameRecord&)> look) : look_(std::move(look)) {}
+  bool after_frame(const FrameRecord& record) noexcept override {
+    look_(record);
+    return true;
+  }
+
+ private:
+  std::function<void(const FrameRecord&)> look_;
+};
+
+TEST(SceneStory, TheScaleShowsWhatIsOnItAndTheHandFeelsWhatItLifts) {
+  const std::unique_ptr<Session> session = opened(text_of("scale"));
+  ASSERT_TRUE(session);
+  const std::size_t pan = body(session->scene(), "pan");
+  const double start = session->scene().world.bodies[pan].X_WB.p.z();
+  double lifted_N = 0.0;
+  double after_first_m = 0.0;
+  Watch watch([&](const FrameRecord&) {
+    const double time_s = double(session->last_report().index) * session->scene().settings.dt_s;
+    if (std::abs(time_s - 2.3) < 0.0006) lifted_N = session->last_report().coupling.f.z();
+    if (std::abs(time_s - 7.0) < 0.0006) after_first_m = start - session->state().world.X_WB[pan].p.z();
+  });
+  ASSERT_TRUE(session->run_virtual(std::uint64_t(frames_of_motion(session->scene())), &watch));
+  EXPECT_NEAR(lifted_N, -0.2 * 9.81, 0.02);  // carried at rest but for the tremor of the hand
+  EXPECT_NEAR(after_first_m, 0.2 * 9.81 / 200.0, 2e-5);
+  EXPECT_NEAR(start - session->state().world.X_WB[pan].p.z(), 0.3 * 9.81 / 200.0, 2e-5);
+}
+
+TEST(SceneStory, TheLockTurnsOnlyWhenTheKeyIsAllTheWayIn) {
+  const std::unique_ptr<Session> session = opened(text_of("lock"));
+  ASSERT_TRUE(session);
+  const std::size_t plug = body(session->scene(), "plug");
+  const std::size_t key = body(session->scene(), "key");
+  const double start = session->scene().world.bodies[key].X_WB.p.z();
+  double turned_early = 0.0;
+  Watch watch([&](const FrameRecord&) {
+    const double in_m = start - session->state().world.X_WB[key].p.z();
+    const double angle = session->goals().angle(plug);
+    if (in_m < 0.028) turned_early = std::max(turned_early, std::abs(angle));
+  });
+  ASSERT_TRUE(session->run_virtual(6200, &watch));  // before it is drawn out again
+  EXPECT_GT(turned_early, 0.005);                   // the plug has play until the stop's tab holds it
+  EXPECT_LT(turned_early, 0.06);
+  EXPECT_TRUE(session->goals().met(0)) << session->goals().describe(session->scene().world, 0);
+}
+
+TEST(SceneStory, TheSmallBearingDoesNotPassTheLargeOne) {
+  std::string text = text_of("shaft");
+  const std::string small = "pos_m = [-0.05, 0.04, 0.00001]";
+  const std::string large = "pos_m = [-0.05, -0.04, 0.00001]";
+  const std::size_t first = text.find(small);
+  const std::size_t second = text.find(large);
+  ASSERT_NE(first, std::string::npos);
+  ASSERT_NE(second, std::string::npos);
+  text.replace(second, large.size(), small);
+  text.replace(first, small.size(), large);
+  const std::unique_ptr<Session> session = opened(text);
+  ASSERT_TRUE(session);
+  ASSERT_TRUE(session->run_virtual(std::uint64_t(frames_of_motion(session->scene())), nullptr));
+  EXPECT_EQ(session->record().penetrating_frames, 0u);
+  EXPECT_FALSE(session->goals().met(0)) << session->goals().describe(session->scene().world, 0);
+  EXPECT_FALSE(session->goals().met(2)) << session->goals().describe(session->scene().world, 2);
+}
+
+}  // namespace
+}  // namespace tactum
