@@ -21,7 +21,6 @@ Wrench haptic_frame(const World& world, const FrameSettings& settings, const Dev
   report.index = tick.index;
   const double dt = settings.dt_s;
   Wrench raw;
-
   // Where is the hand?
   const bool was_known = state.hand.known;
   follow_hand(settings.workspace, sample, dt, state.hand);
