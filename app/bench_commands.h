@@ -10,6 +10,7 @@ void add_bench_impact(CLI::App& parent);
 void add_bench_manifold(CLI::App& parent);
 void add_bench_pairs(CLI::App& parent);
 void add_bench_penetration(CLI::App& parent);
+void add_bench_schedule(CLI::App& parent);
 void add_bench_surfaces(CLI::App& parent);
 void add_bench_stability(CLI::App& parent);
 void add_bench_table1(CLI::App& parent);

@@ -16,7 +16,10 @@ double mean(double sum, std::uint64_t count) { return count == 0 ? 0.0 : sum / s
 std::vector<std::string> frame_notes(const RunRecord& record) {
   std::vector<std::string> notes;
   if (record.flags & frame_flag::kBudgetShort)
-    notes.push_back(fmt::format("{} pair checks were left out: raise max_exact_tests", record.unchecked));
+    notes.push_back(fmt::format(
+        "{} pair checks were left out, {} of them without a proof that nothing could touch; bodies waited "
+        "{} times: raise max_exact_tests",
+        record.unchecked, record.left_unproven, record.waiting));
   if (record.flags & frame_flag::kRoomsFull)
     notes.emplace_back("near pairs or patches were dropped: rooms are full");
   if (record.flags & frame_flag::kPointsFull)
@@ -66,6 +69,13 @@ void print_summary(std::FILE* out, const Session& session, const Summary& times,
              times.mean_ns * 1e-3, times.p50_ns * 1e-3, times.p99_ns * 1e-3, times.p999_ns * 1e-3,
              times.max_ns * 1e-3);
   fmt::print(out, "{}", table_of(stages.summaries()));
+  fmt::print(
+      out,
+      "work             {} bodies; mean {:.1f} exact tests, {:.1f} contact pairs; at most {} tests a frame, "
+      "{} "
+      "pairs unchecked\n",
+      record.bodies, mean(static_cast<double>(record.exact_tests + record.validation_tests), record.frames),
+      mean(static_cast<double>(record.patches), record.frames), record.max_tests, record.max_unchecked);
   if (record.surface_queries > 0)
     fmt::print(
         out,
@@ -112,6 +122,10 @@ nlohmann::ordered_json summary_json(const Session& session, const Summary& times
           {"exact_tests", record.exact_tests},
           {"uncertified", record.uncertified},
           {"unchecked", record.unchecked},
+          {"left_unproven", record.left_unproven},
+          {"validation_tests", record.validation_tests},
+          {"max_tests", record.max_tests},
+          {"waiting", record.waiting},
           {"surface_queries", record.surface_queries},
           {"minima", record.minima},
           {"max_minima", record.max_minima},

@@ -21,6 +21,14 @@ constexpr double kSlack = 0.02;
 /// Below every odometer reading less a tolerance.
 constexpr double kAlwaysDue = -1e300;
 
+/// A budget is ample when every due pair can be tested so often: once when it is found, and at the poses on
+/// trial.
+constexpr std::size_t kAmple = 4;
+
+/// An answer holds while what has moved since is no more than this share of the distance; of an overlap,
+/// while nothing has.
+constexpr double kKnownShare = 0.05;
+
 /// The axis-aligned box around a turned box.
 Aabb turned(const Aabb& box, const Pose& X, double grown) {
   const Vec3 center = X * box.center();
@@ -63,6 +71,8 @@ ContactFinder::ContactFinder(std::vector<CollisionBody> bodies, std::span<const 
   pairs_.reserve(rooms.pairs);
   renewed_.reserve(rooms.pairs);
   due_.reserve(rooms.pairs);
+  handed_on_.reserve(rooms.pairs);
+  blocked_.assign(bodies_.size(), 0);
   patches_.reserve(rooms.patches);
   candidates_.reserve(rooms.patches);
   minima_.reserve(rooms.minima);
@@ -87,24 +97,119 @@ void ContactFinder::find_near_pairs(std::span<const Pose> X_WB, std::span<const 
   work_.near_pairs = static_cast<int>(pairs_.size());
 }
 
-void ContactFinder::find_patches(std::span<const Pose> X_WB, int budget, PatchPoints points) noexcept {
+void ContactFinder::find_patches(std::span<const Pose> X_WB, int budget, PatchPoints points,
+                                 std::span<const std::uint8_t> urgency) noexcept {
   points_ = points;
+  urgency_ = urgency;
+  tests_left_ = budget;
   patches_.clear();
   candidates_.clear();
   due_.clear();
+  handed_on_.clear();
+  std::fill(blocked_.begin(), blocked_.end(), 0);
   for (Index i = 0; i < pairs_.size(); ++i) {
     Pair& pair = pairs_[i];
-    const bool was_in_contact = std::exchange(pair.in_contact, false);
-    if (pair.free_until - odometers(pair.body_a, pair.body_b) <= tolerance(pair.body_a, pair.body_b))
-      due_.push_back({static_cast<std::int32_t>(i), was_in_contact, pair.last_checked});
+    if (pair.free_until - odometers(pair.body_a, pair.body_b) > tolerance(pair.body_a, pair.body_b)) {
+      pair.in_contact = false;
+    } else {
+      due_.push_back({static_cast<std::int32_t>(i), urgency_of(pair.body_a, pair.body_b), pair.in_contact,
+                      pair.last_checked});
+    }
   }
-  const int checked = prioritise(due_, budget);
-  work_.unchecked = static_cast<int>(due_.size()) - checked;
-  for (int i = 0; i < checked; ++i) test(pairs_[Index(due_[Index(i)].pair)], X_WB);
+  thrifty_ = kAmple * due_.size() > static_cast<Index>(std::max(budget, 0));
+  const int checked = prioritise(due_, thrifty_ ? leave_known(X_WB) : budget);
+  work_.due = static_cast<int>(due_.size());
+  for (int i = 0; i < work_.due; ++i) {
+    const std::int32_t number = due_[Index(i)].pair;
+    Pair& pair = pairs_[Index(number)];
+    if (i < checked) {
+      pair.last_checked = frame_;
+    } else {
+      const double until = pair.free_until - odometers(pair.body_a, pair.body_b);
+      leave(pair.body_a, pair.body_b, until, pair.last_checked);
+      if (!pair.in_contact || !pair.last.certified) continue;
+    }
+    handed_on_.push_back(number);
+  }
+  // In the order of the pairs, which is that of the last frame's patches.
+  if (thrifty_) std::sort(handed_on_.begin(), handed_on_.end());
+  for (const std::int32_t number : handed_on_) {
+    Pair& pair = pairs_[Index(number)];
+    const Pose X_AB = relative_pose(X_WB[Index(pair.body_a)], X_WB[Index(pair.body_b)]);
+    if (pair.last_checked == frame_) {
+      test(pair, X_AB);
+    } else {
+      PairDistance last = pair.last.found;
+      // Of what was apart only a bound is known, and that it is apart.
+      const double bound = pair.free_until - odometers(pair.body_a, pair.body_b);
+      last.distance = last.distance > 0.0 ? std::max(bound, 0.0) : std::min(bound, last.distance);
+      hand_on(pair, last, X_AB);
+    }
+  }
   if (!candidates_.empty()) work_.rooms_full |= !settle_seams(candidates_, X_WB, patches_);
-  for (const SweepAndPrune::Pair& near : sweep_.pairs())
-    if (meet_by_surfaces(near.a, near.b)) test_surfaces(near.a, near.b, X_WB);
+  for (const bool held : {true, false})
+    for (const SweepAndPrune::Pair& near : sweep_.pairs())
+      if (meet_by_surfaces(near.a, near.b) && of_held(near.a, near.b) == held)
+        test_surfaces(near.a, near.b, X_WB);
   work_.patches = static_cast<int>(patches_.size());
+}
+
+std::uint8_t ContactFinder::urgency_of(int a, int b) const noexcept {
+  return urgency_.empty() ? urgency::kOther : std::min(urgency_[Index(a)], urgency_[Index(b)]);
+}
+
+/// A lower bound of the pair's distance: an answer less what the smaller body has moved since, as the other
+/// one sees it.
+double ContactFinder::bound_at(const Pair& pair, const Answer& answer, const Pose& X_AB) const noexcept {
+  if (!answer.certified) return kAlwaysDue;
+  const double radius_a = radius_[Index(pair.body_a)];
+  const double radius_b = radius_[Index(pair.body_b)];
+  const double moved = radius_b <= radius_a ? displacement(answer.X_AB, X_AB, radius_b)
+                                            : displacement(answer.X_AB.inverse(), X_AB.inverse(), radius_a);
+  return answer.found.distance - moved;
+}
+
+/// Takes the pairs whose answer holds from those that are due; returns how many of the others may be tested.
+int ContactFinder::leave_known(std::span<const Pose> X_WB) noexcept {
+  int held = 0;
+  const auto needs_no_test = [&](const DuePair& due) {
+    Pair& pair = pairs_[Index(due.pair)];
+    const Pose X_AB = relative_pose(X_WB[Index(pair.body_a)], X_WB[Index(pair.body_b)]);
+    double bound = bound_at(pair, pair.last, X_AB);
+    if (const double on_trial = bound_at(pair, pair.trial, X_AB); on_trial > bound) {
+      pair.last = pair.trial;
+      bound = on_trial;
+    }
+    // Measured between the two, the motion is less than what both odometers say.
+    const double here = odometers(pair.body_a, pair.body_b);
+    pair.free_until = std::max(pair.free_until, here + bound);
+    if (pair.free_until - here > tolerance(pair.body_a, pair.body_b)) {
+      pair.in_contact = false;
+      return true;
+    }
+    const double found = pair.last.found.distance;
+    if (pair.last.certified && bound >= found - kKnownShare * std::max(found, 0.0)) {
+      handed_on_.push_back(due.pair);
+      return true;
+    }
+    held += due.urgency == urgency::kHeld ? 1 : 0;
+    return false;
+  };
+  due_.erase(std::remove_if(due_.begin(), due_.end(), needs_no_test), due_.end());
+  work_.known = static_cast<int>(handed_on_.size());
+  return std::min(tests_left_, held + std::max(0, tests_left_ - held) / 2);
+}
+
+/// Counts a pair that is not tested in this frame, and tells whether that is safe.
+void ContactFinder::leave(int a, int b, double gap, std::int64_t last_checked) noexcept {
+  const auto moves_by = [&](int body) { return bodies_[Index(body)].moves ? reach_[Index(body)] : 0.0; };
+  ++work_.unchecked;
+  if (gap > moves_by(a) + moves_by(b)) return;
+  ++work_.left_unproven;
+  work_.left_of_held += of_held(a, b) ? 1 : 0;
+  work_.longest_unchecked =
+      std::max(work_.longest_unchecked, static_cast<int>(frame_ - std::max<std::int64_t>(last_checked, 0)));
+  blocked_[Index(a)] = blocked_[Index(b)] = 1;
 }
 
 void ContactFinder::move_boxes(std::span<const Pose> X_WB) noexcept {
@@ -153,7 +258,7 @@ void ContactFinder::renew_lists(std::span<const Pose> X_WB) noexcept {
       list.reach = tolerance(near.a, near.b) + std::min(slack_[Index(near.a)], slack_[Index(near.b)]);
       list.cut_short =
           !collect(near.a, near.b, relative_pose(X_WB[Index(near.a)], X_WB[Index(near.b)]), list.reach);
-      inherit(old, first);
+      if (old.renewal == renewal_) inherit(old, first);
     }
     list.first = static_cast<std::int32_t>(first);
     list.count = static_cast<std::int32_t>(renewed_.size() - first);
@@ -186,32 +291,49 @@ bool ContactFinder::collect(int a, int b, const Pose& X_AB, double reach) noexce
   return complete;
 }
 
-/// Hands the caches of the old list on: both are sorted, so one walk along both suffices.
+/// Hands the caches of the old list on: both are sorted, so one walk along both suffices. What was not on it
+/// was beyond its reach.
 void ContactFinder::inherit(const BodyPair& old, std::size_t first) noexcept {
   Index from = Index(old.first);
   const Index end = from + Index(old.count);
   for (Index to = first; to < renewed_.size(); ++to) {
     const auto key = std::pair(renewed_[to].piece_a, renewed_[to].piece_b);
     while (from < end && std::pair(pairs_[from].piece_a, pairs_[from].piece_b) < key) ++from;
-    if (from < end && std::pair(pairs_[from].piece_a, pairs_[from].piece_b) == key)
+    if (from < end && std::pair(pairs_[from].piece_a, pairs_[from].piece_b) == key) {
       renewed_[to] = pairs_[from];
+    } else if (!old.cut_short) {
+      renewed_[to].free_until = old.odometers + old.reach;
+    }
   }
 }
 
-void ContactFinder::test(Pair& pair, std::span<const Pose> X_WB) noexcept {
+void ContactFinder::answer(Pair& pair, const Pose& X_AB, Answer& into) noexcept {
+  into.found =
+      closest_features(bodies_[Index(pair.body_a)].part->pieces[Index(pair.piece_a)],
+                       bodies_[Index(pair.body_b)].part->pieces[Index(pair.piece_b)], X_AB, pair.cache);
+  into.X_AB = X_AB;
+  into.certified = into.found.certified();
+  --tests_left_;
+}
+
+void ContactFinder::test(Pair& pair, const Pose& X_AB) noexcept {
+  answer(pair, X_AB, pair.last);
+  pair.trial.certified = false;
+  ++work_.exact_tests;
+  work_.feature_steps += pair.last.found.steps;
+  if (!pair.last.certified) ++work_.uncertified;
+  // What is not certified proves nothing: the pair is due again in the next frame.
+  pair.free_until =
+      pair.last.certified ? odometers(pair.body_a, pair.body_b) + pair.last.found.distance : kAlwaysDue;
+  hand_on(pair, pair.last.found, X_AB);
+}
+
+/// Makes a patch of what was found, when it is within the tolerance.
+void ContactFinder::hand_on(Pair& pair, const PairDistance& found, const Pose& X_AB) noexcept {
   const Part& part_a = *bodies_[Index(pair.body_a)].part;
   const Part& part_b = *bodies_[Index(pair.body_b)].part;
-  const Pose X_AB = relative_pose(X_WB[Index(pair.body_a)], X_WB[Index(pair.body_b)]);
   const Polytope& A = part_a.pieces[Index(pair.piece_a)];
   const Polytope& B = part_b.pieces[Index(pair.piece_b)];
-  const PairDistance found = closest_features(A, B, X_AB, pair.cache);
-  ++work_.exact_tests;
-  work_.feature_steps += found.steps;
-  if (!found.certified()) ++work_.uncertified;
-  pair.last_checked = frame_;
-  // What is not certified proves nothing: the pair is due again in the next frame.
-  pair.free_until = found.certified() ? odometers(pair.body_a, pair.body_b) + found.distance : kAlwaysDue;
-
   const double reach = tolerance(pair.body_a, pair.body_b);
   pair.in_contact = found.distance < reach;
   if (!pair.in_contact) {
@@ -265,31 +387,45 @@ void ContactFinder::test(Pair& pair, std::span<const Pose> X_WB) noexcept {
   steady_centroid(X_AB, patch.manifold, pair.shown);
 }
 
-void ContactFinder::distances_at(std::span<const Pose> X_WB, std::span<double> distance,
-                                 std::span<const char> wanted) noexcept {
-  for (Index i = 0; i < patches_.size();) {
-    const ContactPatch& patch = patches_[i];
-    if (!wanted.empty() && wanted[i] == 0) {
-      ++i;
-      continue;
+int ContactFinder::distances_at(std::span<const Pose> X_WB, std::span<double> distance,
+                                std::span<GapAnswer> asked, std::span<const double> enough,
+                                int keep_back) noexcept {
+  const int before = tests_left_;
+  for (const bool held : {true, false}) {
+    for (Index i = 0; i < patches_.size();) {
+      const ContactPatch& patch = patches_[i];
+      Index end = i + 1;
+      while (patch.of_surfaces && end < patches_.size() && patches_[end].of_surfaces &&
+             patches_[end].body_a == patch.body_a && patches_[end].body_b == patch.body_b)
+        ++end;
+      if (asked[i] == GapAnswer::kAsked && of_held(patch.body_a, patch.body_b) == held) {
+        if (patch.of_surfaces) {
+          surface_distances_at({patches_.data() + i, end - i}, X_WB, distance.subspan(i, end - i),
+                               asked.subspan(i, end - i), keep_back);
+        } else {
+          asked[i] = distance_at(patch, X_WB, enough[i], keep_back, distance[i]);
+        }
+      }
+      i = end;
     }
-    if (!patch.of_surfaces) {
-      Pair& pair = pairs_[Index(patch.pair)];
-      const Pose X_AB = relative_pose(X_WB[Index(pair.body_a)], X_WB[Index(pair.body_b)]);
-      const PairDistance found =
-          closest_features(bodies_[Index(pair.body_a)].part->pieces[Index(pair.piece_a)],
-                           bodies_[Index(pair.body_b)].part->pieces[Index(pair.piece_b)], X_AB, pair.cache);
-      distance[i] = found.certified() ? found.distance : std::min(found.distance, 0.0);
-      ++i;
-      continue;
-    }
-    Index end = i;
-    while (end < patches_.size() && patches_[end].of_surfaces && patches_[end].body_a == patch.body_a &&
-           patches_[end].body_b == patch.body_b)
-      ++end;
-    surface_distances_at({patches_.data() + i, end - i}, X_WB, distance.subspan(i, end - i));
-    i = end;
   }
+  return before - tests_left_;
+}
+
+/// The distance of one patch's pieces, or a bound.
+GapAnswer ContactFinder::distance_at(const ContactPatch& patch, std::span<const Pose> X_WB, double enough,
+                                     int keep_back, double& distance) noexcept {
+  Pair& pair = pairs_[Index(patch.pair)];
+  const Pose X_AB = relative_pose(X_WB[Index(pair.body_a)], X_WB[Index(pair.body_b)]);
+  if (thrifty_) {
+    distance = std::max(bound_at(pair, pair.last, X_AB), bound_at(pair, pair.trial, X_AB));
+    if (distance >= enough) return GapAnswer::kProven;
+  }
+  if (tests_left_ <= keep_back) return GapAnswer::kUnknown;
+  answer(pair, X_AB, pair.trial);
+  const double found = pair.trial.found.distance;
+  distance = pair.trial.certified ? found : std::min(found, 0.0);
+  return GapAnswer::kExact;
 }
 
 }  // namespace tactum

@@ -14,6 +14,15 @@
 /// (S - S0) > tolerance. Both are proofs, not guesses; they are what makes a frame with coherent motion
 /// cheap.
 ///
+/// Exact tests are bounded by a budget (schedule.h). While it is ample, every pair that may be within its
+/// tolerance is tested. Where it is not, answers are kept as long as they hold, and what is left over is
+/// judged:
+///
+///   found d apart at X_AB, moved by m since    known, when m is a small share of d: no test is needed
+///   d - m > what both may move in the frame    left safely: they cannot touch, and their patch is not missed
+///   else                                       left unproven: neither body may move in this frame, see
+///   blocked()
+///
 /// Pieces of one part share walls that nobody can touch, and true faces that were cut; what pairs of pieces
 /// answer is settled between them before it is handed on (seam_settler.h).
 ///
@@ -56,12 +65,21 @@ enum class PatchPoints {
   kClosest      ///< the closest point alone, on the closest features, as they are
 };
 
+/// What is asked and known of a patch's distance at other poses.
+enum class GapAnswer : std::uint8_t {
+  kNotAsked,
+  kAsked,
+  kExact,   ///< the distance has been computed
+  kProven,  ///< what has moved since it was computed proves that it is enough
+  kUnknown  ///< the budget was spent
+};
+
 /// Counted work of one frame: N, K and M of the paper's T_h = N t_s + K t_c + M t_f, and what was left.
 struct ContactWork {
   int broad_phase_runs = 0;    ///< 1 when boxes or lists had to be renewed, else 0 ("N-body tests")
   int bodies = 0;              ///< N
   int near_pairs = 0;          ///< pairs on the lists
-  int exact_tests = 0;         ///< K
+  int exact_tests = 0;         ///< K: of near pairs; pairs of surfaces that were asked count as one each
   int feature_steps = 0;       ///< feature pairs visited by the exact tests
   int surface_queries = 0;     ///< pairs of bodies asked for the local minima of their surfaces
   int minima = 0;              ///< found by them
@@ -69,8 +87,13 @@ struct ContactWork {
   double dropped_error = 0.0;  ///< a dropped one can be overstepped by this at most [m]
   int patches = 0;             ///< M
   int uncertified = 0;         ///< answers without a certificate
-  int unchecked = 0;           ///< due pairs beyond the budget
-  bool rooms_full = false;     ///< something was dropped: raise the rooms
+  int due = 0;            ///< pairs that may be within their tolerance, and whose last answer holds no more
+  int known = 0;          ///< ... and those whose last answer holds
+  int unchecked = 0;      ///< due pairs beyond the budget
+  int left_unproven = 0;  ///< ... that no bound proves to stay apart in this frame
+  int left_of_held = 0;   ///< ... of these, pairs of the held part
+  int longest_unchecked = 0;  ///< frames since the last check of a pair that was left unproven
+  bool rooms_full = false;    ///< something was dropped: raise the rooms
 };
 
 class ContactFinder {
@@ -85,26 +108,45 @@ class ContactFinder {
                        double min_tolerance) noexcept;
 
   /// Exact tests of the near pairs that could be within tolerance, at most `budget` of them, and manifolds.
-  void find_patches(std::span<const Pose> X_WB, int budget,
-                    PatchPoints points = PatchPoints::kQuadrature) noexcept;
+  /// Of a budget that is not ample, half of what the held part leaves is kept for distances_at(). `urgency`
+  /// has an entry per body (schedule.h), or none.
+  void find_patches(std::span<const Pose> X_WB, int budget, PatchPoints points = PatchPoints::kQuadrature,
+                    std::span<const std::uint8_t> urgency = {}) noexcept;
+  /// Whether the budget was not ample in this frame.
+  bool thrifty() const noexcept { return thrifty_; }
+  /// Exact tests that are left of the frame's budget.
+  int tests_left() const noexcept { return tests_left_; }
+  /// Whether some pair of the body was left unproven: it may only stay where it is.
+  bool blocked(int body) const noexcept { return blocked_[static_cast<std::size_t>(body)] != 0; }
 
   std::span<const ContactPatch> patches() const noexcept { return patches_; }
   /// The exact signed distance of the pieces of every patch with the bodies at other poses, near those of
   /// the patches: what a step has to keep positive. `distance` has an entry per patch [m]. A distance that
   /// could not be certified counts as none. Between surfaces it is that of every local minimum there is at
   /// the other poses, told by the patches of the same features; where there is none, by the nearest patch.
-  /// Where `wanted` has entries, one per patch, only those that are not 0 are filled.
-  void distances_at(std::span<const Pose> X_WB, std::span<double> distance,
-                    std::span<const char> wanted = {}) noexcept;
+  ///
+  /// `asked` has an entry per patch and is answered in place. No test is made, when the budget is not ample,
+  /// where what moved since the last one proves that the distance is at least `enough`, nor when only
+  /// `keep_back` tests are left: then the distance is the bound. Pairs of the held part are asked first.
+  /// Returns how many tests were made.
+  int distances_at(std::span<const Pose> X_WB, std::span<double> distance, std::span<GapAnswer> asked,
+                   std::span<const double> enough, int keep_back = 0) noexcept;
   const ContactWork& work() const noexcept { return work_; }
   /// Largest distance of a point of body i from its origin [m].
   double radius(int i) const noexcept { return radius_[static_cast<std::size_t>(i)]; }
 
  private:
+  struct Answer {
+    PairDistance found;
+    Pose X_AB;
+    bool certified = false;  ///< false: it tells nothing
+  };
   struct Pair {
     std::int32_t body_a = -1, body_b = -1, piece_a = -1, piece_b = -1;
     PairCache cache;
     SteadyContact shown;
+    Answer last;                     ///< where the pair is, or was not long ago
+    Answer trial;                    ///< where it was on trial; nothing says that it went there
     double free_until = -1e300;      ///< odometer sum at which the distance may have shrunk to zero
     std::int64_t last_checked = -1;  ///< frame
     bool in_contact = false;
@@ -125,14 +167,23 @@ class ContactFinder {
   void renew_lists(std::span<const Pose> X_WB) noexcept;
   bool collect(int a, int b, const Pose& X_AB, double reach) noexcept;
   void inherit(const BodyPair& old, std::size_t first) noexcept;
-  void test(Pair& pair, std::span<const Pose> X_WB) noexcept;
+  double bound_at(const Pair& pair, const Answer& answer, const Pose& X_AB) const noexcept;
+  void answer(Pair& pair, const Pose& X_AB, Answer& into) noexcept;
+  int leave_known(std::span<const Pose> X_WB) noexcept;
+  void leave(int a, int b, double gap, std::int64_t last_checked) noexcept;
+  bool of_held(int a, int b) const noexcept { return urgency_of(a, b) == urgency::kHeld; }
+  std::uint8_t urgency_of(int a, int b) const noexcept;
+  void test(Pair& pair, const Pose& X_AB) noexcept;
+  void hand_on(Pair& pair, const PairDistance& found, const Pose& X_AB) noexcept;
+  GapAnswer distance_at(const ContactPatch& patch, std::span<const Pose> X_WB, double enough, int keep_back,
+                        double& distance) noexcept;
   bool meet_by_surfaces(int a, int b) const noexcept {
     return bodies_[std::size_t(a)].part->is_surface() || bodies_[std::size_t(b)].part->is_surface();
   }
   void test_surfaces(int a, int b, std::span<const Pose> X_WB) noexcept;
   void add_surface_patch(int a, int b, const SurfaceMinimum& minimum, bool second_end, double reach) noexcept;
   void surface_distances_at(std::span<const ContactPatch> patches, std::span<const Pose> X_WB,
-                            std::span<double> distance) noexcept;
+                            std::span<double> distance, std::span<GapAnswer> asked, int keep_back) noexcept;
   double odometers(int a, int b) const noexcept { return travel_[std::size_t(a)] + travel_[std::size_t(b)]; }
   double tolerance(int a, int b) const noexcept;
   BodyPair& list_of(int a, int b) noexcept {
@@ -150,6 +201,11 @@ class ContactFinder {
   std::vector<BodyPair> lists_;
   std::vector<Pair> pairs_, renewed_;
   std::vector<DuePair> due_;
+  std::vector<std::int32_t> handed_on_;  // pairs with an answer, or that had one
+  std::vector<char> blocked_;            // by body
+  std::span<const std::uint8_t> urgency_;
+  bool thrifty_ = false;
+  int tests_left_ = 0;
   std::vector<ContactPatch> patches_;
   std::vector<SeamCandidate> candidates_;
   std::vector<SurfaceMinimum> minima_;

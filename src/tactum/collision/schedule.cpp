@@ -7,8 +7,11 @@ namespace {
 
 /// A strict order without ties, so that every standard library selects the same pairs.
 bool more_urgent(const DuePair& a, const DuePair& b) {
-  if (a.was_in_contact != b.was_in_contact) return a.was_in_contact;
-  if (a.last_checked != b.last_checked) return a.last_checked < b.last_checked;
+  if (a.urgency != b.urgency) return a.urgency < b.urgency;
+  const auto since = [](const DuePair& due) {
+    return due.last_checked - (due.was_in_contact ? kHeadStart : 0);
+  };
+  if (since(a) != since(b)) return since(a) < since(b);
   return a.pair < b.pair;
 }
 

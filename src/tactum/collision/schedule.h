@@ -1,20 +1,34 @@
 #pragma once
-/// Real-time scheduling, paper 4.2: when more pairs are near than a frame may check, which go first? Pairs in
-/// contact in the last frame, then those unchecked for longest; greedily into an array of fixed length. The
-/// length is a work budget, an input of the frame and never a clock reading, so that a cut-short frame
-/// replays exactly.
+/// Real-time scheduling, paper 4.2: when more pairs are near than a frame may check, which go first? The
+/// length of the array is a work budget, an input of the frame and never a clock reading, so that a cut-short
+/// frame replays exactly. From the most urgent to the least:
+///
+///   pairs of the held part               always: what the hand feels is never guessed
+///   pairs of what touches it             it is what the hand feels next
+///   of the others, by time since the last check; to have been in contact counts as kHeadStart frames more
+///
+/// The paper puts all pairs in contact before all others. In a heap there are always more of them than the
+/// array holds, and the others would never be checked; with a head start every pair's turn comes.
 
 #include <cstdint>
 #include <span>
 
 namespace tactum {
 
+/// How a body's pairs stand in the order: what the hand feels, what it feels next, the rest.
+namespace urgency {
+inline constexpr std::uint8_t kHeld = 0, kTouchesHeld = 1, kOther = 2;
+}  // namespace urgency
+
 /// A pair that may need an exact test this frame.
 struct DuePair {
-  std::int32_t pair = -1;          ///< index into the finder's pairs
-  bool was_in_contact = false;     ///< in the last frame
-  std::int64_t last_checked = -1;  ///< frame number of its last exact test
+  std::int32_t pair = -1;                  ///< index into the finder's pairs
+  std::uint8_t urgency = urgency::kOther;  ///< the greater of its bodies'
+  bool was_in_contact = false;             ///< in the last frame
+  std::int64_t last_checked = -1;          ///< frame number of its last exact test
 };
+
+inline constexpr std::int64_t kHeadStart = 8;  ///< [frames]
 
 /// Moves the `budget` most urgent pairs to the front, in their original order among themselves, and returns
 /// how many those are: min(budget, due.size()). Linear in expectation.

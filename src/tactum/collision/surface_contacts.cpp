@@ -28,6 +28,9 @@ void ContactFinder::test_surfaces(int a, int b, std::span<const Pose> X_WB) noex
   const double reach = tolerance(a, b);
   BodyPair& list = list_of(a, b);
   if (list.free_until - odometers(a, b) > reach) return;
+  if (tests_left_ <= 0) return leave(a, b, list.free_until - odometers(a, b), frame_);
+  --tests_left_;
+  ++work_.exact_tests;
   const Part& part_a = *bodies_[Index(a)].part;
   const Part& part_b = *bodies_[Index(b)].part;
   // Where nothing may cross, what is below zero is rounding.
@@ -106,7 +109,11 @@ void ContactFinder::add_surface_patch(int a, int b, const SurfaceMinimum& minimu
 }
 
 void ContactFinder::surface_distances_at(std::span<const ContactPatch> patches, std::span<const Pose> X_WB,
-                                         std::span<double> distance) noexcept {
+                                         std::span<double> distance, std::span<GapAnswer> asked,
+                                         int keep_back) noexcept {
+  std::fill(asked.begin(), asked.end(), tests_left_ > keep_back ? GapAnswer::kExact : GapAnswer::kUnknown);
+  if (tests_left_ <= keep_back) return;
+  --tests_left_;
   const ContactPatch& first = patches.front();
   const Part& part_a = *bodies_[Index(first.body_a)].part;
   const Part& part_b = *bodies_[Index(first.body_b)].part;

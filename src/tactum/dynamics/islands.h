@@ -2,6 +2,7 @@
 /// Which bodies may push each other in a frame: an island is a set of bodies that move and that contacts
 /// join. What does not move joins nothing. Islands answer independently of each other.
 
+#include <span>
 #include <vector>
 
 #include "tactum/dynamics/world.h"
@@ -11,12 +12,11 @@ namespace tactum {
 class Islands {
  public:
   explicit Islands(const World& world) : parent_(world.bodies.size()), moves_(world.bodies.size()) {
-    for (std::size_t i = 0; i < moves_.size(); ++i) moves_[i] = world.bodies[i].moves() ? 1 : 0;
-    clear();
+    for (std::size_t i = 0; i < parent_.size(); ++i) set_alone(i, world.bodies[i].moves());
   }
-  /// Every body on its own.
-  void clear() noexcept {
-    for (std::size_t i = 0; i < parent_.size(); ++i) parent_[i] = static_cast<int>(i);
+  /// Every body on its own; those with an entry in `waits` that is not 0 do not move in this frame.
+  void clear(const World& world, std::span<const char> waits) noexcept {
+    for (std::size_t i = 0; i < parent_.size(); ++i) set_alone(i, world.bodies[i].moves() && waits[i] == 0);
   }
   void join(int a, int b) noexcept {
     if (!moves(a) || !moves(b)) return;
@@ -35,6 +35,11 @@ class Islands {
   int of_contact(int a, int b) const noexcept { return moves(a) ? of(a) : moves(b) ? of(b) : -1; }
 
  private:
+  void set_alone(std::size_t body, bool moves) noexcept {
+    parent_[body] = static_cast<int>(body);
+    moves_[body] = moves ? 1 : 0;
+  }
+
   std::vector<int> parent_;
   std::vector<char> moves_;
 };

@@ -82,9 +82,10 @@ void RestingContact::push(const Row& row, const Vec3& impulse, std::span<Twist> 
 void RestingContact::arrange(std::span<Twist> V) noexcept {
   started_ = true;
   for (const Row& row : rows_)
-    if (!row.contact.impulse.isZero(0.0)) push(row, row.contact.impulse, V);
+    if (row.island >= 0 && !row.contact.impulse.isZero(0.0)) push(row, row.contact.impulse, V);
   std::fill(islands_.begin(), islands_.end(), Range{});
-  for (const Row& row : rows_) ++islands_[Index(row.island)].count;
+  for (const Row& row : rows_)
+    if (row.island >= 0) ++islands_[Index(row.island)].count;
   for (const JointRow& row : joints_) ++islands_[Index(row.island)].joint_count;
   int first = 0;
   int joint_first = 0;
@@ -97,6 +98,7 @@ void RestingContact::arrange(std::span<Twist> V) noexcept {
   order_.resize(rows_.size());
   joint_order_.resize(joints_.size());
   for (Index i = 0; i < rows_.size(); ++i) {
+    if (rows_[i].island < 0) continue;
     Range& island = islands_[Index(rows_[i].island)];
     order_[Index(island.first + island.count++)] = static_cast<int>(i);
   }

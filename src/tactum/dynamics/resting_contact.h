@@ -38,7 +38,7 @@ class RestingContact {
     started_ = false;
   }
   /// A contact whose gap may close to nothing within h. `name` is the row's from frame to frame; `index` is
-  /// the caller's, and rises.
+  /// the caller's, and rises. With island -1 it does nothing but keep the last frame's impulse for the next.
   void add(const ContactRow& row, int index, int island, std::uint64_t name, double gap_m,
            std::span<const Pose> X_WB, std::span<const Mobility> W, double h) noexcept;
   /// A body's joint, when it does anything to its motion.

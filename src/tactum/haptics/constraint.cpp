@@ -20,6 +20,9 @@ constexpr double kTrustGrowth = 2.0;
 /// The tolerance of contact determination is so much more than the trusted length, in skins.
 constexpr double kReachMargin = 4.0;
 
+/// What a gap may become.
+double least_gap(double now, double skin) { return std::min(0.5 * skin, now > 0.0 ? 0.5 * now : now); }
+
 /// The bodies and what each wants: to the hand, on along its way; or, `at_rest`, nothing.
 void add_bodies(const World& world, const FrameSettings& settings, double dt_s, bool at_rest,
                 FrameState& state, FrameReport& report) {
@@ -140,11 +143,9 @@ bool open_after(const World& world, double share, FrameState& state, FrameReport
     c.X_WB_trial[i] = constrained_pose(world.bodies[i], advanced(state.world.X_WB[i], step, 1.0));
     if (!c.X_WB_trial[i].finite()) return false;
   }
-  const std::span<const char> asked = state.free.patch_asked;
-  state.finder.distances_at(c.X_WB_trial, c.gap_trial, asked);
-  for (Index p = 0; p < c.gap.size(); ++p) report.validation_tests += asked[p];
+  look_at_trial(0, state, report);
   for (Index p = 0; p < c.gap.size(); ++p)
-    if (asked[p] && !may_become(c.gap[p], c.gap_trial[p], c.skin_m)) return false;
+    if (state.free.patch_asked[p] && !open_at_trial(p, c)) return false;
   return true;
 }
 
@@ -161,7 +162,7 @@ void restore(const World& world, const FrameSettings& settings, double dt_s, Fra
   ConstraintState& c = state.constraint;
   bool tight = false;
   for (Index p = 0; p < c.gap.size(); ++p) tight |= state.free.patch_asked[p] && c.gap[p] < 0.5 * c.skin_m;
-  if (!tight) return;
+  if (!tight || state.finder.blocked(state.tool.body)) return;
   add_bodies(world, settings, dt_s, true, state, report);
   add_contact_rows(true, c.problem, state);
   if (!solve(settings, c, c.problem, report)) return;
@@ -207,6 +208,7 @@ bool find_again(const FrameSettings& settings, double dt_s, FrameState& state, F
 double advance(const World& world, const FrameSettings& settings, double dt_s, FrameState& state,
                FrameReport& report) {
   if (!find_forces(world, settings, dt_s, state, report)) return 0.0;
+  if (state.finder.blocked(state.tool.body)) return 0.0;
   double share = 0.0;
   for (int round = 0; round <= kFeedbacks; ++round) {
     if (round > 0) {
@@ -311,10 +313,27 @@ ConstraintState::ConstraintState(const World& world, const FrameSettings& settin
   shaded.reserve(rows);
   gap.reserve(settings.budget.rooms.patches);
   gap_trial.reserve(settings.budget.rooms.patches);
+  gap_least.reserve(settings.budget.rooms.patches);
+  gap_answer.reserve(settings.budget.rooms.patches);
 }
 
-bool may_become(double now, double then, double skin) noexcept {
-  return then >= std::min(0.5 * skin, now > 0.0 ? 0.5 * now : now);
+bool may_become(double now, double then, double skin) noexcept { return then >= least_gap(now, skin); }
+
+void look_at_trial(int keep_back, FrameState& state, FrameReport& report) noexcept {
+  ConstraintState& c = state.constraint;
+  for (Index p = 0; p < c.gap.size(); ++p) {
+    c.gap_answer[p] = state.free.patch_asked[p] ? GapAnswer::kAsked : GapAnswer::kNotAsked;
+    c.gap_least[p] = least_gap(c.gap[p], c.skin_m);
+  }
+  report.validation_tests +=
+      state.finder.distances_at(c.X_WB_trial, c.gap_trial, c.gap_answer, c.gap_least, keep_back);
+  state.waiting.ran_out |=
+      std::find(c.gap_answer.begin(), c.gap_answer.end(), GapAnswer::kUnknown) != c.gap_answer.end();
+}
+
+bool open_at_trial(std::size_t patch, const ConstraintState& c) noexcept {
+  if (c.gap_answer[patch] == GapAnswer::kExact) return c.gap_trial[patch] >= c.gap_least[patch];
+  return c.gap_answer[patch] == GapAnswer::kProven;
 }
 
 void trusted_reach(const World& world, double dt_s, FrameState& state) noexcept {
@@ -338,7 +357,10 @@ void respond_constrained(const World& world, const FrameSettings& settings, doub
   c.gap.clear();
   for (const ContactPatch& patch : patches) c.gap.push_back(patch.distance);
   c.gap_trial.resize(c.gap.size());
+  c.gap_least.resize(c.gap.size());
+  c.gap_answer.resize(c.gap.size());
 
+  let_wait(world, dt_s, state, report);
   find_islands(world, state);
   make_corner_rows(world, settings, state);
   strike(world, settings, dt_s, state, report);
@@ -350,6 +372,7 @@ void respond_constrained(const World& world, const FrameSettings& settings, doub
   }
   trust_step(settings, state);
   end_turning(world, state);
+  go_on(state);
   report_rows(world, dt_s, state, report);
 }
 

@@ -48,6 +48,8 @@ struct ConstraintState {
   std::vector<double> feedback;      ///< what exact gaps have added to the rows [m]
   std::vector<Pose> X_WB_trial;
   std::vector<double> gap, gap_trial;  ///< of the patches: now, and at the trial [m]
+  std::vector<double> gap_least;       ///< what they may become [m]
+  std::vector<GapAnswer> gap_answer;   ///< how the trial's are known
 
   /// The problem whose answer is the step.
   ConstraintProblem& moves() { return shades ? way : problem; }
@@ -61,6 +63,12 @@ void trusted_reach(const World& world, double dt_s, FrameState& state) noexcept;
 /// A gap may become `then` after `now`: open, and if it must shrink below half the skin, then by no more than
 /// half. Held to the exact last gap, a part that is a rounding too near could never move again.
 bool may_become(double now, double then, double skin) noexcept;
+
+/// Asks for the gaps at the trial of the patches that state.free.patch_asked names, as long as more than
+/// `keep_back` tests are left.
+void look_at_trial(int keep_back, FrameState& state, FrameReport& report) noexcept;
+/// Whether the gap of a patch that was asked for is open at the trial.
+bool open_at_trial(std::size_t patch, const ConstraintState& c) noexcept;
 
 /// Moves everything that moves, the held part's island last. Fills state.contacts.rows, the felt wrench and
 /// the report's response fields.

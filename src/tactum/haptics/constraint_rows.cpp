@@ -149,6 +149,7 @@ double gap_at_trial(const ContactRow& row, const FrameState& state) noexcept {
 }
 
 double overstated_at_trial(std::span<const ContactRow> rows_of_patch, const FrameState& state) noexcept {
+  if (state.constraint.gap_answer[Index(rows_of_patch.front().patch)] != GapAnswer::kExact) return 0.0;
   double least = std::numeric_limits<double>::infinity();
   for (const ContactRow& row : rows_of_patch) least = std::min(least, gap_at_trial(row, state));
   return std::max(0.0, least - state.constraint.gap_trial[Index(rows_of_patch.front().patch)]);

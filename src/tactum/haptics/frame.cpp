@@ -21,7 +21,6 @@ Wrench haptic_frame(const World& world, const FrameSettings& settings, const Dev
   report.index = tick.index;
   const double dt = settings.dt_s;
   Wrench raw;
-
   // Where is the hand?
   const bool was_known = state.hand.known;
   follow_hand(settings.workspace, sample, dt, state.hand);
@@ -34,12 +33,14 @@ Wrench haptic_frame(const World& world, const FrameSettings& settings, const Dev
     // How fast does everything move, and how far may it come: delta = v_c dt.
     wanted_velocities(world, settings, dt, state);
     tolerances_from_speed(world, settings, dt, state);
+    set_urgency(state);
     state.ended(Stage::kVelocities);
 
     // Which pairs could touch, and where do they?
     state.finder.find_near_pairs(state.world.X_WB, state.reach, settings.penalty.min_tolerance_m);
     state.ended(Stage::kNearPairs);
-    state.finder.find_patches(state.world.X_WB, settings.budget.max_exact_tests, points_wanted(settings));
+    state.finder.find_patches(state.world.X_WB, settings.budget.max_exact_tests, points_wanted(settings),
+                              state.waiting.urgency);
     report.work = state.finder.work();
     report.flags |= flags_of(report.work);
     state.ended(Stage::kExactTests);

@@ -43,6 +43,8 @@ void add_to(Hash& hash, const FrameReport& report) noexcept {
   hash.add(report.active_constraints);
   hash.add(report.validation_tests);
   hash.add(report.validation_retries);
+  hash.add(report.waiting);
+  hash.add(report.cut_short);
   hash.add(report.friction.sticking);
   hash.add(report.friction.slipping);
   hash.add(report.friction.cone_used + 0.0);
@@ -53,7 +55,9 @@ void add_to(Hash& hash, const FrameReport& report) noexcept {
   hash.add(report.held_contact_points);
   hash.add(report.penetrating);
   hash.add(report.work.broad_phase_runs);
+  hash.add(report.work.known);
   hash.add(report.work.unchecked);
+  hash.add(report.work.left_unproven);
   hash.add(report.work.uncertified);
 }
 

@@ -58,9 +58,15 @@ struct FrameReport {
   int active_constraints = 0;  ///< rows that hold the bodies (constraint response)
   int validation_tests = 0;    ///< exact tests of poses before they were taken
   int validation_retries = 0;  ///< steps that were not taken as they came
+  int waiting = 0;             ///< bodies that stood still for want of budget (waiting.h)
+  int asleep = 0;              ///< bodies that rest, and were not looked at
+  int longest_wait = 0;        ///< ... of these, frames on end
+  int cut_short = 0;           ///< bodies that stayed, because no step of theirs was found open
   FrictionReport friction;     ///< what patches do that rub
   ContactWork work;
 
+  /// Exact tests in all: what the budget bounds.
+  int tests() const { return work.exact_tests + validation_tests; }
   bool in_contact() const { return work.patches > 0; }
 };
 

@@ -13,6 +13,7 @@
 #include "tactum/haptics/settings.h"
 #include "tactum/haptics/shading.h"
 #include "tactum/haptics/smoothing.h"
+#include "tactum/haptics/waiting.h"
 
 namespace tactum {
 
@@ -49,6 +50,7 @@ struct FrameState {
   ContactRows contacts;
   ConstraintState constraint;
   FreeBodies free;
+  Waiting waiting;
 
   void ended(Stage stage) noexcept {
     if (observer) observer->stage_ended(stage);

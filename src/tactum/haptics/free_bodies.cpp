@@ -15,10 +15,16 @@ namespace {
 
 using Index = std::size_t;
 
-/// Blows in a frame, for every contact point; what is left then is taken as rest, without restitution.
+/// Blows in a frame, for every contact point and in all; what is left then is taken as rest, without
+/// restitution.
 constexpr int kBlowsAPoint = 8;
+constexpr int kMostBlows = 128;
 /// A gap below the skin opens by this share of what is missing in a frame.
 constexpr double kOpening = 0.1;
+/// After the halvings, how often those that are in the way of what stays may be found, before all stay.
+constexpr int kMostStops = 12;
+/// Tests of each gap of the held part's island that are kept for it.
+constexpr int kRoundsOfHeld = 4;
 
 /// Blows on the held part, told at the handle.
 class BlowsOnHeld final : public ImpactObserver {
@@ -53,8 +59,8 @@ Mat3 turning_inertia(const Body& body) {
 }
 
 /// Whether move_free_bodies() moves a body.
-bool moves_here(const World& world, const FrameState& state, Index body) {
-  if (!world.bodies[body].moves()) return false;
+bool moves_here(const FrameState& state, Index body) {
+  if (!state.free.islands.moves(static_cast<int>(body))) return false;
   return state.free.held_island < 0 ||
          state.free.islands.of(static_cast<int>(body)) != state.free.held_island;
 }
@@ -88,62 +94,110 @@ void add_rows(const World& world, double dt_s, FrameState& state) {
                   beyond < 0.0 ? kOpening * beyond : beyond, X_WB, state.mobility, dt_s);
   }
   for (Index i = 0; i < world.bodies.size(); ++i)
-    if (moves_here(world, state, i) && !is_held(state, i))
+    if (moves_here(state, i) && !is_held(state, i))
       f.resting.add_joint(static_cast<int>(i), f.islands.of(static_cast<int>(i)), world.bodies[i], X_WB[i],
                           state.mobility[i], dt_s);
 }
 
-/// The share of every island's step that its bodies' reach allows.
-void limit_shares(const World& world, double dt_s, FrameState& state) {
+/// The share of every island's step that its bodies' reach allows, and how far each would go.
+void limit_shares(double dt_s, FrameState& state) {
   FreeBodies& f = state.free;
   std::fill(f.share.begin(), f.share.end(), 1.0);
-  for (Index i = 0; i < world.bodies.size(); ++i) {
-    if (!moves_here(world, state, i)) continue;
+  for (Index i = 0; i < f.share.size(); ++i) {
+    if (!moves_here(state, i)) continue;
     const Twist& V = state.world.V_WB[i];
     const double way = (V.v.norm() + V.w.norm() * state.finder.radius(static_cast<int>(i))) * dt_s;
     double& share = f.share[Index(f.islands.of(static_cast<int>(i)))];
     if (way * share > state.reach[i]) share = state.reach[i] / way;
+    state.waiting.way[i] = way;
   }
+  // An island's number is its first body.
+  for (Index i = 0; i < f.share.size(); ++i)
+    if (moves_here(state, i)) f.share[i] = f.share[Index(f.islands.of(static_cast<int>(i)))];
+  if (f.held_here && state.finder.blocked(state.tool.body)) f.share[Index(state.tool.body)] = 0.0;
 }
 
 /// Puts the bodies of unsettled islands where their step leads.
 void try_steps(const World& world, double dt_s, FrameState& state) {
   const FreeBodies& f = state.free;
   for (Index i = 0; i < world.bodies.size(); ++i) {
-    if (!moves_here(world, state, i)) continue;
-    const Index island = Index(f.islands.of(static_cast<int>(i)));
-    if (f.settled[island]) continue;
+    if (!moves_here(state, i) || f.settled[Index(f.islands.of(static_cast<int>(i)))]) continue;
     Pose& X_trial = state.constraint.X_WB_trial[i];
     const Pose& X_WB = state.world.X_WB[i];
-    X_trial = constrained_pose(world.bodies[i], advanced(X_WB, state.world.V_WB[i], f.share[island] * dt_s));
+    X_trial = X_WB;
+    if (f.share[i] > 0.0)
+      X_trial = constrained_pose(world.bodies[i], advanced(X_WB, state.world.V_WB[i], f.share[i] * dt_s));
     if (!X_trial.finite()) X_trial = X_WB;
   }
 }
 
-Index island_of(const FreeBodies& f, const ContactPatch& patch) {
-  return Index(f.islands.of_contact(patch.body_a, patch.body_b));
+/// Whether the trial has a body where it is now.
+bool stands(const FrameState& state, int body) {
+  return !moves_here(state, Index(body)) || state.free.share[Index(body)] == 0.0;
 }
 
-/// Settles the islands whose gaps are all open on trial; false when some are not.
-bool look(FrameState& state, FrameReport& report) {
+/// Settles the islands whose gaps are all open on trial; false when some are not. With `all` every gap of an
+/// unsettled island is looked at, else those of bodies whose share has changed.
+bool look(bool all, int keep_back, FrameState& state, FrameReport& report) {
   FreeBodies& f = state.free;
-  ConstraintState& c = state.constraint;
   const std::span<const ContactPatch> patches = state.finder.patches();
   f.patch_asked.clear();
+  f.patch_closed.clear();
   for (const ContactPatch& patch : patches) {
-    const bool asked = !f.of_held(patch) && !f.settled[island_of(f, patch)];
+    const int island = f.islands.of_contact(patch.body_a, patch.body_b);
+    const bool news = all || f.cut[Index(patch.body_a)] || f.cut[Index(patch.body_b)];
+    const bool asked = island >= 0 && !f.of_held(patch) && !f.settled[Index(island)] && news &&
+                       !(stands(state, patch.body_a) && stands(state, patch.body_b));
     f.patch_asked.push_back(asked ? 1 : 0);
-    report.validation_tests += asked ? 1 : 0;
   }
-  state.finder.distances_at(c.X_WB_trial, c.gap_trial, f.patch_asked);
+  look_at_trial(keep_back, state, report);
   std::fill(f.settled.begin(), f.settled.end(), 1);
-  bool all = true;
+  bool all_open = true;
   for (Index p = 0; p < patches.size(); ++p) {
-    if (!f.patch_asked[p] || may_become(c.gap[p], c.gap_trial[p], c.skin_m)) continue;
-    f.settled[island_of(f, patches[p])] = 0;
-    all = false;
+    const bool closed = f.patch_asked[p] && !open_at_trial(p, state.constraint);
+    f.patch_closed.push_back(closed ? 1 : 0);
+    if (!closed) continue;
+    f.settled[Index(f.islands.of_contact(patches[p].body_a, patches[p].body_b))] = 0;
+    all_open = false;
   }
-  return all;
+  return all_open;
+}
+
+/// Cuts the steps of the bodies whose gaps are not open: to half, or, where that has not helped or cannot be
+/// known, to nothing.
+void cut(bool halve, FrameState& state) {
+  FreeBodies& f = state.free;
+  const std::span<const ContactPatch> patches = state.finder.patches();
+  std::fill(f.cut.begin(), f.cut.end(), 0);
+  for (Index p = 0; p < patches.size(); ++p) {
+    if (!f.patch_closed[p]) continue;
+    const bool known = state.constraint.gap_answer[p] == GapAnswer::kExact;
+    for (const int body : {patches[p].body_a, patches[p].body_b}) {
+      if (!moves_here(state, Index(body))) continue;
+      double& share = f.share[Index(body)];
+      if (!halve || !known) {
+        share = 0.0;
+      } else if (!f.cut[Index(body)]) {
+        share *= 0.5;
+      }
+      f.cut[Index(body)] = 1;
+    }
+  }
+}
+
+/// The bodies of islands that are not settled stay.
+void stay(FrameState& state) {
+  FreeBodies& f = state.free;
+  for (Index i = 0; i < f.share.size(); ++i)
+    if (moves_here(state, i) && !f.settled[Index(f.islands.of(static_cast<int>(i)))]) f.share[i] = 0.0;
+}
+
+/// Tests that are left to the held part's own island, when it comes after this.
+int kept_for_held(const FrameState& state) {
+  const std::span<const ContactPatch> patches = state.finder.patches();
+  const auto own = std::count_if(patches.begin(), patches.end(),
+                                 [&](const ContactPatch& patch) { return state.free.of_held(patch); });
+  return std::min(kRoundsOfHeld * static_cast<int>(own), state.finder.tests_left() / 2);
 }
 
 /// Second-order correction, as in constraint_rows.h.
@@ -156,8 +210,9 @@ void correct(double dt_s, FrameState& state) {
     for (end = first + 1; end < rows.size() && rows[end].patch == rows[first].patch;) ++end;
     const Index a = Index(rows[first].body_a);
     const Index b = Index(rows[first].body_b);
-    const Index island = Index(f.islands.of_contact(rows[first].body_a, rows[first].body_b));
-    if (f.settled[island]) continue;
+    const int of_contact = f.islands.of_contact(rows[first].body_a, rows[first].body_b);
+    if (of_contact < 0 || f.settled[Index(of_contact)]) continue;
+    const Index island = Index(of_contact);
     const double too_much = overstated_at_trial(rows.subspan(first, end - first), state);
     const double share = f.share[island];
     for (Index r = first; r < end; ++r) {
@@ -199,8 +254,10 @@ FreeBodies::FreeBodies(const World& world, const FrameSettings& settings)
       w_start(world.bodies.size(), Vec3::Zero()),
       w_free(world.bodies.size(), Vec3::Zero()),
       share(world.bodies.size(), 1.0),
+      cut(world.bodies.size(), 0),
       settled(world.bodies.size(), 0) {
   patch_asked.reserve(settings.budget.rooms.patches);
+  patch_closed.reserve(settings.budget.rooms.patches);
 }
 
 void begin_midway(const World& world, double dt_s, WorldState& state) noexcept {
@@ -216,7 +273,7 @@ void pull_free_bodies(const World& world, double dt_s, FrameState& state) noexce
 
 void find_islands(const World& world, FrameState& state) noexcept {
   FreeBodies& f = state.free;
-  f.islands.clear();
+  f.islands.clear(world, state.waiting.waits);
   f.held_island = -1;
   f.held_here = false;
   for (const ContactPatch& patch : state.finder.patches()) f.islands.join(patch.body_a, patch.body_b);
@@ -225,9 +282,10 @@ void find_islands(const World& world, FrameState& state) noexcept {
   Index unknowns = 0;
   f.alone = true;
   for (Index i = 0; i < world.bodies.size(); ++i) {
-    const bool near = island >= 0 && world.bodies[i].moves() && f.islands.of(static_cast<int>(i)) == island;
+    const bool near =
+        island >= 0 && f.islands.moves(static_cast<int>(i)) && f.islands.of(static_cast<int>(i)) == island;
     f.near_held[i] = near ? 1 : 0;
-    f.alone &= near || !world.bodies[i].moves();
+    f.alone &= near || !f.islands.moves(static_cast<int>(i));
     if (near) unknowns += unknowns_of(world.bodies[i].joint);
   }
   if (held < 0) return;
@@ -243,22 +301,24 @@ void strike(const World& world, const FrameSettings& settings, double dt_s, Fram
   for (Index i = 0; i < world.bodies.size(); ++i) {
     if (!world.bodies[i].moves()) continue;
     // The hand decides where the held part goes: a blow does not move it, it is felt.
-    state.mobility[i] = is_held(state, i) ? Mobility::Zero() : inertial_mobility(world.bodies[i], X_WB[i]);
+    const bool given_way = is_held(state, i) || !state.free.islands.moves(static_cast<int>(i));
+    state.mobility[i] = given_way ? Mobility::Zero() : inertial_mobility(world.bodies[i], X_WB[i]);
     if (world.bodies[i].joint.kind != JointKind::kFree && !is_held(state, i))
       V_WB[i] = constrained_velocity(world.bodies[i].joint, X_WB[i],
                                      inertial_resistance(world.bodies[i], X_WB[i]), V_WB[i]);
   }
   const double energy_J = held < 0 ? 0.0 : bodies_energy(world, state.world, held);
   BlowsOnHeld blows(held, held < 0 ? Vec3::Zero() : X_WB[Index(held)] * state.tool.X_BH.p);
-  report.impacts = resolve_impacts(state.contacts.rows, X_WB, state.mobility, dt_s,
-                                   kBlowsAPoint * static_cast<int>(state.contacts.rows.size()), V_WB, &blows);
+  report.impacts = resolve_impacts(
+      state.contacts.rows, X_WB, state.mobility, dt_s,
+      std::min(kMostBlows, kBlowsAPoint * static_cast<int>(state.contacts.rows.size())), V_WB, &blows);
   if (blows.sum())
     state.blows.add(settings.impacts, dt_s, *blows.sum(),
                     std::max(0.0, energy_J - bodies_energy(world, state.world, held)));
 
   for (Index i = 0; i < world.bodies.size(); ++i) {
     const Body& body = world.bodies[i];
-    if (!body.moves() || is_held(state, i)) continue;
+    if (!state.free.islands.moves(static_cast<int>(i)) || is_held(state, i)) continue;
     state.free.w_start[i] = V_WB[i].w;
     if (turns_freely(body)) V_WB[i].w = rate_midway(turning_inertia(body), X_WB[i].R, V_WB[i].w, dt_s);
     if (body.joint.kind == JointKind::kBall) V_WB[i].v = V_WB[i].w.cross(X_WB[i].p - body.joint.anchor_W);
@@ -285,26 +345,37 @@ void move_free_bodies(const World& world, const FrameSettings& settings, double 
   };
   std::fill(f.settled.begin(), f.settled.end(), 0);
   solve();
-  limit_shares(world, dt_s, state);
+  limit_shares(dt_s, state);
+  const int keep_back = kept_for_held(state);
   c.X_WB_trial = state.world.X_WB;  // same size: nothing is allocated
-  for (int round = 0;; ++round) {
+  bool all = true;
+  for (int round = 0, cuts = 0;; ++round) {
     try_steps(world, dt_s, state);
-    if (look(state, report)) break;
+    if (cuts > kHalvings + kMostStops) break;  // those stayed
+    const int tests = report.validation_tests;
+    if (look(all, keep_back, state, report)) break;
     ++report.validation_retries;
-    if (round < kFeedbacks) {
+    // To solve again asks for as many tests as now.
+    all = round < kFeedbacks && state.finder.tests_left() - keep_back >= report.validation_tests - tests;
+    if (all) {
       correct(dt_s, state);
       solve();
-      limit_shares(world, dt_s, state);
+      limit_shares(dt_s, state);
+    } else if (++cuts <= kHalvings + kMostStops) {
+      round = kFeedbacks;
+      cut(cuts <= kHalvings, state);
     } else {
-      for (Index i = 0; i < f.share.size(); ++i)
-        if (!f.settled[i]) f.share[i] = round < kFeedbacks + kHalvings ? 0.5 * f.share[i] : 0.0;
-      if (round > kFeedbacks + kHalvings) break;  // those stayed
+      stay(state);
     }
   }
-  for (Index i = 0; i < world.bodies.size(); ++i)
-    if (moves_here(world, state, i)) state.world.X_WB[i] = c.X_WB_trial[i];
-  for (Index p = 0; p < c.gap.size(); ++p)
-    if (!f.of_held(state.finder.patches()[p])) c.gap[p] = c.gap_trial[p];
+  for (Index i = 0; i < world.bodies.size(); ++i) {
+    if (!moves_here(state, i)) continue;
+    state.world.X_WB[i] = c.X_WB_trial[i];
+    if (f.share[i] > 0.0 || is_held(state, i)) continue;
+    // What does not go has no velocity: kept, it would grow under gravity while the body stays.
+    state.world.V_WB[i] = {};
+    ++report.cut_short;
+  }
   f.resting.end();
   tell_forces(settings, dt_s, state);
 }
@@ -312,7 +383,7 @@ void move_free_bodies(const World& world, const FrameSettings& settings, double 
 void end_turning(const World& world, FrameState& state) noexcept {
   for (Index i = 0; i < world.bodies.size(); ++i) {
     const Body& body = world.bodies[i];
-    if (!turns_freely(body) || is_held(state, i)) continue;
+    if (!turns_freely(body) || is_held(state, i) || !state.free.islands.moves(static_cast<int>(i))) continue;
     const Mat3 inertia_B = turning_inertia(body);
     const Mat3& R_start = state.X_WB_start[i].R;
     const Pose& X_WB = state.world.X_WB[i];

@@ -39,11 +39,13 @@ struct FreeBodies {
   }
 
   // Scratch of one frame, one entry per body, or per patch.
-  std::vector<Vec3> w_start;      ///< rates at the start [rad/s]
-  std::vector<Vec3> w_free;       ///< ... midway, if nothing touches [rad/s]
-  std::vector<double> share;      ///< of an island's step that is taken; by the island's first body [-]
-  std::vector<char> settled;      ///< an island's step has been found good
-  std::vector<char> patch_asked;  ///< patches whose exact gap is asked for
+  std::vector<Vec3> w_start;       ///< rates at the start [rad/s]
+  std::vector<Vec3> w_free;        ///< ... midway, if nothing touches [rad/s]
+  std::vector<double> share;       ///< of a body's step that is taken [-]
+  std::vector<char> cut;           ///< it has just become less
+  std::vector<char> settled;       ///< an island's step has been found good
+  std::vector<char> patch_asked;   ///< patches whose gap is asked for
+  std::vector<char> patch_closed;  ///< ... and is not open
 };
 
 /// Takes half a frame of gravity back from the velocities a world starts with.

@@ -26,6 +26,10 @@ void RunRecord::add(const FrameReport& report, const WorldState& world) noexcept
   exact_tests += static_cast<std::uint64_t>(report.work.exact_tests);
   uncertified += static_cast<std::uint64_t>(report.work.uncertified);
   unchecked += static_cast<std::uint64_t>(report.work.unchecked);
+  left_unproven += static_cast<std::uint64_t>(report.work.left_unproven);
+  validation_tests += static_cast<std::uint64_t>(report.validation_tests);
+  patches += static_cast<std::uint64_t>(report.work.patches);
+  waiting += static_cast<std::uint64_t>(report.waiting);
   surface_queries += static_cast<std::uint64_t>(report.work.surface_queries);
   minima += static_cast<std::uint64_t>(report.work.minima);
   feature_steps += static_cast<std::uint64_t>(report.work.feature_steps);
@@ -34,6 +38,9 @@ void RunRecord::add(const FrameReport& report, const WorldState& world) noexcept
   safety |= report.safety;
   max_contact_points = std::max(max_contact_points, report.contact_points);
   max_exact_tests = std::max(max_exact_tests, report.work.exact_tests);
+  max_tests = std::max(max_tests, report.tests());
+  max_unchecked = std::max(max_unchecked, report.work.unchecked);
+  bodies = std::max(bodies, report.work.bodies);
   add_to(hash_, report);
   add_to(hash_, world);
 }

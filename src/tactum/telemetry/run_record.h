@@ -34,14 +34,21 @@ class RunRecord {
   std::uint64_t exact_tests = 0;
   std::uint64_t uncertified = 0;
   std::uint64_t unchecked = 0;
-  std::uint64_t surface_queries = 0;  ///< pairs of bodies asked for the local minima of their surfaces
-  std::uint64_t minima = 0;           ///< found by them
-  std::uint64_t feature_steps = 0;    ///< feature pairs visited, of surfaces and of convex pieces
-  int max_minima = 0;                 ///< in one frame
-  std::uint32_t flags = 0;            ///< union of all frames' frame_flag
-  std::uint32_t safety = 0;           ///< union of all frames' safety_flag
+  std::uint64_t left_unproven = 0;     ///< of these, pairs that no bound proved to stay apart
+  std::uint64_t validation_tests = 0;  ///< exact tests of poses on trial
+  std::uint64_t patches = 0;           ///< contact pairs
+  std::uint64_t waiting = 0;           ///< bodies that stood still for want of budget, frame by frame
+  std::uint64_t surface_queries = 0;   ///< pairs of bodies asked for the local minima of their surfaces
+  std::uint64_t minima = 0;            ///< found by them
+  std::uint64_t feature_steps = 0;     ///< feature pairs visited, of surfaces and of convex pieces
+  int max_minima = 0;                  ///< in one frame
+  std::uint32_t flags = 0;             ///< union of all frames' frame_flag
+  std::uint32_t safety = 0;            ///< union of all frames' safety_flag
   int max_contact_points = 0;
   int max_exact_tests = 0;  ///< in one frame
+  int max_tests = 0;        ///< ... with those of poses on trial: what the budget bounds
+  int max_unchecked = 0;    ///< in one frame
+  int bodies = 0;
 
   std::uint64_t hash() const noexcept { return hash_.value(); }
 

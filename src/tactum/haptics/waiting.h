@@ -1,0 +1,61 @@
+#pragma once
+/// Who waits. When the frame cannot look at every pair, or at every pose on trial, some bodies stand still
+/// for a frame: time stops for them, they keep their velocity and gravity does not pull them. What stands
+/// still needs no look, and nothing can be entered by what does not move; so the budget costs time in the
+/// scene, never penetration.
+///
+///   waits:  a body with a pair that was left unproven (contact_finder.h)
+///           a body that the tests left for the poses on trial do not reach to; first come those that touch
+///           the held part, then those that have waited longest
+///
+/// What waits carries nobody's load, so a heap whose bodies take turns would never come to rest. Therefore,
+/// while the budget is not ample, a body that has hardly left its place in its last 60 frames sleeps: it
+/// stands still, at no cost, until the held part or something fast touches it, or it has lost half of its
+/// contacts.
+///
+/// How many tests a body will take is guessed from how far it went in its last frame: contacts whose gap that
+/// does not halve are proven open without a test. Where the guess was too low, the step is cut
+/// (free_bodies.h). The held part never waits: where one of its own pairs was left unproven, it goes nowhere
+/// in that frame.
+
+#include <vector>
+
+#include "tactum/haptics/frame_report.h"
+#include "tactum/haptics/settings.h"
+
+namespace tactum {
+
+struct FrameState;
+
+/// What is kept from frame to frame, and scratch, one entry per body; allocated at load time.
+struct Waiting {
+  Waiting(const World& world, const FrameSettings& settings);
+
+  std::vector<char> waits;            ///< in this frame
+  std::vector<int> waited;            ///< how many frames on end [-]
+  std::vector<double> way;            ///< of the last step it took or tried [m]
+  std::vector<std::uint8_t> urgency;  ///< schedule.h
+  std::vector<Pose> X_rest;           ///< the place it has hardly left
+  std::vector<int> rested;            ///< frames that it moved in since [-]
+  std::vector<int> contacts_at_rest;  ///< of those that sleep; 0: awake [-]
+  int rounds = 2;                     ///< tests that a gap on trial is expected to take [-]
+  bool ran_out = false;               ///< tests did not suffice for the poses on trial in this frame
+
+  // Scratch of one frame.
+  std::vector<Twist> V_kept;  ///< velocities of those that wait [m/s, rad/s]
+  std::vector<int> order, first_patch, next_patch, patch_of;
+  std::vector<char> counted;  ///< of each patch
+  std::vector<int> contacts;  ///< patches of each body
+  std::vector<char> hit;      ///< by something fast
+};
+
+/// What is urgent in this frame: the held part, and what touched it in the last one. Before pairs are tested.
+void set_urgency(FrameState& state) noexcept;
+
+/// Chooses who waits, and puts them at rest. After the pairs have been tested.
+void let_wait(const World& world, double dt_s, FrameState& state, FrameReport& report) noexcept;
+
+/// Gives those that waited their velocities back.
+void go_on(FrameState& state) noexcept;
+
+}  // namespace tactum
