@@ -10,6 +10,7 @@
 #include "commands.h"
 #include "output.h"
 #include "tactum/haptics/coupling_gains.h"
+#include "tactum/haptics/field_pull.h"
 #include "tactum/scene/builtin_scenes.h"
 #include "tactum/session/session.h"
 #include "viewer/server/viewer.h"
@@ -109,6 +110,8 @@ void tell_what_is_felt(std::FILE* out, const Session& session, const std::string
   fmt::print(out, "{}{}\n",
              margin_sentence(session.scene().settings.coupling, session.device(), session.rate_Hz()),
              session.scene().coupling_by_device ? "; chosen for this device and rate" : "");
+  const std::string fields = field_sentence(scene.world, scene.settings.coupling);
+  if (!fields.empty()) fmt::print(out, "{}\n", fields);
   std::fflush(out);
 }
 

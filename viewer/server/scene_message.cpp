@@ -8,6 +8,7 @@
 #include "tactum/haptics/safety.h"
 #include "tactum/scene/builtin_scenes.h"
 #include "viewer/server/access.h"
+#include "viewer/server/field_arrows.h"
 #include "viewer/server/shape_edges.h"
 #include "viewer/server/wire.h"
 
@@ -75,6 +76,15 @@ Json bodies_json(const World& world) {
     bodies.push_back(json);
   }
   return bodies;
+}
+
+/// Place and force of every arrow, one after the other; as floats, which are shorter.
+Json field_json(const World& world) {
+  Json numbers = Json::array();
+  for (const FieldArrow& arrow : field_arrows(world))
+    for (const Vec3& v : {arrow.p_W, arrow.force})
+      for (int i = 0; i < 3; ++i) numbers.push_back(static_cast<float>(v[i]));
+  return numbers;
 }
 
 Json settings_json(const FrameSettings& frame, const SafetySettings& safety) {
@@ -250,6 +260,7 @@ std::string run_message(const Session& session, const UserSettings& settings, co
                         {"rate_Hz", session.rate_Hz()},
                         {"real_time", facts.loop_in_real_time},
                         {"bodies", bodies_json(scene.world)},
+                        {"field", field_json(scene.world)},
                         {"held", tool.body},
                         {"picks", tool.picks},
                         {"X_BH", pose_json(tool.X_BH)},

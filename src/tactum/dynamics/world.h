@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "tactum/dynamics/force_field.h"
 #include "tactum/geometry/part.h"
 #include "tactum/math/spatial.h"
 
@@ -48,6 +49,7 @@ struct Body {
   Pose X_WB;                      ///< at the start [m]
   Twist V_WB;                     ///< at the start [m/s, rad/s]
   Joint joint;
+  std::vector<FieldPoint> field_points;  ///< where force fields act while it is held
 
   bool moves() const { return joint.kind != JointKind::kFixed; }
 };
@@ -55,7 +57,8 @@ struct Body {
 /// Constant while frames run.
 struct World {
   std::vector<Body> bodies;
-  Vec3 gravity_W = Vec3::Zero();  ///< [m/s^2]
+  Vec3 gravity_W = Vec3::Zero();   ///< [m/s^2]
+  std::vector<ForceField> fields;  ///< felt by the held part
 };
 
 /// What frames change. One entry per body of the World.

@@ -36,10 +36,10 @@ void add_bodies(const World& world, const FrameSettings& settings, double dt_s, 
     state.constraint.wanted = wanted;
     if (!at_rest) {
       state.constraint.wanted = wanted_by_hand(settings, dt_s, state);
-      wanted = with_weight(world, settings, dt_s, state, state.constraint.wanted);
+      wanted = with_load(world, settings, dt_s, state, state.constraint.wanted);
     }
     room &= problem.add_held(held, world.bodies[Index(held)], X_WB, X_WB * state.tool.X_BH.p,
-                             held_metric(settings.coupling, dt_s), wanted);
+                             step_metric(settings, dt_s, state), wanted);
   }
   for (Index i = 0; i < world.bodies.size(); ++i) {
     const int b = static_cast<int>(i);

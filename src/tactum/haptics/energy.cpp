@@ -27,7 +27,8 @@ PortInput port_input(const World& world, const FrameSettings& settings, const Fr
   PortInput input;
   input.wanted = report.smoothed;
   input.sent = state.safety.sent;
-  input.bodies_J = bodies_energy(world, state.world, state.tool.body);
+  // What a field gives the held part is its own, as a falling weight's is; a vortex gives without end.
+  input.bodies_J = bodies_energy(world, state.world, state.tool.body) - state.field.given_J;
   input.dt_s = settings.dt_s;
   if (state.tool.body >= 0) {
     const Twist stretch = twist_between(report.X_WH, report.X_WH_proxy, 1.0);

@@ -30,7 +30,8 @@ Wrench haptic_frame(const World& world, const FrameSettings& settings, const Dev
   state.ended(Stage::kHand);
 
   if (state.hand.known) {
-    // How fast does everything move, and how far may it come: delta = v_c dt.
+    // What do force fields do? How fast does everything move, and how far may it come: delta = v_c dt.
+    pull_by_fields(world, state);
     wanted_velocities(world, settings, dt, state);
     tolerances_from_speed(world, settings, dt, state);
     set_urgency(state);

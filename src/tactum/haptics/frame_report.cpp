@@ -26,6 +26,7 @@ void add_to(Hash& hash, const FrameReport& report) noexcept {
   add(hash, report.X_WH);
   add(hash, report.X_WH_proxy);
   add(hash, report.restoring);
+  add(hash, report.field);
   add(hash, report.coupling);
   add(hash, report.smoothed);
   hash.add(report.port.ledger_J + 0.0);

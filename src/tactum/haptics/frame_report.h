@@ -42,6 +42,7 @@ struct FrameReport {
   Pose X_WH_proxy;           ///< where the proxy would have it [m]
   Wrench
       restoring;  ///< sum of the contact forces on the held part, at its centre of mass, world axes [N, N m]
+  Wrench field;   ///< of force fields on the held part, at its centre of mass, world axes [N, N m]
   Wrench coupling;  ///< spring from hand to proxy, at the handle, world axes: the raw wrench [N, N m]
   Wrench smoothed;  ///< after smoothing, device axes [N, N m]
   PortReport port;  ///< energy that passed between hand and scene, and what was done about it

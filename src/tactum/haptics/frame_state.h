@@ -6,6 +6,7 @@
 #include "tactum/collision/contact_finder.h"
 #include "tactum/haptics/constraint.h"
 #include "tactum/haptics/contact_force.h"
+#include "tactum/haptics/field_pull.h"
 #include "tactum/haptics/free_bodies.h"
 #include "tactum/haptics/hand.h"
 #include "tactum/haptics/impulse_display.h"
@@ -33,6 +34,7 @@ struct FrameState {
 
   WorldState world;  ///< poses and twists of the bodies
   Tool tool;         ///< what is held now, and where
+  FieldPull field;   ///< what force fields do to it
   HandTracking hand;
   ContactFinder finder;
   std::vector<ShadingNormals> shading;  ///< one per body; empty when shading is off

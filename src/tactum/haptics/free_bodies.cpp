@@ -71,13 +71,13 @@ void lend_held(const World& world, const FrameSettings& settings, double dt_s, F
   const Body& body = world.bodies[held];
   const Pose& X_WB = state.world.X_WB[held];
   const Vec3 arm = X_WB.R * state.tool.X_BH.p;
-  const HeldMetric metric = held_metric(settings.coupling, dt_s);
+  const HeldMetric metric = step_metric(settings, dt_s, state);
   const Coupling both{.stiffness_N_per_m = metric.stiffness_N_per_m,
                       .stiffness_Nm_per_rad = metric.stiffness_Nm_per_rad};
   const Resistance M = coupling_resistance(both, arm, dt_s);
   state.mobility[held] = mobility(body.joint, X_WB, M);
   state.constraint.wanted = wanted_by_hand(settings, dt_s, state);
-  const Vec6 wanted = with_weight(world, settings, dt_s, state, state.constraint.wanted);
+  const Vec6 wanted = with_load(world, settings, dt_s, state, state.constraint.wanted);
   const Twist at_origin = moved(to_twist(wanted), -arm) * (1.0 / dt_s);
   state.world.V_WB[held] = constrained_velocity(body.joint, X_WB, M, at_origin);
 }

@@ -1,6 +1,6 @@
 #pragma once
-/// The held part in the constraint response: where the hand and its own weight would have it, and what the
-/// hand feels where it went instead. It has weight, but no inertia that could be felt.
+/// The held part in the constraint response: where the hand, its own weight and force fields would have it,
+/// and what the hand feels where it went instead. It has weight, but no inertia that could be felt.
 
 #include "tactum/dynamics/world.h"
 #include "tactum/haptics/constraint_problem.h"
@@ -11,9 +11,9 @@ struct FrameState;
 
 /// The displacement of the handle that the coupling asks for, (m, rad).
 Vec6 wanted_by_hand(const FrameSettings& settings, double dt_s, const FrameState& state) noexcept;
-/// ... and where the held part's weight pulls it from there.
-Vec6 with_weight(const World& world, const FrameSettings& settings, double dt_s, const FrameState& state,
-                 const Vec6& wanted) noexcept;
+/// ... and where the held part's weight and force fields pull it from there.
+Vec6 with_load(const World& world, const FrameSettings& settings, double dt_s, const FrameState& state,
+               const Vec6& wanted) noexcept;
 /// What the hand feels when the handle moves so: sets state.constraint.felt.
 void feel(const FrameSettings& settings, double dt_s, const Vec6& displacement, FrameState& state) noexcept;
 

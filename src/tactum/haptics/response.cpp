@@ -38,7 +38,7 @@ void pull_held(const World& world, const FrameSettings& settings, double rest, F
   const Joint& joint = world.bodies[i].joint;
   state.resistance[i] = resistance_of(world, settings, state, i, rest);
   state.mobility[i] = mobility(joint, X_WB, state.resistance[i]);
-  const Twist pull = velocity_to_hand(state.tool, X_WB, state.hand.X_WH, rest);
+  const Twist pull = velocity_to_hand(state.tool, X_WB, loaded_hand(settings, state), rest);
   state.world.V_WB[i] = constrained_velocity(joint, X_WB, state.resistance[i], pull);
 }
 
@@ -134,7 +134,7 @@ void wanted_velocities(const World& world, const FrameSettings& settings, double
     Twist& V_WB = state.world.V_WB[i];
     state.resistance[i] = resistance_of(world, settings, state, i, dt_s);
     if (static_cast<int>(i) == state.tool.body) {
-      V_WB = velocity_to_hand(state.tool, X_WB, state.hand.X_WH, dt_s);
+      V_WB = velocity_to_hand(state.tool, X_WB, loaded_hand(settings, state), dt_s);
     } else {
       V_WB.v += world.gravity_W * dt_s;
     }
@@ -167,6 +167,7 @@ void respond(const World& world, const FrameSettings& settings, double dt_s, Fra
     respond_by_penalty(world, settings, dt_s, state, report);
   }
   undo_non_finite(state, report);
+  book_field_work(state);
   if (state.contacts.full) report.flags |= frame_flag::kPointsFull;
 }
 
@@ -176,6 +177,7 @@ Wrench felt_wrench(const FrameSettings& settings, FrameState& state, FrameReport
   if (state.tool.body < 0) return {};
   const Pose& X_WB = state.world.X_WB[Index(state.tool.body)];
   report.X_WH_proxy = X_WB * state.tool.X_BH;
+  report.field = state.field.load.at_centre;
   if (settings.response == ResponseModel::kConstraint) return state.constraint.felt + blows;
   // The velocity that counts is the way of the whole frame, not the last part's after an impact.
   const Pose X_WH_before = state.X_WB_start[Index(state.tool.body)] * state.tool.X_BH;

@@ -5,6 +5,7 @@
 namespace tactum {
 namespace {
 
+constexpr int kMostFieldPoints = 10'000;  // of a body
 constexpr double kWaterDensity = 1000.0;  // of a part whose file says nothing [kg/m^3]
 
 /// The keys of a joint and for which kinds they are.
@@ -104,6 +105,20 @@ void read_solid(const TomlReader& reader, const Shape& shape, const Pose& X_WP, 
   p_BP = -*center;
 }
 
+/// Where force fields act: so many points over the surface, or each told by itself.
+void read_field_points(const TomlReader& reader, const Vec3& p_BP, Body& body) {
+  const auto points = reader.tables("field_point", {"pos_m", "weight"});
+  for (const TomlReader& point : points)
+    body.field_points.push_back(
+        {p_BP + point.vector3("pos_m"), point.number("weight", 1.0 / static_cast<double>(points.size()))});
+  if (!reader.has("field_points")) return;
+  const int count = reader.integer("field_points", {}, 1, kMostFieldPoints);
+  if (!points.empty())
+    return reader.fail("field_points", "two sets of sample points in " + reader.section(),
+                       "field_points and field_point", "one of them");
+  if (!reader.errors()) body.field_points = spread_over(body.part->surface, count);
+}
+
 void read_body(const TomlReader& reader, const SearchFolders& folders, Scene& scene) {
   Body body;
   body.name = reader.text("name");
@@ -128,6 +143,7 @@ void read_body(const TomlReader& reader, const SearchFolders& folders, Scene& sc
   Vec3 p_BP = Vec3::Zero();
   read_solid(reader, shape, X_WP, body, p_BP);
   if (reader.errors()) return;
+  read_field_points(reader, p_BP, body);
   for (const std::string& remark : body.part->remarks)
     scene.remarks.push_back(fmt::format("{} ({}): {}", body.name, shape.file, remark));
   scene.p_BP.push_back(p_BP);
@@ -139,7 +155,8 @@ void read_body(const TomlReader& reader, const SearchFolders& folders, Scene& sc
 
 void read_bodies(const TomlReader& root, const SearchFolders& folders, Scene& scene) {
   const auto readers = root.tables("body", {"name", "part", "pos_m", "quat_wxyz", "rpy_deg", "mass_kg",
-                                            "density_kg_per_m3", "joint", "material", "on", "component"});
+                                            "density_kg_per_m3", "joint", "material", "on", "component",
+                                            "field_points", "field_point"});
   if (readers.empty()) root.fail(nullptr, "the scene has no [[body]]", "none", "at least one");
   for (const TomlReader& reader : readers) read_body(reader, folders, scene);
 }

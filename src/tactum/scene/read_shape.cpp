@@ -25,7 +25,6 @@ void read_prepared(const TomlReader& part, Shape& shape) {
 }
 
 void read_mesh(const TomlReader& part, const SearchFolders& folders, Shape& shape) {
-  namespace fs = std::filesystem;
   const std::string name = part.text("mesh");
   ImportOptions options;
   options.scale = part.number("scale", 1.0, kPositive);
@@ -35,25 +34,11 @@ void read_mesh(const TomlReader& part, const SearchFolders& folders, Shape& shap
               : pieces == "surface" ? PieceSource::kSurface
                                     : PieceSource::kAuto;
   if (part.errors()) return;
-  std::vector<std::string> tried;
-  const auto try_file = [&](const fs::path& path) {
-    std::error_code ignored;
-    if (fs::is_regular_file(path, ignored)) shape.file = path.string();
-    tried.push_back(path.string());
-    return !shape.file.empty();
-  };
-  if (fs::path(name).is_absolute()) {
-    try_file(name);
-  } else {
-    for (const std::string& folder : folders)
-      if (try_file(fs::path(folder) / name)) break;
-  }
-  if (shape.file.empty()) {
-    part.fail("mesh", "cannot find the mesh \"" + name + "\"",
-              tried.empty() ? "no folder to look in" : fmt::format("no file {}", fmt::join(tried, ", nor ")),
-              "the file beside the scene file or in a folder named by TACTUM_DATA (colons between)");
-    return;
-  }
+  const Result<std::string> found = found_file(name, folders);
+  if (!found)
+    return part.fail("mesh", "cannot find the mesh \"" + name + "\"", found.error().found,
+                     found.error().expected);
+  shape.file = *found;
   if (is_part_file(shape.file)) return read_prepared(part, shape);
   Result<ImportedMesh> imported = import_mesh(shape.file, options);
   if (!imported) {
@@ -64,6 +49,20 @@ void read_mesh(const TomlReader& part, const SearchFolders& folders, Shape& shap
 }
 
 }  // namespace
+
+Result<std::string> found_file(const std::string& name, const SearchFolders& folders) {
+  namespace fs = std::filesystem;
+  const SearchFolders only{""};
+  std::vector<std::string> tried;
+  for (const std::string& folder : fs::path(name).is_absolute() ? only : folders) {
+    std::error_code ignored;
+    tried.push_back((fs::path(folder) / name).string());
+    if (fs::is_regular_file(tried.back(), ignored)) return tried.back();
+  }
+  return Error{"cannot find a file",
+               tried.empty() ? "no folder to look in" : fmt::format("no file {}", fmt::join(tried, ", nor ")),
+               "the file beside the scene file or in a folder named by TACTUM_DATA (colons between)", name};
+}
 
 Shape read_shape(const TomlReader& body, const SearchFolders& folders) {
   Shape shape;

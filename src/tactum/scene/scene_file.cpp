@@ -21,6 +21,7 @@ void read_root(const TomlReader& root, const SearchFolders& folders, Scene& scen
   scene.world.gravity_W = root.vector3("gravity_m_per_s2", Vec3::Zero());
   // Each section builds on those before it.
   read_bodies(root, folders, scene);
+  if (!root.errors()) read_fields(root, folders, scene);
   if (!root.errors()) read_settings(root, scene);
   if (!root.errors()) read_hand(root, scene);
   if (!root.errors()) read_goals(root, scene);
@@ -43,7 +44,8 @@ Result<Scene> parse_scene(std::string_view text, const std::string& name, const 
       document, file, "",
       {"schema",    "description", "gravity_m_per_s2", "dt_s",     "device",      "workspace", "coupling",
        "response",  "penalty",     "constraint",       "friction", "restitution", "impacts",   "shading",
-       "smoothing", "safety",      "budget",           "body",     "tool",        "hand",      "goal"},
+       "smoothing", "safety",      "budget",           "body",     "tool",        "hand",      "goal",
+       "field"},
       errors);
   read_root(root, mesh_folders, scene);
   if (errors) return errors.error();

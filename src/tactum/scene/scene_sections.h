@@ -14,6 +14,9 @@ namespace tactum {
 /// Folders in which meshes are looked for, in this order; "" is the working directory.
 using SearchFolders = std::vector<std::string>;
 
+/// The path of a file by its name, absolute or in one of the folders; an error says where it was looked for.
+Result<std::string> found_file(const std::string& name, const SearchFolders& folders);
+
 /// `part = { gear = {...} }` and its kin, of the body's table.
 Shape read_shape(const TomlReader& body, const SearchFolders& folders);
 
@@ -29,6 +32,9 @@ Shape read_made_shape(const TomlReader& part, const std::string& kind);
 
 /// Every `[[body]]`, into scene.world.bodies, p_BP and remarks.
 void read_bodies(const TomlReader& root, const SearchFolders& folders, Scene& scene);
+
+/// Every `[[field]]`: needs the bodies, which get sample points when there are fields.
+void read_fields(const TomlReader& root, const SearchFolders& folders, Scene& scene);
 
 /// [workspace] [coupling] [penalty] [shading] [smoothing] [safety] [budget] and [tool]: needs the bodies,
 /// since the device's place in the world is told by where the handle starts.

@@ -8,6 +8,7 @@ import { check, downloaded, drag, heldAt, inkOf, missing, openBrowser, openPage,
 
 const [topic, tactum] = process.argv.slice(2);
 const pause = (seconds) => new Promise((resolve) => setTimeout(resolve, 1000 * seconds));
+const arrowsOf = async (page) => Number((await state(page)).fieldArrows);
 const refusedOf = async (page) => JSON.parse((await state(page)).refused);
 
 /** One request on a bare socket: what a browser would never send. */
@@ -97,6 +98,25 @@ const topics = {
     check(now.gaps === "0" && now.lost === "0", `no sample is missing: ${JSON.stringify(now)}`);
     check(page.complaints.length === 0, `no complaints: ${page.complaints.join("; ")}`);
     await program.end();
+  },
+
+  async field(browser) {
+    const program = await Program.start(tactum, "vortex-field");
+    const page = await openPage(browser, program);
+    const arrows = () => arrowsOf(page);
+    await until("arrows are drawn", async () => (await arrows()) > 100);
+    check(await page.isVisible("#field"), "there is a button for them");
+    await page.click("#field");
+    await until("the button takes them away", async () => (await arrows()) === 0);
+    await page.focus("#canvas");
+    await page.keyboard.press("f");
+    await until("the key brings them back", async () => (await arrows()) > 100);
+    check(page.complaints.length === 0, page.complaints.join("; "));
+    await program.end();
+    const without = await Program.start(tactum, "block-on-plate");
+    const other = await openPage(browser, without);
+    await until("a scene without fields has none", async () => (await arrowsOf(other)) === 0);
+    check(!(await other.isVisible("#field")), "and no button");
   },
 
   async drag(browser) {

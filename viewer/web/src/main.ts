@@ -85,6 +85,7 @@ async function begin(next: Run) {
   for (const early of waitingFrames.splice(0)) frames(early);
   body.dataset.scene = next.scene;
   body.dataset.run = String(next.run);
+  get("field").hidden = next.field.length === 0;
 }
 
 function frames(message: Frames) {
@@ -145,6 +146,7 @@ function showSummary(sample: number) {
   body.dataset.force = String(force);
   body.dataset.torque = String(torque);
   body.dataset.peakForce = String(samples.peakForce);
+  body.dataset.fieldArrows = String(view.field.count);
   body.dataset.grips = view.grips.join(",");
   body.dataset.samples = String(samples.count);
   body.dataset.gaps = String(samples.gaps);
@@ -249,6 +251,7 @@ const actions: [string, string, () => void][] = [
   ["edges", "e", () => showKinds(toggle("edges"))],
   ["see-through", "x", () => view.bodies?.showThrough(toggle("see-through"))],
   ["trail", "t", () => (view.overlay.showsTrail = toggle("trail"))],
+  ["field", "f", () => view.field.show(toggle("field"))],
   ["raw", "w", () => {
     const on = toggle("raw");
     get("raw-legend").hidden = !on;
@@ -347,7 +350,7 @@ const helpRows: [string, string][] = [
   ["G", "the device's button: grasp"],
   ["Drag beside it, wheel, right drag", "look around, zoom, shift the view"],
   ["1 2 3 4", "slanted, front, side, top"],
-  ["P, E, X, T", "pieces, kinds of edges, glass, trail"],
+  ["P, E, X, T, F", "pieces, kinds of edges, glass, trail, force fields"],
   ["W, N", "the raw wrench beside the shown one, energy charts"],
   ["Space", "STOP: zero force and torque, at once led to nothing"],
   ["C, click on a chart", "pause; show that moment"],

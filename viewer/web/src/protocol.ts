@@ -24,6 +24,7 @@ export interface Run {
   type: "run"; run: number; scene: string; description: string; scenes: { name: string; description: string }[];
   rate_Hz: number; bodies: Body[]; held: number; picks: boolean; X_BH: Pose; device: DeviceFacts; stages: StageInfo[];
   channels: ChannelInfo[]; flags: { safety: FlagInfo[]; frame: FlagInfo[] }; settings: Setting[]; margin: string; toml: string;
+  field: number[]; // arrows of the force fields, six numbers each: place [m], force [N]
 }
 export interface Times { mean: number; p50: number; p99: number; p999: number; max: number }
 export interface Status {

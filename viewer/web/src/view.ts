@@ -2,6 +2,7 @@
 import * as THREE from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { Bodies } from "./bodies";
+import { FieldArrows } from "./field";
 import { dark, light, type Look } from "./look";
 import { Overlay } from "./overlay";
 import type { Grip, Picture, Pose, Run, Shape, Vec } from "./protocol";
@@ -57,6 +58,7 @@ export class View {
   readonly camera = new THREE.PerspectiveCamera(32, 1, 0.02, 60);
   readonly controls: OrbitControls;
   readonly overlay: Overlay;
+  readonly field = new FieldArrows();
   bodies: Bodies | null = null;
   /** World to view, and back. */
   readonly toView = new THREE.Matrix4();
@@ -116,7 +118,7 @@ export class View {
     this.sun.position.set(-1.6, -2.1, 3.6);
     this.floor.receiveShadow = true;
     this.overlay = new Overlay(dark);
-    this.scene.add(this.sun, this.fill, this.floor, this.world, this.overlay.root);
+    this.scene.add(this.sun, this.fill, this.floor, this.world, this.overlay.root, this.field.root);
     this.world.matrixAutoUpdate = false;
     for (const label of [this.forceLabel, this.torqueLabel]) labels.append(label);
     this.forceLabel.className = "force";
@@ -144,6 +146,7 @@ export class View {
     this.world.add(this.bodies.root);
     this.X_HB.copy(matrixOf(run.X_BH)).invert();
     this.fit(run, shapes);
+    this.field.set(run.field, this.toView);
     this.overlay.clearTrail();
     this.hold(run.held);
     this.picture = null;
@@ -219,6 +222,7 @@ export class View {
     this.floor.material.opacity = isDark ? 0.55 : 0.28;
     this.scene.environmentIntensity = isDark ? 0.9 : 1.1;
     this.overlay.setLook(this.look);
+    this.field.setColour(this.look.trail);
     this.bodies?.setLook(this.look);
     if (this.grid && this.run) this.drawGrid(1 / this.scale);
   }

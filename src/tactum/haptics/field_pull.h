@@ -1,0 +1,49 @@
+#pragma once
+/// Force fields and the held part: what they do to it in this frame, how far that may move it, and what they
+/// have given it so far.
+///
+/// A field is felt like weight: it loads the held part, and the coupling carries the load. Only the proxy is
+/// in the field; what the hand feels is no stiffer than the coupling. The load is that of the pose before the
+/// step, so in a field much steeper than the coupling a full step would overshoot,
+///
+///     x = (k way + b v + W) / K,     K = k + b / dt,   but at least  2/3 (k + field)
+///
+/// and is made shorter; where it ends is the same.
+
+#include <string>
+
+#include "tactum/dynamics/force_field.h"
+#include "tactum/dynamics/world.h"
+#include "tactum/haptics/constraint_problem.h"
+
+namespace tactum {
+
+struct FrameState;
+
+/// What fields do to the held part.
+struct FieldPull {
+  FieldLoad load;        ///< at the pose the frame starts with
+  double given_J = 0.0;  ///< work on the held parts since the start, of either sign [J]
+  int body = -1;         ///< on which the load acts; -1: none
+};
+
+/// Finds the load of this frame, and mends the work of the last step by what the field was at its end.
+void pull_by_fields(const World& world, FrameState& state) noexcept;
+
+/// Books the work of the load over the frame's step.
+void book_field_work(FrameState& state) noexcept;
+
+/// The load told at the handle, world axes.
+Wrench field_at_handle(const FrameState& state) noexcept;
+
+/// The coupling over one frame, at least as stiff as the load needs its step to be short.
+HeldMetric step_metric(const FrameSettings& settings, double dt_s, const FrameState& state) noexcept;
+
+/// In the penalty response: the pose of the handle at which the coupling carries the load, or as far towards
+/// it as is safe.
+Pose loaded_hand(const FrameSettings& settings, const FrameState& state) noexcept;
+
+/// How steep the scene's fields are beside the coupling, in a sentence for people; empty without fields.
+std::string field_sentence(const World& world, const Coupling& coupling);
+
+}  // namespace tactum
