@@ -219,7 +219,7 @@ TEST(FieldGrid, SinglePrecisionIsTheSameField) {
 
 TEST(FieldGrid, RefusesWhatIsNoGrid) {
   const GridShape good = shape_of(3);
-  const auto error = [](GridShape shape, std::size_t numbers, double edge = 0.0) {
+  const auto error = [](const GridShape& shape, std::size_t numbers, double edge = 0.0) {
     const Result<FieldGrid> grid = FieldGrid::make(shape, std::vector<double>(numbers, 0.0), edge);
     return grid ? "none" : grid.error().message();
   };

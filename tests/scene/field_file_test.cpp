@@ -16,7 +16,6 @@
 namespace tactum {
 namespace {
 
-using testing::content;
 using testing::ScratchFolder;
 using testing::write;
 
