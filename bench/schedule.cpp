@@ -369,7 +369,7 @@ Table table_of(const std::vector<ScheduleRow>& rows) {
                           fmt::format("{:.2g} N", row.force_error_max_N), number(row.unchecked_mean),
                           fmt::format("{}", row.unchecked_max), number(row.unproven_mean),
                           fmt::format("{}", row.unproven_max), number(row.waiting_mean),
-                          fmt::format("{} frames", std::max(row.longest_wait, row.longest_unchecked)),
+                          fmt::format("{} frames", row.longest_wait),
                           fmt::format("{}", row.left_of_held), length_text(row.overlap_m),
                           time_text(row.p50_us * 1e3), time_text(row.p99_us * 1e3)});
   return table;

@@ -207,8 +207,8 @@ void ContactFinder::leave(int a, int b, double gap, std::int64_t last_checked) n
   if (gap > moves_by(a) + moves_by(b)) return;
   ++work_.left_unproven;
   work_.left_of_held += of_held(a, b) ? 1 : 0;
-  work_.longest_unchecked =
-      std::max(work_.longest_unchecked, static_cast<int>(frame_ - std::max<std::int64_t>(last_checked, 0)));
+  if (last_checked >= 0)
+    work_.longest_unchecked = std::max(work_.longest_unchecked, static_cast<int>(frame_ - last_checked));
   blocked_[Index(a)] = blocked_[Index(b)] = 1;
 }
 
