@@ -363,15 +363,14 @@ Table table_of(const std::vector<ScheduleRow>& rows) {
                         "most", "unproven", "most", "waiting", "longest", "left of held", "overlap", "p50",
                         "p99"});
   for (const ScheduleRow& row : rows)
-    table.rows.push_back({fmt::format("{:g}", row.share), fmt::format("{}", row.budget),
-                          fmt::format("{}", row.most_tests), fmt::format("{}", row.most_near),
-                          fmt::format("{:.2g} N", row.force_error_mean_N),
-                          fmt::format("{:.2g} N", row.force_error_max_N), number(row.unchecked_mean),
-                          fmt::format("{}", row.unchecked_max), number(row.unproven_mean),
-                          fmt::format("{}", row.unproven_max), number(row.waiting_mean),
-                          fmt::format("{} frames", row.longest_wait),
-                          fmt::format("{}", row.left_of_held), length_text(row.overlap_m),
-                          time_text(row.p50_us * 1e3), time_text(row.p99_us * 1e3)});
+    table.rows.push_back(
+        {fmt::format("{:g}", row.share), fmt::format("{}", row.budget), fmt::format("{}", row.most_tests),
+         fmt::format("{}", row.most_near), fmt::format("{:.2g} N", row.force_error_mean_N),
+         fmt::format("{:.2g} N", row.force_error_max_N), number(row.unchecked_mean),
+         fmt::format("{}", row.unchecked_max), number(row.unproven_mean), fmt::format("{}", row.unproven_max),
+         number(row.waiting_mean), fmt::format("{} frames", row.longest_wait),
+         fmt::format("{}", row.left_of_held), length_text(row.overlap_m), time_text(row.p50_us * 1e3),
+         time_text(row.p99_us * 1e3)});
   return table;
 }
 

@@ -27,6 +27,7 @@ Wrench haptic_frame(const World& world, const FrameSettings& settings, const Dev
   if (!was_known && state.hand.known) grasp(settings, state);
   if (sample.valid) pick_or_let_go(world, settings.tool, sample.buttons, state);
   report.held = state.tool.body;
+  if (!state.hand.known) report.flags |= frame_flag::kNoHand;
   state.ended(Stage::kHand);
 
   if (state.hand.known) {
@@ -52,8 +53,6 @@ Wrench haptic_frame(const World& world, const FrameSettings& settings, const Dev
 
     // What does the hand feel?
     raw = felt_wrench(settings, state, report);
-  } else {
-    report.flags |= frame_flag::kNoHand;
   }
   report.coupling = raw;
   report.smoothed = smooth_wrench(settings.smoothing, state.smoothing, to_device(state.hand, raw));

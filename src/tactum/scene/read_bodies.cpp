@@ -154,9 +154,9 @@ void read_body(const TomlReader& reader, const SearchFolders& folders, Scene& sc
 }  // namespace
 
 void read_bodies(const TomlReader& root, const SearchFolders& folders, Scene& scene) {
-  const auto readers = root.tables("body", {"name", "part", "pos_m", "quat_wxyz", "rpy_deg", "mass_kg",
-                                            "density_kg_per_m3", "joint", "material", "on", "component",
-                                            "field_points", "field_point"});
+  const auto readers =
+      root.tables("body", {"name", "part", "pos_m", "quat_wxyz", "rpy_deg", "mass_kg", "density_kg_per_m3",
+                           "joint", "material", "on", "component", "field_points", "field_point"});
   if (readers.empty()) root.fail(nullptr, "the scene has no [[body]]", "none", "at least one");
   for (const TomlReader& reader : readers) read_body(reader, folders, scene);
 }
