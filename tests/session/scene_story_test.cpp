@@ -103,5 +103,58 @@ TEST(SceneStory, TheSmallBearingDoesNotPassTheLargeOne) {
   EXPECT_FALSE(session->goals().met(2)) << session->goals().describe(session->scene().world, 2);
 }
 
+/// It touches both walls exactly. What is known of such gaps is rounding, which must not hold it.
+TEST(SceneStory, ABlockWithoutPlayBetweenTwoWallsSlides) {
+  const std::unique_ptr<Session> session = opened(R"(schema = 1
+[[body]]
+name = "left"
+part = { box = { size_m = [0.02, 0.06, 0.02] } }
+pos_m = [-0.02, 0, 0]
+joint = { kind = "fixed" }
+[[body]]
+name = "right"
+part = { box = { size_m = [0.02, 0.06, 0.02] } }
+pos_m = [0.02, 0, 0]
+joint = { kind = "fixed" }
+[[body]]
+name = "block"
+part = { box = { size_m = [0.02, 0.02, 0.02] } }
+[[body]]
+name = "finger"
+part = { box = { size_m = [0.01, 0.02, 0.01] } }
+pos_m = [0, -0.025, 0]
+[tool]
+body = "finger"
+[hand]
+grip = "firm"
+[[hand.step]]
+offset_m = [0, 0.02, 0]
+duration_s = 1
+)");
+  ASSERT_TRUE(session);
+  ASSERT_TRUE(session->run_virtual(std::uint64_t(frames_of_motion(session->scene())), nullptr));
+  const std::size_t block = body(session->scene(), "block");
+  EXPECT_GT(session->state().world.X_WB[block].p.y(), 0.009);
+  EXPECT_EQ(session->record().penetrating_frames, 0u);
+}
+
+/// The hand turns one gear a hundred times. The other has made nine tenths of its turns, to within the play
+/// between their teeth: 0.3 mm of backlash on either gear, at a pitch radius of 40 mm.
+TEST(SceneStory, TheGearsKeepTheirRatioOverAHundredTurns) {
+  std::string text = text_of("gears");
+  const std::size_t hand = text.find("repeat = 2");
+  ASSERT_NE(hand, std::string::npos);
+  text =
+      text.substr(0, hand) + "[[hand.step]]\nturn_deg = 36000\nduration_s = 140\n[[hand.step]]\nhold_s = 1\n";
+  const std::unique_ptr<Session> session = opened(text);
+  ASSERT_TRUE(session);
+  ASSERT_TRUE(session->run_virtual(std::uint64_t(frames_of_motion(session->scene())), nullptr));
+  EXPECT_EQ(session->record().penetrating_frames, 0u);
+  const double driving = session->goals().angle(body(session->scene(), "driving"));
+  const double driven = session->goals().angle(body(session->scene(), "driven"));
+  EXPECT_GT(driving, 99.9 * 2.0 * kPi);
+  EXPECT_LT(std::abs(driven + 0.9 * driving), 2.0 * 0.0003 / 0.04);
+}
+
 }  // namespace
 }  // namespace tactum
