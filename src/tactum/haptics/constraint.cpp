@@ -20,15 +20,6 @@ constexpr double kTrustGrowth = 2.0;
 /// The tolerance of contact determination is so much more than the trusted length, in skins.
 constexpr double kReachMargin = 4.0;
 
-/// Gaps of bodies that touch are known to rounding only, to this share of the skin. Kept to the bit, they
-/// would hold for ever what is jammed without play, and all that touches it.
-constexpr double kKnownGap = 1e-9;
-
-/// What a gap may become.
-double least_gap(double now, double skin) {
-  return std::min(0.5 * skin, now > 0.0 ? 0.5 * now : now - kKnownGap * skin);
-}
-
 /// The bodies and what each wants: to the hand, on along its way; or, `at_rest`, nothing.
 void add_bodies(const World& world, const FrameSettings& settings, double dt_s, bool at_rest,
                 FrameState& state, FrameReport& report) {
@@ -321,25 +312,6 @@ ConstraintState::ConstraintState(const World& world, const FrameSettings& settin
   gap_trial.reserve(settings.budget.rooms.patches);
   gap_least.reserve(settings.budget.rooms.patches);
   gap_answer.reserve(settings.budget.rooms.patches);
-}
-
-bool may_become(double now, double then, double skin) noexcept { return then >= least_gap(now, skin); }
-
-void look_at_trial(int keep_back, FrameState& state, FrameReport& report) noexcept {
-  ConstraintState& c = state.constraint;
-  for (Index p = 0; p < c.gap.size(); ++p) {
-    c.gap_answer[p] = state.free.patch_asked[p] ? GapAnswer::kAsked : GapAnswer::kNotAsked;
-    c.gap_least[p] = least_gap(c.gap[p], c.skin_m);
-  }
-  report.validation_tests +=
-      state.finder.distances_at(c.X_WB_trial, c.gap_trial, c.gap_answer, c.gap_least, keep_back);
-  state.waiting.ran_out |=
-      std::find(c.gap_answer.begin(), c.gap_answer.end(), GapAnswer::kUnknown) != c.gap_answer.end();
-}
-
-bool open_at_trial(std::size_t patch, const ConstraintState& c) noexcept {
-  if (c.gap_answer[patch] == GapAnswer::kExact) return c.gap_trial[patch] >= c.gap_least[patch];
-  return c.gap_answer[patch] == GapAnswer::kProven;
 }
 
 void trusted_reach(const World& world, double dt_s, FrameState& state) noexcept {

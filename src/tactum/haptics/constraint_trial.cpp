@@ -1,0 +1,44 @@
+/// The gaps of the constraint response (constraint.h) at poses on trial: whether they are open there.
+
+#include <algorithm>
+
+#include "tactum/base/tolerances.h"
+#include "tactum/haptics/constraint.h"
+#include "tactum/haptics/frame_state.h"
+
+namespace tactum {
+namespace {
+
+using Index = std::size_t;
+
+/// Gaps of bodies that touch are known to rounding only, some share of the skin. Kept to the bit, they would
+/// hold for ever what is jammed without play, and all that touches it.
+constexpr double kKnownGap = tolerances::kCertificate;
+
+/// What a gap may become.
+double least_gap(double now, double skin) {
+  return std::min(0.5 * skin, now > 0.0 ? 0.5 * now : now - kKnownGap * skin);
+}
+
+}  // namespace
+
+bool may_become(double now, double then, double skin) noexcept { return then >= least_gap(now, skin); }
+
+void look_at_trial(int keep_back, FrameState& state, FrameReport& report) noexcept {
+  ConstraintState& c = state.constraint;
+  for (Index p = 0; p < c.gap.size(); ++p) {
+    c.gap_answer[p] = state.free.patch_asked[p] ? GapAnswer::kAsked : GapAnswer::kNotAsked;
+    c.gap_least[p] = least_gap(c.gap[p], c.skin_m);
+  }
+  report.validation_tests +=
+      state.finder.distances_at(c.X_WB_trial, c.gap_trial, c.gap_answer, c.gap_least, keep_back);
+  state.waiting.ran_out |=
+      std::find(c.gap_answer.begin(), c.gap_answer.end(), GapAnswer::kUnknown) != c.gap_answer.end();
+}
+
+bool open_at_trial(std::size_t patch, const ConstraintState& c) noexcept {
+  if (c.gap_answer[patch] == GapAnswer::kExact) return c.gap_trial[patch] >= c.gap_least[patch];
+  return c.gap_answer[patch] == GapAnswer::kProven;
+}
+
+}  // namespace tactum
