@@ -1,22 +1,17 @@
 #include "tactum/collision/contact_finder.h"
 
 #include <algorithm>
-#include <cmath>
-#include <utility>
 
 #include "tactum/base/tolerances.h"
 #include "tactum/collision/closest_features.h"
 #include "tactum/collision/manifold.h"
+#include "tactum/collision/motion_bound.h"
 #include "tactum/collision/seams.h"
 
 namespace tactum {
 namespace {
 
 using Index = std::size_t;
-
-/// Boxes and lists of near pairs are grown by this share of the smaller body's radius beyond the tolerance:
-/// more means they are renewed less often but hold more pairs.
-constexpr double kSlack = 0.02;
 
 /// Below every odometer reading less a tolerance.
 constexpr double kAlwaysDue = -1e300;
@@ -29,73 +24,7 @@ constexpr std::size_t kAmple = 4;
 /// while nothing has.
 constexpr double kKnownShare = 0.05;
 
-/// The axis-aligned box around a turned box.
-Aabb turned(const Aabb& box, const Pose& X, double grown) {
-  const Vec3 center = X * box.center();
-  const Vec3 half = X.R.cwiseAbs() * box.half() + Vec3::Constant(grown);
-  return {center - half, center + half};
-}
-
-/// How far any point within `radius` of the origin has moved: the origin's way plus the chord of the turn,
-/// whose matrix difference has Frobenius norm sqrt(2) chord / radius.
-double displacement(const Pose& from, const Pose& to, double radius) {
-  return (to.p - from.p).norm() + radius * (to.R - from.R).norm() / std::sqrt(2.0);
-}
-
-bool inside(const Aabb& small, const Aabb& large) {
-  return (small.min.array() >= large.min.array()).all() && (small.max.array() <= large.max.array()).all();
-}
-
 }  // namespace
-
-ContactFinder::ContactFinder(std::vector<CollisionBody> bodies, std::span<const Pose> X_WB,
-                             const ContactFinderRooms& rooms)
-    : bodies_(std::move(bodies)), last_X_WB_(X_WB.begin(), X_WB.end()), sweep_([&] {
-        for (Index i = 0; i < bodies_.size(); ++i) {
-          const Part& part = *bodies_[i].part;
-          double radius = 0.0;
-          Aabb box;
-          for (const Vec3& vertex : part.surface.vertices) {
-            radius = std::max(radius, vertex.norm());
-            box.extend(vertex);
-          }
-          radius_.push_back(radius);
-          part_box_.push_back(box);
-          slack_.push_back(kSlack * radius);
-          fat_box_.push_back(turned(box, X_WB[i], slack_.back()));
-        }
-        return SweepAndPrune(fat_box_);
-      }()) {
-  travel_.assign(bodies_.size(), 0.0);
-  lists_.resize(bodies_.size() * bodies_.size());
-  pairs_.reserve(rooms.pairs);
-  renewed_.reserve(rooms.pairs);
-  due_.reserve(rooms.pairs);
-  handed_on_.reserve(rooms.pairs);
-  blocked_.assign(bodies_.size(), 0);
-  patches_.reserve(rooms.patches);
-  candidates_.reserve(rooms.patches);
-  minima_.reserve(rooms.minima);
-  reduction_scratch_.reserve(rooms.minima);
-  kept_minima_ = rooms.kept_minima;
-}
-
-void ContactFinder::find_near_pairs(std::span<const Pose> X_WB, std::span<const double> reach,
-                                    double min_tolerance) noexcept {
-  work_ = {};
-  work_.bodies = static_cast<int>(bodies_.size());
-  reach_ = reach;
-  min_tolerance_ = min_tolerance;
-  ++frame_;
-  move_boxes(X_WB);
-  const bool lists_hold = std::all_of(sweep_.pairs().begin(), sweep_.pairs().end(), [&](const auto& pair) {
-    return list_holds(list_of(pair.a, pair.b), pair.a, pair.b);
-  });
-  if (!lists_hold) renew_lists(X_WB);
-  for (const SweepAndPrune::Pair& near : sweep_.pairs())
-    work_.rooms_full |= list_of(near.a, near.b).cut_short;
-  work_.near_pairs = static_cast<int>(pairs_.size());
-}
 
 void ContactFinder::find_patches(std::span<const Pose> X_WB, int budget, PatchPoints points,
                                  std::span<const std::uint8_t> urgency) noexcept {
@@ -212,99 +141,9 @@ void ContactFinder::leave(int a, int b, double gap, std::int64_t last_checked) n
   blocked_[Index(a)] = blocked_[Index(b)] = 1;
 }
 
-void ContactFinder::move_boxes(std::span<const Pose> X_WB) noexcept {
-  bool moved = false;
-  for (Index i = 0; i < bodies_.size(); ++i) {
-    if (!bodies_[i].moves) continue;
-    travel_[i] += displacement(last_X_WB_[i], X_WB[i], radius_[i]);
-    last_X_WB_[i] = X_WB[i];
-    const double needed = std::max(reach_[i], min_tolerance_);
-    const Aabb tight = turned(part_box_[i], X_WB[i], needed);
-    if (inside(tight, fat_box_[i])) continue;
-    fat_box_[i] = turned(part_box_[i], X_WB[i], needed + slack_[i]);
-    sweep_.move(static_cast<int>(i), fat_box_[i]);
-    moved = true;
-  }
-  if (!moved) return;
-  sweep_.update();
-  work_.broad_phase_runs = 1;
-}
-
 double ContactFinder::tolerance(int a, int b) const noexcept {
   const auto reach_of = [&](int body) { return bodies_[Index(body)].moves ? reach_[Index(body)] : 0.0; };
   return std::max(min_tolerance_, reach_of(a) + reach_of(b));
-}
-
-bool ContactFinder::list_holds(const BodyPair& list, int a, int b) const noexcept {
-  if (!bodies_[Index(a)].moves && !bodies_[Index(b)].moves) return true;
-  return list.renewal == renewal_ && odometers(a, b) - list.odometers + tolerance(a, b) <= list.reach;
-}
-
-void ContactFinder::renew_lists(std::span<const Pose> X_WB) noexcept {
-  work_.broad_phase_runs = 1;
-  renewed_.clear();
-  for (const SweepAndPrune::Pair& near : sweep_.pairs()) {
-    if (!bodies_[Index(near.a)].moves && !bodies_[Index(near.b)].moves) continue;
-    BodyPair& list = list_of(near.a, near.b);
-    const Index first = renewed_.size();
-    if (list_holds(list, near.a, near.b)) {
-      const Index room = renewed_.capacity() - renewed_.size();
-      list.cut_short = list.cut_short || Index(list.count) > room;
-      for (Index i = 0; i < std::min(Index(list.count), room); ++i)
-        renewed_.push_back(pairs_[Index(list.first) + i]);
-    } else {
-      const BodyPair old = list;
-      list.odometers = odometers(near.a, near.b);
-      list.reach = tolerance(near.a, near.b) + std::min(slack_[Index(near.a)], slack_[Index(near.b)]);
-      list.cut_short =
-          !collect(near.a, near.b, relative_pose(X_WB[Index(near.a)], X_WB[Index(near.b)]), list.reach);
-      if (old.renewal == renewal_) inherit(old, first);
-    }
-    list.first = static_cast<std::int32_t>(first);
-    list.count = static_cast<std::int32_t>(renewed_.size() - first);
-    list.renewal = renewal_ + 1;
-  }
-  ++renewal_;  // a pair of bodies that is not near now has an older number, and no list any more
-  pairs_.swap(renewed_);
-}
-
-/// False when the room did not suffice.
-bool ContactFinder::collect(int a, int b, const Pose& X_AB, double reach) noexcept {
-  if (meet_by_surfaces(a, b)) return true;
-  const Index first = renewed_.size();
-  const bool complete =
-      for_each_pair_within(bodies_[Index(a)].part->hierarchy, bodies_[Index(b)].part->hierarchy, X_AB, reach,
-                           [&](int piece_a, int piece_b) {
-                             if (renewed_.size() == renewed_.capacity()) return false;
-                             Pair pair;
-                             pair.body_a = a;
-                             pair.body_b = b;
-                             pair.piece_a = piece_a;
-                             pair.piece_b = piece_b;
-                             renewed_.push_back(pair);
-                             return true;
-                           });
-  std::sort(renewed_.begin() + static_cast<std::ptrdiff_t>(first), renewed_.end(),
-            [](const Pair& p, const Pair& q) {
-              return p.piece_a != q.piece_a ? p.piece_a < q.piece_a : p.piece_b < q.piece_b;
-            });
-  return complete;
-}
-
-/// Hands the caches of the old list on: both are sorted, so one walk along both suffices. What was not on it
-/// was beyond its reach.
-void ContactFinder::inherit(const BodyPair& old, std::size_t first) noexcept {
-  Index from = Index(old.first);
-  const Index end = from + Index(old.count);
-  for (Index to = first; to < renewed_.size(); ++to) {
-    const auto key = std::pair(renewed_[to].piece_a, renewed_[to].piece_b);
-    while (from < end && std::pair(pairs_[from].piece_a, pairs_[from].piece_b) < key) ++from;
-    if (from < end && std::pair(pairs_[from].piece_a, pairs_[from].piece_b) == key) {
-      renewed_[to] = pairs_[from];
-    } else if (!old.cut_short) {
-      renewed_[to].free_until = old.odometers + old.reach;
-    }
-  }
 }
 
 void ContactFinder::answer(Pair& pair, const Pose& X_AB, Answer& into) noexcept {
