@@ -157,9 +157,11 @@ TEST(PartFile, AnyBytesBehindARightChecksumAreSurvived) {
     ASSERT_EQ(same, bytes);
     for (int i = 0; i < 2000 / cases::kSlowness; ++i) {
       std::string changed = bytes;
-      for (int k = 1 + random.index(4); k > 0; --k) {
+      // Of every other file one byte only, which is often a coordinate: that loads.
+      const bool one_byte = i % 2 == 0;
+      for (int k = one_byte ? 1 : 1 + random.index(4); k > 0; --k) {
         const int at = 32 + random.index(static_cast<int>(changed.size()) - 32);
-        switch (random.index(3)) {
+        switch (one_byte ? 0 : random.index(3)) {
           case 0:
             changed[at] = static_cast<char>(random.index(256));
             break;

@@ -49,7 +49,7 @@ void lay_out(const SurfaceTree& tree, const Box& box, VertexLeaf& leaf) noexcept
 void lay_out(const SurfaceTree& tree, const Box& box, const Kernels& kernels, EdgeLeaf& leaf) noexcept {
   const Corner corner(tree, box);
   leaf.corner = corner.all();
-  std::array<Points, 4> points;
+  std::array<Points, 4> points{};
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
     for (std::size_t k = 0; k < 3; ++k) put(corner.point(lane, k), points[k], lane);
     put(corner.beyond(lane), points[3], lane);
@@ -61,7 +61,7 @@ void lay_out(const SurfaceTree& tree, const Box& box, const Kernels& kernels, fl
              FaceLeaf& leaf) noexcept {
   const Corner corner(tree, box);
   leaf.corner = corner.all();
-  std::array<Points, 3> points;
+  std::array<Points, 3> points{};
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
     for (std::size_t k = 0; k < 3; ++k) put(corner.point(lane, k), points[k], lane);
   }
