@@ -9,6 +9,7 @@
 #include <optional>
 #include <thread>
 
+#include "collision/cases.h"
 #include "support/allocation_guard.h"
 #include "support/real_data.h"
 #include "tactum/haptics/coupling_gains.h"
@@ -54,7 +55,9 @@ std::unique_ptr<Session> open_session(const std::string& name) {
 
 /// Frames of a run of the scene, and whether they are all of its motion. Of scenes of surfaces, whose frames
 /// take tens of milliseconds, a long test runs them all; they have tests of their own (real_parts_test.cpp).
+/// A sanitized build takes a part of each: it looks for faults of memory.
 std::pair<std::uint64_t, bool> frames_to_run(const Scene& scene) {
+  if (cases::kSlowness > 1) return {1000, false};
   const auto& bodies = scene.world.bodies;
   const bool slow = std::any_of(bodies.begin(), bodies.end(),
                                 [](const Body& body) { return body.part->surface.triangles.size() > 3000; });

@@ -117,6 +117,7 @@ const topics = {
     const other = await openPage(browser, without);
     await until("a scene without fields has none", async () => (await arrowsOf(other)) === 0);
     check(!(await other.isVisible("#field")), "and no button");
+    await without.end();
   },
 
   async drag(browser) {
