@@ -7,6 +7,7 @@ foreach(topic ${topics})
     COMMAND ${NODE} ${CMAKE_CURRENT_SOURCE_DIR}/viewer/browser/run.mjs ${topic} $<TARGET_FILE:tactum>)
   set_tests_properties(viewer.browser.${topic} PROPERTIES LABELS browser SKIP_RETURN_CODE 77 TIMEOUT 240 RUN_SERIAL ON)
 endforeach()
+set_tests_properties(viewer.browser.pictures PROPERTIES TIMEOUT 900)  # scenes are played up to their moment
 add_test(NAME viewer.work_per_frame
   COMMAND ${PYTHON3} ${PROJECT_SOURCE_DIR}/tools/viewer_work.py $<TARGET_FILE:test_viewer>)
 set_tests_properties(viewer.work_per_frame PROPERTIES LABELS slow SKIP_RETURN_CODE 77 TIMEOUT 600)
