@@ -60,10 +60,6 @@ struct ConstraintState {
 /// for what it may push. Fills state.reach.
 void trusted_reach(const World& world, double dt_s, FrameState& state) noexcept;
 
-/// A gap may become `then` after `now`: open, and if it must shrink below half the skin, then by no more than
-/// half. Held to the exact last gap, a part that is a rounding too near could never move again.
-bool may_become(double now, double then, double skin) noexcept;
-
 /// Asks for the gaps at the trial of the patches that state.free.patch_asked names, as long as more than
 /// `keep_back` tests are left.
 void look_at_trial(int keep_back, FrameState& state, FrameReport& report) noexcept;

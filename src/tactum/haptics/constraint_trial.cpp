@@ -15,14 +15,13 @@ using Index = std::size_t;
 /// hold for ever what is jammed without play, and all that touches it.
 constexpr double kKnownGap = tolerances::kCertificate;
 
-/// What a gap may become.
+/// What a gap may become: open, and if it must shrink below half the skin, then by no more than half. Held to
+/// the exact last gap, a part that is a rounding too near could never move again.
 double least_gap(double now, double skin) {
   return std::min(0.5 * skin, now > 0.0 ? 0.5 * now : now - kKnownGap * skin);
 }
 
 }  // namespace
-
-bool may_become(double now, double then, double skin) noexcept { return then >= least_gap(now, skin); }
 
 void look_at_trial(int keep_back, FrameState& state, FrameReport& report) noexcept {
   ConstraintState& c = state.constraint;
