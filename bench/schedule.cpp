@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "bench/overlap.h"
+#include "tactum/base/hash.h"
 #include "tactum/haptics/frame.h"
 #include "tactum/scene/heap.h"
 
@@ -162,12 +163,14 @@ ScheduleRow run_with(const Scene& scene, double share, int pairs, int frames, in
   HeapRun run(scene, row.budget);
   const HeapReferee referee(scene.world);
   std::vector<double> times;
+  Hash hash;
   int compared = 0;
   for (int i = 0; i < frames; ++i) {
     const bool look = (i + 1) * looks / frames != i * looks / frames;
     const Wrench truth = look ? run.next_without_limit() : Wrench();
     const FrameReport& report = run.step();
     times.push_back(run.frame_ns());
+    add_to(hash, report);
     const ContactWork& work = report.work;
     row.most_near = std::max(row.most_near, work.near_pairs);
     row.most_tests = std::max(row.most_tests, report.tests());
@@ -192,6 +195,7 @@ ScheduleRow run_with(const Scene& scene, double share, int pairs, int frames, in
   row.fastest_at_end = fastest(run.at());
   row.p50_us = quantile(times, 0.5) * 1e-3;
   row.p99_us = quantile(times, 0.99) * 1e-3;
+  row.frame_hash = hash.value();
   return row;
 }
 
@@ -353,7 +357,8 @@ nlohmann::ordered_json to_json(const ScheduleReport& report) {
                                {"overlap_m", row.overlap_m},
                                {"overlap_of_held_m", row.overlap_of_held_m},
                                {"p50_us", row.p50_us},
-                               {"p99_us", row.p99_us}});
+                               {"p99_us", row.p99_us},
+                               {"frame_hash", fmt::format("{:016x}", row.frame_hash)}});
   return json;
 }
 

@@ -12,6 +12,7 @@
 /// times sweeps.
 
 #include <array>
+#include <cstdint>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -44,6 +45,7 @@ struct ScheduleRow {
   double overlap_m = 0.0;             ///< worst that the referee found [m]
   double overlap_of_held_m = 0.0;     ///< [m]
   double p50_us = 0.0, p99_us = 0.0;  ///< [us]
+  std::uint64_t frame_hash = 0;       ///< of what every frame computed
 };
 
 /// The model of a frame's time.

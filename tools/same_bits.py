@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Holds that every build computes the same frames, to the last bit:  tools/same_bits.py TACTUM TACTUM...
 
-Each program runs the gears once on the virtual clock and names the hash of all its frames. One that was not built is
+Each program runs, on the virtual clock, the gears once, the first seconds of thirteen moving bodies, and a heap with
+less budget than pairs, and names the hash of all their frames. One that was not built is
 left out and told, unless TACTUM_ALL_BUILDS=1 says that all must be there. Exit code 77 (skipped) when fewer than two
 programs are there to compare.
 """
@@ -14,17 +15,27 @@ import tempfile
 
 SKIPPED = 77
 
+RUNS = [
+    ("gears", ["bench", "table1", "--replays", "1"], lambda told: told["frame_hash"]),
+    ("moving-objects", ["feel", "moving-objects", "--virtual-clock", "--duration", "2.5"],
+     lambda told: told["frame_hash"]),
+    ("heap", ["bench", "schedule", "--bodies", "6", "--seconds", "0.6", "--shares", "0.1", "--replays", "1"],
+     lambda told: told["budgets"][0]["frame_hash"]),
+]
 
-def frame_hash(program):
-    """The hash the program names, after the published 12 499 updates."""
+
+def frame_hashes(program):
+    """The hashes the program names, by what was run."""
+    hashes = {}
     with tempfile.TemporaryDirectory() as folder:
-        report = pathlib.Path(folder) / "table1.json"
-        command = [str(program), "bench", "table1", "--replays", "1", "--json", str(report)]
-        done = subprocess.run(command, capture_output=True, text=True, stdin=subprocess.DEVNULL)
-        if done.returncode != 0:
-            raise RuntimeError(f"{program}: exit code {done.returncode}\n{done.stdout}{done.stderr}")
-        told = json.loads(report.read_text())
-    return str(told["frame_hash"]), told["updates"]
+        for name, arguments, read in RUNS:
+            report = pathlib.Path(folder) / "report.json"
+            command = [str(program), *arguments, "--json", str(report)]
+            done = subprocess.run(command, capture_output=True, text=True, stdin=subprocess.DEVNULL)
+            if done.returncode != 0:
+                raise RuntimeError(f"{' '.join(command)}: exit code {done.returncode}\n{done.stdout}{done.stderr}")
+            hashes[name] = str(read(json.loads(report.read_text())))
+    return hashes
 
 
 def main(arguments):
@@ -40,10 +51,11 @@ def main(arguments):
         return SKIPPED
     told = {}
     for program in present:
-        told[program] = frame_hash(program)
-        print(f"{told[program][0]}  {told[program][1]} updates  {program}")
-    if len(set(told.values())) != 1:
-        print("the builds differ")
+        told[program] = frame_hashes(program)
+        print("  ".join(f"{name} {value}" for name, value in told[program].items()), "", program)
+    differ = [name for name, _, _ in RUNS if len({hashes[name] for hashes in told.values()}) != 1]
+    if differ:
+        print(f"the builds differ in: {', '.join(differ)}")
         return 1
     return 0
 

@@ -46,7 +46,9 @@ void ContactFinder::find_patches(std::span<const Pose> X_WB, int budget, PatchPo
     }
   }
   thrifty_ = kAmple * due_.size() > static_cast<Index>(std::max(budget, 0));
-  const int checked = prioritise(due_, thrifty_ ? leave_known(X_WB) : budget);
+  // Before the list is handed over: what is known leaves it.
+  const int may_test = thrifty_ ? leave_known(X_WB) : budget;
+  const int checked = prioritise(due_, may_test);
   work_.due = static_cast<int>(due_.size());
   for (int i = 0; i < work_.due; ++i) {
     const std::int32_t number = due_[Index(i)].pair;
