@@ -67,5 +67,22 @@ TEST(Lessons, WithoutATrustedLengthThatFollowsAllIsContactThatAHandAtFullSpeedCo
   }
 }
 
+TEST(Lessons, APartThatMayNotMoveIsFeltWhereItStands) {
+  BlockRig bench;
+  const double spring = bench.settings.coupling.stiffness_N_per_m;
+  bench.step({});
+  bench.go(at(0, 0, -kBlockGap_m - 0.001), 200);
+  bench.settings.budget.max_exact_tests = 0;  // nothing can be known of any step
+  const Pose stands = bench.X_WB();
+  bench.go(at(0, 0, -kBlockGap_m + 0.004), 200);
+  bench.go(bench.X_DH, 50);
+  EXPECT_LT((bench.X_WB().p - stands.p).norm(), 1e-15);
+  EXPECT_NEAR(bench.report.coupling.f.z(), -spring * (0.004 - bench.skin()), 1e-6);
+  bench.settings.budget.max_exact_tests = 100;
+  bench.go(bench.X_DH, 200);
+  EXPECT_NEAR(bench.report.coupling.f.z(), 0.0, 1e-6);
+  EXPECT_EQ(bench.penetrating_frames, 0);
+}
+
 }  // namespace
 }  // namespace tactum

@@ -19,6 +19,9 @@ constexpr int kSlipRounds = 6;
 constexpr double kTrustGrowth = 2.0;
 /// The tolerance of contact determination is so much more than the trusted length, in skins.
 constexpr double kReachMargin = 4.0;
+/// A part whose step is refused in so many frames on end is felt where it stands, not where the forces would
+/// have it: what is felt would be the same however far the hand goes away.
+constexpr int kStandsFrames = 2;
 
 /// The bodies and what each wants: to the hand, on along its way; or, `at_rest`, nothing.
 void add_bodies(const World& world, const FrameSettings& settings, double dt_s, bool at_rest,
@@ -48,30 +51,49 @@ void add_bodies(const World& world, const FrameSettings& settings, double dt_s, 
   problem.add_joint_rows();
 }
 
-bool solve_from(std::span<const int> first, const FrameSettings& settings, ConstraintProblem& problem,
-                FrameReport& report) {
-  const QpAnswer& answer = problem.solve(first, settings.budget.solver_iterations);
+/// Counts an answer; whether it is one.
+bool solved(const QpAnswer& answer, FrameReport& report) {
   report.solver_iterations += answer.iterations;
   if (answer.status == QpStatus::kBounded) report.flags |= frame_flag::kSolverBounded;
   return answer.status == QpStatus::kSolved;
 }
 
-/// Solves, from the rows that held in the last frame. False when there is no solution.
-bool solve(const FrameSettings& settings, const ConstraintState& c, ConstraintProblem& problem,
-           FrameReport& report) {
-  StaticVector<int, kMostUnknowns> first;
-  for (Index row = 0; row < c.own_rows; ++row)
-    for (const std::uint64_t name : c.held)
-      if (name == c.names[row]) first.push_back(static_cast<int>(c.first_row + row));
-  return solve_from({first.begin(), first.end()}, settings, problem, report);
+using RowNames = StaticVector<std::uint64_t, kMostUnknowns>;
+
+/// The names of the contact rows that hold in the last answer.
+void note_held(const ConstraintState& c, RowNames& names) {
+  names.clear();
+  for (const QpActive& active : c.problem.answer().active) {
+    const Index row = Index(active.row) - c.first_row;
+    if (Index(active.row) >= c.first_row && row < c.own_rows) names.push_back(c.names[row]);
+  }
 }
 
-/// Solves again, from the rows that hold now.
-bool solve_on(const FrameSettings& settings, ConstraintState& c, FrameReport& report) {
-  StaticVector<int, kMostUnknowns> first;
-  for (const QpActive& active : c.problem.answer().active)
-    if (Index(active.row) < c.problem.rows()) first.push_back(active.row);
-  return solve_from({first.begin(), first.end()}, settings, c.problem, report);
+StaticVector<int, kMostUnknowns> rows_of(const RowNames& names, const ConstraintState& c) {
+  StaticVector<int, kMostUnknowns> rows;
+  for (Index row = 0; row < c.own_rows; ++row)
+    if (std::find(names.begin(), names.end(), c.names[row]) != names.end())
+      rows.push_back(static_cast<int>(c.first_row + row));
+  return rows;
+}
+
+void begin(const StaticVector<int, kMostUnknowns>& rows, ConstraintProblem& problem) {
+  problem.begin({rows.begin(), rows.end()});
+}
+
+/// Solves, from the rows begun with, or from those that hold now. False when there is no solution.
+bool solve_on(const FrameSettings& settings, ConstraintProblem& problem, FrameReport& report) {
+  return solved(problem.solve_on(settings.budget.solver_iterations), report);
+}
+
+/// Begins with what held in the last frame while every patch stuck, if any did. One body has so few rows that
+/// to go on from the answer without friction costs no more.
+void begin_sticking(ConstraintState& c) {
+  if (c.problem.movers().size() == 1) return;
+  StaticVector<int, kMostUnknowns> rows = rows_of(c.held_sticking, c);
+  const Index of_contacts = rows.size();
+  c.friction.rows_that_stuck(rows);
+  if (rows.size() > of_contacts) begin(rows, c.problem);
 }
 
 /// Lets every patch stick, then slip where it must, until none slips further. Where no answer keeps the
@@ -79,15 +101,19 @@ bool solve_on(const FrameSettings& settings, ConstraintState& c, FrameReport& re
 bool solve_sliding(const FrameSettings& settings, Index friction_row, ConstraintState& c,
                    FrameReport& report) {
   for (int round = 0; round <= kSlipRounds; ++round) {
-    bool solved = solve_on(settings, c, report);
-    if (!solved) {
+    bool found = solve_on(settings, c.problem, report);
+    if (!found) {
       c.friction.forget_anchors(c.problem);
-      solved = solve_on(settings, c, report);
+      found = solve_on(settings, c.problem, report);
     }
-    if (!solved) {
+    if (!found) {
       c.friction.clear();
       c.problem.keep_rows(friction_row);
-      return solve_on(settings, c, report);
+      return solve_on(settings, c.problem, report);
+    }
+    if (round == 0) {
+      note_held(c, c.held_sticking);
+      c.friction.note_sticking(c.problem);
     }
     if (!c.friction.let_slip(c.skin_m, c.problem)) break;
   }
@@ -97,13 +123,12 @@ bool solve_sliding(const FrameSettings& settings, Index friction_row, Constraint
 /// Keeps what the answer says of forces: impulses, the rows that hold, the wrench at the handle.
 void keep_forces(const FrameSettings& settings, double dt_s, FrameState& state, FrameReport& report) {
   ConstraintState& c = state.constraint;
-  c.held.clear();
+  note_held(c, c.held);
   for (ContactRow& row : own_rows(state)) row.impulse = 0.0;
   for (const QpActive& active : c.problem.answer().active) {
     const Index row = Index(active.row) - c.first_row;
-    if (Index(active.row) < c.first_row || row >= c.own_rows) continue;
-    state.contacts.rows[row].impulse = active.multiplier * dt_s;
-    c.held.push_back(c.names[row]);
+    if (Index(active.row) >= c.first_row && row < c.own_rows)
+      state.contacts.rows[row].impulse = active.multiplier * dt_s;
   }
   report.active_constraints = static_cast<int>(c.held.size());
   feel(settings, dt_s, c.problem.displacement_at_centre(c.problem.movers().front()), state);
@@ -162,7 +187,8 @@ void restore(const World& world, const FrameSettings& settings, double dt_s, Fra
   if (!tight || state.finder.blocked(state.tool.body)) return;
   add_bodies(world, settings, dt_s, true, state, report);
   add_contact_rows(true, c.problem, state);
-  if (!solve(settings, c, c.problem, report)) return;
+  begin(rows_of(c.held, c), c.problem);
+  if (!solve_on(settings, c.problem, report)) return;
   if (!open_after(world, trusted_share(settings, state), state, report)) return;
   for (ContactRow& row : own_rows(state)) row.distance = gap_at_trial(row, state);
   take_trial(state);
@@ -179,26 +205,31 @@ bool find_forces(const World& world, const FrameSettings& settings, double dt_s,
   add_contact_rows(false, c.problem, state);
   c.friction_row = c.problem.rows();
   c.friction.clear();
-  bool solved = solve(settings, c, c.problem, report);
-  if (solved && c.friction.begin(world, settings.friction, own_rows(state), state.finder.patches(),
-                                 state.world.X_WB, c.skin_m, c.first_row, c.problem))
-    solved = solve_sliding(settings, c.friction_row, c, report);
-  if (solved) keep_forces(settings, dt_s, state, report);
-  if (!c.shades) return solved;
+  begin(rows_of(c.held_without_friction, c), c.problem);
+  bool found = solve_on(settings, c.problem, report);
+  note_held(c, c.held_without_friction);
+  if (found && c.friction.begin(world, settings.friction, own_rows(state), state.finder.patches(),
+                                state.world.X_WB, c.skin_m, c.first_row, c.problem)) {
+    begin_sticking(c);
+    found = solve_sliding(settings, c.friction_row, c, report);
+  }
+  if (found) keep_forces(settings, dt_s, state, report);
+  if (!c.shades) return found;
   exchange_normals(state);
   c.way.follow(c.problem);
   add_contact_rows(false, c.way, state);
-  return solved && solve(settings, c, c.way, report);
+  begin(rows_of(c.held, c), c.way);
+  return found && solve_on(settings, c.way, report);
 }
 
 /// Solves again after a feedback.
 bool find_again(const FrameSettings& settings, double dt_s, FrameState& state, FrameReport& report) {
   ConstraintState& c = state.constraint;
-  if (c.shades) return solve(settings, c, c.way, report);
-  const bool solved = c.friction.acts() ? solve_sliding(settings, c.friction_row, c, report)
-                                        : solve(settings, c, c.problem, report);
-  if (solved) keep_forces(settings, dt_s, state, report);
-  return solved;
+  if (c.shades) return solve_on(settings, c.way, report);
+  const bool found = c.friction.acts() ? solve_sliding(settings, c.friction_row, c, report)
+                                       : solve_on(settings, c.problem, report);
+  if (found) keep_forces(settings, dt_s, state, report);
+  return found;
 }
 
 /// Goes where the hand wants as far as everything stays open; returns the share of the answer that was taken.
@@ -233,7 +264,9 @@ void move_held_island(const World& world, const FrameSettings& settings, double 
     state.free.patch_asked.push_back(state.free.of_held(patch) ? 1 : 0);
   restore(world, settings, dt_s, state, report);
   const double share = advance(world, settings, dt_s, state, report);
+  c.stood = share > 0.0 ? 0 : c.stood + 1;
   if (share > 0.0) take_trial(state);
+  if (c.stood >= kStandsFrames) feel(settings, dt_s, Vec6::Zero(), state);
   c.friction.end(share, own_rows(state), c.first_row, c.problem, state.world.X_WB);
   for (Index i = 0; i < world.bodies.size(); ++i)
     if (state.free.near_held[i])
@@ -338,7 +371,7 @@ void respond_constrained(const World& world, const FrameSettings& settings, doub
   c.gap_least.resize(c.gap.size());
   c.gap_answer.resize(c.gap.size());
 
-  let_wait(world, dt_s, state, report);
+  let_wait(world, settings, dt_s, state, report);
   find_islands(world, state);
   make_corner_rows(world, settings, state);
   strike(world, settings, dt_s, state, report);

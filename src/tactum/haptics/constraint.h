@@ -32,10 +32,12 @@ struct ConstraintState {
   double skin_m;               ///< the gap contacts are held at [m]
   double trust_m;              ///< how far a point of a body may move in the next frame [m]
   Vec6 wanted;                 ///< what the coupling asked of the handle [m, rad]
+  int stood = 0;               ///< frames on end in which no step could be taken [-]
   Wrench felt;                 ///< of the contact forces, at the handle, world axes [N, N m]
   FrictionUses friction_uses;  ///< what friction does, for displays
-  /// Names of the rows that held last.
-  StaticVector<std::uint64_t, kMostUnknowns> held;
+  /// Names of the rows that held last: in the end, without friction, and while every patch stuck. The next
+  /// frame's problems begin with them.
+  StaticVector<std::uint64_t, kMostUnknowns> held, held_without_friction, held_sticking;
 
   // Scratch of one frame.
   std::size_t own_rows = 0;          ///< the first so many contact rows are the problem's

@@ -69,8 +69,7 @@ Vec6 balanced_step(const Coupling& coupling, double dt_s, const Pose& X_WH_proxy
 }
 
 ConstraintProblem::ConstraintProblem(std::size_t most_rows) : most_rows_(most_rows + 4 * kMostMovers) {
-  normals_.reserve(most_rows_ * kMostUnknowns);
-  offsets_.reserve(most_rows_);
+  rows_.reserve(most_rows_);
 }
 
 void ConstraintProblem::clear() noexcept {
@@ -78,8 +77,7 @@ void ConstraintProblem::clear() noexcept {
   unknowns_ = 0;
   brakes_.clear();
   limits_.clear();
-  normals_.clear();
-  offsets_.clear();
+  rows_.clear();
 }
 
 const Mover* ConstraintProblem::mover_of(int body) const noexcept {
@@ -189,24 +187,24 @@ void ConstraintProblem::add_joint_rows() noexcept {
     const double wanted =
         brake.per_unknown * mover.wanted.dot(mover.motions.col(0)) / mover.motions.col(0).squaredNorm();
     for (const double side : {1.0, -1.0}) {
-      normals_.resize(normals_.size() + unknowns_, 0.0);
-      double* const row = normals_.data() + normals_.size() - unknowns_;
-      row[brake.unknown] = 1.0 / std::sqrt(spring);
-      row[mover.first] = -side * brake.per_unknown;
-      offsets_.push_back(side * wanted - unpulled);
+      QpRow& row = rows_.emplace_back();
+      row.runs[0] = {static_cast<std::uint32_t>(brake.unknown), 1, {1.0 / std::sqrt(spring)}};
+      row.runs[1] = {static_cast<std::uint32_t>(mover.first), 1, {-side * brake.per_unknown}};
+      row.offset = side * wanted - unpulled;
     }
   }
   for (const Limit& limit : limits_) add_row(limit.body, -1, limit.push, -limit.way_left);
 }
 
 bool ConstraintProblem::add_row(int body_a, int body_b, const Push& push, double offset) noexcept {
-  if (offsets_.size() == most_rows_) return false;
-  normals_.resize(normals_.size() + unknowns_, 0.0);
-  double* const row = normals_.data() + normals_.size() - unknowns_;
-  const auto project = [&](int body, double sign) {
+  if (rows_.size() == most_rows_) return false;
+  QpRow& row = rows_.emplace_back();
+  const auto project = [&](int body, double sign, QpRow::Run& run) {
     const Mover* const mover = mover_of(body);
     if (mover == nullptr) return;
-    double* const g = row + mover->first;
+    run.first = static_cast<std::uint32_t>(mover->first);
+    run.count = static_cast<std::uint32_t>(mover->rank);
+    std::array<double, QpRow::kLongestRun>& g = run.g;
     const Vec3 torque = push.torque + (push.p_W - mover->centre).cross(push.force);
     offset -= sign * (push.force.dot(mover->wanted.head<3>()) + torque.dot(mover->wanted.tail<3>()));
     if (mover->rank < 6) {
@@ -215,13 +213,13 @@ bool ConstraintProblem::add_row(int body_a, int body_b, const Push& push, double
       return;
     }
     for (int i = 0; i < 3; ++i) {
-      g[i] = sign * mover->per_way * push.force[i];
-      g[3 + i] = sign * torque.dot(mover->turns.col(i));
+      g[Index(i)] = sign * mover->per_way * push.force[i];
+      g[Index(3 + i)] = sign * torque.dot(mover->turns.col(i));
     }
   };
-  project(body_a, 1.0);
-  project(body_b, -1.0);
-  offsets_.push_back(offset);
+  project(body_a, 1.0, row.runs[0]);
+  project(body_b, -1.0, row.runs[1]);
+  row.offset = offset;
   return true;
 }
 
@@ -232,13 +230,18 @@ double ConstraintProblem::opening(int body_a, int body_b, const Push& push) cons
   return sum;
 }
 
-const QpAnswer& ConstraintProblem::solve(std::span<const int> first, int max_iterations) noexcept {
-  solve_small_qp({unknowns_, normals_, offsets_, tolerances::kRowKept_m}, first, max_iterations, answer_);
-  return answer_;
+QpProblem ConstraintProblem::nearest_point() const noexcept {
+  return {unknowns_, rows_, tolerances::kRowKept_m};
+}
+
+void ConstraintProblem::begin(std::span<const int> first) noexcept { qp_.begin(nearest_point(), first); }
+
+const QpAnswer& ConstraintProblem::solve_on(int max_iterations) noexcept {
+  return qp_.solve_on(nearest_point(), max_iterations);
 }
 
 Vec6 ConstraintProblem::displacement_at_centre(const Mover& mover) const noexcept {
-  const double* const z = answer_.z.data() + mover.first;
+  const double* const z = answer().z.data() + mover.first;
   if (mover.rank < 6) {
     Vec6 x = mover.wanted;
     for (Index i = 0; i < mover.rank; ++i) x += mover.motions.col(Eigen::Index(i)) * z[i];

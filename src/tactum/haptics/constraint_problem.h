@@ -84,19 +84,19 @@ class ConstraintProblem {
   bool add_row(int body_a, int body_b, const Push& push, double offset) noexcept;
   /// The left side of that row in the last answer [m].
   double opening(int body_a, int body_b, const Push& push) const noexcept;
-  std::size_t rows() const noexcept { return offsets_.size(); }
+  std::size_t rows() const noexcept { return rows_.size(); }
   /// Forgets the rows from `count` on.
-  void keep_rows(std::size_t count) noexcept {
-    offsets_.resize(count);
-    normals_.resize(count * unknowns_);
-  }
+  void keep_rows(std::size_t count) noexcept { rows_.resize(count); }
   /// Makes a row ask for `by` more.
-  void tighten(std::size_t row, double by) noexcept { offsets_[row] += by; }
+  void tighten(std::size_t row, double by) noexcept { rows_[row].offset += by; }
 
-  /// Solves, looking at the rows in `first` first; the answer keeps until the next call.
-  const QpAnswer& solve(std::span<const int> first, int max_iterations) noexcept;
+  /// Chooses the rows to begin the next solution with.
+  void begin(std::span<const int> first) noexcept;
+  /// Solves from there, or from those that hold now, after rows were tightened, or added or forgotten at the
+  /// end. The answer keeps until the next call.
+  const QpAnswer& solve_on(int max_iterations) noexcept;
 
-  const QpAnswer& answer() const noexcept { return answer_; }
+  const QpAnswer& answer() const noexcept { return qp_.answer(); }
   std::span<const Mover> movers() const noexcept { return {movers_, mover_count_}; }
   /// Displacement of a body's origin in the last answer; zero when it was not added [m, rad].
   Vec6 displacement(int body) const noexcept;
@@ -106,6 +106,8 @@ class ConstraintProblem {
   Vec6 displacement_at_centre(const Mover& mover) const noexcept;
 
  private:
+  QpProblem nearest_point() const noexcept;
+
   struct Brake {
     const Mover* mover;
     double friction;     // [N m or N]
@@ -130,9 +132,9 @@ class ConstraintProblem {
   std::size_t unknowns_ = 0;
   StaticVector<Brake, kMostMovers> brakes_;
   StaticVector<Limit, 2 * kMostMovers> limits_;
-  std::vector<double> normals_, offsets_;
+  std::vector<QpRow> rows_;
   std::size_t most_rows_;
-  QpAnswer answer_;
+  SmallQp qp_;
 };
 
 }  // namespace tactum

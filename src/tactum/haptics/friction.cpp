@@ -157,6 +157,7 @@ void Friction::anchor(FrictionPatch& patch, std::span<const Pose> X_WB, double s
     patch.apart_W = X_WA * last.on_A - X_W_B * last.on_B;
     patch.apart_W -= patch.n_BA_W * patch.n_BA_W.dot(patch.apart_W);
     if (last.stuck) patch.gap_m = 0.0;
+    patch.sticks_by = last.sticks_by;
     if (patch.apart_W.norm() <= settled_m) std::swap(patch.apart_W, patch.left_W);
     const Vec3 centre = X_WA * last.centre_A;
     patch.centre_W = centre + patch.n_BA_W * patch.n_BA_W.dot(patch.centre_W - centre);
@@ -168,6 +169,27 @@ void Friction::add_rows(FrictionPatch& patch, ConstraintProblem& problem) noexce
   for (Index k = 0; k < kRowsAPatch; ++k)
     problem.add_row(patch.key.body_a, patch.key.body_b, cone_edge(patch, k),
                     -patch.gap_m - allowance(patch, k));
+}
+
+FrictionPatch* Friction::patch_of_row(Index row) noexcept {
+  const auto found = std::find_if(patches_.begin(), patches_.end(), [&](const FrictionPatch& patch) {
+    return row >= patch.first_row && row < patch.first_row + kRowsAPatch;
+  });
+  return found == patches_.end() ? nullptr : found;
+}
+
+void Friction::rows_that_stuck(StaticVector<int, kMostUnknowns>& rows) const noexcept {
+  for (const FrictionPatch& patch : patches_)
+    for (Index k = 0; k < kRowsAPatch; ++k)
+      if ((patch.sticks_by >> k & 1u) != 0) rows.push_back(static_cast<int>(patch.first_row + k));
+}
+
+void Friction::note_sticking(const ConstraintProblem& problem) noexcept {
+  for (FrictionPatch& patch : patches_) patch.sticks_by = 0;
+  for (const QpActive& active : problem.answer().active) {
+    const Index row = Index(active.row);
+    if (FrictionPatch* const patch = patch_of_row(row)) patch->sticks_by |= 1u << (row - patch->first_row);
+  }
 }
 
 /// Its rows ask for nothing that a part could miss.
@@ -241,7 +263,7 @@ void Friction::end(double share, std::span<const ContactRow> rows, std::size_t f
     const Pose X_AW = X_WB[Index(patch.key.body_a)].inverse();
     const Pose X_BW = X_WB[Index(patch.key.body_b)].inverse();
     anchors_.push_back({patch.key, X_AW * (centre + apart), X_BW * centre, X_AW * centre, patch.radius_m,
-                        held, held && !slid});
+                        patch.sticks_by, held, held && !slid});
   }
 }
 

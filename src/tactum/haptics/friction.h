@@ -41,6 +41,10 @@ class Friction {
   bool begin(const World& world, const PairCoefficients& settings, std::span<const ContactRow> rows,
              std::span<const ContactPatch> patches, std::span<const Pose> X_WB, double skin_m,
              std::size_t first_row, ConstraintProblem& problem) noexcept;
+  /// Appends the rows that held in the last frame while the patches stuck.
+  void rows_that_stuck(StaticVector<int, kMostUnknowns>& rows) const noexcept;
+  /// Notes which rows hold: the last answer is that of patches that stick.
+  void note_sticking(const ConstraintProblem& problem) noexcept;
   /// Lets patches slip by what they slid in the last answer. True when that changed a row.
   bool let_slip(double skin_m, ConstraintProblem& problem) noexcept;
   /// Takes the anchors off, when they ask for what cannot be.
@@ -68,6 +72,7 @@ class Friction {
     PatchKey key;
     Vec3 on_A = Vec3::Zero(), on_B = Vec3::Zero(), centre_A = Vec3::Zero();  // [m]
     double radius_m = 0.0;
+    std::uint32_t sticks_by = 0;
     bool held = false;   ///< its cone pushed
     bool stuck = false;  ///< ... and it did not slip
   };
@@ -80,6 +85,7 @@ class Friction {
   double taken_off(const FrictionPatch& patch, const ConstraintProblem& problem) const noexcept;
   void drop_unsqueezed(const ConstraintProblem& problem) noexcept;
   FrictionPatch* patch_of(const PatchKey& key) noexcept;
+  FrictionPatch* patch_of_row(std::size_t row) noexcept;
   void add_rows(FrictionPatch& patch, ConstraintProblem& problem) noexcept;
   void let_go(FrictionPatch& patch, ConstraintProblem& problem) noexcept;
   void anchor(FrictionPatch& patch, std::span<const Pose> X_WB, double settled_m) noexcept;

@@ -31,6 +31,8 @@ struct FrictionPatch {
   double slip_m = 0.0;           ///< allowed without lifting [m]
   double slip_rad = 0.0;         ///< of turning about the normal [rad]
   std::size_t first_row = 0;
+  std::uint32_t sticks_by =
+      0;  ///< which of its rows hold while it sticks, a bit each; of the last frame first
 };
 
 /// What a patch slides by in the step of an answer, from its anchor, and turns by about its normal.
