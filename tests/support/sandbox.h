@@ -26,6 +26,9 @@ struct Sandbox {
   int penetrating_frames = 0;
   std::uint32_t flags = 0;  ///< of all frames
 
+  /// Physics is judged awake, see sleep_test.cpp.
+  Sandbox() { settings.budget.sleep = false; }
+
   /// Adds a body with the density of water; returns its number.
   int add(const Polytope& shape, const Pose& X_WB, const Twist& V_WB = {}, const Joint& joint = {}) {
     Body body;

@@ -33,6 +33,7 @@ struct ContactRow {
   double friction = 0.0;       ///< Coulomb's coefficient [-]
   double restitution = 0.0;    ///< of the speed, in an impact [-]
   bool struck = true;          ///< takes part in impacts
+  bool hit = false;            ///< an impact was seen here first, in this frame
   double impulse = 0.0;        ///< lambda, the solver's answer [N s]
 
   // For the sweeps only: lever arms, twist changes per unit impulse.

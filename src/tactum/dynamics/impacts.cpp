@@ -59,9 +59,9 @@ void hit(std::span<const ContactRow> rows, const ContactRow& first, std::span<co
 int resolve_impacts(std::span<ContactRow> rows, std::span<const Pose> X_WB, std::span<const Mobility> W,
                     double h, int most, std::span<Twist> V, ImpactObserver* observer) noexcept {
   for (int hits = 0; hits < most; ++hits) {
-    const ContactRow* fastest = nullptr;
+    ContactRow* fastest = nullptr;
     double speed = kImpactSpeed;
-    for (const ContactRow& row : rows) {
+    for (ContactRow& row : rows) {
       if (!row.struck) continue;
       const double closing = approach(row, X_WB, V);
       if (!(closing > speed) || row.distance > closing * h) continue;
@@ -69,6 +69,7 @@ int resolve_impacts(std::span<ContactRow> rows, std::span<const Pose> X_WB, std:
       speed = closing;
     }
     if (fastest == nullptr) return hits;
+    fastest->hit = true;
     hit(rows, *fastest, X_WB, W, h, V, observer);
   }
   return most;

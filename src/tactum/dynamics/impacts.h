@@ -24,8 +24,8 @@ class ImpactObserver {
 };
 
 /// Changes the twists of what is hit within the next `h` seconds, from rows with distances at their start;
-/// leaves the rows' impulses as they were. At most `most` pairs are hit; returns how many were. `observer`
-/// may be null.
+/// leaves the rows' impulses as they were and marks the fastest corner of every pair that was hit. At most
+/// `most` pairs are hit; returns how many were. `observer` may be null.
 int resolve_impacts(std::span<ContactRow> rows, std::span<const Pose> X_WB, std::span<const Mobility> W,
                     double h, int most, std::span<Twist> V, ImpactObserver* observer) noexcept;
 

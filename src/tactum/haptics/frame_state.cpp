@@ -24,7 +24,8 @@ FrameState::FrameState(const World& constant_world, const FrameSettings& setting
       contacts(settings.budget.rooms.patches, static_cast<std::size_t>(settings.budget.max_contact_points)),
       constraint(constant_world, settings),
       free(constant_world, settings),
-      waiting(constant_world, settings) {
+      waiting(constant_world, settings),
+      sleep(constant_world) {
   if (settings.response == ResponseModel::kConstraint) begin_midway(constant_world, settings.dt_s, world);
   hand.X_WD = settings.workspace.X_WD;
   if (!settings.shading.on) return;

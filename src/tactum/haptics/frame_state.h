@@ -13,6 +13,7 @@
 #include "tactum/haptics/safety.h"
 #include "tactum/haptics/settings.h"
 #include "tactum/haptics/shading.h"
+#include "tactum/haptics/sleep.h"
 #include "tactum/haptics/smoothing.h"
 #include "tactum/haptics/waiting.h"
 
@@ -53,6 +54,7 @@ struct FrameState {
   ConstraintState constraint;
   FreeBodies free;
   Waiting waiting;
+  Sleep sleep;
 
   void ended(Stage stage) noexcept {
     if (observer) observer->stage_ended(stage);

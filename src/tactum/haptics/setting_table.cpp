@@ -123,6 +123,9 @@ constexpr SettingInfo kSettings[] = {
   {"budget", "solver_iterations", "Solver rounds", "", "most rounds of the contact solver", 1, 1000, kInteger, true,
    get_field<&Frame::budget, &WorkBudget::solver_iterations>,
    set_field<&Frame::budget, &WorkBudget::solver_iterations>},
+  {"budget", "sleep", "Sleep", "", "what rests is not looked at, where nobody could tell", 0, 1, kOnOff, true,
+   get_field<&Frame::budget, &WorkBudget::sleep>,
+   set_field<&Frame::budget, &WorkBudget::sleep>},
 };
 // clang-format on
 

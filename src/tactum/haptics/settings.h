@@ -89,6 +89,7 @@ struct WorkBudget {
   int max_contact_points = 2048;  ///< contact points a frame [-]
   ContactFinderRooms rooms;       ///< near pairs and patches there is memory for
   int solver_iterations = 120;    ///< sweeps of the contact solver, or rows taken in and let go, at most [-]
+  bool sleep = true;              ///< what rests is not looked at, where nobody could tell (sleep.h)
 };
 
 /// All of it.

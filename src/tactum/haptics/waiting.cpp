@@ -142,7 +142,8 @@ void set_urgency(FrameState& state) noexcept {
   urgency[Index(held)] = urgency::kHeld;
 }
 
-void let_wait(const World& world, double dt_s, FrameState& state, FrameReport& report) noexcept {
+void let_wait(const World& world, const FrameSettings& settings, double dt_s, FrameState& state,
+              FrameReport& report) noexcept {
   Waiting& w = state.waiting;
   if (w.ran_out) {
     w.rounds = std::min(2 * w.rounds, kMostRounds);
@@ -156,8 +157,10 @@ void let_wait(const World& world, double dt_s, FrameState& state, FrameReport& r
     std::fill(w.waited.begin(), w.waited.end(), 0);
     std::fill(w.rested.begin(), w.rested.end(), 0);
     std::fill(w.contacts_at_rest.begin(), w.contacts_at_rest.end(), 0);
+    if (settings.budget.sleep) let_sleep(world, state, report);
     return;
   }
+  wake(state.sleep);
   watch_rest(world, state);
   std::fill(w.waits.begin(), w.waits.end(), 1);
   let_go(world, state);

@@ -11,7 +11,7 @@
 /// What waits carries nobody's load, so a heap whose bodies take turns would never come to rest. Therefore,
 /// while the budget is not ample, a body that has hardly left its place in its last 60 frames sleeps: it
 /// stands still, at no cost, until the held part or something fast touches it, or it has lost half of its
-/// contacts.
+/// contacts. With an ample budget nothing waits, and only what nobody could see move sleeps (sleep.h).
 ///
 /// How many tests a body will take is guessed from how far it went in its last frame: contacts whose gap that
 /// does not halve are proven open without a test. Where the guess was too low, the step is cut
@@ -53,7 +53,8 @@ struct Waiting {
 void set_urgency(FrameState& state) noexcept;
 
 /// Chooses who waits, and puts them at rest. After the pairs have been tested.
-void let_wait(const World& world, double dt_s, FrameState& state, FrameReport& report) noexcept;
+void let_wait(const World& world, const FrameSettings& settings, double dt_s, FrameState& state,
+              FrameReport& report) noexcept;
 
 /// Gives those that waited their velocities back.
 void go_on(FrameState& state) noexcept;

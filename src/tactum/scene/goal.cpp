@@ -59,7 +59,7 @@ void GoalRecord::watch(const World& world, const WorldState& state, int held,
   if (held >= 0) {
     picked_[Index(held)] = 1;
     for (const ContactRow& row : rows) {
-      if (!(row.impulse > 0.0)) continue;
+      if (!(row.impulse > 0.0) && !row.hit) continue;
       if (row.body_a == held) touched_[Index(row.body_b)] = 1;
       if (row.body_b == held) touched_[Index(row.body_a)] = 1;
     }

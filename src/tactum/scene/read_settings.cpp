@@ -112,10 +112,11 @@ void read_safety(const TomlReader& root, SafetySettings& safety) {
 
 void read_budget(const TomlReader& root, WorkBudget& budget) {
   const TomlReader table =
-      root.table("budget", {"max_exact_tests", "max_contact_points", "solver_iterations"});
+      root.table("budget", {"max_exact_tests", "max_contact_points", "solver_iterations", "sleep"});
   budget.max_exact_tests = table.integer("max_exact_tests", budget.max_exact_tests, 1, 1'000'000);
   budget.max_contact_points = table.integer("max_contact_points", budget.max_contact_points, 1, 100'000);
   budget.solver_iterations = table.integer("solver_iterations", budget.solver_iterations, 1, 10'000);
+  budget.sleep = table.flag("sleep", budget.sleep);
 }
 
 /// The line of a hinge, told in the body's frame.

@@ -1,0 +1,73 @@
+#include "tactum/haptics/sleep.h"
+
+#include <algorithm>
+
+#include "tactum/haptics/frame_state.h"
+#include "tactum/math/screw.h"
+
+namespace tactum {
+namespace {
+
+using Index = std::size_t;
+
+constexpr int kStillFrames = 60;
+/// No point has gone farther in that time than this share of the skin: some nanometres.
+constexpr double kStillShare = 0.01;
+
+void count_touches(FrameState& state) {
+  Sleep& s = state.sleep;
+  s.touches.swap(s.touched);
+  std::fill(s.touches.begin(), s.touches.end(), 0);
+  for (const ContactPatch& patch : state.finder.patches()) {
+    ++s.touches[Index(patch.body_a)];
+    ++s.touches[Index(patch.body_b)];
+    s.islands.join(patch.body_a, patch.body_b);
+  }
+}
+
+/// Whether the body is where it was, with what it touched.
+bool is_still(const FrameState& state, Index body) {
+  const Sleep& s = state.sleep;
+  if (s.touches[body] != s.touched[body] || static_cast<int>(body) == state.tool.body) return false;
+  const Twist moved = twist_between(s.X_still[body], state.world.X_WB[body], 1.0);
+  const double way = moved.v.norm() + moved.w.norm() * state.finder.radius(static_cast<int>(body));
+  return way <= kStillShare * state.constraint.skin_m;
+}
+
+}  // namespace
+
+Sleep::Sleep(const World& world)
+    : X_still(world.bodies.size()),
+      still(world.bodies.size(), 0),
+      touched(world.bodies.size(), 0),
+      touches(world.bodies.size(), 0),
+      islands(world),
+      restless(world.bodies.size(), 0) {}
+
+void let_sleep(const World& world, FrameState& state, FrameReport& report) noexcept {
+  Sleep& s = state.sleep;
+  std::vector<char>& waits = state.waiting.waits;  // nobody so far
+  s.islands.clear(world, waits);
+  count_touches(state);
+  std::fill(s.restless.begin(), s.restless.end(), 0);
+  for (Index i = 0; i < world.bodies.size(); ++i) {
+    if (!world.bodies[i].moves()) continue;
+    if (is_still(state, i)) {
+      s.still[i] = std::min(s.still[i] + 1, kStillFrames);
+    } else {
+      s.X_still[i] = state.world.X_WB[i];
+      s.still[i] = 0;
+    }
+    if (s.still[i] < kStillFrames) s.restless[Index(s.islands.of(static_cast<int>(i)))] = 1;
+  }
+  for (Index i = 0; i < world.bodies.size(); ++i) {
+    if (!world.bodies[i].moves() || s.restless[Index(s.islands.of(static_cast<int>(i)))]) continue;
+    waits[i] = 1;
+    state.waiting.V_kept[i] = state.world.V_WB[i] = {};
+    ++report.asleep;
+  }
+}
+
+void wake(Sleep& sleep) noexcept { std::fill(sleep.still.begin(), sleep.still.end(), 0); }
+
+}  // namespace tactum

@@ -1,0 +1,36 @@
+#pragma once
+/// Bodies that rest cost nothing. While the budget is ample a body sleeps, at no velocity and without a
+/// contact force to be found, when nothing of it could be seen or felt to move: it and everything that it
+/// touches, directly or through others, has gone nowhere for kStillFrames. It wakes with the frame in which a
+/// contact comes or goes, or something restless touches its island: the held part, or what moves. Patches are
+/// found before anything closes, so it is awake when it is struck. Where the budget is short another rule
+/// holds, see waiting.h.
+
+#include <vector>
+
+#include "tactum/dynamics/islands.h"
+#include "tactum/haptics/frame_report.h"
+
+namespace tactum {
+
+struct FrameState;
+
+/// Kept from frame to frame, and scratch, one entry per body; allocated at load time.
+struct Sleep {
+  explicit Sleep(const World& world);
+
+  std::vector<Pose> X_still;   ///< the place it has not left
+  std::vector<int> still;      ///< frames since it came there [-]
+  std::vector<int> touched;    ///< patches in the last frame [-]
+  std::vector<int> touches;    ///< ... and now [-]
+  Islands islands;             ///< by this frame's patches, whoever sleeps
+  std::vector<char> restless;  ///< of islands
+};
+
+/// Puts those to rest that may sleep (Waiting::waits), after the pairs have been tested.
+void let_sleep(const World& world, FrameState& state, FrameReport& report) noexcept;
+
+/// Everything is awake.
+void wake(Sleep& sleep) noexcept;
+
+}  // namespace tactum
