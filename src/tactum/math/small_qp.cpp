@@ -50,7 +50,7 @@ void SmallQp::begin(const QpProblem& problem, std::span<const int> first) noexce
   n_ = problem.unknowns;
   answer_.active.clear();
   std::fill_n(Q_.begin(), n_ * n_, 0.0);
-  for (Index k = 0; k < n_; ++k) Q(k)[k] = 1.0;
+  for (Index k = 0; k < n_; ++k) orthogonal(k)[k] = 1.0;
   for (const int row : first)
     if (count() < n_ && set_direction(problem.rows[Index(row)], kWorthBeginning)) append(Index(row), 0.0);
 }
@@ -74,15 +74,15 @@ void SmallQp::begin_at_active() noexcept {
     double* const y = work_.data();  // z = Q1 y
     for (Index j = 0; j < q; ++j) {
       double rest = problem_.rows[Index(answer_.active[j].row)].offset;
-      for (Index k = 0; k < j; ++k) rest -= R(k, j) * y[k];
-      y[j] = rest / R(j, j);
+      for (Index k = 0; k < j; ++k) rest -= triangular(k, j) * y[k];
+      y[j] = rest / triangular(j, j);
     }
     Index pulling = q;
     double most = 0.0;
     for (Index j = q; j-- > 0;) {
       double rest = y[j];
-      for (Index k = j + 1; k < q; ++k) rest -= R(j, k) * answer_.active[k].multiplier;
-      answer_.active[j].multiplier = rest / R(j, j);
+      for (Index k = j + 1; k < q; ++k) rest -= triangular(j, k) * answer_.active[k].multiplier;
+      answer_.active[j].multiplier = rest / triangular(j, j);
       if (answer_.active[j].multiplier < most) {
         most = answer_.active[j].multiplier;
         pulling = j;
@@ -94,7 +94,7 @@ void SmallQp::begin_at_active() noexcept {
       continue;
     }
     answer_.z.fill(0.0);
-    for (Index k = 0; k < q; ++k) add(y[k], Q(k), n_, answer_.z.data());
+    for (Index k = 0; k < q; ++k) add(y[k], orthogonal(k), n_, answer_.z.data());
     return;
   }
 }
@@ -140,7 +140,7 @@ QpStatus SmallQp::take(Index index, int max_iterations) noexcept {
     for (Index j = 0; j < count(); ++j) answer_.active[j].multiplier -= step * push_[j];
     multiplier += step;
     if (!dependent)
-      for (Index k = count(); k < n_; ++k) add(step * d_[k], Q(k), n_, answer_.z.data());
+      for (Index k = count(); k < n_; ++k) add(step * d_[k], orthogonal(k), n_, answer_.z.data());
     if (whole <= allowed) {
       append(index, multiplier);
       return QpStatus::kSolved;
@@ -157,7 +157,7 @@ bool SmallQp::set_direction(const QpRow& row, double least_share) noexcept {
   for (const QpRow::Run& run : row.runs) {
     for (Index k = 0; k < n_; ++k) {
       double sum = 0.0;
-      for (Index i = 0; i < run.count; ++i) sum += Q(k)[run.first + i] * run.g[i];
+      for (Index i = 0; i < run.count; ++i) sum += orthogonal(k)[run.first + i] * run.g[i];
       d_[k] += sum;
     }
     length_sq += squared_norm(run.g.data(), run.count);
@@ -172,8 +172,8 @@ void SmallQp::set_push() noexcept {
   const Index q = count();
   for (Index j = q; j-- > 0;) {
     double rest = d_[j];
-    for (Index k = j + 1; k < q; ++k) rest -= R(j, k) * push_[k];
-    push_[j] = rest / R(j, j);
+    for (Index k = j + 1; k < q; ++k) rest -= triangular(j, k) * push_[k];
+    push_[j] = rest / triangular(j, j);
   }
 }
 
@@ -200,11 +200,11 @@ void SmallQp::append(Index row, double multiplier) noexcept {
   if (const double length_sq = squared_norm(d_.data() + q, n_ - q); length_sq > 0.0) {
     double* const seen = work_.data();
     std::fill_n(seen, n_, 0.0);
-    for (Index k = q; k < n_; ++k) add(d_[k], Q(k), n_, seen);
-    for (Index k = q; k < n_; ++k) add(-2.0 * d_[k] / length_sq, seen, n_, Q(k));
+    for (Index k = q; k < n_; ++k) add(d_[k], orthogonal(k), n_, seen);
+    for (Index k = q; k < n_; ++k) add(-2.0 * d_[k] / length_sq, seen, n_, orthogonal(k));
   }
-  for (Index k = 0; k < q; ++k) R(k, q) = d_[k];
-  R(q, q) = along;
+  for (Index k = 0; k < q; ++k) triangular(k, q) = d_[k];
+  triangular(q, q) = along;
   answer_.active.push_back({static_cast<int>(row), multiplier});
 }
 
@@ -213,13 +213,13 @@ void SmallQp::release(Index leaving) noexcept {
   const Index q = count();
   for (Index j = leaving; j + 1 < q; ++j) {
     answer_.active[j] = answer_.active[j + 1];
-    for (Index k = 0; k <= j + 1; ++k) R(k, j) = R(k, j + 1);
+    for (Index k = 0; k <= j + 1; ++k) triangular(k, j) = triangular(k, j + 1);
   }
   answer_.active.pop_back();
   for (Index j = leaving; j + 1 < q; ++j) {
-    const Turn turn(R(j, j), R(j + 1, j));
-    for (Index k = j; k + 1 < q; ++k) turn.apply(R(j, k), R(j + 1, k));
-    for (Index i = 0; i < n_; ++i) turn.apply(Q(j)[i], Q(j + 1)[i]);
+    const Turn turn(triangular(j, j), triangular(j + 1, j));
+    for (Index k = j; k + 1 < q; ++k) turn.apply(triangular(j, k), triangular(j + 1, k));
+    for (Index i = 0; i < n_; ++i) turn.apply(orthogonal(j)[i], orthogonal(j + 1)[i]);
   }
 }
 

@@ -80,8 +80,8 @@ class SmallQp {
 
  private:
   std::size_t count() const noexcept { return answer_.active.size(); }
-  double& R(std::size_t row, std::size_t column) noexcept { return R_[row * n_ + column]; }
-  double* Q(std::size_t column) noexcept { return Q_.data() + column * n_; }
+  double& triangular(std::size_t row, std::size_t column) noexcept { return R_[row * n_ + column]; }
+  double* orthogonal(std::size_t column) noexcept { return Q_.data() + column * n_; }
 
   void begin_at_active() noexcept;
   bool most_broken(std::size_t& row) const noexcept;
