@@ -84,9 +84,9 @@ class SmallQp {
   double* orthogonal(std::size_t column) noexcept { return Q_.data() + column * n_; }
 
   void begin_at_active() noexcept;
-  bool most_broken(std::size_t& row) const noexcept;
+  bool most_broken(std::size_t& worst) const noexcept;
   double missing(const QpRow& row) const noexcept;
-  QpStatus take(std::size_t row, int max_iterations) noexcept;
+  QpStatus take(std::size_t index, int max_iterations) noexcept;
   bool set_direction(const QpRow& row, double least_share) noexcept;
   void set_push() noexcept;
   double longest_step(std::size_t& blocking) const noexcept;
