@@ -28,7 +28,8 @@ struct Rows {
   }
   QpAnswer solve(const std::vector<int>& first = {}, int max_iterations = 1000) const {
     SmallQp qp;
-    return qp.solve(problem(), first, max_iterations);
+    qp.begin(problem(), first);
+    return qp.solve_on(problem(), max_iterations);
   }
   QpProblem problem() const {
     made.clear();
@@ -239,7 +240,8 @@ TEST(SmallQp, GoesOnWhenOffsetsChangeAndRowsComeAndGo) {
     const std::size_t unknowns = 1 + std::size_t(random.index(int(kMostUnknowns)));
     Rows rows = random_rows(random, unknowns, 60, -0.5, 0.05);
     SmallQp qp;
-    qp.solve(rows.problem(), {}, 1000);
+    qp.begin(rows.problem(), {});
+    qp.solve_on(rows.problem(), 1000);
     for (int round = 0; round < 12; ++round) {
       const bool grows = round % 3 == 1;
       if (grows) {

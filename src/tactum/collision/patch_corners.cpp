@@ -95,7 +95,7 @@ void corners_of_faces(const Polytope& A, int face_a, const Polytope& B, int face
 
 }  // namespace
 
-void patch_corners(const Polytope& A, const Polytope& B, const Pose& X_AB, const Manifold& patch,
+bool patch_corners(const Polytope& A, const Polytope& B, const Pose& X_AB, const Manifold& patch,
                    double distance, double tolerance, PatchCorners& corners) noexcept {
   corners.clear();
   double cosine_a = 0.0;
@@ -106,9 +106,31 @@ void patch_corners(const Polytope& A, const Polytope& B, const Pose& X_AB, const
     corners_of_faces(A, face_a, B, face_b, X_AB, patch, tolerance, corners);
   double least = tolerance;
   for (const PatchCorner& corner : corners) least = std::min(least, corner.distance);
-  if (!corners.empty() && least <= distance + tolerances::kCertificate * std::max(A.size, B.size)) return;
+  if (!corners.empty() && least <= distance + tolerances::kCertificate * std::max(A.size, B.size))
+    return true;
   for (const ContactPoint& point : patch.points)
     corners.push_back({0.5 * (point.p_a + point.p_b), point.distance});
+  return false;
+}
+
+void CornerMemory::corners_of(const Polytope& A, const Polytope& B, const Pose& X_AB,
+                              const ContactPatch& patch, PatchCorners& corners) noexcept {
+  const Manifold& manifold = patch.manifold;
+  const std::array<int, 4> pair{patch.body_a, patch.body_b, patch.piece_a, patch.piece_b};
+  std::size_t hash = 0;
+  for (const int number : pair) hash = hash * 31 + static_cast<std::size_t>(number);
+  Slot& slot = slots_[hash % slots_.size()];
+  if (slot.pair == pair && slot.features.a == manifold.a && slot.features.b == manifold.b &&
+      slot.X_AB.R == X_AB.R && slot.X_AB.p == X_AB.p && slot.normal == manifold.normal &&
+      slot.distance == patch.distance && slot.tolerance == patch.tolerance) {
+    corners.clear();
+    for (const PatchCorner& corner : slot.corners) corners.push_back(corner);
+    return;
+  }
+  const bool of_faces = patch_corners(A, B, X_AB, manifold, patch.distance, patch.tolerance, corners);
+  if (!of_faces || corners.size() > slot.corners.capacity()) return;
+  slot = {pair, {manifold.a, manifold.b}, X_AB, manifold.normal, patch.distance, patch.tolerance, {}};
+  for (const PatchCorner& corner : corners) slot.corners.push_back(corner);
 }
 
 }  // namespace tactum

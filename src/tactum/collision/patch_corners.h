@@ -12,7 +12,9 @@
 ///
 /// Cost: 0.1 us for boxes.
 
-#include "tactum/collision/contact.h"
+#include <vector>
+
+#include "tactum/collision/contact_patch.h"
 #include "tactum/collision/planar_patch.h"
 #include "tactum/geometry/polytope.h"
 
@@ -26,8 +28,29 @@ struct PatchCorner {
 using PatchCorners = StaticVector<PatchCorner, PatchPolygon::capacity() + 4>;
 
 /// The corners of `patch`, found at distance `distance` [m], whose gap is at most `tolerance` [m]. The least
-/// gap is among them.
-void patch_corners(const Polytope& A, const Polytope& B, const Pose& X_AB, const Manifold& patch,
+/// gap is among them. False when the manifold's own points stand in.
+bool patch_corners(const Polytope& A, const Polytope& B, const Pose& X_AB, const Manifold& patch,
                    double distance, double tolerance, PatchCorners& corners) noexcept;
+
+/// The corners of patches of pieces that lie as they lay when they were last asked for: remembered, so that
+/// what rests costs a comparison. A pair has one slot, which it may have to share; allocated at load time.
+class CornerMemory {
+ public:
+  explicit CornerMemory(std::size_t slots) : slots_(slots) {}
+  void corners_of(const Polytope& A, const Polytope& B, const Pose& X_AB, const ContactPatch& patch,
+                  PatchCorners& corners) noexcept;
+
+ private:
+  /// All that the corners follow from, and them; of more than there is room for nothing is remembered.
+  struct Slot {
+    std::array<int, 4> pair{-1, -1, -1, -1};
+    FeaturePair features;
+    Pose X_AB;
+    Vec3 normal = Vec3::Zero();
+    double distance = 0.0, tolerance = 0.0;
+    StaticVector<PatchCorner, 8> corners;
+  };
+  std::vector<Slot> slots_;
+};
 
 }  // namespace tactum

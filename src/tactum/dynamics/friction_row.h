@@ -20,9 +20,17 @@ struct PushRow {
            const Mobility& W_b) noexcept {
     jacobian_a << direction, arm_a.cross(direction);
     jacobian_b << -direction, -arm_b.cross(direction);
-    response_a.noalias() = W_a * jacobian_a;
-    response_b.noalias() = W_b * jacobian_b;
+    respond(W_a, jacobian_a, response_a);
+    respond(W_b, jacobian_b, response_b);
     mobility = jacobian_a.dot(response_a) + jacobian_b.dot(response_b);
+  }
+  /// What does not move, as a rule one of the two, is not worth a product.
+  static void respond(const Mobility& W, const Vec6& jacobian, Vec6& response) noexcept {
+    if (W.isZero(0.0)) {
+      response.setZero();
+    } else {
+      response.noalias() = W * jacobian;
+    }
   }
   double velocity(const Twist& a, const Twist& b) const noexcept {
     return jacobian_a.head<3>().dot(a.v) + jacobian_a.tail<3>().dot(a.w) + jacobian_b.head<3>().dot(b.v) +

@@ -18,9 +18,25 @@ constexpr Index kLookAhead = 64;
 
 }  // namespace
 
+Vec3 RestingContact::last_impulse(std::uint64_t name) noexcept {
+  for (Index ahead = 0; ahead < std::min(kLookAhead, last_.size()); ++ahead) {
+    const Index i = (next_ + ahead) % last_.size();
+    if (last_[i].name != name) continue;
+    next_ = i + 1;
+    return last_[i].impulse_W;
+  }
+  return Vec3::Zero();
+}
+
+Vec3 RestingContact::keep(std::uint64_t name) noexcept {
+  const Vec3 impulse_W = last_impulse(name);
+  if (now_.size() < now_.capacity()) now_.push_back({name, impulse_W});
+  return impulse_W;
+}
+
 void RestingContact::add(const ContactRow& row, int index, int island, std::uint64_t name, double gap_m,
                          std::span<const Pose> X_WB, std::span<const Mobility> W, double h) noexcept {
-  if (rows_.size() == rows_.capacity()) return;
+  if (rows_.size() == rows_.capacity() || now_.size() == now_.capacity()) return;
   Row& next = rows_.emplace_back();
   next.body_a = row.body_a;
   next.body_b = row.body_b;
@@ -28,19 +44,15 @@ void RestingContact::add(const ContactRow& row, int index, int island, std::uint
   next.island = island;
   next.before.setZero();
   next.course.setZero();
-  next.name = name;
+  next.last = now_.size();
+  now_.push_back({name, Vec3::Zero()});
   next.wanted = -gap_m / h;
   next.contact.set(row, X_WB, W);
-  for (Index ahead = 0; ahead < std::min(kLookAhead, last_.size()); ++ahead) {
-    const Index i = (next_ + ahead) % last_.size();
-    if (last_[i].name != name) continue;
-    Vec3& impulse = next.contact.impulse;
-    for (int d = 0; d < (next.contact.friction > 0.0 ? 3 : 1); ++d)
-      impulse[d] = next.contact.direction[Index(d)].dot(last_[i].impulse_W);
-    impulse[0] = std::max(0.0, impulse[0]);
-    next_ = i + 1;
-    break;
-  }
+  const Vec3 last = last_impulse(name);
+  Vec3& impulse = next.contact.impulse;
+  for (int d = 0; d < (next.contact.friction > 0.0 ? 3 : 1); ++d)
+    impulse[d] = next.contact.direction[Index(d)].dot(last);
+  impulse[0] = std::max(0.0, impulse[0]);
 }
 
 void RestingContact::add_joint(int body, int island, const Body& what, const Pose& X_WB, const Mobility& W,
@@ -82,10 +94,9 @@ void RestingContact::push(const Row& row, const Vec3& impulse, std::span<Twist> 
 void RestingContact::arrange(std::span<Twist> V) noexcept {
   started_ = true;
   for (const Row& row : rows_)
-    if (row.island >= 0 && !row.contact.impulse.isZero(0.0)) push(row, row.contact.impulse, V);
+    if (!row.contact.impulse.isZero(0.0)) push(row, row.contact.impulse, V);
   std::fill(islands_.begin(), islands_.end(), Range{});
-  for (const Row& row : rows_)
-    if (row.island >= 0) ++islands_[Index(row.island)].count;
+  for (const Row& row : rows_) ++islands_[Index(row.island)].count;
   for (const JointRow& row : joints_) ++islands_[Index(row.island)].joint_count;
   int first = 0;
   int joint_first = 0;
@@ -98,7 +109,6 @@ void RestingContact::arrange(std::span<Twist> V) noexcept {
   order_.resize(rows_.size());
   joint_order_.resize(joints_.size());
   for (Index i = 0; i < rows_.size(); ++i) {
-    if (rows_[i].island < 0) continue;
     Range& island = islands_[Index(rows_[i].island)];
     order_[Index(island.first + island.count++)] = static_cast<int>(i);
   }
@@ -194,8 +204,8 @@ SolverResult RestingContact::solve(int max_sweeps, double harmless, std::span<co
 }
 
 void RestingContact::end() noexcept {
-  last_.clear();
-  for (const Row& row : rows_) last_.push_back({row.name, row.contact.impulse_W()});
+  for (const Row& row : rows_) now_[row.last].impulse_W = row.contact.impulse_W();
+  last_.swap(now_);
 }
 
 }  // namespace tactum

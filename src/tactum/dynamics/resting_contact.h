@@ -24,6 +24,7 @@ class RestingContact {
   RestingContact(std::size_t most_rows, std::size_t bodies) {
     rows_.reserve(most_rows);
     last_.reserve(most_rows);
+    now_.reserve(most_rows);
     joints_.reserve(bodies * kMostJointRows);
     order_.reserve(most_rows);
     joint_order_.reserve(bodies * kMostJointRows);
@@ -34,13 +35,16 @@ class RestingContact {
   void begin() noexcept {
     rows_.clear();
     joints_.clear();
+    now_.clear();
     next_ = 0;
     started_ = false;
   }
   /// A contact whose gap may close to nothing within h. `name` is the row's from frame to frame; `index` is
-  /// the caller's, and rises. With island -1 it does nothing but keep the last frame's impulse for the next.
+  /// the caller's, and rises.
   void add(const ContactRow& row, int index, int island, std::uint64_t name, double gap_m,
            std::span<const Pose> X_WB, std::span<const Mobility> W, double h) noexcept;
+  /// A contact that does nothing but keep the last frame's impulse, which is returned, for the next.
+  Vec3 keep(std::uint64_t name) noexcept;
   /// A body's joint, when it does anything to its motion.
   void add_joint(int body, int island, const Body& what, const Pose& X_WB, const Mobility& W,
                  double h) noexcept;
@@ -66,8 +70,8 @@ class RestingContact {
 
   struct Row {
     int body_a = -1, body_b = -1, index = -1, island = -1;
-    std::uint64_t name = 0;
-    double wanted = 0.0;  // least normal velocity [m/s]
+    std::size_t last = 0;  // in now_
+    double wanted = 0.0;   // least normal velocity [m/s]
     FrictionRow contact;
     Vec3 before = Vec3::Zero(), course = Vec3::Zero();  // impulses of the last sweep; the way they go
   };
@@ -86,6 +90,7 @@ class RestingContact {
   struct Range {
     int first = 0, count = 0, joint_first = 0, joint_count = 0;
   };
+  Vec3 last_impulse(std::uint64_t name) noexcept;
   static void push(const Row& row, const Vec3& impulse, std::span<Twist> V) noexcept;
   void arrange(std::span<Twist> V) noexcept;
   double sweep(const Range& island, std::span<Twist> V) noexcept;
@@ -94,7 +99,7 @@ class RestingContact {
                             std::span<Twist> V) noexcept;
 
   std::vector<Row> rows_;
-  std::vector<Last> last_;
+  std::vector<Last> last_, now_;  // of the last frame, and of this one
   std::vector<JointRow> joints_;
   std::vector<int> order_, joint_order_;  // rows, island by island
   std::vector<Range> islands_;            // by the island's number

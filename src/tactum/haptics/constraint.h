@@ -13,6 +13,7 @@
 
 #include <vector>
 
+#include "tactum/collision/patch_corners.h"
 #include "tactum/haptics/constraint_problem.h"
 #include "tactum/haptics/frame_report.h"
 #include "tactum/haptics/friction.h"
@@ -38,6 +39,7 @@ struct ConstraintState {
   /// Names of the rows that held last: in the end, without friction, and while every patch stuck. The next
   /// frame's problems begin with them.
   StaticVector<std::uint64_t, kMostUnknowns> held, held_without_friction, held_sticking;
+  CornerMemory corners;  ///< of patches
 
   // Scratch of one frame.
   std::size_t own_rows = 0;          ///< the first so many contact rows are the problem's

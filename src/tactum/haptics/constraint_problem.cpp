@@ -193,12 +193,11 @@ void ConstraintProblem::add_joint_rows() noexcept {
       row.offset = side * wanted - unpulled;
     }
   }
-  for (const Limit& limit : limits_) add_row(limit.body, -1, limit.push, -limit.way_left);
+  for (const Limit& limit : limits_) add_row(row_of(limit.body, -1, limit.push), -limit.way_left);
 }
 
-bool ConstraintProblem::add_row(int body_a, int body_b, const Push& push, double offset) noexcept {
-  if (rows_.size() == most_rows_) return false;
-  QpRow& row = rows_.emplace_back();
+QpRow ConstraintProblem::row_of(int body_a, int body_b, const Push& push) const noexcept {
+  QpRow row;
   const auto project = [&](int body, double sign, QpRow::Run& run) {
     const Mover* const mover = mover_of(body);
     if (mover == nullptr) return;
@@ -206,7 +205,7 @@ bool ConstraintProblem::add_row(int body_a, int body_b, const Push& push, double
     run.count = static_cast<std::uint32_t>(mover->rank);
     std::array<double, QpRow::kLongestRun>& g = run.g;
     const Vec3 torque = push.torque + (push.p_W - mover->centre).cross(push.force);
-    offset -= sign * (push.force.dot(mover->wanted.head<3>()) + torque.dot(mover->wanted.tail<3>()));
+    row.offset -= sign * (push.force.dot(mover->wanted.head<3>()) + torque.dot(mover->wanted.tail<3>()));
     if (mover->rank < 6) {
       for (Index i = 0; i < mover->rank; ++i)
         g[i] = sign * work(push, mover->centre, mover->motions.col(Eigen::Index(i)));
@@ -219,15 +218,14 @@ bool ConstraintProblem::add_row(int body_a, int body_b, const Push& push, double
   };
   project(body_a, 1.0, row.runs[0]);
   project(body_b, -1.0, row.runs[1]);
-  row.offset = offset;
-  return true;
+  return row;
 }
 
-double ConstraintProblem::opening(int body_a, int body_b, const Push& push) const noexcept {
-  double sum = 0.0;
-  if (const Mover* const a = mover_of(body_a)) sum += work(push, a->centre, displacement_at_centre(*a));
-  if (const Mover* const b = mover_of(body_b)) sum -= work(push, b->centre, displacement_at_centre(*b));
-  return sum;
+bool ConstraintProblem::add_row(const QpRow& row, double offset) noexcept {
+  if (rows_.size() == most_rows_) return false;
+  rows_.push_back(row);
+  rows_.back().offset += offset;
+  return true;
 }
 
 QpProblem ConstraintProblem::nearest_point() const noexcept {

@@ -80,10 +80,12 @@ class ConstraintProblem {
   /// The rows of brakes and limits: after the bodies, before other rows.
   void add_joint_rows() noexcept;
 
-  /// Adds the row  push . (x_a - x_b) >= offset. A body that was not added does not move. False when full.
-  bool add_row(int body_a, int body_b, const Push& push, double offset) noexcept;
+  /// The row  push . (x_a - x_b) >= 0. A body that was not added does not move.
+  QpRow row_of(int body_a, int body_b, const Push& push) const noexcept;
   /// The left side of that row in the last answer [m].
-  double opening(int body_a, int body_b, const Push& push) const noexcept;
+  double opening(const QpRow& row) const noexcept { return -qp_.missing(row); }
+  /// Adds a row that asks for `offset` more. False when full.
+  bool add_row(const QpRow& row, double offset) noexcept;
   std::size_t rows() const noexcept { return rows_.size(); }
   /// Forgets the rows from `count` on.
   void keep_rows(std::size_t count) noexcept { rows_.resize(count); }

@@ -45,21 +45,22 @@ struct RowMaker {
   const World& world;
   const FrameSettings& settings;
   FrameState& state;
+  PatchCorners corners;  // scratch
 
-  void add(const ContactPatch& patch, int number, bool own) const noexcept {
+  void add(const ContactPatch& patch, int number, bool own) noexcept {
     if (patch.manifold.points.empty()) return;  // only watched
     ConstraintState& c = state.constraint;
     ContactRows& out = state.contacts;
     const Pose& X_WA = state.world.X_WB[Index(patch.body_a)];
     const Pose X_AB = relative_pose(X_WA, state.world.X_WB[Index(patch.body_b)]);
-    PatchCorners corners;
+    corners.clear();
     if (patch.of_surfaces) {
       const ContactPoint& point = patch.manifold.points[0];
       corners.push_back({0.5 * (point.p_a + point.p_b), point.distance});
     } else {
-      patch_corners(world.bodies[Index(patch.body_a)].part->pieces[Index(patch.piece_a)],
-                    world.bodies[Index(patch.body_b)].part->pieces[Index(patch.piece_b)], X_AB,
-                    patch.manifold, patch.distance, patch.tolerance, corners);
+      c.corners.corners_of(world.bodies[Index(patch.body_a)].part->pieces[Index(patch.piece_a)],
+                           world.bodies[Index(patch.body_b)].part->pieces[Index(patch.piece_b)], X_AB, patch,
+                           corners);
     }
     const Vec3 normal_W = X_WA.R * patch.manifold.normal;
     const double friction = settings.friction.between(patch.body_a, patch.body_b);
@@ -68,7 +69,9 @@ struct RowMaker {
     const int other = patch.body_a == state.tool.body   ? patch.body_b
                       : patch.body_b == state.tool.body ? patch.body_a
                                                         : -1;
-    const bool struck = other < 0 || world.bodies[Index(other)].joint.kind == JointKind::kFree;
+    const Islands& islands = state.free.islands;
+    const bool struck = (islands.moves(patch.body_a) || islands.moves(patch.body_b)) &&
+                        (other < 0 || world.bodies[Index(other)].joint.kind == JointKind::kFree);
     for (Index i = 0; i < corners.size(); ++i) {
       if (out.rows.size() == out.rows.capacity()) {
         out.full = true;
@@ -106,7 +109,7 @@ void make_corner_rows(const World& world, const FrameSettings& settings, FrameSt
   c.shaded.clear();
   c.shades = c.bent = false;
   const std::span<const ContactPatch> patches = state.finder.patches();
-  const RowMaker maker{world, settings, state};
+  RowMaker maker{world, settings, state, {}};
   for (Index p = 0; p < patches.size() && !out.full; ++p)
     if (state.free.of_held(patches[p])) maker.add(patches[p], static_cast<int>(p), true);
   c.own_rows = out.rows.size();
@@ -123,7 +126,8 @@ void add_contact_rows(bool opening, ConstraintProblem& problem, FrameState& stat
   c.first_row = problem.rows();
   for (const ContactRow& row : own_rows(state)) {
     const double offset = c.skin_m - row.distance;
-    problem.add_row(row.body_a, row.body_b, push_of(row), opening ? offset : std::min(0.0, offset));
+    problem.add_row(problem.row_of(row.body_a, row.body_b, push_of(row)),
+                    opening ? offset : std::min(0.0, offset));
   }
   c.feedback.assign(c.own_rows, 0.0);
 }
@@ -163,7 +167,7 @@ void feed_back(double share, FrameState& state) noexcept {
     for (end = first + 1; end < rows.size() && rows[end].patch == rows[first].patch;) ++end;
     const double too_much = overstated_at_trial(rows.subspan(first, end - first), state);
     for (Index r = first; r < end; ++r) {
-      const double linear = problem.opening(rows[r].body_a, rows[r].body_b, push_of(rows[r]));
+      const double linear = problem.opening(problem.row_of(rows[r].body_a, rows[r].body_b, push_of(rows[r])));
       const double gap = gap_at_trial(rows[r], state) - too_much;
       const double missing = (rows[r].distance + share * linear - gap) / share;
       problem.tighten(c.first_row + r, missing - c.feedback[r]);

@@ -88,10 +88,15 @@ void add_rows(const World& world, double dt_s, FrameState& state) {
   const std::vector<Pose>& X_WB = state.world.X_WB;
   f.resting.begin();
   for (Index r = c.own_rows; r < state.contacts.rows.size(); ++r) {
-    const ContactRow& row = state.contacts.rows[r];
+    ContactRow& row = state.contacts.rows[r];
+    const int island = f.islands.of_contact(row.body_a, row.body_b);
+    if (island < 0) {
+      row.impulse = std::max(0.0, row.n_BA_W.dot(f.resting.keep(c.names[r])));
+      continue;
+    }
     const double beyond = row.distance - c.skin_m;
-    f.resting.add(row, static_cast<int>(r), f.islands.of_contact(row.body_a, row.body_b), c.names[r],
-                  beyond < 0.0 ? kOpening * beyond : beyond, X_WB, state.mobility, dt_s);
+    f.resting.add(row, static_cast<int>(r), island, c.names[r], beyond < 0.0 ? kOpening * beyond : beyond,
+                  X_WB, state.mobility, dt_s);
   }
   for (Index i = 0; i < world.bodies.size(); ++i)
     if (moves_here(state, i) && !is_held(state, i))

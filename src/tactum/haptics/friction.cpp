@@ -93,6 +93,7 @@ void Friction::find_holding(const World& world, const PairCoefficients& settings
     }
     if (patch.finder_patch < 0) continue;
     patch.n_BA_W.normalize();
+    patch.motion = motion_of(patch, any_orthogonal(patch.n_BA_W), problem);
     const Slide free = slide_of(patch, problem);
     if (free.lift > kPeeling * free.way.norm()) continue;
     if (!patches_.push_back(patch)) return;
@@ -140,9 +141,9 @@ bool Friction::begin(const World& world, const PairCoefficients& settings, std::
   drop_unsqueezed(problem);
   for (FrictionPatch& patch : patches_) {
     anchor(patch, X_WB, kSettled * skin_m);
-    const Slide free = slide_of(patch, problem);
-    const double length = free.way.norm();
-    patch.along_W = length > 0.0 ? Vec3(free.way / length) : any_orthogonal(patch.n_BA_W);
+    patch.motion = motion_of(patch, any_orthogonal(patch.n_BA_W), problem);
+    const Vec3 way = slide_of(patch, problem).way;
+    if (const double length = way.norm(); length > 0.0) turn_directions(way / length, patch.motion);
     add_rows(patch, problem);
   }
   return acts();
@@ -167,8 +168,7 @@ void Friction::anchor(FrictionPatch& patch, std::span<const Pose> X_WB, double s
 void Friction::add_rows(FrictionPatch& patch, ConstraintProblem& problem) noexcept {
   patch.first_row = problem.rows();
   for (Index k = 0; k < kRowsAPatch; ++k)
-    problem.add_row(patch.key.body_a, patch.key.body_b, cone_edge(patch, k),
-                    -patch.gap_m - allowance(patch, k));
+    problem.add_row(cone_row(patch, k), -patch.gap_m - allowance(patch, k));
 }
 
 FrictionPatch* Friction::patch_of_row(Index row) noexcept {

@@ -7,12 +7,68 @@ namespace {
 
 using Index = std::size_t;
 
+/// Of the directions of a cone, in its plane: cosine and sine.
+const std::array<Vec2, kConeDirections> kDirections = [] {
+  std::array<Vec2, kConeDirections> directions;
+  for (Index k = 0; k < kConeDirections; ++k) {
+    const double angle = 2.0 * kPi * static_cast<double>(k) / static_cast<double>(kConeDirections);
+    directions[k] = {std::cos(angle), std::sin(angle)};
+  }
+  return directions;
+}();
+
+/// row + x one + y other, of rows on the same bodies.
+QpRow combined(const QpRow& row, double x, const QpRow& one, double y, const QpRow& other) noexcept {
+  QpRow sum = row;
+  for (Index r = 0; r < 2; ++r)
+    for (Index i = 0; i < QpRow::kLongestRun; ++i)
+      sum.runs[r].g[i] += x * one.runs[r].g[i] + y * other.runs[r].g[i];
+  sum.offset += x * one.offset + y * other.offset;
+  return sum;
+}
+
 }  // namespace
 
 PatchKey key_of(const World& world, const ContactPatch& patch) noexcept {
   return {patch.body_a, patch.body_b,
           world.bodies[Index(patch.body_a)].part->surface_group[Index(patch.piece_a)],
           world.bodies[Index(patch.body_b)].part->surface_group[Index(patch.piece_b)]};
+}
+
+PatchMotion motion_of(const FrictionPatch& patch, const Vec3& along_W,
+                      const ConstraintProblem& problem) noexcept {
+  PatchMotion motion;
+  const Vec3& n = patch.n_BA_W;
+  motion.along_W = along_W;
+  motion.across_W = n.cross(along_W);
+  const auto row = [&](const Vec3& force, const Vec3& torque) {
+    return problem.row_of(patch.key.body_a, patch.key.body_b, {patch.centre_W, force, torque});
+  };
+  motion.off = row(n, Vec3::Zero());
+  motion.along = row(motion.along_W, Vec3::Zero());
+  motion.across = row(motion.across_W, Vec3::Zero());
+  motion.about = row(Vec3::Zero(), n);
+  return motion;
+}
+
+void turn_directions(const Vec3& along_W, PatchMotion& motion) noexcept {
+  const double cosine = along_W.dot(motion.along_W);
+  const double sine = along_W.dot(motion.across_W);
+  const QpRow along = motion.along;
+  motion.along = combined(along, cosine - 1.0, along, sine, motion.across);
+  motion.across = combined(motion.across, cosine - 1.0, motion.across, -sine, along);
+  motion.across_W = cosine * motion.across_W - sine * motion.along_W;
+  motion.along_W = along_W;
+}
+
+QpRow cone_row(const FrictionPatch& patch, Index k) noexcept {
+  const PatchMotion& motion = patch.motion;
+  if (k >= kConeDirections) {
+    const double arm = patch.coefficient * patch.radius_m;
+    return combined(motion.off, k == kConeDirections ? -arm : arm, motion.about, 0.0, motion.about);
+  }
+  const Vec2 by = -patch.coefficient * kDirections[k];
+  return combined(motion.off, by.x(), motion.along, by.y(), motion.across);
 }
 
 Push cone_edge(const FrictionPatch& patch, Index k) noexcept {
@@ -22,22 +78,18 @@ Push cone_edge(const FrictionPatch& patch, Index k) noexcept {
     push.torque = -sense * patch.coefficient * patch.radius_m * patch.n_BA_W;
     return push;
   }
-  const double angle = 2.0 * kPi * static_cast<double>(k) / static_cast<double>(kConeDirections);
-  const Vec3 across = patch.n_BA_W.cross(patch.along_W);
-  push.force -= patch.coefficient * (std::cos(angle) * patch.along_W + std::sin(angle) * across);
+  push.force -= patch.coefficient *
+                (kDirections[k].x() * patch.motion.along_W + kDirections[k].y() * patch.motion.across_W);
   return push;
 }
 
 Slide slide_of(const FrictionPatch& patch, const ConstraintProblem& problem) noexcept {
   Slide slide;
-  for (int i = 0; i < 3; ++i)
-    slide.way[i] =
-        problem.opening(patch.key.body_a, patch.key.body_b, {patch.centre_W, Vec3::Unit(i), Vec3::Zero()});
-  slide.lift = patch.n_BA_W.dot(slide.way) + patch.gap_m;
-  slide.way += patch.apart_W;
-  slide.way -= patch.n_BA_W * patch.n_BA_W.dot(slide.way);
-  slide.turn =
-      problem.opening(patch.key.body_a, patch.key.body_b, {patch.centre_W, Vec3::Zero(), patch.n_BA_W});
+  const PatchMotion& motion = patch.motion;
+  slide.way = problem.opening(motion.along) * motion.along_W +
+              problem.opening(motion.across) * motion.across_W + patch.apart_W;
+  slide.lift = problem.opening(motion.off) + patch.gap_m;
+  slide.turn = problem.opening(motion.about);
   return slide;
 }
 

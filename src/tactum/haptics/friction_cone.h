@@ -14,6 +14,13 @@ struct PatchKey {
   bool operator==(const PatchKey&) const = default;
 };
 
+/// How far an answer of the contact problem moves A's point at a patch's centre against B's, as rows of the
+/// problem: off the surface and along two directions in it [m], and how far it turns about the normal [rad].
+struct PatchMotion {
+  Vec3 along_W = Vec3::Zero(), across_W = Vec3::Zero();  ///< the two directions, unit [-]
+  QpRow off, along, across, about;
+};
+
 /// A patch that pushes, in this frame.
 struct FrictionPatch {
   PatchKey key;
@@ -27,9 +34,9 @@ struct FrictionPatch {
   Vec3 centre_W = Vec3::Zero();  ///< c [m]
   Vec3 apart_W = Vec3::Zero();   ///< a; none where it is too small to count [m]
   Vec3 left_W = Vec3::Zero();    ///< how far the anchor has come apart that was too small to count [m]
-  Vec3 along_W = Vec3::Zero();   ///< the first direction d, unit [-]
-  double slip_m = 0.0;           ///< allowed without lifting [m]
-  double slip_rad = 0.0;         ///< of turning about the normal [rad]
+  PatchMotion motion;
+  double slip_m = 0.0;    ///< allowed without lifting [m]
+  double slip_rad = 0.0;  ///< of turning about the normal [rad]
   std::size_t first_row = 0;
   std::uint32_t sticks_by =
       0;  ///< which of its rows hold while it sticks, a bit each; of the last frame first
@@ -45,6 +52,13 @@ struct Slide {
 PatchKey key_of(const World& world, const ContactPatch& patch) noexcept;
 /// What pushes along edge k of the cone: directions around the normal, then the two senses of turning.
 Push cone_edge(const FrictionPatch& patch, std::size_t k) noexcept;
+/// The row of that push, from the patch's motion, which begins with the direction d of edge 0.
+QpRow cone_row(const FrictionPatch& patch, std::size_t k) noexcept;
+/// By the patch's normal and centre; `along_W` is in the surface, unit.
+PatchMotion motion_of(const FrictionPatch& patch, const Vec3& along_W,
+                      const ConstraintProblem& problem) noexcept;
+/// The same motion, told along other directions in the surface.
+void turn_directions(const Vec3& along_W, PatchMotion& motion) noexcept;
 Slide slide_of(const FrictionPatch& patch, const ConstraintProblem& problem) noexcept;
 
 }  // namespace tactum
