@@ -8,7 +8,7 @@
 /// identity. By the dual active set method of [Goldfarb and Idnani 1983]: pick a row that is broken, walk
 /// until it is kept or a row that holds the point would have to pull, let that one go, go on. The rows that
 /// hold are kept as an orthogonal and a triangular factor with as many columns as rows hold, made by
-/// Gram-Schmidt, twice where once would leave the columns less square than they should be [Giraud et al.
+/// Gram-Schmidt, twice where once would leave the columns less square than they should be [Giraud
 /// 2005]: so taking a row in or letting it go costs the unknowns times the rows that hold.
 ///
 /// The walk may begin at any set of rows that all push, when the point is the nearest that keeps these: with
