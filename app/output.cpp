@@ -65,6 +65,9 @@ void print_summary(std::FILE* out, const Session& session, const Summary& times,
   fmt::print(out, "contact          {} of {} frames; penetrating {} frames, at most {:.4f} mm\n",
              record.colliding_frames, record.frames, record.penetrating_frames,
              record.max_penetration_m * 1e3);
+  if (record.max_momentum_off_Ns > 0.0)
+    fmt::print(out, "momentum         of free bodies kept to {:.1e} N s; {} frames with a step cut short\n",
+               record.max_momentum_off_Ns, record.forced_short_frames);
   fmt::print(out, "frame            mean {:.1f} us   p50 {:.1f}   p99 {:.1f}   p99.9 {:.1f}   max {:.1f}\n",
              times.mean_ns * 1e-3, times.p50_ns * 1e-3, times.p99_ns * 1e-3, times.p999_ns * 1e-3,
              times.max_ns * 1e-3);
@@ -118,6 +121,8 @@ nlohmann::ordered_json summary_json(const Session& session, const Summary& times
           {"mean_torque_Nm", mean(record.sum_torque_Nm, record.frames)},
           {"max_torque_Nm", record.max_torque_Nm},
           {"max_torque_step_Nm", record.max_torque_step_Nm},
+          {"max_momentum_off_Ns", record.max_momentum_off_Ns},
+          {"forced_short_frames", record.forced_short_frames},
           {"non_finite_frames", record.non_finite_frames},
           {"exact_tests", record.exact_tests},
           {"uncertified", record.uncertified},

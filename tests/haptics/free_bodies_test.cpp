@@ -115,6 +115,27 @@ TEST(FreeBodies, ASkewImpactKeepsMomentumBothWays) {
   EXPECT_EQ(box.penetrating_frames, 0);
 }
 
+TEST(FreeBodies, TheBooksOfMomentumBalance) {
+  Sandbox box;
+  box.world.gravity_W = kGravity;
+  box.add_fixed(make_box({0.1, 0.1, 0.01}), at(0, 0, -0.01));
+  box.add(cube(0.01), at(0, 0, 0.03, {0.3, 0.2, 0.1}), {{0.2, 0, 0}, {4, 0, 2}});
+  box.add(make_ellipsoid(2, {0.02, 0.015, 0.01}), at(0.005, 0, 0.07), {{0, 0, -1.0}, Vec3::Zero()});
+  box.add(cube(0.015), at(-0.04, 0, 0.016));
+  box.bounce(0.5);
+  box.rub(0.4);
+  double off = 0.0;
+  int hits = 0;
+  for (int i = 0; i < 1500; ++i) {
+    box.step();
+    hits += box.report.impacts;
+    if (!box.report.forced_short) off = std::max(off, box.report.momentum_off_Ns);
+  }
+  EXPECT_GT(hits, 5);
+  EXPECT_GT(off, 0.0);  // a few roundings
+  EXPECT_LT(off, 1e-14);
+}
+
 TEST(FreeBodies, ABallWithoutLossBouncesToItsHeight) {
   Sandbox box;
   box.world.gravity_W = kGravity;

@@ -86,6 +86,23 @@ TEST(SceneStory, TheLockTurnsOnlyWhenTheKeyIsAllTheWayIn) {
   EXPECT_TRUE(session->goals().met(0)) << session->goals().describe(session->scene().world, 0);
 }
 
+/// Whatever strikes, rubs and pushes whatever: what moves freely has in every frame the momentum it was
+/// given.
+TEST(SceneStory, MovingObjectsKeepTheirMomentum) {
+  const std::unique_ptr<Session> session = opened(text_of("moving-objects"));
+  ASSERT_TRUE(session);
+  const auto frames = std::uint64_t(frames_of_motion(session->scene()) / cases::kSlowness);
+  int blows = 0;
+  Watch watch([&](const FrameRecord&) { blows += session->last_report().impacts; });
+  ASSERT_TRUE(session->run_virtual(frames, &watch));
+  const RunRecord& record = session->record();
+  EXPECT_EQ(record.penetrating_frames, 0u);
+  EXPECT_GT(blows, 0);
+  EXPECT_GT(record.held_contact_frames, 0u);
+  EXPECT_LT(record.max_momentum_off_Ns, 1e-9);
+  EXPECT_LT(record.forced_short_frames, frames / 100);
+}
+
 TEST(SceneStory, TheSmallBearingDoesNotPassTheLargeOne) {
   if (cases::kSlowness > 1) GTEST_SKIP() << "left to the builds without a sanitizer: 19 000 frames";
   std::string text = text_of("shaft");

@@ -98,8 +98,7 @@ void begin_sticking(ConstraintState& c) {
 
 /// Lets every patch stick, then slip where it must, until none slips further. Where no answer keeps the
 /// anchors they are taken off; where there is none at all, friction.
-bool solve_sliding(const FrameSettings& settings, Index friction_row, ConstraintState& c,
-                   FrameReport& report) {
+bool solve_sliding(const FrameSettings& settings, ConstraintState& c, FrameReport& report) {
   for (int round = 0; round <= kSlipRounds; ++round) {
     bool found = solve_on(settings, c.problem, report);
     if (!found) {
@@ -108,7 +107,7 @@ bool solve_sliding(const FrameSettings& settings, Index friction_row, Constraint
     }
     if (!found) {
       c.friction.clear();
-      c.problem.keep_rows(friction_row);
+      c.problem.keep_rows(c.friction_row);
       return solve_on(settings, c.problem, report);
     }
     if (round == 0) {
@@ -211,7 +210,7 @@ bool find_forces(const World& world, const FrameSettings& settings, double dt_s,
   if (found && c.friction.begin(world, settings.friction, own_rows(state), state.finder.patches(),
                                 state.world.X_WB, c.skin_m, c.first_row, c.problem)) {
     begin_sticking(c);
-    found = solve_sliding(settings, c.friction_row, c, report);
+    found = solve_sliding(settings, c, report);
   }
   if (found) keep_forces(settings, dt_s, state, report);
   if (!c.shades) return found;
@@ -226,8 +225,8 @@ bool find_forces(const World& world, const FrameSettings& settings, double dt_s,
 bool find_again(const FrameSettings& settings, double dt_s, FrameState& state, FrameReport& report) {
   ConstraintState& c = state.constraint;
   if (c.shades) return solve_on(settings, c.way, report);
-  const bool found = c.friction.acts() ? solve_sliding(settings, c.friction_row, c, report)
-                                       : solve_on(settings, c.problem, report);
+  const bool found =
+      c.friction.acts() ? solve_sliding(settings, c, report) : solve_on(settings, c.problem, report);
   if (found) keep_forces(settings, dt_s, state, report);
   return found;
 }
@@ -255,9 +254,10 @@ double advance(const World& world, const FrameSettings& settings, double dt_s, F
   return 0.0;
 }
 
-/// The island of the held part: its bodies' velocities are what they did.
-void move_held_island(const World& world, const FrameSettings& settings, double dt_s, FrameState& state,
-                      FrameReport& report) {
+/// The island of the held part: its bodies' velocities are what they did, but for what only opened a gap,
+/// which no force did. Returns the share of the answer that was taken.
+double move_held_island(const World& world, const FrameSettings& settings, double dt_s, FrameState& state,
+                        FrameReport& report) {
   ConstraintState& c = state.constraint;
   state.free.patch_asked.clear();
   for (const ContactPatch& patch : state.finder.patches())
@@ -268,9 +268,10 @@ void move_held_island(const World& world, const FrameSettings& settings, double 
   if (share > 0.0) take_trial(state);
   if (c.stood >= kStandsFrames) feel(settings, dt_s, Vec6::Zero(), state);
   c.friction.end(share, own_rows(state), c.first_row, c.problem, state.world.X_WB);
+  const std::vector<Pose>& before = share > 0.0 ? c.X_WB_trial : state.world.X_WB;  // take_trial swaps them
   for (Index i = 0; i < world.bodies.size(); ++i)
-    if (state.free.near_held[i])
-      state.world.V_WB[i] = twist_between(state.X_WB_start[i], state.world.X_WB[i], dt_s);
+    if (state.free.near_held[i]) state.world.V_WB[i] = twist_between(before[i], state.world.X_WB[i], dt_s);
+  return share;
 }
 
 /// The length that is trusted in the next frame, from what the held part's island did in this one.
@@ -374,16 +375,19 @@ void respond_constrained(const World& world, const FrameSettings& settings, doub
 
   let_wait(world, settings, dt_s, state, report);
   find_islands(world, state);
+  begin_balance(world, dt_s, state);
   make_corner_rows(world, settings, state);
   strike(world, settings, dt_s, state, report);
   move_free_bodies(world, settings, dt_s, state, report);
+  double share = 1.0;  // of the held island's step
   if (state.free.held_island >= 0) {
-    move_held_island(world, settings, dt_s, state, report);
+    share = move_held_island(world, settings, dt_s, state, report);
   } else {
     c.friction.forget();
   }
   trust_step(settings, state);
   end_turning(world, state);
+  end_balance(world, dt_s, share == 1.0 && !c.shades, state, report);
   go_on(state);
   report_rows(world, dt_s, state, report);
 }

@@ -46,6 +46,7 @@ void add_to(Hash& hash, const FrameReport& report) noexcept {
   hash.add(report.validation_retries);
   hash.add(report.waiting);
   hash.add(report.cut_short);
+  hash.add(report.momentum_off_Ns);
   hash.add(report.friction.sticking);
   hash.add(report.friction.slipping);
   hash.add(report.friction.cone_used + 0.0);

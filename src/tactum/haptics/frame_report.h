@@ -63,7 +63,10 @@ struct FrameReport {
   int asleep = 0;              ///< bodies that rest, and were not looked at
   int longest_wait = 0;        ///< ... of these, frames on end
   int cut_short = 0;           ///< bodies that stayed, because no step of theirs was found open
-  FrictionReport friction;     ///< what patches do that rub
+  /// By how much the momentum of what moves freely is off from what it was given (momentum.h) [N s].
+  double momentum_off_Ns = 0.0;
+  bool forced_short = false;  ///< ... because some step was cut short of where the forces would have it
+  FrictionReport friction;    ///< what patches do that rub
   ContactWork work;
 
   /// Exact tests in all: what the budget bounds.

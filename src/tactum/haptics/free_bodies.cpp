@@ -26,11 +26,13 @@ constexpr int kMostStops = 12;
 /// Tests of each gap of the held part's island that are kept for it.
 constexpr int kRoundsOfHeld = 4;
 
-/// Blows on the held part, told at the handle.
+/// The books of all blows; those on the held part told at the handle.
 class BlowsOnHeld final : public ImpactObserver {
  public:
-  BlowsOnHeld(int held, const Vec3& p_WH) : held_(held), p_WH_(p_WH) {}
+  BlowsOnHeld(int held, const Vec3& p_WH, Momentum& momentum)
+      : held_(held), p_WH_(p_WH), momentum_(momentum) {}
   void hit(int body_a, int body_b, const Vec3& impulse, const Vec3& p_W) noexcept override {
+    momentum_.give(body_a, body_b, impulse);
     if (body_a != held_ && body_b != held_) return;
     const Vec3 on_held = body_a == held_ ? impulse : Vec3(-impulse);
     sum_ = sum_ + Wrench{on_held, (p_W - p_WH_).cross(on_held)};
@@ -41,6 +43,7 @@ class BlowsOnHeld final : public ImpactObserver {
  private:
   int held_;
   Vec3 p_WH_;
+  Momentum& momentum_;
   Wrench sum_;
   bool any_ = false;
 };
@@ -236,6 +239,7 @@ void tell_forces(const FrameSettings& settings, double dt_s, FrameState& state) 
   state.free.resting.for_each([&](int index, double normal, const Vec3& impulse_W) {
     ContactRow& row = rows[Index(index)];
     row.impulse = normal;
+    state.free.momentum.give(row.body_a, row.body_b, impulse_W);
     const Vec3 across = impulse_W - row.n_BA_W * normal;
     const bool on_held = row.body_a == state.tool.body || row.body_b == state.tool.body;
     if (!on_held || across.isZero(0.0) || rows.size() == rows.capacity()) return;
@@ -255,6 +259,7 @@ void tell_forces(const FrameSettings& settings, double dt_s, FrameState& state) 
 FreeBodies::FreeBodies(const World& world, const FrameSettings& settings)
     : islands(world),
       resting(Index(settings.budget.max_contact_points), world.bodies.size()),
+      momentum(world),
       near_held(world.bodies.size(), 0),
       w_start(world.bodies.size(), Vec3::Zero()),
       w_free(world.bodies.size(), Vec3::Zero()),
@@ -313,7 +318,8 @@ void strike(const World& world, const FrameSettings& settings, double dt_s, Fram
                                      inertial_resistance(world.bodies[i], X_WB[i]), V_WB[i]);
   }
   const double energy_J = held < 0 ? 0.0 : bodies_energy(world, state.world, held);
-  BlowsOnHeld blows(held, held < 0 ? Vec3::Zero() : X_WB[Index(held)] * state.tool.X_BH.p);
+  BlowsOnHeld blows(held, held < 0 ? Vec3::Zero() : X_WB[Index(held)] * state.tool.X_BH.p,
+                    state.free.momentum);
   report.impacts = resolve_impacts(
       state.contacts.rows, X_WB, state.mobility, dt_s,
       std::min(kMostBlows, kBlowsAPoint * static_cast<int>(state.contacts.rows.size())), V_WB, &blows);

@@ -16,6 +16,7 @@
 #include "tactum/dynamics/islands.h"
 #include "tactum/dynamics/resting_contact.h"
 #include "tactum/haptics/frame_report.h"
+#include "tactum/haptics/momentum.h"
 #include "tactum/haptics/settings.h"
 
 namespace tactum {
@@ -28,6 +29,7 @@ struct FreeBodies {
 
   Islands islands;
   RestingContact resting;
+  Momentum momentum;
   int held_island = -1;         ///< the island that constraint.h answers for; -1: none
   bool held_here = false;       ///< the held part's island had no room there
   bool alone = true;            ///< nothing but that island moves

@@ -12,6 +12,12 @@ void RunRecord::add(const FrameReport& report, const WorldState& world) noexcept
   max_penetration_m = std::max(max_penetration_m, -report.min_distance_m);
   if (!report.coupling.finite() || !report.smoothed.finite()) ++non_finite_frames;
 
+  if (report.forced_short) {
+    ++forced_short_frames;
+  } else {
+    max_momentum_off_Ns = std::max(max_momentum_off_Ns, report.momentum_off_Ns);
+  }
+
   const double force = report.shown.f.norm();
   const double torque = report.shown.t.norm();
   max_force_N = std::max(max_force_N, force);

@@ -29,6 +29,8 @@ class RunRecord {
   double max_torque_step_Nm = 0.0;        ///< the same for torque [N m]
   double sum_force_N = 0.0;               ///< of |shown force|, for the mean [N]
   double sum_torque_Nm = 0.0;             ///< of |shown torque|, for the mean [N m]
+  double max_momentum_off_Ns = 0.0;       ///< of frames whose steps were all taken whole [N s]
+  std::uint64_t forced_short_frames = 0;  ///< the others
   std::uint64_t non_finite_frames = 0;    ///< frames whose computed wrench was not finite (zero was sent)
   std::uint64_t broad_phase_runs = 0;
   std::uint64_t exact_tests = 0;
