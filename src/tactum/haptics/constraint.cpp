@@ -333,7 +333,7 @@ ConstraintState::ConstraintState(const World& world, const FrameSettings& settin
               Friction::kMostPatches * Friction::kRowsAPatch),
       way(static_cast<Index>(settings.budget.max_contact_points)),
       trust_m(settings.constraint.least_step_m),
-      corners(settings.budget.rooms.patches / 4 + 1),
+      corner_memory(settings.budget.rooms.patches / 4 + 1),
       X_WB_trial(world.bodies.size()) {
   double size = 0.0;
   for (const Body& body : world.bodies)

@@ -39,7 +39,7 @@ struct ConstraintState {
   /// Names of the rows that held last: in the end, without friction, and while every patch stuck. The next
   /// frame's problems begin with them.
   StaticVector<std::uint64_t, kMostUnknowns> held, held_without_friction, held_sticking;
-  CornerMemory corners;  ///< of patches
+  CornerMemory corner_memory;
 
   // Scratch of one frame.
   std::size_t own_rows = 0;          ///< the first so many contact rows are the problem's
@@ -47,6 +47,7 @@ struct ConstraintState {
   std::size_t friction_row = 0;      ///< of friction
   bool bent = false;                 ///< some normal is bent by shading
   bool shades = false;               ///< ... so the step is that of `way`
+  PatchCorners patch_corners;        ///< of one patch; kept, as to make it anew costs more than to fill it
   std::vector<Vec3> shaded;          ///< normals of the own rows; empty without shading [-]
   std::vector<std::uint64_t> names;  ///< of the rows
   std::vector<double> feedback;      ///< what exact gaps have added to the rows [m]

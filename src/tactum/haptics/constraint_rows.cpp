@@ -45,22 +45,22 @@ struct RowMaker {
   const World& world;
   const FrameSettings& settings;
   FrameState& state;
-  PatchCorners corners;  // scratch
 
-  void add(const ContactPatch& patch, int number, bool own) noexcept {
+  void add(const ContactPatch& patch, int number, bool own) const noexcept {
     if (patch.manifold.points.empty()) return;  // only watched
     ConstraintState& c = state.constraint;
     ContactRows& out = state.contacts;
     const Pose& X_WA = state.world.X_WB[Index(patch.body_a)];
     const Pose X_AB = relative_pose(X_WA, state.world.X_WB[Index(patch.body_b)]);
+    PatchCorners& corners = c.patch_corners;
     corners.clear();
     if (patch.of_surfaces) {
       const ContactPoint& point = patch.manifold.points[0];
       corners.push_back({0.5 * (point.p_a + point.p_b), point.distance});
     } else {
-      c.corners.corners_of(world.bodies[Index(patch.body_a)].part->pieces[Index(patch.piece_a)],
-                           world.bodies[Index(patch.body_b)].part->pieces[Index(patch.piece_b)], X_AB, patch,
-                           corners);
+      c.corner_memory.corners_of(world.bodies[Index(patch.body_a)].part->pieces[Index(patch.piece_a)],
+                                 world.bodies[Index(patch.body_b)].part->pieces[Index(patch.piece_b)], X_AB,
+                                 patch, corners);
     }
     const Vec3 normal_W = X_WA.R * patch.manifold.normal;
     const double friction = settings.friction.between(patch.body_a, patch.body_b);
@@ -109,7 +109,7 @@ void make_corner_rows(const World& world, const FrameSettings& settings, FrameSt
   c.shaded.clear();
   c.shades = c.bent = false;
   const std::span<const ContactPatch> patches = state.finder.patches();
-  RowMaker maker{world, settings, state, {}};
+  const RowMaker maker{world, settings, state};
   for (Index p = 0; p < patches.size() && !out.full; ++p)
     if (state.free.of_held(patches[p])) maker.add(patches[p], static_cast<int>(p), true);
   c.own_rows = out.rows.size();
