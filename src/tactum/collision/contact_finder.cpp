@@ -33,6 +33,7 @@ void ContactFinder::find_patches(std::span<const Pose> X_WB, int budget, PatchPo
   tests_left_ = budget;
   patches_.clear();
   candidates_.clear();
+  objected_.clear();
   due_.clear();
   handed_on_.clear();
   std::fill(blocked_.begin(), blocked_.end(), 0);
@@ -77,12 +78,27 @@ void ContactFinder::find_patches(std::span<const Pose> X_WB, int budget, PatchPo
       hand_on(pair, last, X_AB);
     }
   }
+  for (const int number : objected_)
+    if (answered_for(patches_[Index(number)], X_WB)) patches_[Index(number)].manifold.points.clear();
   if (!candidates_.empty()) work_.rooms_full |= !settle_seams(candidates_, X_WB, patches_);
   for (const bool held : {true, false})
     for (const SweepAndPrune::Pair& near : sweep_.pairs())
       if (meet_by_surfaces(near.a, near.b) && of_held(near.a, near.b) == held)
         test_surfaces(near.a, near.b, X_WB);
   work_.patches = static_cast<int>(patches_.size());
+}
+
+bool ContactFinder::answered_for(const ContactPatch& patch, std::span<const Pose> X_WB) const noexcept {
+  const Pose X_AB = relative_pose(X_WB[Index(patch.body_a)], X_WB[Index(patch.body_b)]);
+  const PairView pair(bodies_[Index(patch.body_a)].part->pieces[Index(patch.piece_a)],
+                      bodies_[Index(patch.body_b)].part->pieces[Index(patch.piece_b)], X_AB);
+  const PairDistance found{.a = patch.manifold.a, .b = patch.manifold.b};
+  return std::any_of(patches_.begin(), patches_.end(), [&](const ContactPatch& other) {
+    const int number = static_cast<int>(&other - patches_.data());
+    return other.body_a == patch.body_a && other.body_b == patch.body_b &&
+           !std::binary_search(objected_.begin(), objected_.end(), number) &&
+           answered_by(pair, found, other.manifold.normal, other.distance);
+  });
 }
 
 std::uint8_t ContactFinder::urgency_of(int a, int b) const noexcept {
@@ -216,10 +232,8 @@ void ContactFinder::hand_on(Pair& pair, const PairDistance& found, const Pose& X
     patch.manifold.normal = found.normal;
     patch.manifold.a = found.a;
     patch.manifold.b = found.b;
-    // A neighbour across the seam is nearer and carries the force: this one, without a point, is only
-    // watched.
-    if (!objected || found.distance <= 0.0)
-      patch.manifold.points.push_back({found.p_a, found.p_b, found.distance, 1.0, 0});
+    patch.manifold.points.push_back({found.p_a, found.p_b, found.distance, 1.0, 0});
+    if (objected && found.distance > 0.0) objected_.push_back(static_cast<int>(patches_.size()) - 1);
     return;
   }
   const PairDistance shown = steady_depth(A, B, X_AB, found, pair.shown);

@@ -175,6 +175,10 @@ class ContactFinder {
   std::uint8_t urgency_of(int a, int b) const noexcept;
   void test(Pair& pair, const Pose& X_AB) noexcept;
   void hand_on(Pair& pair, const PairDistance& found, const Pose& X_AB) noexcept;
+  /// A neighbour across the seam is nearer than what is objected to. Where its normal parts these pieces as
+  /// well it carries the force, and this patch, without a point, is only watched; where not, as between the
+  /// walls of a corner, both do.
+  bool answered_for(const ContactPatch& patch, std::span<const Pose> X_WB) const noexcept;
   GapAnswer distance_at(const ContactPatch& patch, std::span<const Pose> X_WB, double enough, int keep_back,
                         double& distance) noexcept;
   bool meet_by_surfaces(int a, int b) const noexcept {
@@ -207,6 +211,7 @@ class ContactFinder {
   bool thrifty_ = false;
   int tests_left_ = 0;
   std::vector<ContactPatch> patches_;
+  std::vector<int> objected_;  // patches of pieces that are apart, of points that are no contact of the parts
   std::vector<SeamCandidate> candidates_;
   std::vector<SurfaceMinimum> minima_;
   std::vector<ReductionScratch> reduction_scratch_;

@@ -56,6 +56,7 @@ ContactFinder::ContactFinder(std::vector<CollisionBody> bodies, std::span<const 
   blocked_.assign(bodies_.size(), 0);
   patches_.reserve(rooms.patches);
   candidates_.reserve(rooms.patches);
+  objected_.reserve(rooms.patches);
   minima_.reserve(rooms.minima);
   reduction_scratch_.reserve(rooms.minima);
   kept_minima_ = rooms.kept_minima;
