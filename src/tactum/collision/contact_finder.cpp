@@ -78,8 +78,7 @@ void ContactFinder::find_patches(std::span<const Pose> X_WB, int budget, PatchPo
       hand_on(pair, last, X_AB);
     }
   }
-  for (const int number : objected_)
-    if (answered_for(patches_[Index(number)], X_WB)) patches_[Index(number)].manifold.points.clear();
+  for (const int number : objected_) settle_objected(patches_[Index(number)], X_WB);
   if (!candidates_.empty()) work_.rooms_full |= !settle_seams(candidates_, X_WB, patches_);
   for (const bool held : {true, false})
     for (const SweepAndPrune::Pair& near : sweep_.pairs())
@@ -88,17 +87,24 @@ void ContactFinder::find_patches(std::span<const Pose> X_WB, int budget, PatchPo
   work_.patches = static_cast<int>(patches_.size());
 }
 
-bool ContactFinder::answered_for(const ContactPatch& patch, std::span<const Pose> X_WB) const noexcept {
+void ContactFinder::settle_objected(ContactPatch& patch, std::span<const Pose> X_WB) const noexcept {
+  const Part& part_a = *bodies_[Index(patch.body_a)].part;
+  const Part& part_b = *bodies_[Index(patch.body_b)].part;
   const Pose X_AB = relative_pose(X_WB[Index(patch.body_a)], X_WB[Index(patch.body_b)]);
-  const PairView pair(bodies_[Index(patch.body_a)].part->pieces[Index(patch.piece_a)],
-                      bodies_[Index(patch.body_b)].part->pieces[Index(patch.piece_b)], X_AB);
+  const PairView pair(part_a.pieces[Index(patch.piece_a)], part_b.pieces[Index(patch.piece_b)], X_AB);
   const PairDistance found{.a = patch.manifold.a, .b = patch.manifold.b};
-  return std::any_of(patches_.begin(), patches_.end(), [&](const ContactPatch& other) {
+  const auto leader = std::find_if(patches_.begin(), patches_.end(), [&](const ContactPatch& other) {
     const int number = static_cast<int>(&other - patches_.data());
     return other.body_a == patch.body_a && other.body_b == patch.body_b &&
            !std::binary_search(objected_.begin(), objected_.end(), number) &&
            answered_by(pair, found, other.manifold.normal, other.distance);
   });
+  if (leader == patches_.end()) return;
+  const Manifold& leading = leader->manifold;
+  patch.manifold.points.clear();
+  patch.manifold.normal = leading.normal;
+  patch.manifold.a = same_feature(part_a, leader->piece_a, leading.a, patch.piece_a);
+  patch.manifold.b = same_feature(part_b, leader->piece_b, leading.b, patch.piece_b);
 }
 
 std::uint8_t ContactFinder::urgency_of(int a, int b) const noexcept {

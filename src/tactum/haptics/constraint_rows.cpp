@@ -47,7 +47,8 @@ struct RowMaker {
   FrameState& state;
 
   void add(const ContactPatch& patch, int number, bool own) const noexcept {
-    if (patch.manifold.points.empty()) return;  // only watched
+    if (patch.manifold.points.empty() && (patch.manifold.a.index < 0 || patch.manifold.b.index < 0))
+      return;  // only watched
     ConstraintState& c = state.constraint;
     ContactRows& out = state.contacts;
     const Pose& X_WA = state.world.X_WB[Index(patch.body_a)];
