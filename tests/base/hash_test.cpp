@@ -19,22 +19,31 @@ TEST(Hash, MatchesThePublishedTestVectorsOfFnv1a) {
   EXPECT_EQ(hash_of("foobar"), 0x85944171f73967e8ull);
 }
 
-TEST(Hash, NumbersAreTheirBytesInOrder) {
-  Hash whole;
-  whole.add(0x6f6f66);  // "foo\0" on a little-endian machine
-  EXPECT_EQ(whole.value(), hash_of(std::string("foo\0", 4)));
-  Hash ab;
-  ab.add(1.0);
-  ab.add(2.0);
-  Hash ba;
-  ba.add(2.0);
-  ba.add(1.0);
-  EXPECT_NE(ab.value(), ba.value());
-  Hash positive;
-  positive.add(0.0);
-  Hash negative;
-  negative.add(-0.0);
-  EXPECT_NE(positive.value(), negative.value()) << "bits, not values";
+std::uint64_t hash_of_numbers(double first, double second) {
+  Hash hash;
+  hash.add(first);
+  hash.add(second);
+  return hash.value();
+}
+
+TEST(Hash, NumbersCountByTheirBitsAndTheirOrder) {
+  EXPECT_EQ(hash_of_numbers(1.0, 2.0), hash_of_numbers(1.0, 2.0));
+  EXPECT_NE(hash_of_numbers(1.0, 2.0), hash_of_numbers(2.0, 1.0));
+  EXPECT_NE(hash_of_numbers(0.0, 1.0), hash_of_numbers(-0.0, 1.0));
+}
+
+TEST(Hash, EveryBitOfANumberIsInEveryHalfOfTheHash) {
+  for (int bit = 0; bit < 64; ++bit) {
+    Hash one;
+    Hash other;
+    one.add(std::uint64_t{0x0123456789abcdef});
+    other.add(std::uint64_t{0x0123456789abcdef} ^ std::uint64_t{1} << bit);
+    one.add(7);  // one more number spreads what the highest bits of the last one changed
+    other.add(7);
+    const std::uint64_t changed = one.value() ^ other.value();
+    EXPECT_NE(changed >> 32, 0u) << "bit " << bit;
+    EXPECT_NE(changed & 0xffffffffu, 0u) << "bit " << bit;
+  }
 }
 
 }  // namespace

@@ -9,11 +9,14 @@
 #include <vector>
 
 #include "tactum/base/random.h"
+#include "tactum/math/types.h"
 
 namespace tactum {
 namespace {
 
 using Vector = Eigen::VectorXd;
+
+constexpr double kSlack = 1e-12;
 
 struct Rows {
   std::size_t unknowns = 0;
@@ -34,7 +37,7 @@ struct Rows {
   QpProblem problem() const {
     made.clear();
     for (std::size_t row = 0; row < offsets.size(); ++row) made.push_back(in_runs(row));
-    return {unknowns, made, 1e-12};
+    return {unknowns, made, {}, kSlack};
   }
 
  private:
@@ -266,6 +269,64 @@ TEST(SmallQp, GoesOnWhenOffsetsChangeAndRowsComeAndGo) {
   }
   EXPECT_GT(worked, 200);
   EXPECT_GT(infeasible, 10);
+}
+
+/// Four rows with the same runs, and offsets for the edges between them.
+QpCone random_cone(Random& random, std::size_t unknowns) {
+  QpCone cone;
+  const auto random_offset = [&] { return random.uniform(-0.1, 0.02); };
+  const auto bodies = static_cast<int>(unknowns / QpRow::kLongestRun);
+  const std::array<int, 2> body{random.index(bodies), random.index(bodies)};
+  for (QpRow* row : {&cone.off, &cone.along, &cone.across, &cone.about}) {
+    for (std::size_t r = 0; r < (body[0] == body[1] ? 1u : 2u); ++r) {
+      QpRow::Run& run = row->runs[r];
+      run.first = static_cast<std::uint32_t>(body[r]) * std::uint32_t(QpRow::kLongestRun);
+      run.count = QpRow::kLongestRun;
+      for (double& g : run.g) g = random.uniform(-1.0, 1.0);
+    }
+    row->offset = random_offset();
+  }
+  cone.slope = random.uniform(0.0, 0.8);
+  cone.twist = random.uniform(0.0, 0.3);
+  for (double& more : cone.more) more = random_offset();
+  return cone;
+}
+
+TEST(SmallQp, AConeIsItsEdgesWrittenOut) {
+  constexpr std::uint64_t kSeed = 29;
+  std::cout << "seed " << kSeed << "\n";
+  Random random(kSeed);
+  int on_edges = 0;
+  for (int trial = 0; trial < 200; ++trial) {
+    const std::size_t unknowns = QpRow::kLongestRun * (1 + std::size_t(random.index(6)));
+    const Rows some = random_rows(random, unknowns, 10, -0.5, 0.05);
+    std::vector<QpCone> cones;
+    for (int i = 0; i < 8; ++i) cones.push_back(random_cone(random, unknowns));
+    QpProblem with_cones = some.problem();
+    with_cones.cones = cones;
+    std::vector<QpRow> rows;
+    for (std::size_t i = 0; i < with_cones.size(); ++i) {
+      rows.push_back(with_cones.row(i));
+      ASSERT_EQ(with_cones.offset(i), rows.back().offset);
+    }
+    const std::size_t k = std::size_t(trial) % QpCone::kAround;
+    const double angle = 2.0 * kPi * static_cast<double>(k) / static_cast<double>(QpCone::kAround);
+    ASSERT_NEAR(rows[10 + k].runs[0].g[2],
+                cones[0].off.runs[0].g[2] - cones[0].slope * (std::cos(angle) * cones[0].along.runs[0].g[2] +
+                                                              std::sin(angle) * cones[0].across.runs[0].g[2]),
+                1e-14);
+    SmallQp by_cones, by_rows;
+    by_cones.begin(with_cones, {});
+    const QpProblem written_out{unknowns, rows, {}, kSlack};
+    by_rows.begin(written_out, {});
+    const QpAnswer& one = by_cones.solve_on(with_cones, 1000);
+    const QpAnswer& other = by_rows.solve_on(written_out, 1000);
+    ASSERT_EQ(one.status, other.status) << "trial " << trial;
+    if (one.status != QpStatus::kSolved) continue;
+    for (std::size_t i = 0; i < unknowns; ++i) ASSERT_NEAR(one.z[i], other.z[i], 1e-9) << "trial " << trial;
+    for (const QpActive& active : one.active) on_edges += active.row >= 10 ? 1 : 0;
+  }
+  EXPECT_GT(on_edges, 400);
 }
 
 TEST(SmallQp, AThousandRowsInSixAndInAsManyUnknownsAsThereMayBe) {

@@ -107,7 +107,7 @@ bool solve_sliding(const FrameSettings& settings, ConstraintState& c, FrameRepor
     }
     if (!found) {
       c.friction.clear();
-      c.problem.keep_rows(c.friction_row);
+      c.problem.forget_cones();
       return solve_on(settings, c.problem, report);
     }
     if (round == 0) {
@@ -202,7 +202,6 @@ bool find_forces(const World& world, const FrameSettings& settings, double dt_s,
   c.shades = c.bent;
   if (c.shades) exchange_normals(state);
   add_contact_rows(false, c.problem, state);
-  c.friction_row = c.problem.rows();
   c.friction.clear();
   begin(rows_of(c.held_without_friction, c), c.problem);
   bool found = solve_on(settings, c.problem, report);
@@ -329,8 +328,7 @@ void report_rows(const World& world, double dt_s, FrameState& state, FrameReport
 }  // namespace
 
 ConstraintState::ConstraintState(const World& world, const FrameSettings& settings)
-    : problem(static_cast<Index>(settings.budget.max_contact_points) +
-              Friction::kMostPatches * Friction::kRowsAPatch),
+    : problem(static_cast<Index>(settings.budget.max_contact_points)),
       way(static_cast<Index>(settings.budget.max_contact_points)),
       trust_m(settings.constraint.least_step_m),
       corner_memory(settings.budget.rooms.patches / 4 + 1),

@@ -44,7 +44,6 @@ struct ConstraintState {
   // Scratch of one frame.
   std::size_t own_rows = 0;          ///< the first so many contact rows are the problem's
   std::size_t first_row = 0;         ///< of them, in the problem
-  std::size_t friction_row = 0;      ///< of friction
   bool bent = false;                 ///< some normal is bent by shading
   bool shades = false;               ///< ... so the step is that of `way`
   PatchCorners patch_corners;        ///< of one patch; kept, as to make it anew costs more than to fill it

@@ -78,6 +78,7 @@ void ConstraintProblem::clear() noexcept {
   brakes_.clear();
   limits_.clear();
   rows_.clear();
+  cones_.clear();
 }
 
 const Mover* ConstraintProblem::mover_of(int body) const noexcept {
@@ -228,8 +229,23 @@ bool ConstraintProblem::add_row(const QpRow& row, double offset) noexcept {
   return true;
 }
 
+std::size_t ConstraintProblem::add_cone(const QpCone& cone) noexcept {
+  const Index first = rows_.size() + cones_.size() * QpCone::kEdges;
+  cones_.push_back(cone);
+  return first;
+}
+
+void ConstraintProblem::tighten(std::size_t row, double by) noexcept {
+  if (row < rows_.size()) {
+    rows_[row].offset += by;
+  } else {
+    const Index edge = row - rows_.size();
+    cones_[edge / QpCone::kEdges].more[edge % QpCone::kEdges] += by;
+  }
+}
+
 QpProblem ConstraintProblem::nearest_point() const noexcept {
-  return {unknowns_, rows_, tolerances::kRowKept_m};
+  return {unknowns_, rows_, {cones_.begin(), cones_.end()}, tolerances::kRowKept_m};
 }
 
 void ConstraintProblem::begin(std::span<const int> first) noexcept { qp_.begin(nearest_point(), first); }

@@ -63,7 +63,8 @@ struct Push {
 
 class ConstraintProblem {
  public:
-  /// Room for `most_rows` rows beside those of brakes.
+  static constexpr std::size_t kMostCones = 16;
+  /// Room for `most_rows` rows beside those of brakes and cones.
   explicit ConstraintProblem(std::size_t most_rows);
 
   /// Forgets everything; then the bodies are added, then the rows.
@@ -86,11 +87,13 @@ class ConstraintProblem {
   double opening(const QpRow& row) const noexcept { return -qp_.missing(row); }
   /// Adds a row that asks for `offset` more. False when full.
   bool add_row(const QpRow& row, double offset) noexcept;
+  /// Adds the edges of a cone as rows, after all others; returns the number of the first. At most kMostCones.
+  std::size_t add_cone(const QpCone& cone) noexcept;
+  void forget_cones() noexcept { cones_.clear(); }
+  /// Those of cones not counted.
   std::size_t rows() const noexcept { return rows_.size(); }
-  /// Forgets the rows from `count` on.
-  void keep_rows(std::size_t count) noexcept { rows_.resize(count); }
   /// Makes a row ask for `by` more.
-  void tighten(std::size_t row, double by) noexcept { rows_[row].offset += by; }
+  void tighten(std::size_t row, double by) noexcept;
 
   /// Chooses the rows to begin the next solution with.
   void begin(std::span<const int> first) noexcept;
@@ -135,6 +138,7 @@ class ConstraintProblem {
   StaticVector<Brake, kMostMovers> brakes_;
   StaticVector<Limit, 2 * kMostMovers> limits_;
   std::vector<QpRow> rows_;
+  StaticVector<QpCone, kMostCones> cones_;
   std::size_t most_rows_;
   SmallQp qp_;
 };

@@ -8,10 +8,10 @@ namespace {
 
 using Index = std::size_t;
 
-/// How much less than the gap a row asks for, by the slip allowed and the anchor's distance.
+/// How much less than the gap a row asks for, by the anchor's distance.
 double allowance(const FrictionPatch& patch, Index k) {
-  if (k >= Friction::kDirections) return patch.coefficient * patch.radius_m * patch.slip_rad;
-  return patch.coefficient * patch.slip_m + (cone_edge(patch, k).force - patch.n_BA_W).dot(patch.apart_W);
+  if (k >= Friction::kDirections || patch.apart_W.isZero(0.0)) return 0.0;
+  return (cone_edge(patch, k).force - patch.n_BA_W).dot(patch.apart_W);
 }
 
 /// A lift, or a gap, of less than this share of the skin is none. What slides without lifting (on the way to
@@ -144,7 +144,7 @@ bool Friction::begin(const World& world, const PairCoefficients& settings, std::
     patch.motion = motion_of(patch, any_orthogonal(patch.n_BA_W), problem);
     const Vec3 way = slide_of(patch, problem).way;
     if (const double length = way.norm(); length > 0.0) turn_directions(way / length, patch.motion);
-    add_rows(patch, problem);
+    add_cone(patch, problem);
   }
   return acts();
 }
@@ -165,10 +165,10 @@ void Friction::anchor(FrictionPatch& patch, std::span<const Pose> X_WB, double s
   }
 }
 
-void Friction::add_rows(FrictionPatch& patch, ConstraintProblem& problem) noexcept {
-  patch.first_row = problem.rows();
-  for (Index k = 0; k < kRowsAPatch; ++k)
-    problem.add_row(cone_row(patch, k), -patch.gap_m - allowance(patch, k));
+void Friction::add_cone(FrictionPatch& patch, ConstraintProblem& problem) noexcept {
+  QpCone cone = cone_of(patch);
+  for (Index k = 0; k < kRowsAPatch; ++k) cone.more[k] = -patch.gap_m - allowance(patch, k);
+  patch.first_row = problem.add_cone(cone);
 }
 
 FrictionPatch* Friction::patch_of_row(Index row) noexcept {

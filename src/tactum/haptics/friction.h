@@ -32,9 +32,9 @@ namespace tactum {
 
 class Friction {
  public:
-  static constexpr std::size_t kMostPatches = 16;
-  static constexpr std::size_t kDirections = kConeDirections;
-  static constexpr std::size_t kRowsAPatch = kDirections + 2;
+  static constexpr std::size_t kMostPatches = ConstraintProblem::kMostCones;
+  static constexpr std::size_t kDirections = QpCone::kAround;
+  static constexpr std::size_t kRowsAPatch = QpCone::kEdges;
 
   /// The patches that push in the last answer, whose contact rows begin at `first_row`; their rows are added
   /// to the problem. False when there is none.
@@ -86,7 +86,7 @@ class Friction {
   void drop_unsqueezed(const ConstraintProblem& problem) noexcept;
   FrictionPatch* patch_of(const PatchKey& key) noexcept;
   FrictionPatch* patch_of_row(std::size_t row) noexcept;
-  void add_rows(FrictionPatch& patch, ConstraintProblem& problem) noexcept;
+  void add_cone(FrictionPatch& patch, ConstraintProblem& problem) noexcept;
   void let_go(FrictionPatch& patch, ConstraintProblem& problem) noexcept;
   void anchor(FrictionPatch& patch, std::span<const Pose> X_WB, double settled_m) noexcept;
 

@@ -7,23 +7,13 @@ namespace {
 
 using Index = std::size_t;
 
-/// Of the directions of a cone, in its plane: cosine and sine.
-const std::array<Vec2, kConeDirections> kDirections = [] {
-  std::array<Vec2, kConeDirections> directions;
-  for (Index k = 0; k < kConeDirections; ++k) {
-    const double angle = 2.0 * kPi * static_cast<double>(k) / static_cast<double>(kConeDirections);
-    directions[k] = {std::cos(angle), std::sin(angle)};
-  }
-  return directions;
-}();
-
-/// row + x one + y other, of rows on the same bodies.
-QpRow combined(const QpRow& row, double x, const QpRow& one, double y, const QpRow& other) noexcept {
+/// row * x + other * y, of rows on the same bodies.
+QpRow combined(double x, const QpRow& row, double y, const QpRow& other) noexcept {
   QpRow sum = row;
   for (Index r = 0; r < 2; ++r)
     for (Index i = 0; i < QpRow::kLongestRun; ++i)
-      sum.runs[r].g[i] += x * one.runs[r].g[i] + y * other.runs[r].g[i];
-  sum.offset += x * one.offset + y * other.offset;
+      sum.runs[r].g[i] = x * row.runs[r].g[i] + y * other.runs[r].g[i];
+  sum.offset = x * row.offset + y * other.offset;
   return sum;
 }
 
@@ -55,31 +45,31 @@ void turn_directions(const Vec3& along_W, PatchMotion& motion) noexcept {
   const double cosine = along_W.dot(motion.along_W);
   const double sine = along_W.dot(motion.across_W);
   const QpRow along = motion.along;
-  motion.along = combined(along, cosine - 1.0, along, sine, motion.across);
-  motion.across = combined(motion.across, cosine - 1.0, motion.across, -sine, along);
+  motion.along = combined(cosine, along, sine, motion.across);
+  motion.across = combined(cosine, motion.across, -sine, along);
   motion.across_W = cosine * motion.across_W - sine * motion.along_W;
   motion.along_W = along_W;
 }
 
-QpRow cone_row(const FrictionPatch& patch, Index k) noexcept {
+QpCone cone_of(const FrictionPatch& patch) noexcept {
   const PatchMotion& motion = patch.motion;
-  if (k >= kConeDirections) {
-    const double arm = patch.coefficient * patch.radius_m;
-    return combined(motion.off, k == kConeDirections ? -arm : arm, motion.about, 0.0, motion.about);
-  }
-  const Vec2 by = -patch.coefficient * kDirections[k];
-  return combined(motion.off, by.x(), motion.along, by.y(), motion.across);
+  return {.off = motion.off,
+          .along = motion.along,
+          .across = motion.across,
+          .about = motion.about,
+          .slope = patch.coefficient,
+          .twist = patch.coefficient * patch.radius_m};
 }
 
 Push cone_edge(const FrictionPatch& patch, Index k) noexcept {
   Push push{patch.centre_W, patch.n_BA_W, Vec3::Zero()};
-  if (k >= kConeDirections) {
-    const double sense = k == kConeDirections ? 1.0 : -1.0;
+  if (k >= QpCone::kAround) {
+    const double sense = k == QpCone::kAround ? 1.0 : -1.0;
     push.torque = -sense * patch.coefficient * patch.radius_m * patch.n_BA_W;
     return push;
   }
-  push.force -= patch.coefficient *
-                (kDirections[k].x() * patch.motion.along_W + kDirections[k].y() * patch.motion.across_W);
+  const QpCone::Direction d = QpCone::direction(k);
+  push.force -= patch.coefficient * (d.cosine * patch.motion.along_W + d.sine * patch.motion.across_W);
   return push;
 }
 

@@ -6,8 +6,6 @@
 
 namespace tactum {
 
-inline constexpr std::size_t kConeDirections = 12;  ///< edges of the cone; two more are for turning
-
 /// Which surfaces touch.
 struct PatchKey {
   int body_a = -1, body_b = -1, group_a = -1, group_b = -1;
@@ -52,8 +50,9 @@ struct Slide {
 PatchKey key_of(const World& world, const ContactPatch& patch) noexcept;
 /// What pushes along edge k of the cone: directions around the normal, then the two senses of turning.
 Push cone_edge(const FrictionPatch& patch, std::size_t k) noexcept;
-/// The row of that push, from the patch's motion, which begins with the direction d of edge 0.
-QpRow cone_row(const FrictionPatch& patch, std::size_t k) noexcept;
+/// The rows of all these pushes, from the patch's motion, which begins with the direction d of edge 0. They
+/// ask for nothing yet.
+QpCone cone_of(const FrictionPatch& patch) noexcept;
 /// By the patch's normal and centre; `along_W` is in the surface, unit.
 PatchMotion motion_of(const FrictionPatch& patch, const Vec3& along_W,
                       const ConstraintProblem& problem) noexcept;

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "tactum/base/tolerances.h"
+#include "tactum/math/types.h"
 
 namespace tactum {
 namespace {
@@ -39,34 +40,6 @@ Lanes lanes(const double* x) noexcept {
 /// The next multiple of eight; what lies between is zero or meets zeros.
 Index whole(Index n) noexcept { return (n + 7) & ~Index(7); }
 
-/// What eight entries of columns sum up to, each column times its number.
-struct Eight {
-  Lanes sum[4];
-
-  explicit Eight(const double* x) noexcept : sum{lanes(x), lanes(x + 2), lanes(x + 4), lanes(x + 6)} {}
-  void add(double times, const double* x) noexcept {
-    for (Index i = 0; i < 4; ++i) sum[i] += times * lanes(x + 2 * i);
-  }
-  void store(double* x) const noexcept { std::memcpy(x, sum, sizeof sum); }
-};
-
-void add(double times, const double* x, Index n, double* to) noexcept {
-  for (Index i = 0; i < n; i += 2) {
-    const Lanes sum = lanes(to + i) + times * lanes(x + i);
-    std::memcpy(to + i, &sum, sizeof sum);
-  }
-}
-
-double dot(const double* x, const double* y, Index n) noexcept {
-  Lanes even{}, odd{};
-  for (Index i = 0; i < whole(n); i += 4) {
-    even += lanes(x + i) * lanes(y + i);
-    odd += lanes(x + i + 2) * lanes(y + i + 2);
-  }
-  even += odd;
-  return even[0] + even[1];
-}
-
 double dot(const QpRow& row, const double* x) noexcept {
   Lanes sum{};
   for (const QpRow::Run& run : row.runs) {
@@ -87,30 +60,85 @@ struct Turn {
     cosine = a / length;
     sine = b / length;
   }
-  template <class Number>
-  void apply(Number& a, Number& b) const noexcept {
-    const Number turned = cosine * a + sine * b;
+  void apply(double& a, double& b) const noexcept {
+    const double turned = cosine * a + sine * b;
     b = cosine * b - sine * a;
     a = turned;
   }
 };
 
+/// Of the edges of a cone, one array each, to be looked at in lanes.
+struct Around {
+  std::array<double, QpCone::kAround> cosine{}, sine{};
+  Around() {
+    for (Index k = 0; k < QpCone::kAround; ++k) {
+      const double angle = 2.0 * kPi * static_cast<double>(k) / static_cast<double>(QpCone::kAround);
+      cosine[k] = std::cos(angle);
+      sine[k] = std::sin(angle);
+    }
+  }
+};
+const Around kDirections;
+
 }  // namespace
+
+QpCone::Direction QpCone::direction(Index k) noexcept { return {kDirections.cosine[k], kDirections.sine[k]}; }
+
+/// An edge is off + x one + y other of the four.
+struct QpCone::Mixture {
+  double x, y;
+  const QpRow *one, *other;
+};
+
+QpCone::Mixture QpCone::mixture(Index k) const noexcept {
+  if (k >= kAround) return {k == kAround ? -twist : twist, 0.0, &about, &about};
+  return {-slope * direction(k).cosine, -slope * direction(k).sine, &along, &across};
+}
+
+double QpCone::offset(Index k) const noexcept {
+  const Mixture mixed = mixture(k);
+  return off.offset + mixed.x * mixed.one->offset + mixed.y * mixed.other->offset + more[k];
+}
+
+QpRow QpCone::edge(Index k) const noexcept {
+  const Mixture mixed = mixture(k);
+  QpRow row = off;
+  for (Index r = 0; r < 2; ++r)
+    for (Index i = 0; i < QpRow::kLongestRun; ++i)
+      row.runs[r].g[i] += mixed.x * mixed.one->runs[r].g[i] + mixed.y * mixed.other->runs[r].g[i];
+  row.offset = offset(k);
+  return row;
+}
+
+QpRow QpProblem::row(Index number) const noexcept {
+  if (number < rows.size()) return rows[number];
+  const Index edge = number - rows.size();
+  return cones[edge / QpCone::kEdges].edge(edge % QpCone::kEdges);
+}
+
+double QpProblem::offset(Index number) const noexcept {
+  if (number < rows.size()) return rows[number].offset;
+  const Index edge = number - rows.size();
+  return cones[edge / QpCone::kEdges].offset(edge % QpCone::kEdges);
+}
 
 void SmallQp::begin(const QpProblem& problem, std::span<const int> first) noexcept {
   problem_ = problem;
   answer_.active.clear();
   off_square_ = 0.0;
   for (const int row : first)
-    if (count() < problem.unknowns && set_direction(problem.rows[Index(row)], kWorthBeginning))
-      append(Index(row), 0.0);
+    if (count() < problem.unknowns) {
+      set_direction(problem.row(Index(row)));
+      if (leaves(kWorthBeginning)) append(Index(row), 0.0);
+    }
 }
 
 const QpAnswer& SmallQp::solve_on(const QpProblem& problem, int max_iterations) noexcept {
   problem_ = problem;
-  broken_.clear();
+  broken_rows_.clear();
+  broken_cones_.clear();
   for (Index j = count(); j-- > 0;)
-    if (Index(answer_.active[j].row) >= problem.rows.size()) release(j);
+    if (Index(answer_.active[j].row) >= problem.size()) release(j);
   answer_.iterations = 0;
   answer_.status = QpStatus::kSolved;
   begin_at_active();
@@ -121,71 +149,85 @@ const QpAnswer& SmallQp::solve_on(const QpProblem& problem, int max_iterations) 
 
 /// The nearest point that keeps the rows that hold, without those that would have to pull.
 void SmallQp::begin_at_active() noexcept {
-  for (;;) {
-    const Index q = count();
-    Column& y = along_;  // z = Q y
-    y.fill(0.0);
-    for (Index j = 0; j < q; ++j) {
-      const double rest = problem_.rows[Index(answer_.active[j].row)].offset;
-      y[j] = (rest - dot(R_[j].data(), y.data(), j)) * diagonal_[j];
-    }
-    set_push();
-    Index pulling = q;
-    double most = 0.0;
-    for (Index j = q; j-- > 0;) {
-      answer_.active[j].multiplier = push_[j];
-      if (push_[j] < most) {
-        most = push_[j];
-        pulling = j;
-      }
-    }
-    if (pulling < q) {
-      ++answer_.iterations;
-      release(pulling);
-      continue;
-    }
-    answer_.z.fill(0.0);
-    for (Index i = 0; i < problem_.unknowns; i += 8) {
-      Eight eight(answer_.z.data() + i);
-      for (Index k = 0; k < q; ++k) eight.add(y[k], Q_[k].data() + i);
-      eight.store(answer_.z.data() + i);
-    }
-    return;
+  Column& y = along_;  // z = Q y, R^T y = the offsets: still so after a row was let go
+  y.fill(0.0);
+  for (Index j = 0; j < count(); ++j) {
+    const double rest = problem_.offset(Index(answer_.active[j].row));
+    y[j] = (rest - kernels_->dot(R_[j].data(), y.data(), whole(j))) * reciprocal_[j];
   }
+  for (set_push(); release_pulling(); set_push()) ++answer_.iterations;
+  for (Index j = 0; j < count(); ++j) answer_.active[j].multiplier = push_[j];
+  answer_.z.fill(0.0);
+  kernels_->combine(Q_[0].data(), count(), y.data(), 1.0, whole(problem_.unknowns), answer_.z.data());
+}
+
+/// Lets the row go that would have to pull most, if any would.
+bool SmallQp::release_pulling() noexcept {
+  const auto end = push_.begin() + static_cast<std::ptrdiff_t>(count());
+  const auto least = std::min_element(push_.begin(), end);
+  if (least == end || !(*least < 0.0)) return false;
+  release(static_cast<Index>(least - push_.begin()));
+  return true;
 }
 
 double SmallQp::missing(const QpRow& row) const noexcept { return row.offset - dot(row, answer_.z.data()); }
+
+/// By how much the edges of a cone are missed.
+std::array<double, QpCone::kEdges> SmallQp::missing(const QpCone& cone) const noexcept {
+  const double off = missing(cone.off);
+  const double along = cone.slope * missing(cone.along);
+  const double across = cone.slope * missing(cone.across);
+  const double about = cone.twist * missing(cone.about);
+  std::array<double, QpCone::kEdges> by{};
+  for (Index k = 0; k < QpCone::kAround; ++k)
+    by[k] = cone.more[k] + (off - (kDirections.cosine[k] * along + kDirections.sine[k] * across));
+  by[QpCone::kAround] = cone.more[QpCone::kAround] + (off - about);
+  by[QpCone::kAround + 1] = cone.more[QpCone::kAround + 1] + (off + about);
+  return by;
+}
 
 /// A row that is missed by most, if any is by more than the slack.
 bool SmallQp::most_broken(Index& worst) noexcept {
   double most = problem_.slack;
   bool found = false;
-  const auto look_at = [&](Index row) {
-    const double by = missing(problem_.rows[row]);
-    if (!(by > problem_.slack)) return false;
-    if (by > most) {
-      most = by;
-      worst = row;
-      found = true;
-    }
-    return true;
+  const auto compare = [&](Index number, double by) {
+    if (!(by > most)) return;
+    most = by;
+    worst = number;
+    found = true;
   };
-  for (const std::uint32_t row : broken_) look_at(row);
+  const auto look_at_row = [&](Index row) {
+    const double by = missing(problem_.rows[row]);
+    compare(row, by);
+    return by > problem_.slack;
+  };
+  const auto look_at_cone = [&](Index cone) {
+    const std::array<double, QpCone::kEdges> by = missing(problem_.cones[cone]);
+    const Index worst_edge = static_cast<Index>(std::max_element(by.begin(), by.end()) - by.begin());
+    compare(problem_.rows.size() + cone * QpCone::kEdges + worst_edge, by[worst_edge]);
+    return by[worst_edge] > problem_.slack;
+  };
+  for (const std::uint32_t row : broken_rows_) look_at_row(row);
+  for (const std::uint32_t cone : broken_cones_) look_at_cone(cone);
   if (found) return true;
-  broken_.clear();
+  broken_rows_.clear();
+  broken_cones_.clear();
   const bool remembers = problem_.unknowns > kFewUnknowns;
   for (Index row = 0; row < problem_.rows.size(); ++row)
-    if (look_at(row) && remembers) broken_.push_back(static_cast<std::uint32_t>(row));
+    if (look_at_row(row) && remembers) broken_rows_.push_back(static_cast<std::uint32_t>(row));
+  for (Index cone = 0; cone < problem_.cones.size(); ++cone)
+    if (look_at_cone(cone) && remembers) broken_cones_.push_back(static_cast<std::uint32_t>(cone));
   return found;
 }
 
 /// Walks until `row` is kept.
 QpStatus SmallQp::take(Index index, int max_iterations) noexcept {
-  const QpRow& row = problem_.rows[index];
+  const QpRow row = problem_.row(index);
   double multiplier = 0.0;
+  set_direction(row);
   while (answer_.iterations < max_iterations) {
     ++answer_.iterations;
-    const bool dependent = !set_direction(row, tolerances::kDependentRow);
+    const bool dependent = !leaves(tolerances::kDependentRow);
     set_push();
     const double whole_step = dependent ? kFar : missing(row) / free_sq_;
     Index blocking = 0;
@@ -195,57 +237,57 @@ QpStatus SmallQp::take(Index index, int max_iterations) noexcept {
     const double step = whole_step <= allowed ? whole_step : allowed;
     for (Index j = 0; j < count(); ++j) answer_.active[j].multiplier -= step * push_[j];
     multiplier += step;
-    if (!dependent) add(step, free_.data(), whole(problem_.unknowns), answer_.z.data());
+    if (!dependent)
+      kernels_->combine(free_.data(), 1, &step, 1.0, whole(problem_.unknowns), answer_.z.data());
     if (whole_step <= allowed) {
       append(index, multiplier);
       return QpStatus::kSolved;
     }
     release(blocking);
+    free_to(count());
   }
   return QpStatus::kBounded;
 }
 
-/// Splits g into what rows that hold see of it and what is free, the way to go. False when that is no more
-/// than such a share.
-bool SmallQp::set_direction(const QpRow& row, double least_share) noexcept {
+/// Splits g into what rows that hold see of it and what is free, the way to go.
+void SmallQp::set_direction(const QpRow& row) noexcept {
   const Index q = count();
   const Index n = whole(problem_.unknowns);
   std::fill_n(free_.begin(), n, 0.0);
   for (const QpRow::Run& run : row.runs)
     for (Index i = 0; i < run.count; ++i) free_[run.first + i] = run.g[i];
-  const double length_sq = dot(free_.data(), free_.data(), n);
+  length_sq_ = kernels_->dot(free_.data(), free_.data(), n);
   for (Index k = 0; k < q; ++k) along_[k] = dot(row, Q_[k].data());
   take_off(along_);
-  free_off_square_ = std::max(off_square_, kRounding) * std::sqrt(length_sq / free_sq_);
-  if (!(free_off_square_ < kSquare)) {
-    for (Index k = 0; k < q; ++k) work_[k] = dot(free_.data(), Q_[k].data(), n);
-    take_off(work_);
-    for (Index k = 0; k < q; ++k) along_[k] += work_[k];
-    free_off_square_ = kRounding;
-  }
-  return free_sq_ > least_share * least_share * length_sq;
+  free_off_square_ = std::max(off_square_, kRounding) * std::sqrt(length_sq_ / free_sq_);
+  if (free_off_square_ < kSquare) return;
+  kernels_->dots(Q_[0].data(), q, free_.data(), n, work_.data());
+  take_off(work_);
+  for (Index k = 0; k < q; ++k) along_[k] += work_[k];
+  free_off_square_ = kRounding;
 }
+
+/// Whether more than such a share of the row is free.
+bool SmallQp::leaves(double share) const noexcept { return free_sq_ > share * share * length_sq_; }
 
 /// Takes the columns of Q, each times its share, off what is free.
 void SmallQp::take_off(const Column& shares) noexcept {
-  const Index q = count();
   const Index n = whole(problem_.unknowns);
-  for (Index i = 0; i < n; i += 8) {
-    Eight eight(free_.data() + i);
-    for (Index k = 0; k < q; ++k) eight.add(-shares[k], Q_[k].data() + i);
-    eight.store(free_.data() + i);
-  }
-  free_sq_ = dot(free_.data(), free_.data(), n);
+  kernels_->combine(Q_[0].data(), count(), shares.data(), -1.0, n, free_.data());
+  free_sq_ = kernels_->dot(free_.data(), free_.data(), n);
+}
+
+/// Frees the way along the column of Q that was let go last.
+void SmallQp::free_to(Index column) noexcept {
+  const Index n = whole(problem_.unknowns);
+  kernels_->combine(Q_[column].data(), 1, &along_[column], 1.0, n, free_.data());
+  free_sq_ = kernels_->dot(free_.data(), free_.data(), n);
 }
 
 /// What the rows that hold push off with for a push along `along`.
 void SmallQp::set_push() noexcept {
-  Column& rest = work_;
-  std::copy_n(along_.begin(), count(), rest.begin());
-  for (Index j = count(); j-- > 0;) {
-    push_[j] = rest[j] * diagonal_[j];
-    add(-push_[j], R_[j].data(), j, rest.data());
-  }
+  std::copy_n(along_.begin(), count(), work_.begin());
+  kernels_->solve_upper(R_[0].data(), reciprocal_.data(), count(), work_.data(), push_.data());
 }
 
 /// How far until a holding row would pull, and which.
@@ -267,16 +309,16 @@ void SmallQp::append(Index row, double multiplier) noexcept {
   const Index q = count();
   const double length = std::sqrt(free_sq_);
   Q_[q].fill(0.0);
-  add(1.0 / length, free_.data(), whole(problem_.unknowns), Q_[q].data());
+  for (Index i = 0; i < problem_.unknowns; ++i) Q_[q][i] = free_[i] / length;
   std::copy_n(along_.begin(), q, R_[q].begin());
   std::fill(R_[q].begin() + static_cast<std::ptrdiff_t>(q), R_[q].end(), 0.0);
   R_[q][q] = length;
-  diagonal_[q] = 1.0 / length;
+  reciprocal_[q] = 1.0 / length;
   answer_.active.push_back({static_cast<int>(row), multiplier});
   off_square_ = std::max(off_square_, free_off_square_);
 }
 
-/// Takes a column out of R and makes the rest triangular again.
+/// Takes a column out of R and makes the rest triangular again. What of g and of Q it alone saw comes last.
 void SmallQp::release(Index leaving) noexcept {
   const Index last = count() - 1;
   for (Index j = leaving; j < last; ++j) {
@@ -288,16 +330,9 @@ void SmallQp::release(Index leaving) noexcept {
     const Turn turn(R_[j][j], R_[j][j + 1]);
     for (Index k = j; k < last; ++k) turn.apply(R_[k][j], R_[k][j + 1]);
     R_[j][j + 1] = 0.0;
-    diagonal_[j] = 1.0 / R_[j][j];
-    double* const one = Q_[j].data();
-    double* const other = Q_[j + 1].data();
-    for (Index i = 0; i < problem_.unknowns; i += 2) {
-      Lanes a = lanes(one + i);
-      Lanes b = lanes(other + i);
-      turn.apply(a, b);
-      std::memcpy(one + i, &a, sizeof a);
-      std::memcpy(other + i, &b, sizeof b);
-    }
+    reciprocal_[j] = 1.0 / R_[j][j];
+    turn.apply(along_[j], along_[j + 1]);
+    kernels_->turn(turn.cosine, turn.sine, whole(problem_.unknowns), Q_[j].data(), Q_[j + 1].data());
   }
 }
 

@@ -25,10 +25,9 @@
 #include <span>
 
 #include "tactum/base/static_vector.h"
+#include "tactum/math/column_kernels.h"
 
 namespace tactum {
-
-inline constexpr std::size_t kMostUnknowns = 36;  ///< six free bodies
 
 /// g_i and b_i. A row pushes on two bodies at most: its normal is zero outside of two runs of unknowns, and g
 /// from `count` on.
@@ -42,10 +41,37 @@ struct QpRow {
   double offset = 0.0;
 };
 
+/// Rows that are made of four, the edges of a cone: off - slope (cos along + sin across) at equal angles,
+/// then off - twist about and off + twist about. They are looked at together, at a third of the cost.
+struct QpCone {
+  static constexpr std::size_t kAround = 12, kEdges = kAround + 2;
+  struct Direction {
+    double cosine, sine;
+  };
+  /// Of edge k < kAround.
+  static Direction direction(std::size_t k) noexcept;
+  QpRow edge(std::size_t k) const noexcept;
+  double offset(std::size_t k) const noexcept;
+
+  QpRow off, along, across, about;
+  double slope = 0.0, twist = 0.0;
+  std::array<double, kEdges> more{};  ///< what each edge asks for beside the offsets of the four
+
+ private:
+  struct Mixture;
+  Mixture mixture(std::size_t k) const noexcept;
+};
+
+/// Rows are numbered: first `rows`, then the edges of each cone.
 struct QpProblem {
-  std::size_t unknowns = 0;     ///< at most kMostUnknowns
-  std::span<const QpRow> rows;  ///< any number
-  double slack = 0.0;           ///< a row is kept when it is missed by no more than this
+  std::size_t unknowns = 0;       ///< at most kMostUnknowns
+  std::span<const QpRow> rows;    ///< any number
+  std::span<const QpCone> cones;  ///< any number
+  double slack = 0.0;             ///< a row is kept when it is missed by no more than this
+
+  std::size_t size() const noexcept { return rows.size() + cones.size() * QpCone::kEdges; }
+  QpRow row(std::size_t number) const noexcept;
+  double offset(std::size_t number) const noexcept;
 };
 
 /// A row that holds the point, and how hard.
@@ -63,7 +89,7 @@ enum class QpStatus {
 struct QpAnswer {
   QpStatus status = QpStatus::kSolved;
   int iterations = 0;                            ///< rows taken in or let go, but for those it began with
-  std::array<double, kMostUnknowns + 8> z{};     ///< zero beyond the unknowns
+  std::array<double, columns::kColumn> z{};      ///< zero beyond the unknowns
   StaticVector<QpActive, kMostUnknowns> active;  ///< in the order in which they were taken in
 };
 
@@ -80,33 +106,37 @@ class SmallQp {
   const QpAnswer& answer() const noexcept { return answer_; }
 
  private:
-  // A column has room for a run that begins at the last unknown, in whole lanes.
-  static constexpr std::size_t kColumn = kMostUnknowns + 8;
-  static constexpr std::size_t kMostBroken = 64;  // rows remembered of a scan
-  using Column = std::array<double, kColumn>;
+  static constexpr std::size_t kMostBroken = 64;  // remembered of a scan, of either kind
+  using Column = std::array<double, columns::kColumn>;
 
   std::size_t count() const noexcept { return answer_.active.size(); }
 
   void begin_at_active() noexcept;
+  bool release_pulling() noexcept;
   bool most_broken(std::size_t& worst) noexcept;
+  std::array<double, QpCone::kEdges> missing(const QpCone& cone) const noexcept;
   QpStatus take(std::size_t index, int max_iterations) noexcept;
-  bool set_direction(const QpRow& row, double least_share) noexcept;
+  void set_direction(const QpRow& row) noexcept;
+  bool leaves(double share) const noexcept;
   void take_off(const Column& shares) noexcept;
+  void free_to(std::size_t column) noexcept;
   void set_push() noexcept;
   double longest_step(std::size_t& blocking) const noexcept;
   void append(std::size_t row, double multiplier) noexcept;
   void release(std::size_t leaving) noexcept;
 
+  const columns::Kernels* kernels_ = &columns::best_kernels();
   QpProblem problem_;
   QpAnswer answer_;
-  StaticVector<std::uint32_t, kMostBroken> broken_;  // in the last scan of all rows
+  StaticVector<std::uint32_t, kMostBroken> broken_rows_, broken_cones_;  // in the last scan of all
   // The normals of the rows that hold are N = Q R, with Q^T Q the identity and R upper triangular.
   std::array<Column, kMostUnknowns> Q_{}, R_{};  // columns
-  Column diagonal_{};                            // of R, each entry's reciprocal
+  Column reciprocal_{};                          // of each entry of R's diagonal
   Column along_{};                               // Q^T g of the row that is looked at
   Column free_{};                                // what is left of g beside the rows that hold
   Column push_{};                                // R^-1 along
   Column work_{};
+  double length_sq_ = 0.0;  // of g
   double free_sq_ = 0.0;
   // How far from square the columns of Q may be, at most, and what is free to them.
   double off_square_ = 0.0, free_off_square_ = 0.0;
