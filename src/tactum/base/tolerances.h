@@ -77,6 +77,10 @@ inline constexpr double kContactVelocity = 1e-6;
 /// lost: the next frame goes on from there, so a heap at rest comes to the rounding in the end.
 inline constexpr double kRestingVelocity = 1e-8;
 
+/// ... and this share of the fastest body's velocity beside it. Where something slides, sweeps may never come
+/// nearer: impulses then grow against each other while velocities stay.
+inline constexpr double kSlidingVelocity = 3e-5;
+
 /// A direction in which less than this share of a body's mobility is left, once the directions found before
 /// are taken away, is none: a hinge's mobility is of rank one, but for rounding.
 inline constexpr double kNoMobility = 1e-12;

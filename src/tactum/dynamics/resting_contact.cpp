@@ -178,7 +178,7 @@ SolverResult RestingContact::solve_island(const Range& island, int max_sweeps, d
     const Row& row = rows_[Index(order_[Index(island.first + i)])];
     fastest = std::max({fastest, V[Index(row.body_a)].v.norm(), V[Index(row.body_b)].v.norm()});
   }
-  const double enough = tolerances::kRestingVelocity + tolerances::kContactVelocity * fastest;
+  const double enough = tolerances::kRestingVelocity + tolerances::kSlidingVelocity * fastest;
   double last_gradient = 0.0;  // squared
   while (result.iterations < max_sweeps) {
     ++result.iterations;

@@ -235,15 +235,6 @@ std::size_t ConstraintProblem::add_cone(const QpCone& cone) noexcept {
   return first;
 }
 
-void ConstraintProblem::tighten(std::size_t row, double by) noexcept {
-  if (row < rows_.size()) {
-    rows_[row].offset += by;
-  } else {
-    const Index edge = row - rows_.size();
-    cones_[edge / QpCone::kEdges].more[edge % QpCone::kEdges] += by;
-  }
-}
-
 QpProblem ConstraintProblem::nearest_point() const noexcept {
   return {unknowns_, rows_, {cones_.begin(), cones_.end()}, tolerances::kRowKept_m};
 }

@@ -92,8 +92,12 @@ class ConstraintProblem {
   void forget_cones() noexcept { cones_.clear(); }
   /// Those of cones not counted.
   std::size_t rows() const noexcept { return rows_.size(); }
-  /// Makes a row ask for `by` more.
-  void tighten(std::size_t row, double by) noexcept;
+  /// Makes a row ask for `by` more; of a cone's edges, see cone().
+  void tighten(std::size_t row, double by) noexcept { rows_[row].offset += by; }
+  /// The cone whose first edge has this number.
+  QpCone& cone(std::size_t first_edge) noexcept {
+    return *(cones_.begin() + (first_edge - rows_.size()) / QpCone::kEdges);
+  }
 
   /// Chooses the rows to begin the next solution with.
   void begin(std::span<const int> first) noexcept;

@@ -195,7 +195,7 @@ void Friction::note_sticking(const ConstraintProblem& problem) noexcept {
 /// Its rows ask for nothing that a part could miss.
 void Friction::let_go(FrictionPatch& patch, ConstraintProblem& problem) noexcept {
   constexpr double kAnywhere_m = 1e3;  // [m]
-  for (Index k = 0; k < kRowsAPatch; ++k) problem.tighten(patch.first_row + k, -kAnywhere_m);
+  for (double& more : problem.cone(patch.first_row).more) more -= kAnywhere_m;
   patch.acts = false;
 }
 
@@ -216,8 +216,8 @@ bool Friction::let_slip(double skin_m, ConstraintProblem& problem) noexcept {
       let_go(patch, problem);
       continue;
     }
-    for (Index k = 0; k < kDirections; ++k) problem.tighten(patch.first_row + k, -further);
-    for (Index k = kDirections; k < kRowsAPatch; ++k) problem.tighten(patch.first_row + k, -turned);
+    QpCone& cone = problem.cone(patch.first_row);
+    for (Index k = 0; k < kRowsAPatch; ++k) cone.more[k] -= k < kDirections ? further : turned;
     patch.slip_m += further / patch.coefficient;
     if (turned > 0.0) patch.slip_rad += turned / arm;
   }
@@ -227,9 +227,8 @@ bool Friction::let_slip(double skin_m, ConstraintProblem& problem) noexcept {
 void Friction::forget_anchors(ConstraintProblem& problem) noexcept {
   for (FrictionPatch& patch : patches_) {
     if (!patch.acts) continue;
-    const Vec3 apart = patch.apart_W;
-    for (Index k = 0; k < kDirections; ++k)
-      problem.tighten(patch.first_row + k, (cone_edge(patch, k).force - patch.n_BA_W).dot(apart));
+    QpCone& cone = problem.cone(patch.first_row);
+    for (Index k = 0; k < kRowsAPatch; ++k) cone.more[k] += allowance(patch, k);
     patch.apart_W.setZero();
   }
 }

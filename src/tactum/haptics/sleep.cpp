@@ -29,11 +29,14 @@ void count_touches(FrameState& state) {
 bool is_still(const FrameState& state, Index body) {
   const Sleep& s = state.sleep;
   if (s.touches[body] != s.touched[body] || static_cast<int>(body) == state.tool.body) return false;
-  const Pose& X_WB = state.world.X_WB[body];
-  if (s.X_still[body].p == X_WB.p && s.X_still[body].R == X_WB.R) return true;  // as what sleeps does
-  const Twist moved = twist_between(s.X_still[body], X_WB, 1.0);
-  const double way = moved.v.norm() + moved.w.norm() * state.finder.radius(static_cast<int>(body));
-  return way <= kStillShare * state.constraint.skin_m;
+  const double most = kStillShare * state.constraint.skin_m;
+  const Pose& was = s.X_still[body];
+  const Pose& is = state.world.X_WB[body];
+  const double way = (is.p - was.p).norm();
+  if (way > most) return false;
+  if (way == 0.0 && is.R == was.R) return true;  // as all that sleeps
+  const Twist moved = twist_between(was, is, 1.0);
+  return moved.v.norm() + moved.w.norm() * state.finder.radius(static_cast<int>(body)) <= most;
 }
 
 }  // namespace
