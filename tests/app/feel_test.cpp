@@ -35,6 +35,21 @@ TEST(FeelCommand, TheSameTwiceAndADurationInsteadOfUpdates) {
   EXPECT_EQ(Json::parse(updates.out)["frame_hash"], Json::parse(duration.out)["frame_hash"]);
 }
 
+TEST(FeelCommand, ReplaysAreTheSameRunAndTimeItsFramesByTheirFastest) {
+  const std::string feel = "feel block-on-plate --virtual-clock --updates 2000 --json -";
+  const ProgramRun once = run_tactum(feel);
+  const ProgramRun thrice = run_tactum(feel + " --replays 3");
+  ASSERT_EQ(thrice.exit_code, 0) << thrice.err;
+  const Json one = Json::parse(once.out);
+  const Json three = Json::parse(thrice.out);
+  EXPECT_EQ(one["replays"], 1);
+  EXPECT_EQ(three["replays"], 3);
+  EXPECT_EQ(one["frames"], three["frames"]);
+  EXPECT_EQ(one["frame_hash"], three["frame_hash"]);
+  EXPECT_GT(three["frame_us"]["max"], three["frame_us"]["p50"]);
+  EXPECT_NE(run_tactum("feel block-on-plate --updates 100 --replays 3").exit_code, 0) << "live";
+}
+
 TEST(FeelCommand, EveryGripAndSimulatedDeviceRuns) {
   for (const char* grip : {"loose", "medium", "firm"}) {
     const ProgramRun run =
