@@ -93,10 +93,13 @@ void ContactFinder::settle_objected(ContactPatch& patch, std::span<const Pose> X
   const Pose X_AB = relative_pose(X_WB[Index(patch.body_a)], X_WB[Index(patch.body_b)]);
   const PairView pair(part_a.pieces[Index(patch.piece_a)], part_b.pieces[Index(patch.piece_b)], X_AB);
   const PairDistance found{.a = patch.manifold.a, .b = patch.manifold.b};
+  auto objected = objected_.begin();  // rising, as the patches
   const auto leader = std::find_if(patches_.begin(), patches_.end(), [&](const ContactPatch& other) {
-    const int number = static_cast<int>(&other - patches_.data());
+    if (objected != objected_.end() && &other == &patches_[Index(*objected)]) {
+      ++objected;
+      return false;
+    }
     return other.body_a == patch.body_a && other.body_b == patch.body_b &&
-           !std::binary_search(objected_.begin(), objected_.end(), number) &&
            answered_by(pair, found, other.manifold.normal, other.distance);
   });
   if (leader == patches_.end()) return;

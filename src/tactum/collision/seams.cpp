@@ -19,6 +19,18 @@ int number_of(const Part& part, int piece, const Feature& feature) noexcept {
   return part.true_surface.number(piece, static_cast<int>(feature.kind), feature.index);
 }
 
+/// The neighbour of a vertex up the steepest ray, or the vertex when there is none higher.
+int uphill(const Polytope& P, const Vec3& direction, int vertex) noexcept {
+  int next = vertex;
+  double steepest = 0.0;
+  for (const Polytope::Ray& ray : P.rays_at(vertex))
+    if (const double slope = direction.dot(ray.direction); slope > steepest) {
+      steepest = slope;
+      next = ray.far;
+    }
+  return direction.dot(P.vertices[Index(next)]) > direction.dot(P.vertices[Index(vertex)]) ? next : vertex;
+}
+
 bool in_column(const Polytope& P, int face, const Vec3& p, double slack) noexcept {
   const Polytope::Face& loop = P.faces[face];
   for (int slot = loop.first; slot < loop.first + loop.count; ++slot)
@@ -236,9 +248,19 @@ std::optional<PairDistance> depth_on_true_surface(const Part& part_a, int piece_
 }
 
 bool answered_by(const PairView& pair, const PairDistance& found, const Vec3& n, double distance) noexcept {
+  const double least = distance - tolerances::kCoplanarMeshOffset * pair.size;
+  const Vec3 n_B = pair.X_BA.R * n;
   int a = vertex_of(pair.A, found.a);
   int b = vertex_of(pair.B, found.b);
-  return pair.separation(n, a, b) >= distance - tolerances::kCoplanarMeshOffset * pair.size;
+  // Towards the supports a step at a time: most neighbours turn out not to part the pieces at the first.
+  for (;;) {
+    if (n.dot(pair.vertex_a(a) - pair.vertex_b(b)) < least) return false;
+    const int next_a = uphill(pair.A, -n, a);
+    const int next_b = uphill(pair.B, n_B, b);
+    if (next_a == a && next_b == b) return true;
+    a = next_a;
+    b = next_b;
+  }
 }
 
 }  // namespace tactum
