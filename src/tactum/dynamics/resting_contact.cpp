@@ -16,12 +16,6 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// before an impulse is forgotten.
 constexpr Index kLookAhead = 64;
 
-/// After so many sweeps a share of the fastest velocity counts as found that neither hand nor device
-/// resolves: in a heap that slides and wedges, impulses may go on growing against each other for hundreds of
-/// sweeps.
-constexpr int kPatientSweeps = 30;
-constexpr double kShareUnfelt = 1e-3;
-
 }  // namespace
 
 Vec3 RestingContact::last_impulse(std::uint64_t name) noexcept {
@@ -184,13 +178,12 @@ SolverResult RestingContact::solve_island(const Range& island, int max_sweeps, d
     const Row& row = rows_[Index(order_[Index(island.first + i)])];
     fastest = std::max({fastest, V[Index(row.body_a)].v.norm(), V[Index(row.body_b)].v.norm()});
   }
+  const double enough = tolerances::kRestingVelocity + tolerances::kSlidingVelocity * fastest;
   double last_gradient = 0.0;  // squared
   while (result.iterations < max_sweeps) {
     ++result.iterations;
     const double change = sweep(island, V);
     result.converged = change <= harmless;
-    const double share = result.iterations < kPatientSweeps ? tolerances::kSlidingVelocity : kShareUnfelt;
-    const double enough = tolerances::kRestingVelocity + share * fastest;
     if (change <= enough || result.iterations == max_sweeps) break;
     accelerate(island, last_gradient, V);
   }
