@@ -174,7 +174,7 @@ void tell_what_is_felt(std::FILE* out, const Session& session, const std::string
 void sum_up(std::FILE* out, const FeelOptions& options, const Session& session, const Summary& times,
             const StageClock& stages) {
   print_summary(out, session, times, stages);
-  if (options.replays > 1)
+  if (options.replays > 1 && !interrupted())
     fmt::print(out, "replays          {} runs, the same to the bit; each frame counts with its fastest\n",
                options.replays);
   if (!options.json.empty()) {

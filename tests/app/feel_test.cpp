@@ -46,7 +46,7 @@ TEST(FeelCommand, ReplaysAreTheSameRunAndTimeItsFramesByTheirFastest) {
   EXPECT_EQ(three["replays"], 3);
   EXPECT_EQ(one["frames"], three["frames"]);
   EXPECT_EQ(one["frame_hash"], three["frame_hash"]);
-  EXPECT_GT(three["frame_us"]["max"], three["frame_us"]["p50"]);
+  EXPECT_GT(three["frame_us"]["p50"], 0.0);
   EXPECT_NE(run_tactum("feel block-on-plate --updates 100 --replays 3").exit_code, 0) << "live";
 }
 

@@ -1,7 +1,7 @@
 #pragma once
-/// FNV-1a over bytes; numbers are taken a word at a time, in an eighth of the time, with a shift that carries
-/// what the product has moved up down again. Names a frame's outputs so that two runs can be compared bit for
-/// bit. Not for secrets.
+/// FNV-1a over bytes; numbers are taken a word at a time, one step instead of eight, with a shift that
+/// carries what the product has moved up down again. Names a frame's outputs so that two runs can be compared
+/// bit for bit. Not for secrets.
 
 #include <cstddef>
 #include <cstdint>

@@ -42,7 +42,7 @@ struct QpRow {
 };
 
 /// Rows that are made of four, the edges of a cone: off - slope (cos along + sin across) at equal angles,
-/// then off - twist about and off + twist about. They are looked at together, at a third of the cost.
+/// then off - twist about and off + twist about. They are looked at together, by four sums.
 struct QpCone {
   static constexpr std::size_t kAround = 12, kEdges = kAround + 2;
   struct Direction {
