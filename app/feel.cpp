@@ -7,7 +7,6 @@
 #include <chrono>
 #include <cstdio>
 #include <thread>
-#include <vector>
 
 #include "commands.h"
 #include "output.h"
@@ -15,6 +14,7 @@
 #include "tactum/haptics/field_pull.h"
 #include "tactum/scene/builtin_scenes.h"
 #include "tactum/session/session.h"
+#include "tactum/telemetry/statistics.h"
 #include "viewer/server/viewer.h"
 #include "watch.h"
 
@@ -35,34 +35,13 @@ struct FeelOptions {
   int port = 0;
 };
 
-/// The times of the frames of runs that are the same but for the machine's other work: of each frame the
-/// fastest.
-class FastestTimes {
- public:
-  explicit FastestTimes(std::uint64_t frames) { ns_.reserve(frames); }
-  void add(std::uint64_t frame, std::int64_t ns) noexcept {
-    if (frame < ns_.size()) {
-      ns_[frame] = std::min(ns_[frame], ns);
-    } else if (ns_.size() < ns_.capacity()) {
-      ns_.push_back(ns);
-    }
-  }
-  Summary summary() const {
-    DurationHistogram times;
-    for (const std::int64_t ns : ns_) times.add(ns);
-    return times.summary();
-  }
-
- private:
-  std::vector<std::int64_t> ns_;
-};
-
 /// Times the frames of a virtual run, keeps the status line alive, and passes Ctrl-C on.
 class VirtualWatch final : public LoopObserver {
  public:
-  VirtualWatch(Session& session, FastestTimes& times) : session_(session), times_(times) {}
+  VirtualWatch(Session& session, MinimumOfReplays& times) : session_(session), times_(times) {}
   bool after_frame(const FrameRecord& record) noexcept override {
-    times_.add(record.tick.index, static_cast<std::int64_t>(record.frame_time_s * 1e9));
+    times_.add(static_cast<std::size_t>(record.tick.index),
+               static_cast<std::int64_t>(record.frame_time_s * 1e9));
     if (record.tick.index % kFramesPerLook == 0) status_.show(session_, session_.poll());
     return !interrupted();
   }
@@ -70,7 +49,7 @@ class VirtualWatch final : public LoopObserver {
  private:
   static constexpr std::uint64_t kFramesPerLook = 1000;
   Session& session_;
-  FastestTimes& times_;
+  MinimumOfReplays& times_;
   StatusLine status_;
 };
 
@@ -100,7 +79,7 @@ Scene scene_of(const FeelOptions& options) {
   return std::move(*scene);
 }
 
-void run_virtually(Session& session, std::uint64_t frames, FastestTimes& times) {
+void run_virtually(Session& session, std::uint64_t frames, MinimumOfReplays& times) {
   VirtualWatch watch(session, times);
   const Result<VirtualRun> run = session.run_virtual(frames, &watch);
   if (!run) fail(run.error());
@@ -108,7 +87,7 @@ void run_virtually(Session& session, std::uint64_t frames, FastestTimes& times) 
 
 /// Runs the session, and as many times anew as is asked for.
 Summary feel_virtually(const FeelOptions& options, Session& session, std::uint64_t frames) {
-  FastestTimes times(frames);
+  MinimumOfReplays times(frames);
   run_virtually(session, frames, times);
   for (int replay = 1; replay < options.replays && !interrupted(); ++replay) {
     const std::unique_ptr<Session> again = open_session(options, scene_of(options));

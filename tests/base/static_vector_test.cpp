@@ -26,6 +26,31 @@ TEST(StaticVector, FillsRefusesAndEmpties) {
   EXPECT_EQ(items.begin(), items.end());
 }
 
+/// Counts what is made of it.
+struct Counted {
+  static inline int made = 0;
+  int value;
+  explicit Counted(int of) : value(of) { ++made; }
+  Counted(const Counted& other) : value(other.value) { ++made; }
+  Counted& operator=(const Counted&) = default;
+};
+
+TEST(StaticVector, MakesAndCopiesOnlyWhatIsInUse) {
+  StaticVector<Counted, 100> items;
+  EXPECT_EQ(Counted::made, 0);
+  items.push_back(Counted(5));
+  items.push_back(Counted(6));
+  Counted::made = 0;
+  StaticVector<Counted, 100> copy(items);
+  EXPECT_EQ(Counted::made, 2);
+  EXPECT_EQ(copy.size(), 2u);
+  EXPECT_EQ(copy[1].value, 6);
+  copy.push_back(Counted(7));
+  items = copy;
+  EXPECT_EQ(items.size(), 3u);
+  EXPECT_EQ(items.back().value, 7);
+}
+
 #ifndef NDEBUG
 TEST(StaticVectorDeathTest, IndexPastTheEndIsOurMistake) {
   testing::FLAGS_gtest_death_test_style = "threadsafe";

@@ -24,9 +24,11 @@ struct Problem {
   std::vector<Mobility> W{2, Mobility::Zero()};
   std::vector<Twist> V{2};
   std::vector<ContactRow> rows;
+  std::vector<PushRow> pushes;
   double h = 0.001;
 
   explicit Problem(std::uint64_t seed, int contacts) {
+    pushes.reserve(static_cast<std::size_t>(contacts) + 1);
     Random random(seed);
     X[1].p = random_vector(random, 0.02);
     const Mat3 R = exp_rotation(random_vector(random, 2));
@@ -52,7 +54,7 @@ TEST(ContactSolver, SolvesTheComplementarityProblem) {
     // Few rows are solved by pivoting, more than 48 by sweeps.
     Problem p(seed, seed % 40 == 0 ? 60 : 1 + static_cast<int>(seed % 17));
     const std::vector<Twist> before = p.V;
-    const SolverResult result = solve_contacts(p.rows, p.X, p.W, p.h, 20000, p.V);
+    const SolverResult result = solve_contacts(p.rows, p.X, p.W, p.h, 20000, p.pushes, p.V);
     ASSERT_TRUE(result.converged) << "seed " << seed;
     Vec6 impulse = Vec6::Zero();
     for (const ContactRow& row : p.rows) {
@@ -77,7 +79,7 @@ TEST(ContactSolver, ActionEqualsReaction) {
   p.W[0] = 0.5 * Mobility::Identity();
   p.V[0] = {random_vector(random, 0.1), Vec3::Zero()};
   const std::vector<Twist> before = p.V;
-  solve_contacts(p.rows, p.X, p.W, p.h, 500, p.V);
+  solve_contacts(p.rows, p.X, p.W, p.h, 500, p.pushes, p.V);
   Wrench total;
   for (int body : {0, 1}) {
     Vec6 M_dV = p.W[std::size_t(body)].inverse() *
@@ -101,7 +103,7 @@ TEST(ContactSolver, AVeryStiffContactDoesNotShake) {
   row.stiffness = 3e11;
   p.V[1] = {Vec3(0, 0, -1), Vec3::Zero()};
   p.rows.push_back(row);
-  solve_contacts(p.rows, p.X, p.W, p.h, 100, p.V);
+  solve_contacts(p.rows, p.X, p.W, p.h, 100, p.pushes, p.V);
   EXPECT_NEAR(p.rows[0].distance + p.h * p.V[1].v.z(), 0.0, 1e-9);
 }
 

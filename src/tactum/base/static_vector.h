@@ -1,9 +1,12 @@
 #pragma once
 /// A vector with its room inside, for the frame: it never allocates, and a push that does not fit says so.
+/// Room that is not in use costs nothing: neither made nor copied.
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <memory>
+#include <type_traits>
 
 #include "tactum/base/assert.h"
 
@@ -11,11 +14,21 @@ namespace tactum {
 
 template <class T, std::size_t N>
 class StaticVector {
+  static_assert(std::is_trivially_destructible_v<T>, "items are forgotten, not destroyed");
+
  public:
+  StaticVector() noexcept {}  // NOLINT(modernize-use-equals-default): a union's is deleted
+  StaticVector(const StaticVector& other) noexcept { assign(other.begin(), other.size_); }
+  StaticVector& operator=(const StaticVector& other) noexcept {
+    if (this != &other) assign(other.begin(), other.size_);
+    return *this;
+  }
+  ~StaticVector() = default;
+
   /// False, with nothing stored, when full.
   bool push_back(const T& item) noexcept {
     if (size_ == N) return false;
-    items_[size_++] = item;
+    std::construct_at(items_.data() + size_++, item);
     return true;
   }
   void pop_back() noexcept {
@@ -26,7 +39,7 @@ class StaticVector {
   /// The first `count` of `items`, as many of them as fit.
   void assign(const T* items, std::size_t count) noexcept {
     size_ = count < N ? count : N;
-    std::copy_n(items, size_, items_.begin());
+    std::uninitialized_copy_n(items, size_, items_.data());
   }
   std::size_t size() const noexcept { return size_; }
   bool empty() const noexcept { return size_ == 0; }
@@ -48,7 +61,9 @@ class StaticVector {
   const T* end() const noexcept { return items_.data() + size_; }
 
  private:
-  std::array<T, N> items_{};
+  union {
+    std::array<T, N> items_;  // made one by one
+  };
   std::size_t size_ = 0;
 };
 

@@ -19,18 +19,6 @@ int number_of(const Part& part, int piece, const Feature& feature) noexcept {
   return part.true_surface.number(piece, static_cast<int>(feature.kind), feature.index);
 }
 
-/// The neighbour of a vertex up the steepest ray, or the vertex when there is none higher.
-int uphill(const Polytope& P, const Vec3& direction, int vertex) noexcept {
-  int next = vertex;
-  double steepest = 0.0;
-  for (const Polytope::Ray& ray : P.rays_at(vertex))
-    if (const double slope = direction.dot(ray.direction); slope > steepest) {
-      steepest = slope;
-      next = ray.far;
-    }
-  return direction.dot(P.vertices[Index(next)]) > direction.dot(P.vertices[Index(vertex)]) ? next : vertex;
-}
-
 bool in_column(const Polytope& P, int face, const Vec3& p, double slack) noexcept {
   const Polytope::Face& loop = P.faces[face];
   for (int slot = loop.first; slot < loop.first + loop.count; ++slot)
@@ -252,11 +240,14 @@ bool answered_by(const PairView& pair, const PairDistance& found, const Vec3& n,
   const Vec3 n_B = pair.X_BA.R * n;
   int a = vertex_of(pair.A, found.a);
   int b = vertex_of(pair.B, found.b);
+  double height_a = -n.dot(pair.A.vertices[Index(a)]);
+  double height_b = n_B.dot(pair.B.vertices[Index(b)]);
+  const double apart = -n.dot(pair.X_AB.p);  // of the origins
   // Towards the supports a step at a time: most neighbours turn out not to part the pieces at the first.
   for (;;) {
-    if (n.dot(pair.vertex_a(a) - pair.vertex_b(b)) < least) return false;
-    const int next_a = uphill(pair.A, -n, a);
-    const int next_b = uphill(pair.B, n_B, b);
+    if (apart - height_a - height_b < least) return false;
+    const int next_a = uphill(pair.A, -n, a, height_a);
+    const int next_b = uphill(pair.B, n_B, b, height_b);
     if (next_a == a && next_b == b) return true;
     a = next_a;
     b = next_b;

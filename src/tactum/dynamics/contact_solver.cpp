@@ -16,49 +16,26 @@ Vec6 jacobian(const Vec3& n, const Vec3& r) {
   return J;
 }
 
-void prepare(ContactRow& row, std::span<const Pose> X_WB, std::span<const Mobility> W) {
-  const Index a = Index(row.body_a);
-  const Index b = Index(row.body_b);
-  row.jacobian_a = jacobian(row.n_BA_W, row.p_W - X_WB[a].p);
-  row.jacobian_b = -jacobian(row.n_BA_W, row.p_W - X_WB[b].p);
-  row.response_a = W[a] * row.jacobian_a;
-  row.response_b = W[b] * row.jacobian_b;
-  row.diagonal = row.jacobian_a.dot(row.response_a) + row.jacobian_b.dot(row.response_b);
-  row.impulse = 0.0;
-}
-
-double normal_velocity(const ContactRow& row, std::span<const Twist> V) {
-  const Twist& a = V[Index(row.body_a)];
-  const Twist& b = V[Index(row.body_b)];
-  return row.jacobian_a.head<3>().dot(a.v) + row.jacobian_a.tail<3>().dot(a.w) +
-         row.jacobian_b.head<3>().dot(b.v) + row.jacobian_b.tail<3>().dot(b.w);
-}
-
-void add_impulse(const ContactRow& row, double impulse, std::span<Twist> V) {
-  Twist& a = V[Index(row.body_a)];
-  Twist& b = V[Index(row.body_b)];
-  a.v += row.response_a.head<3>() * impulse;
-  a.w += row.response_a.tail<3>() * impulse;
-  b.v += row.response_b.head<3>() * impulse;
-  b.w += row.response_b.tail<3>() * impulse;
-}
-
 /// Projected Gauss-Seidel from first row to last, until a sweep changes next to nothing.
-SolverResult sweep(std::span<ContactRow> rows, double h, int max_sweeps, std::span<Twist> V) {
+SolverResult sweep(std::span<ContactRow> rows, std::span<const PushRow> pushes, double h, int max_sweeps,
+                   std::span<Twist> V) {
   SolverResult result;
   for (; result.iterations < max_sweeps; ++result.iterations) {
     double largest_target = 0.0;
     double largest_change = 0.0;
-    for (ContactRow& row : rows) {
+    for (Index r = 0; r < rows.size(); ++r) {
+      ContactRow& row = rows[r];
+      Twist& a = V[Index(row.body_a)];
+      Twist& b = V[Index(row.body_b)];
       const double compliance = 1.0 / (row.stiffness * h * h);
       const double target = (row.tolerance - row.distance) / h;
-      const double error = target - normal_velocity(row, V) - compliance * row.impulse;
-      const double impulse = std::max(0.0, row.impulse + error / (row.diagonal + compliance));
+      const double error = target - pushes[r].velocity(a, b) - compliance * row.impulse;
+      const double impulse = std::max(0.0, row.impulse + error / (pushes[r].mobility + compliance));
       const double change = impulse - row.impulse;
       if (change == 0.0) continue;
       row.impulse = impulse;
-      add_impulse(row, change, V);
-      largest_change = std::max(largest_change, std::abs(change) * (row.diagonal + compliance));
+      pushes[r].push(change, a, b);
+      largest_change = std::max(largest_change, std::abs(change) * (pushes[r].mobility + compliance));
       largest_target = std::max(largest_target, std::abs(target));
     }
     result.converged = largest_change <= tolerances::kContactVelocity * largest_target;
@@ -281,7 +258,7 @@ class MotionProblem {
 
 SolverResult solve_contacts(std::span<ContactRow> rows, std::span<const Pose> X_WB,
                             std::span<const Mobility> W, double h, int max_sweeps,
-                            std::span<Twist> V) noexcept {
+                            std::vector<PushRow>& pushes, std::span<Twist> V) noexcept {
   if (rows.empty()) return {.iterations = 0, .converged = true};
   MotionProblem problem;
   if (problem.set(rows, X_WB, W, h, V)) {
@@ -291,8 +268,15 @@ SolverResult solve_contacts(std::span<ContactRow> rows, std::span<const Pose> X_
       return {.iterations = rounds, .converged = true};
     }
   }
-  for (ContactRow& row : rows) prepare(row, X_WB, W);
-  return sweep(rows, h, max_sweeps, V);
+  pushes.resize(rows.size());
+  for (Index r = 0; r < rows.size(); ++r) {
+    ContactRow& row = rows[r];
+    const Index a = Index(row.body_a);
+    const Index b = Index(row.body_b);
+    pushes[r].set(row.n_BA_W, row.p_W - X_WB[a].p, row.p_W - X_WB[b].p, W[a], W[b]);
+    row.impulse = 0.0;
+  }
+  return sweep(rows, pushes, h, max_sweeps, V);
 }
 
 }  // namespace tactum

@@ -15,42 +15,16 @@
 /// it 54). It is stable for every k, h and mass, and at rest its forces are the published ones exactly.
 
 #include <span>
+#include <vector>
 
-#include "tactum/dynamics/joint.h"
+#include "tactum/dynamics/friction_row.h"
 
 namespace tactum {
 
-/// One contact point between two bodies: normal from B to A, as in collision/contact.h, told in the world.
-struct ContactRow {
-  int body_a = -1, body_b = -1;
-  int patch = -1;              ///< the caller's number of the patch it stands for; the solver ignores it
-  int grip = -1;               ///< ... and of the friction it takes part in
-  Vec3 n_BA_W = Vec3::Zero();  ///< unit [-]
-  Vec3 p_W = Vec3::Zero();     ///< where the force acts [m]
-  double distance = 0.0;       ///< signed, at the start of the step [m]
-  double tolerance = 0.0;      ///< delta of the pair [m]
-  double stiffness = 0.0;      ///< k, the point's share [N/m]
-  double friction = 0.0;       ///< Coulomb's coefficient [-]
-  double restitution = 0.0;    ///< of the speed, in an impact [-]
-  bool struck = true;          ///< takes part in impacts
-  bool hit = false;            ///< an impact was seen here first, in this frame
-  double impulse = 0.0;        ///< lambda, the solver's answer [N s]
-
-  // For the sweeps only: lever arms, twist changes per unit impulse.
-  Vec6 jacobian_a = Vec6::Zero(), jacobian_b = Vec6::Zero();
-  Vec6 response_a = Vec6::Zero(), response_b = Vec6::Zero();
-  double diagonal = 0.0;
-};
-
-struct SolverResult {
-  int iterations = 0;      ///< rounds of Newton's method, or sweeps
-  bool converged = false;  ///< false: the sweeps ran out; the impulses are usable, not exact
-};
-
 /// Finds the impulses and adds their effect to the twists `V` (one per body). `h` [s] is the step they act
-/// for.
+/// for. `pushes` is scratch, with room for as many as there are rows.
 SolverResult solve_contacts(std::span<ContactRow> rows, std::span<const Pose> X_WB,
                             std::span<const Mobility> W, double h, int max_sweeps,
-                            std::span<Twist> V) noexcept;
+                            std::vector<PushRow>& pushes, std::span<Twist> V) noexcept;
 
 }  // namespace tactum

@@ -1,11 +1,13 @@
 #pragma once
-/// A contact point's three directions and how two bodies answer pushes along them; shared by impacts and by
-/// resting contact.
+/// A contact point's three directions and how two bodies answer pushes along them; shared by all that solves
+/// for impulses.
 
 #include <array>
 #include <cmath>
+#include <span>
 
-#include "tactum/dynamics/contact_solver.h"
+#include "tactum/dynamics/contact_row.h"
+#include "tactum/dynamics/joint.h"
 
 namespace tactum {
 

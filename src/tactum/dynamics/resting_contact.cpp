@@ -42,8 +42,6 @@ void RestingContact::add(const ContactRow& row, int index, int island, std::uint
   next.body_b = row.body_b;
   next.index = index;
   next.island = island;
-  next.before.setZero();
-  next.course.setZero();
   next.last = now_.size();
   now_.push_back({name, Vec3::Zero()});
   next.wanted = -gap_m / h;
@@ -138,35 +136,38 @@ double RestingContact::sweep(const Range& island, std::span<Twist> V) noexcept {
   return change;
 }
 
-/// On along the way of the sweeps so far, by the share of Fletcher and Reeves; begins anew where the gradient
-/// has grown. What it oversteps, the next sweep projects.
-void RestingContact::accelerate(const Range& island, double& last_gradient, std::span<Twist> V) noexcept {
-  double gradient = 0.0;
+/// On along the way from sweep to sweep, by a share that grows with their number [Nesterov 1983]; begins anew
+/// where the last one had more to change than the one before [Donoghue 2015]. What it oversteps, the next
+/// sweep projects.
+void RestingContact::accelerate(const Range& island, Pace& pace, std::span<Twist> V) noexcept {
+  double change = 0.0;
   for (int i = 0; i < island.count; ++i) {
     const Row& row = rows_[Index(order_[Index(island.first + i)])];
-    gradient += (row.contact.impulse - row.before).squaredNorm();
+    change += (row.contact.impulse - row.before).squaredNorm();
   }
   for (int i = 0; i < island.joint_count; ++i) {
     const JointRow& row = joints_[Index(joint_order_[Index(island.joint_first + i)])];
-    gradient += (row.impulse - row.before) * (row.impulse - row.before);
+    change += (row.impulse - row.before) * (row.impulse - row.before);
   }
-  const double keep = last_gradient > gradient ? gradient / last_gradient : 0.0;
-  last_gradient = gradient;
+  if (change > pace.last_change) pace.sweeps = 0;
+  pace.last_change = change;
+  const double share = pace.sweeps / (pace.sweeps + 3.0);
+  ++pace.sweeps;
   for (int i = 0; i < island.count; ++i) {
     Row& row = rows_[Index(order_[Index(island.first + i)])];
-    const Vec3 step = row.contact.impulse - row.before;
-    row.course *= keep;
-    row.contact.impulse += row.course;
-    if (keep > 0.0) push(row, row.course, V);
-    row.course += step;
+    const Vec3 on = share * (row.contact.impulse - row.swept);
+    row.swept = row.contact.impulse;
+    if (share == 0.0) continue;
+    row.contact.impulse += on;
+    push(row, on, V);
   }
   for (int i = 0; i < island.joint_count; ++i) {
     JointRow& row = joints_[Index(joint_order_[Index(island.joint_first + i)])];
-    const double step = row.impulse - row.before;
-    row.course *= keep;
-    row.impulse += row.course;
-    if (keep > 0.0) V[Index(row.body)] = V[Index(row.body)] + to_twist(row.response * row.course);
-    row.course += step;
+    const double on = share * (row.impulse - row.swept);
+    row.swept = row.impulse;
+    if (share == 0.0) continue;
+    row.impulse += on;
+    V[Index(row.body)] = V[Index(row.body)] + to_twist(row.response * on);
   }
 }
 
@@ -179,13 +180,13 @@ SolverResult RestingContact::solve_island(const Range& island, int max_sweeps, d
     fastest = std::max({fastest, V[Index(row.body_a)].v.norm(), V[Index(row.body_b)].v.norm()});
   }
   const double enough = tolerances::kRestingVelocity + tolerances::kSlidingVelocity * fastest;
-  double last_gradient = 0.0;  // squared
+  Pace pace;
   while (result.iterations < max_sweeps) {
     ++result.iterations;
     const double change = sweep(island, V);
     result.converged = change <= harmless;
     if (change <= enough || result.iterations == max_sweeps) break;
-    accelerate(island, last_gradient, V);
+    accelerate(island, pace, V);
   }
   return result;
 }

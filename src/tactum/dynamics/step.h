@@ -4,7 +4,8 @@
 
 #include <span>
 
-#include "tactum/dynamics/contact_solver.h"
+#include "tactum/dynamics/contact_row.h"
+#include "tactum/dynamics/joint.h"
 
 namespace tactum {
 

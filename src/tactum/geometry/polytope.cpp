@@ -132,21 +132,26 @@ int table_vertex(const Polytope& polytope, const Vec3& direction) noexcept {
   return polytope.direction_table[Index(cell_of(direction))];
 }
 
+int uphill(const Polytope& P, const Vec3& direction, int vertex, double& height) noexcept {
+  int next = vertex;
+  double steepest = 0.0;
+  for (const Polytope::Ray& ray : P.rays_at(vertex))
+    if (const double slope = direction.dot(ray.direction); slope > steepest) {
+      steepest = slope;
+      next = ray.far;
+    }
+  const double higher = direction.dot(P.vertices[Index(next)]);
+  if (!(higher > height)) return vertex;  // slopes may go round in rounding, heights cannot
+  height = higher;
+  return next;
+}
+
 int support_vertex(const Polytope& P, const Vec3& direction, int start) noexcept {
-  int best = start;
-  double height = direction.dot(P.vertices[Index(best)]);
-  for (;;) {
-    int next = best;
-    double steepest = 0.0;
-    for (const Polytope::Ray& ray : P.rays_at(best))
-      if (const double slope = direction.dot(ray.direction); slope > steepest) {
-        steepest = slope;
-        next = ray.far;
-      }
-    const double higher = direction.dot(P.vertices[Index(next)]);
-    if (!(higher > height)) return best;  // slopes may go round in rounding, heights cannot
+  double height = direction.dot(P.vertices[Index(start)]);
+  for (int best = start;;) {
+    const int next = uphill(P, direction, best, height);
+    if (next == best) return best;
     best = next;
-    height = higher;
   }
 }
 

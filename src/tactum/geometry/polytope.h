@@ -84,6 +84,10 @@ struct Polytope {
 /// A vertex near the farthest one along `direction` (any length but zero): one table look-up.
 int table_vertex(const Polytope& polytope, const Vec3& direction) noexcept;
 
+/// A step up: the neighbour of a vertex up the steepest ray, or the vertex when none is higher. `height`,
+/// that of the vertex along `direction`, becomes the neighbour's.
+int uphill(const Polytope& polytope, const Vec3& direction, int vertex, double& height) noexcept;
+
 /// The vertex farthest along `direction`, climbing from vertex `start`. Exact up to rounding; a climb over a
 /// convex polytope cannot stop at a lesser peak. Cost: the features climbed over.
 int support_vertex(const Polytope& polytope, const Vec3& direction, int start) noexcept;

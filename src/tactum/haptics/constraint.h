@@ -46,7 +46,6 @@ struct ConstraintState {
   std::size_t first_row = 0;         ///< of them, in the problem
   bool bent = false;                 ///< some normal is bent by shading
   bool shades = false;               ///< ... so the step is that of `way`
-  PatchCorners patch_corners;        ///< of one patch; kept, as to make it anew costs more than to fill it
   std::vector<Vec3> shaded;          ///< normals of the own rows; empty without shading [-]
   std::vector<std::uint64_t> names;  ///< of the rows
   std::vector<double> feedback;      ///< what exact gaps have added to the rows [m]

@@ -20,7 +20,7 @@
 
 #include <vector>
 
-#include "tactum/dynamics/contact_solver.h"
+#include "tactum/dynamics/joint.h"
 #include "tactum/haptics/settings.h"
 #include "tactum/math/small_qp.h"
 

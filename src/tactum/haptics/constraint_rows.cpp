@@ -53,8 +53,7 @@ struct RowMaker {
     ContactRows& out = state.contacts;
     const Pose& X_WA = state.world.X_WB[Index(patch.body_a)];
     const Pose X_AB = relative_pose(X_WA, state.world.X_WB[Index(patch.body_b)]);
-    PatchCorners& corners = c.patch_corners;
-    corners.clear();
+    PatchCorners corners;
     if (patch.of_surfaces) {
       const ContactPoint& point = patch.manifold.points[0];
       corners.push_back({0.5 * (point.p_a + point.p_b), point.distance});

@@ -9,7 +9,7 @@
 /// Forces are found with the shaded normals, the way with the true ones; a faceted cylinder so feels round
 /// and is never entered [Ruspini 1997].
 
-#include "tactum/dynamics/contact_solver.h"
+#include "tactum/dynamics/contact_row.h"
 #include "tactum/dynamics/world.h"
 #include "tactum/haptics/constraint_problem.h"
 

@@ -30,6 +30,7 @@ struct ContactRows {
     facets.reserve(patches);
     points.reserve(patches * 4);
     rows.reserve(most_rows);
+    pushes.reserve(most_rows);
   }
   /// The facet a patch lies on, as a sort key, and the patch.
   struct Facet {
@@ -38,7 +39,8 @@ struct ContactRows {
   std::vector<Facet> facets;
   std::vector<FacetPoint> points;  // of one facet
   std::vector<ContactRow> rows;
-  bool full = false;  ///< points were dropped
+  std::vector<PushRow> pushes;  // of the rows, when they are swept
+  bool full = false;            ///< points were dropped
 };
 
 /// Fills `out.rows`. `shading` has one entry per body, or is empty for force directions without shading.

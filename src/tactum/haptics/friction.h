@@ -25,6 +25,7 @@
 /// squeeze: a force through two contacts on opposite walls is what a torque has pressed in, as a push or a
 /// pull takes off the one wall what it adds to the other.
 
+#include "tactum/dynamics/contact_row.h"
 #include "tactum/haptics/friction_cone.h"
 #include "tactum/haptics/settings.h"
 

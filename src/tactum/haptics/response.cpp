@@ -99,8 +99,8 @@ void respond_by_penalty(const World& world, const FrameSettings& settings, doubl
 
   if (rest > 0.0) {
     pull_held(world, settings, rest, state);
-    const SolverResult solved =
-        solve_contacts(rows, X_WB, state.mobility, rest, settings.budget.solver_iterations, V_WB);
+    const SolverResult solved = solve_contacts(
+        rows, X_WB, state.mobility, rest, settings.budget.solver_iterations, state.contacts.pushes, V_WB);
     report.solver_iterations = solved.iterations;
     if (!solved.converged) report.flags |= frame_flag::kSolverBounded;
     report_contacts(state, rest, report);

@@ -2,10 +2,12 @@
 /// What a scene's motion is meant to reach, and whether it did. A GoalRecord watches every frame, because a
 /// hinge's angle is only known modulo a turn from one pose, and because "once was there" outlives the moment.
 
+#include <span>
 #include <string>
 #include <vector>
 
-#include "tactum/dynamics/contact_solver.h"
+#include "tactum/dynamics/contact_row.h"
+#include "tactum/dynamics/world.h"
 
 namespace tactum {
 
