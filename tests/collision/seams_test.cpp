@@ -91,6 +91,25 @@ TEST(Seams, ATrueCornerBetweenPiecesHasBothContacts) {
   EXPECT_NEAR(side, 1.0, 1e-12);
 }
 
+TEST(Seams, InACornerThatIsEnteredBothWaysOutAreTold) {
+  // The wall goes down beside the floor: the block's lowest corners are where the floor covers the wall.
+  const Part part = part_of({box_between({-0.05, -0.05, -0.02}, {0.03, 0.05, 0}),
+                             box_between({0.03, -0.05, -0.02}, {0.05, 0.05, 0.04})});
+  for (const double into_floor : {1e-4, 3e-4, 2e-3}) {
+    for (const double into_wall : {1e-4, 2e-4, 1e-3}) {
+      const Pose X{Mat3::Identity(), {0.02 + into_wall, 0, 0.005 - into_floor}};
+      double up = 1.0;
+      double side = 1.0;
+      for (const ContactPatch& patch : patches_on(part, X, 1e-4)) {
+        if (patch.manifold.normal.z() > 0.999) up = patch.distance;
+        if (patch.manifold.normal.x() < -0.999) side = patch.distance;
+      }
+      EXPECT_NEAR(up, -into_floor, 1e-9) << into_wall;
+      EXPECT_NEAR(side, -into_wall, 1e-9) << into_floor;
+    }
+  }
+}
+
 TEST(Seams, NeighboursObjectToWhatIsInsideThePart) {
   const Part part = tiles();
   const Polytope& left = part.pieces[0];

@@ -12,6 +12,9 @@ namespace {
 
 using Index = std::size_t;
 
+/// What is so many times deeper on the whole part than the piece and what leads beside it is looked at again.
+constexpr double kFarDeeper = 2.0;
+
 /// The candidates of two bodies.
 class TwoBodies {
  public:
@@ -54,13 +57,33 @@ class TwoBodies {
 
   /// What is objected to, as what it is on the whole part. Where that is nothing it may still follow.
   void tell_again(SeamCandidate& candidate) noexcept {
-    const std::optional<PairDistance> depth =
-        depth_on_true_surface(*candidate.part_a, candidate.piece_a, *candidate.part_b, candidate.piece_b,
-                              X_AB_, candidate.found, candidate.reach);
+    std::optional<PairDistance> depth = on_true_surface(candidate, 0.0);
+    const double entered = deepest_leader();
+    const double likely = candidate.reach - std::min(candidate.found.distance, 0.0) + entered;
+    if (depth && entered > 0.0 && -depth->distance > kFarDeeper * likely) {
+      // In a corner its deepest point lies in the neighbour, as deep as that is entered. Where no true face
+      // or edge has it, to rounding, it stays as found, rather than to become the way through the whole
+      // piece.
+      depth = on_true_surface(candidate, entered);
+      if (!depth || -depth->distance > kFarDeeper * likely) depth = candidate.found;
+    }
     if (!depth || depth->distance >= candidate.reach) return;
     if (candidate.found.distance >= 0.0 && depth->distance < 0.0) return;  // apart, and beside the face
     candidate.found = *depth;
     candidate.objected = false;
+  }
+
+  std::optional<PairDistance> on_true_surface(const SeamCandidate& candidate, double beside) const noexcept {
+    return depth_on_true_surface(*candidate.part_a, candidate.piece_a, *candidate.part_b, candidate.piece_b,
+                                 X_AB_, candidate.found, candidate.reach, beside);
+  }
+
+  /// How far leaders are entered; none: 0.
+  double deepest_leader() const noexcept {
+    double deepest = 0.0;
+    for (const SeamCandidate& other : candidates_)
+      if (other.patch >= 0) deepest = std::max(deepest, -other.found.distance);
+    return deepest;
   }
 
   SeamCandidate* shallowest() noexcept {
@@ -121,7 +144,18 @@ class TwoBodies {
                             {stretches_.begin(), stretches_.size()}, patch->manifold);
     steady_centroid(X_AB_, patch->manifold, *leader.shown);
     for (SeamCandidate& other : candidates_)
-      if (other.led_by == leader.patch) *other.shown = *leader.shown;
+      if (other.led_by == leader.patch) remember(other, leader, shown);
+  }
+
+  /// The leader's memory is that of whom it leads, unless what was shown would be the way through another
+  /// wall.
+  void remember(SeamCandidate& other, const SeamCandidate& leader, const PairDistance& shown) const noexcept {
+    const PairView pair(piece_a(other), piece_b(other), X_AB_);
+    int a = vertex_of(pair.A, other.found.a);
+    int b = vertex_of(pair.B, other.found.b);
+    const double likely = other.reach - std::min(shown.distance, 0.0);
+    const bool through = -pair.separation(shown.normal, a, b) > kFarDeeper * likely;
+    *other.shown = through ? SteadyContact{} : *leader.shown;
   }
 
   /// Where the nearest touches at a true edge that others have too, the one of them with the largest features

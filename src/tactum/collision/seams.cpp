@@ -19,6 +19,13 @@ int number_of(const Part& part, int piece, const Feature& feature) noexcept {
   return part.true_surface.number(piece, static_cast<int>(feature.kind), feature.index);
 }
 
+/// Whether `p` is in P, or no farther than `slack` beyond a face.
+bool holds(const Polytope& P, const Vec3& p, double slack) noexcept {
+  return std::all_of(P.faces.begin(), P.faces.end(), [&](const Polytope::Face& plane) {
+    return plane.normal.dot(p) <= plane.offset + slack;
+  });
+}
+
 bool in_column(const Polytope& P, int face, const Vec3& p, double slack) noexcept {
   const Polytope::Face& loop = P.faces[face];
   for (int slot = loop.first; slot < loop.first + loop.count; ++slot)
@@ -128,26 +135,42 @@ std::optional<PairDistance> crossing_edges(const Polytope& A, int edge_a, const 
 }  // namespace
 
 bool allowed_by_neighbours(const Part& part, int piece, const Feature& feature, const Vec3& p,
-                           const Vec3& outward) noexcept {
+                           const Vec3& outward, double slack) noexcept {
   if (part.true_surface.alone()) return true;
   const double noise = noise_of(part);
-  const double height = outward.dot(p);
   const auto neighbours = part.true_surface.neighbours(number_of(part, piece, feature));
-  return std::none_of(neighbours.begin(), neighbours.end(), [&](int neighbour) {
+  const auto covered_by = [&](int neighbour, const Vec3& at) {
     const Polytope& N = part.pieces[Index(neighbour)];
-    if (outward.dot(N.vertices[support_vertex(N, outward)]) <= height + 2.0 * noise) return false;
-    return std::all_of(N.faces.begin(), N.faces.end(), [&](const Polytope::Face& plane) {
-      return plane.normal.dot(p) <= plane.offset + 2.0 * noise;
-    });
-  });
+    return outward.dot(N.vertices[support_vertex(N, outward)]) > outward.dot(at) + 2.0 * noise &&
+           holds(N, at, 2.0 * noise);
+  };
+  const auto is_open = [&](const Vec3& at) {
+    return std::none_of(neighbours.begin(), neighbours.end(),
+                        [&](int neighbour) { return covered_by(neighbour, at); });
+  };
+  if (is_open(p)) return true;
+  if (slack == 0.0) return false;
+  // The nearest places beside p, square to `outward`, that some neighbour no longer covers.
+  for (const int neighbour : neighbours) {
+    if (!covered_by(neighbour, p)) continue;
+    for (const Polytope::Face& plane : part.pieces[Index(neighbour)].faces) {
+      const Vec3 aside = plane.normal - outward * outward.dot(plane.normal);
+      const double sine = aside.norm();
+      const double way = plane.offset + 3.0 * noise - plane.normal.dot(p);
+      if (!(way <= slack * sine)) continue;
+      const Vec3 beside = p + aside * (way / (sine * sine));
+      if (holds(part.pieces[Index(piece)], beside, noise) && is_open(beside)) return true;
+    }
+  }
+  return false;
 }
 
 bool is_true_contact(const Part& part_a, int piece_a, const Part& part_b, int piece_b, const Pose& X_AB,
-                     const PairDistance& found) noexcept {
-  return allowed_by_neighbours(part_a, piece_a, found.a, found.p_a, -found.normal) &&
+                     const PairDistance& found, double slack) noexcept {
+  return allowed_by_neighbours(part_a, piece_a, found.a, found.p_a, -found.normal, slack) &&
          (part_b.true_surface.alone() ||
           allowed_by_neighbours(part_b, piece_b, found.b, rotated_back(X_AB.R, found.p_b - X_AB.p),
-                                rotated_back(X_AB.R, found.normal)));
+                                rotated_back(X_AB.R, found.normal), slack));
 }
 
 Feature true_feature(const Part& part, int piece, const Feature& feature, const Vec3& p) noexcept {
@@ -188,19 +211,19 @@ Feature same_feature(const Part& part, int of_piece, const Feature& feature, int
 
 std::optional<PairDistance> depth_on_true_surface(const Part& part_a, int piece_a, const Part& part_b,
                                                   int piece_b, const Pose& X_AB, const PairDistance& found,
-                                                  double slack) noexcept {
+                                                  double slack, double beside) noexcept {
   const Polytope& A = part_a.pieces[Index(piece_a)];
   const Polytope& B = part_b.pieces[Index(piece_b)];
   const Pose X_BA = X_AB.inverse();
   std::optional<PairDistance> best;
   const auto take = [&](const PairDistance& candidate) {
-    if (is_true_contact(part_a, piece_a, part_b, piece_b, X_AB, candidate)) best = candidate;
+    if (is_true_contact(part_a, piece_a, part_b, piece_b, X_AB, candidate, beside)) best = candidate;
   };
   const auto nearer = [&](double distance) { return !best || distance > best->distance; };
   for_true_faces(part_b, piece_b, A, X_BA, vertex_of(A, found.a), [&](int face, int vertex, double distance) {
     const Vec3& normal = B.faces[face].normal;
     const Vec3 foot = X_BA * A.vertices[vertex] - normal * distance;
-    if (!nearer(distance) || !in_column(B, face, foot, slack)) return;
+    if (!nearer(distance) || !in_column(B, face, foot, slack + beside)) return;
     take({.distance = distance,
           .p_a = A.vertices[vertex],
           .p_b = X_AB * foot,
@@ -213,7 +236,7 @@ std::optional<PairDistance> depth_on_true_surface(const Part& part_a, int piece_
     const Vec3& normal = A.faces[face].normal;
     const Vec3 deepest = X_AB * B.vertices[vertex];
     const Vec3 foot = deepest - normal * distance;
-    if (!nearer(distance) || !in_column(A, face, foot, slack)) return;
+    if (!nearer(distance) || !in_column(A, face, foot, slack + beside)) return;
     take({.distance = distance,
           .p_a = foot,
           .p_b = deepest,
