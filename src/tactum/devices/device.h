@@ -7,7 +7,7 @@
 ///
 /// One thread (the loop's) calls read and write after open; nothing else touches the device meanwhile.
 
-#include <Eigen/LU>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -36,8 +36,13 @@ inline constexpr double kFarthestHandle_m = 10.0;  ///< [m]
 /// Whether a pose can be that of a handle: finite, within reach, and its matrix a rotation to six decimals. A
 /// buffer of zeros is finite and would otherwise pass for a turn by half a circle.
 inline bool plausible(const Pose& X_DH) noexcept {
-  return X_DH.finite() && X_DH.p.norm() < kFarthestHandle_m && X_DH.R.determinant() > 0.0 &&
-         (X_DH.R * X_DH.R.transpose() - Mat3::Identity()).cwiseAbs().maxCoeff() < tolerances::kRotationNear;
+  const auto x = X_DH.R.col(0), y = X_DH.R.col(1), z = X_DH.R.col(2);
+  const auto is = [](double found, double expected) {
+    return std::abs(found - expected) < tolerances::kRotationNear;  // not of what is no number
+  };
+  return X_DH.finite() && X_DH.p.norm() < kFarthestHandle_m && is(x.dot(x), 1.0) && is(y.dot(y), 1.0) &&
+         is(z.dot(z), 1.0) && is(x.dot(y), 0.0) && is(y.dot(z), 0.0) && is(z.dot(x), 0.0) &&
+         x.cross(y).dot(z) > 0.0;
 }
 
 /// How the handle moves, as far as anyone knows; 0: unknown.

@@ -371,6 +371,7 @@ void respond_constrained(const World& world, const FrameSettings& settings, doub
   c.gap_least.resize(c.gap.size());
   c.gap_answer.resize(c.gap.size());
 
+  state.free.any = others_move(world, state.tool.body);
   let_wait(world, settings, dt_s, state, report);
   find_islands(world, state);
   begin_balance(world, dt_s, state);

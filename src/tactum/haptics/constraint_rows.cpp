@@ -51,6 +51,9 @@ struct RowMaker {
       return;  // only watched
     ConstraintState& c = state.constraint;
     ContactRows& out = state.contacts;
+    const int other = patch.body_a == state.tool.body   ? patch.body_b
+                      : patch.body_b == state.tool.body ? patch.body_a
+                                                        : -1;
     const Pose& X_WA = state.world.X_WB[Index(patch.body_a)];
     const Pose X_AB = relative_pose(X_WA, state.world.X_WB[Index(patch.body_b)]);
     PatchCorners corners;
@@ -58,17 +61,18 @@ struct RowMaker {
       const ContactPoint& point = patch.manifold.points[0];
       corners.push_back({0.5 * (point.p_a + point.p_b), point.distance});
     } else {
-      c.corner_memory.corners_of(world.bodies[Index(patch.body_a)].part->pieces[Index(patch.piece_a)],
-                                 world.bodies[Index(patch.body_b)].part->pieces[Index(patch.piece_b)], X_AB,
-                                 patch, corners);
+      const Polytope& A = world.bodies[Index(patch.body_a)].part->pieces[Index(patch.piece_a)];
+      const Polytope& B = world.bodies[Index(patch.body_b)].part->pieces[Index(patch.piece_b)];
+      if (other < 0) {
+        c.corner_memory.corners_of(A, B, X_AB, patch, corners);
+      } else {  // what the hand holds never lies still
+        patch_corners(A, B, X_AB, patch.manifold, patch.distance, patch.tolerance, corners);
+      }
     }
     const Vec3 normal_W = X_WA.R * patch.manifold.normal;
     const double friction = settings.friction.between(patch.body_a, patch.body_b);
     const double restitution = settings.impacts.restitution.between(patch.body_a, patch.body_b);
     // What the hand drives into something that is held is no blow: its coupling is what bounces.
-    const int other = patch.body_a == state.tool.body   ? patch.body_b
-                      : patch.body_b == state.tool.body ? patch.body_a
-                                                        : -1;
     const Islands& islands = state.free.islands;
     const bool struck = (islands.moves(patch.body_a) || islands.moves(patch.body_b)) &&
                         (other < 0 || world.bodies[Index(other)].joint.kind == JointKind::kFree);

@@ -29,8 +29,10 @@ FrameState::FrameState(const World& constant_world, const FrameSettings& setting
   if (settings.response == ResponseModel::kConstraint) begin_midway(constant_world, settings.dt_s, world);
   hand.X_WD = settings.workspace.X_WD;
   if (!settings.shading.on) return;
+  bool some_bend = false;
   for (const Body& body : constant_world.bodies)
-    shading.emplace_back(*body.part, settings.shading.crease_rad);
+    some_bend |= shading.emplace_back(*body.part, settings.shading.crease_rad).bend();
+  if (!some_bend) shading.clear();
 }
 
 }  // namespace tactum

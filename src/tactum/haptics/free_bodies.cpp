@@ -281,6 +281,12 @@ void pull_free_bodies(const World& world, double dt_s, FrameState& state) noexce
       state.world.V_WB[i].v += world.gravity_W * (0.5 * dt_s);
 }
 
+bool others_move(const World& world, int held) noexcept {
+  for (Index i = 0; i < world.bodies.size(); ++i)
+    if (world.bodies[i].moves() && static_cast<int>(i) != held) return true;
+  return false;
+}
+
 void find_islands(const World& world, FrameState& state) noexcept {
   FreeBodies& f = state.free;
   f.islands.clear(world, state.waiting.waits);
@@ -305,6 +311,7 @@ void find_islands(const World& world, FrameState& state) noexcept {
 
 void strike(const World& world, const FrameSettings& settings, double dt_s, FrameState& state,
             FrameReport& report) noexcept {
+  if (!state.free.any) return;
   std::vector<Twist>& V_WB = state.world.V_WB;
   const std::vector<Pose>& X_WB = state.world.X_WB;
   const int held = state.tool.body;

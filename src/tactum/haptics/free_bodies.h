@@ -32,7 +32,8 @@ struct FreeBodies {
   Momentum momentum;
   int held_island = -1;         ///< the island that constraint.h answers for; -1: none
   bool held_here = false;       ///< the held part's island had no room there
-  bool alone = true;            ///< nothing but that island moves
+  bool any = false;             ///< some body moves by itself
+  bool alone = true;            ///< nothing but the held part's island moves
   std::vector<char> near_held;  ///< of each body: in the held part's island in the last frame
 
   /// Whether a patch belongs to the island that constraint.h answers for.
@@ -55,6 +56,9 @@ void begin_midway(const World& world, double dt_s, WorldState& state) noexcept;
 
 /// Gravity up to the beginning of the frame.
 void pull_free_bodies(const World& world, double dt_s, FrameState& state) noexcept;
+
+/// Whether any body but the held one moves.
+bool others_move(const World& world, int held) noexcept;
 
 /// Finds the islands, from the patches of the frame.
 void find_islands(const World& world, FrameState& state) noexcept;
