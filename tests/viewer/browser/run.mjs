@@ -111,6 +111,8 @@ const topics = {
     await page.focus("#canvas");
     await page.keyboard.press("f");
     await until("the key brings them back", async () => (await arrows()) > 100);
+    await until("the page says that a field pulls", async () =>
+      /^[\d.]+ s\. You feel .*Nothing touches “paddle”; force fields pull it with [\d.]+ .?N and turn it with /.test(await page.textContent(".sentence")));
     check(page.complaints.length === 0, page.complaints.join("; "));
     await program.end();
     const without = await Program.start(tactum, "block-on-plate");
@@ -643,7 +645,7 @@ const topics = {
     });
     // Of scenes that tell their story by themselves: the frame to wait for.
     for (const [scene, frame, options] of [["dominoes", 2350, {}], ["scale", 6000, { colorScheme: "light" }], ["lock", 5200, {}],
-      ["shaft", 16600, { colorScheme: "light" }]]) {
+      ["shaft", 16600, { colorScheme: "light" }], ["vortex-field", 4000, {}]]) {
       await take(scene, options, async (page) => {
         await page.keyboard.press("e");
         if (scene === "shaft" || scene === "lock") await page.click("#see-through");

@@ -84,15 +84,22 @@ export class Why {
     const [force, torque] = [samples.length(shown, 0, sample), samples.length(shown, 3, sample)];
     const wrench = `${withUnit(force, "N")} and ${withUnit(torque, "N m")}`;
     const active = felt.filter((push) => size(push.force) > 0);
+    const field = this.fieldText(samples, sample);
     let text: string;
     if (run.held < 0) text = "Nothing is held, so nothing is felt.";
-    else if (active.length === 0) text = `You feel ${wrench}. Nothing touches ${this.called(run.held)}: this is its own joint, inertia and damping.`;
+    else if (active.length === 0) text = `You feel ${wrench}. Nothing touches ${this.called(run.held)}${field ? `; ${field}.` : ": this is its own weight, joint and damping."}`;
     else {
       const others = [...new Set(active.map((push) => this.called(push.contact.bodies.find((b) => b !== run.held) ?? run.held)))];
       text = `You feel ${wrench}: ${this.called(run.held)} touches ${others.join(" and ")} in ` +
-        `${active.length} ${active.length === 1 ? "place" : "places"}, together they push ${withUnit(size(sum), "N")} ${direction(sum)}.`;
+        `${active.length} ${active.length === 1 ? "place" : "places"}, together they push ${withUnit(size(sum), "N")} ${direction(sum)}${field ? `; ${field}` : ""}.`;
     }
     this.sentence.textContent = `${samples.timeOf(sample).toFixed(3)} s. ${text}`;
+  }
+
+  /** What force fields do to the held part; empty where there are none. */
+  private fieldText(samples: Samples, sample: number): string {
+    const [force, torque] = ["field_N", "field_Nm"].map((key) => samples.at(samples.column(key), sample) || 0);
+    return force > 0 || torque > 0 ? `force fields pull it with ${withUnit(force, "N")} and turn it with ${withUnit(torque, "N m")}` : "";
   }
 
   private feature(contact: Contact, side: 0 | 1): string {
