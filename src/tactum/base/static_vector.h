@@ -17,7 +17,7 @@ class StaticVector {
   static_assert(std::is_trivially_destructible_v<T>, "items are forgotten, not destroyed");
 
  public:
-  StaticVector() noexcept {}  // NOLINT(modernize-use-equals-default): a union's is deleted
+  StaticVector() noexcept {}  // NOLINT(modernize-use-equals-default): that fills the room
   StaticVector(const StaticVector& other) noexcept { assign(other.begin(), other.size_); }
   StaticVector& operator=(const StaticVector& other) noexcept {
     if (this != &other) assign(other.begin(), other.size_);
@@ -28,7 +28,7 @@ class StaticVector {
   /// False, with nothing stored, when full.
   bool push_back(const T& item) noexcept {
     if (size_ == N) return false;
-    std::construct_at(items_.data() + size_++, item);
+    std::construct_at(room_.items.data() + size_++, item);
     return true;
   }
   void pop_back() noexcept {
@@ -39,7 +39,7 @@ class StaticVector {
   /// The first `count` of `items`, as many of them as fit.
   void assign(const T* items, std::size_t count) noexcept {
     size_ = count < N ? count : N;
-    std::uninitialized_copy_n(items, size_, items_.data());
+    std::uninitialized_copy_n(items, size_, room_.items.data());
   }
   std::size_t size() const noexcept { return size_; }
   bool empty() const noexcept { return size_ == 0; }
@@ -48,22 +48,24 @@ class StaticVector {
 
   T& operator[](std::size_t i) noexcept {
     TACTUM_ASSERT(i < size_);
-    return items_[i];
+    return room_.items[i];
   }
   const T& operator[](std::size_t i) const noexcept {
     TACTUM_ASSERT(i < size_);
-    return items_[i];
+    return room_.items[i];
   }
   T& back() noexcept { return (*this)[size_ - 1]; }
-  T* begin() noexcept { return items_.data(); }
-  T* end() noexcept { return items_.data() + size_; }
-  const T* begin() const noexcept { return items_.data(); }
-  const T* end() const noexcept { return items_.data() + size_; }
+  T* begin() noexcept { return room_.items.data(); }
+  T* end() noexcept { return room_.items.data() + size_; }
+  const T* begin() const noexcept { return room_.items.data(); }
+  const T* end() const noexcept { return room_.items.data() + size_; }
 
  private:
-  union {
-    std::array<T, N> items_;  // made one by one
+  union Room {
+    Room() noexcept {}  // NOLINT(modernize-use-equals-default): items are made one by one
+    std::array<T, N> items;
   };
+  Room room_;
   std::size_t size_ = 0;
 };
 

@@ -58,6 +58,8 @@ class MotionProblem {
   static constexpr Index kMostRows = 128;
   static constexpr Index kMostColumns = 24;  // four free bodies
 
+  MotionProblem() noexcept {}  // NOLINT: set() fills what is used
+
   /// False when there are too many rows or bodies.
   bool set(std::span<const ContactRow> rows, std::span<const Pose> X_WB, std::span<const Mobility> W,
            double h, std::span<const Twist> V) {
