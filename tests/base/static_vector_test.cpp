@@ -36,6 +36,7 @@ struct Counted {
 };
 
 TEST(StaticVector, MakesAndCopiesOnlyWhatIsInUse) {
+  Counted::made = 0;
   StaticVector<Counted, 100> items;
   EXPECT_EQ(Counted::made, 0);
   items.push_back(Counted(5));

@@ -12,7 +12,8 @@ namespace {
 
 using Index = std::size_t;
 
-/// What is so many times deeper on the whole part than the piece and what leads beside it is looked at again.
+/// What is told so many times deeper on the whole part than its piece and the leaders together are is looked
+/// at again.
 constexpr double kFarDeeper = 2.0;
 
 /// The candidates of two bodies.
@@ -58,14 +59,20 @@ class TwoBodies {
   /// What is objected to, as what it is on the whole part. Where that is nothing it may still follow.
   void tell_again(SeamCandidate& candidate) noexcept {
     std::optional<PairDistance> depth = on_true_surface(candidate, 0.0);
-    const double entered = deepest_leader();
-    const double likely = candidate.reach - std::min(candidate.found.distance, 0.0) + entered;
-    if (depth && entered > 0.0 && -depth->distance > kFarDeeper * likely) {
-      // In a corner its deepest point lies in the neighbour, as deep as that is entered. Where no true face
-      // or edge has it, to rounding, it stays as found, rather than to become the way through the whole
-      // piece.
-      depth = on_true_surface(candidate, entered);
-      if (!depth || -depth->distance > kFarDeeper * likely) depth = candidate.found;
+    if (const double entered = deepest_leader(); depth && entered > 0.0) {
+      const double beside = candidate.reach + entered;
+      const double likely = kFarDeeper * (beside - std::min(candidate.found.distance, 0.0));
+      if (-depth->distance > likely) {
+        // In a corner its deepest point lies in the neighbour, as deep as that is entered: it is looked for
+        // beside the covered place. Where rounding leaves no true face or edge there that has it, it is what
+        // was found, rather than the way through the whole piece.
+        const std::optional<PairDistance> near = on_true_surface(candidate, beside);
+        if (near && -near->distance <= likely) {
+          depth = near;
+        } else if (candidate.found.distance < 0.0 && touches_beside(candidate, beside)) {
+          depth = candidate.found;
+        }
+      }
     }
     if (!depth || depth->distance >= candidate.reach) return;
     if (candidate.found.distance >= 0.0 && depth->distance < 0.0) return;  // apart, and beside the face
@@ -78,11 +85,17 @@ class TwoBodies {
                                  X_AB_, candidate.found, candidate.reach, beside);
   }
 
-  /// How far leaders are entered; none: 0.
+  /// Whether what was found is a true contact, or would be no farther than `beside` away.
+  bool touches_beside(const SeamCandidate& candidate, double beside) const noexcept {
+    return is_true_contact(*candidate.part_a, candidate.piece_a, *candidate.part_b, candidate.piece_b, X_AB_,
+                           candidate.found, beside);
+  }
+
+  /// How deep the deepest leader is; none overlaps: 0.
   double deepest_leader() const noexcept {
     double deepest = 0.0;
     for (const SeamCandidate& other : candidates_)
-      if (other.patch >= 0) deepest = std::max(deepest, -other.found.distance);
+      if (other.patch >= 0) deepest = std::max(deepest, -patches_[Index(other.patch)].distance);
     return deepest;
   }
 
@@ -144,7 +157,7 @@ class TwoBodies {
                             {stretches_.begin(), stretches_.size()}, patch->manifold);
     steady_centroid(X_AB_, patch->manifold, *leader.shown);
     for (SeamCandidate& other : candidates_)
-      if (other.led_by == leader.patch) remember(other, leader, shown);
+      if (&other != &leader && other.led_by == leader.patch) remember(other, leader, shown);
   }
 
   /// The leader's memory is that of whom it leads, unless what was shown would be the way through another

@@ -65,7 +65,7 @@ struct RowMaker {
       const Polytope& B = world.bodies[Index(patch.body_b)].part->pieces[Index(patch.piece_b)];
       if (other < 0) {
         c.corner_memory.corners_of(A, B, X_AB, patch, corners);
-      } else {  // what the hand holds never lies still
+      } else {  // what the hand holds hardly ever lies still to the bit
         patch_corners(A, B, X_AB, patch.manifold, patch.distance, patch.tolerance, corners);
       }
     }

@@ -201,14 +201,18 @@ void ShadingNormals::shade_surface(double cosine) {
     for (int v : mesh.triangles[t]) around[Index(v)].push_back(static_cast<int>(t));
   }
   triangle_normals_.resize(mesh.triangles.size());
+  bool curved = false;
   for (Index t = 0; t < mesh.triangles.size(); ++t)
     for (Index k = 0; k < 3; ++k) {
       Vec3 sum = Vec3::Zero();
       for (int other : around[Index(mesh.triangles[t][k])])
         if (own[Index(other)].dot(own[t]) >= cosine) sum += own[Index(other)];
       const Vec3 mean = sum.normalized();
-      triangle_normals_[t][k] = (mean - own[t]).norm() < tolerances::kSameNormal ? own[t] : mean;
+      const bool same = (mean - own[t]).norm() < tolerances::kSameNormal;
+      triangle_normals_[t][k] = same ? own[t] : mean;
+      curved |= !same;
     }
+  if (!curved) triangle_normals_.clear();
 }
 
 Vec3 ShadingNormals::deviation(int piece, const Feature& feature, const Vec3& point) const noexcept {
@@ -220,7 +224,7 @@ Vec3 ShadingNormals::deviation(int piece, const Feature& feature, const Vec3& po
 
 /// Barycentric coordinates weigh the corners of a triangle.
 Vec3 ShadingNormals::deviation_on_surface(const Feature& feature, const Vec3& point) const noexcept {
-  if (feature.kind != FeatureKind::kFace) return Vec3::Zero();
+  if (feature.kind != FeatureKind::kFace || triangle_normals_.empty()) return Vec3::Zero();
   const Index t = Index(feature.index);
   const TriangleMesh& mesh = part_->surface;
   const Vec3 own = triangle_normal(mesh, t);

@@ -53,7 +53,8 @@ class ShadingNormals {
   std::vector<int> face_of_;     // per piece and face, into faces_
   std::vector<ShadedFace> faces_;
   std::vector<ShadedCorner> corners_;
-  std::vector<std::array<Vec3, 3>> triangle_normals_;  // at the corners of the surface's triangles
+  std::vector<std::array<Vec3, 3>>
+      triangle_normals_;  // at the corners of the surface's triangles; empty: flat
 };
 
 /// The patch's normal, turned by the deviations of the faces it lies on; told in A's frame. X_AB is the pose
