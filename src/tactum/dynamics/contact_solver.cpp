@@ -58,7 +58,9 @@ class MotionProblem {
   static constexpr Index kMostRows = 128;
   static constexpr Index kMostColumns = 24;  // four free bodies
 
-  MotionProblem() noexcept {}  // NOLINT: set() fills what is used
+  // Not filled: set() writes what is read.
+  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init,modernize-use-equals-default)
+  MotionProblem() noexcept {}
 
   /// False when there are too many rows or bodies.
   bool set(std::span<const ContactRow> rows, std::span<const Pose> X_WB, std::span<const Mobility> W,
