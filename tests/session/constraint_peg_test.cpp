@@ -214,27 +214,35 @@ TEST_P(PegInItsHole, IsInsertedByAnyHandAndNeverEntersNorSticks) {
     EXPECT_EQ(outcome.penetrating, 0);
     EXPECT_EQ(outcome.record.penetrating_frames, 0u);
     EXPECT_EQ(outcome.record.flags, 0u);
-    // Where every step must be cut the peg creeps, though it does not stand still. One hand of 315 still
-    // finds such a place (constraint_response.md, limits).
-    const bool creeps = full() && scene == "peg-100um" && seed == 109;
-    EXPECT_LT(outcome.retries, static_cast<int>(creeps ? 3 * outcome.frames : outcome.frames / 10));
+    EXPECT_LT(outcome.retries, static_cast<int>(outcome.frames / 10)) << "it creeps";
     EXPECT_GT(outcome.record.held_contact_frames, outcome.frames / 20);
     EXPECT_TRUE(outcome.inserted);
     EXPECT_TRUE(outcome.out_again) << "it is stuck";
   }
 }
 
-/// Hands whose peg creeps for a second and more, thousands of steps refused, where a step that does not fit
-/// is not halved.
-TEST(PegLessons, AStepIsHalvedWhereExactGapsDoNotHelp) {
-  if (kSlowness > 1) GTEST_SKIP() << "left to the builds without a sanitizer: 20 s of each hand";
-  const std::vector<std::pair<Case, std::uint64_t>> hands = {{{"peg-100um", 0.3}, 105},
-                                                             {{"peg-round-h7g6", 0.0}, 115}};
+/// Hands whose peg creeps for seconds, thousands of steps refused, or stays in the hole, without a remedy.
+void expect_no_creeping(const std::vector<std::pair<Case, std::uint64_t>>& hands) {
   for (const auto& [peg, seed] : hands) {
     const Outcome outcome = outcome_of(*peg_session(peg.scene, seed, 20.0, peg.mu));
-    EXPECT_LT(outcome.retries, 1000) << peg.scene;
+    EXPECT_LT(outcome.retries, 500) << peg.scene;
     EXPECT_TRUE(outcome.inserted && outcome.out_again) << peg.scene;
   }
+}
+
+TEST(PegLessons, AStepIsHalvedWhereExactGapsDoNotHelp) {
+  if (kSlowness > 1) GTEST_SKIP() << "left to the builds without a sanitizer: 20 s of each hand";
+  expect_no_creeping({{{"peg-1mm", 0.0}, 110}});
+}
+
+TEST(PegLessons, TheFaceBesideAnEdgeThatTouchesGoesOnInTheNextPiece) {
+  if (kSlowness > 1) GTEST_SKIP() << "left to the builds without a sanitizer: 20 s of each hand";
+  expect_no_creeping({{{"peg-1mm", 0.3}, 109}, {{"peg-100um", 0.1}, 109}});
+}
+
+TEST(PegLessons, APatchThatOnlyHeldIsLetGoWhereItWouldSlip) {
+  if (kSlowness > 1) GTEST_SKIP() << "left to the builds without a sanitizer: 20 s of the hand";
+  expect_no_creeping({{{"peg-7um", 0.3}, 109}});
 }
 
 std::vector<Case> every_peg_with_every_friction() {

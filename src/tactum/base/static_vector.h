@@ -3,9 +3,9 @@
 /// Room that is not in use costs nothing: neither made nor copied.
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <memory>
+#include <new>
 #include <type_traits>
 
 #include "tactum/base/assert.h"
@@ -28,7 +28,8 @@ class StaticVector {
   /// False, with nothing stored, when full.
   bool push_back(const T& item) noexcept {
     if (size_ == N) return false;
-    std::construct_at(room_.items.data() + size_++, item);
+    ::new (static_cast<void*>(room_ + size_ * sizeof(T))) T(item);
+    ++size_;
     return true;
   }
   void pop_back() noexcept {
@@ -39,7 +40,7 @@ class StaticVector {
   /// The first `count` of `items`, as many of them as fit.
   void assign(const T* items, std::size_t count) noexcept {
     size_ = count < N ? count : N;
-    std::uninitialized_copy_n(items, size_, room_.items.data());
+    std::uninitialized_copy_n(items, size_, begin());
   }
   std::size_t size() const noexcept { return size_; }
   bool empty() const noexcept { return size_ == 0; }
@@ -48,24 +49,20 @@ class StaticVector {
 
   T& operator[](std::size_t i) noexcept {
     TACTUM_ASSERT(i < size_);
-    return room_.items[i];
+    return begin()[i];
   }
   const T& operator[](std::size_t i) const noexcept {
     TACTUM_ASSERT(i < size_);
-    return room_.items[i];
+    return begin()[i];
   }
   T& back() noexcept { return (*this)[size_ - 1]; }
-  T* begin() noexcept { return room_.items.data(); }
-  T* end() noexcept { return room_.items.data() + size_; }
-  const T* begin() const noexcept { return room_.items.data(); }
-  const T* end() const noexcept { return room_.items.data() + size_; }
+  T* begin() noexcept { return std::launder(reinterpret_cast<T*>(room_)); }
+  T* end() noexcept { return begin() + size_; }
+  const T* begin() const noexcept { return std::launder(reinterpret_cast<const T*>(room_)); }
+  const T* end() const noexcept { return begin() + size_; }
 
  private:
-  union Room {
-    Room() noexcept {}  // NOLINT(modernize-use-equals-default): items are made one by one
-    std::array<T, N> items;
-  };
-  Room room_;
+  alignas(T) std::byte room_[N * sizeof(T)];
   std::size_t size_ = 0;
 };
 

@@ -6,6 +6,7 @@
 #include "tactum/collision/closest_features.h"
 #include "tactum/collision/manifold.h"
 #include "tactum/collision/motion_bound.h"
+#include "tactum/collision/patch_corners.h"
 #include "tactum/collision/seams.h"
 
 namespace tactum {
@@ -106,8 +107,18 @@ void ContactFinder::settle_objected(ContactPatch& patch, std::span<const Pose> X
   const Manifold& leading = leader->manifold;
   patch.manifold.points.clear();
   patch.manifold.normal = leading.normal;
-  patch.manifold.a = same_feature(part_a, leader->piece_a, leading.a, patch.piece_a);
-  patch.manifold.b = same_feature(part_b, leader->piece_b, leading.b, patch.piece_b);
+  const auto stretch = [](const Part& part, int of_piece, const Feature& feature, const Vec3& outward,
+                          int piece, bool& beside) {
+    const Feature same = same_feature(part, of_piece, feature, piece);
+    if (same.index >= 0) return same;
+    beside = true;
+    const int face = level_face(part.pieces[Index(of_piece)], feature, outward);
+    return same_feature(part, of_piece, {FeatureKind::kFace, face}, piece);
+  };
+  patch.manifold.a =
+      stretch(part_a, leader->piece_a, leading.a, -leading.normal, patch.piece_a, patch.beside_a);
+  patch.manifold.b = stretch(part_b, leader->piece_b, leading.b, rotated_back(X_AB.R, leading.normal),
+                             patch.piece_b, patch.beside_b);
 }
 
 std::uint8_t ContactFinder::urgency_of(int a, int b) const noexcept {

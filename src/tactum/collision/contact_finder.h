@@ -177,8 +177,9 @@ class ContactFinder {
   void hand_on(Pair& pair, const PairDistance& found, const Pose& X_AB) noexcept;
   /// A neighbour across the seam is nearer than what is objected to. Where its normal parts these pieces as
   /// well it leads: of this patch, without a point, only the stretch of the same true faces counts, along the
-  /// leader's normal; where there is none it has no features, and is only watched. Where no neighbour leads,
-  /// as between the walls of a corner, it is a contact of its own.
+  /// leader's normal, of an edge or corner that of its most level face; where there is none it has no
+  /// features, and is only watched. Where no neighbour leads, as between the walls of a corner, it is a
+  /// contact of its own.
   void settle_objected(ContactPatch& patch, std::span<const Pose> X_WB) const noexcept;
   GapAnswer distance_at(const ContactPatch& patch, std::span<const Pose> X_WB, double enough, int keep_back,
                         double& distance) noexcept;

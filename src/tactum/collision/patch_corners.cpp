@@ -11,30 +11,6 @@ namespace {
 /// A face that leans by more than this cosine says (84 degrees) is an edge, seen along the normal.
 constexpr double kSteep = 0.1;
 
-/// The face at feature `f` that looks most along `n` (unit, P's frame), and how much.
-int level_face(const Polytope& P, const Feature& f, const Vec3& n, double& cosine) noexcept {
-  int best = -1;
-  cosine = -2.0;
-  const auto consider = [&](int face) {
-    const double along = P.faces[face].normal.dot(n);
-    if (along <= cosine) return;
-    cosine = along;
-    best = face;
-  };
-  if (f.kind == FeatureKind::kFace) {
-    consider(f.index);
-  } else if (f.kind == FeatureKind::kEdge) {
-    consider(P.edges[f.index].left);
-    consider(P.edges[f.index].right);
-  } else {
-    for (const Polytope::Ray& ray : P.rays_at(f.index)) {
-      consider(P.edges[ray.edge].left);
-      consider(P.edges[ray.edge].right);
-    }
-  }
-  return best;
-}
-
 /// A plane of one piece over the contact plane: height = at_origin + slope . x.
 struct Slope {
   double at_origin = 0.0;
@@ -95,14 +71,35 @@ void corners_of_faces(const Polytope& A, int face_a, const Polytope& B, int face
 
 }  // namespace
 
+int level_face(const Polytope& P, const Feature& f, const Vec3& n) noexcept {
+  int best = -1;
+  double cosine = -2.0;
+  const auto consider = [&](int face) {
+    const double along = P.faces[face].normal.dot(n);
+    if (along <= cosine) return;
+    cosine = along;
+    best = face;
+  };
+  if (f.kind == FeatureKind::kFace) return f.index;
+  if (f.kind == FeatureKind::kEdge) {
+    consider(P.edges[f.index].left);
+    consider(P.edges[f.index].right);
+  } else {
+    for (const Polytope::Ray& ray : P.rays_at(f.index)) {
+      consider(P.edges[ray.edge].left);
+      consider(P.edges[ray.edge].right);
+    }
+  }
+  return best;
+}
+
 bool patch_corners(const Polytope& A, const Polytope& B, const Pose& X_AB, const Manifold& patch,
                    double distance, double tolerance, PatchCorners& corners) noexcept {
   corners.clear();
-  double cosine_a = 0.0;
-  double cosine_b = 0.0;
-  const int face_a = level_face(A, patch.a, -patch.normal, cosine_a);
-  const int face_b = level_face(B, patch.b, rotated_back(X_AB.R, patch.normal), cosine_b);
-  if (cosine_a > kSteep && cosine_b > kSteep)
+  const Vec3 normal_B = rotated_back(X_AB.R, patch.normal);
+  const int face_a = level_face(A, patch.a, -patch.normal);
+  const int face_b = level_face(B, patch.b, normal_B);
+  if (-A.faces[face_a].normal.dot(patch.normal) > kSteep && B.faces[face_b].normal.dot(normal_B) > kSteep)
     corners_of_faces(A, face_a, B, face_b, X_AB, patch, tolerance, corners);
   double least = tolerance;
   for (const PatchCorner& corner : corners) least = std::min(least, corner.distance);

@@ -16,6 +16,14 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// before an impulse is forgotten.
 constexpr Index kLookAhead = 64;
 
+/// After so many sweeps contacts are no longer asked to open: what is wedged cannot, and would be pressed
+/// together by as much more in every sweep, for ever.
+constexpr int kOpeningSweeps = 40;
+
+/// A sweep has more to change than the one before by this factor: where loads move from contact to contact at
+/// a steady rate, it has as much, give or take a little, and there the way on is what helps most.
+constexpr double kMoreToChange = 1.01;
+
 }  // namespace
 
 Vec3 RestingContact::last_impulse(std::uint64_t name) noexcept {
@@ -149,7 +157,7 @@ void RestingContact::accelerate(const Range& island, Pace& pace, std::span<Twist
     const JointRow& row = joints_[Index(joint_order_[Index(island.joint_first + i)])];
     change += (row.impulse - row.before) * (row.impulse - row.before);
   }
-  if (change > pace.last_change) pace.sweeps = 0;
+  if (change > kMoreToChange * pace.last_change) pace.sweeps = 0;
   pace.last_change = change;
   const double share = pace.sweeps / (pace.sweeps + 3.0);
   ++pace.sweeps;
@@ -171,6 +179,13 @@ void RestingContact::accelerate(const Range& island, Pace& pace, std::span<Twist
   }
 }
 
+void RestingContact::open_nothing(const Range& island) noexcept {
+  for (int i = 0; i < island.count; ++i) {
+    double& wanted = rows_[Index(order_[Index(island.first + i)])].wanted;
+    wanted = std::min(wanted, 0.0);
+  }
+}
+
 SolverResult RestingContact::solve_island(const Range& island, int max_sweeps, double harmless,
                                           std::span<Twist> V) noexcept {
   SolverResult result;
@@ -182,7 +197,10 @@ SolverResult RestingContact::solve_island(const Range& island, int max_sweeps, d
   const double enough = tolerances::kRestingVelocity + tolerances::kSlidingVelocity * fastest;
   Pace pace;
   while (result.iterations < max_sweeps) {
-    ++result.iterations;
+    if (result.iterations++ == kOpeningSweeps) {
+      open_nothing(island);
+      pace = {};
+    }
     const double change = sweep(island, V);
     result.converged = change <= harmless;
     if (change <= enough || result.iterations == max_sweeps) break;

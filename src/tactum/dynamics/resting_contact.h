@@ -9,6 +9,8 @@
 /// impulse acts on both bodies, so momentum is kept to rounding however few sweeps there were; what sweeps
 /// are for is that no contact closes too far. A heap at rest begins at its answer and stays there.
 ///
+/// A gap below nothing is asked to open, unless sweeps find no way to.
+///
 /// Springs, damping, friction and limits of joints are rows of the same kind.
 
 #include <cstdint>
@@ -99,6 +101,7 @@ class RestingContact {
   static void push(const Row& row, const Vec3& impulse, std::span<Twist> V) noexcept;
   void arrange(std::span<Twist> V) noexcept;
   double sweep(const Range& island, std::span<Twist> V) noexcept;
+  void open_nothing(const Range& island) noexcept;
   void accelerate(const Range& island, Pace& pace, std::span<Twist> V) noexcept;
   SolverResult solve_island(const Range& island, int max_sweeps, double harmless,
                             std::span<Twist> V) noexcept;

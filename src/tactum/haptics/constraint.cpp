@@ -266,7 +266,7 @@ double move_held_island(const World& world, const FrameSettings& settings, doubl
   c.stood = share > 0.0 ? 0 : c.stood + 1;
   if (share > 0.0) take_trial(state);
   if (c.stood >= kStandsFrames) feel(settings, dt_s, Vec6::Zero(), state);
-  c.friction.end(share, own_rows(state), c.first_row, c.problem, state.world.X_WB);
+  c.friction.end(own_rows(state), c.first_row, c.problem, state.world.X_WB);
   const std::vector<Pose>& before = share > 0.0 ? c.X_WB_trial : state.world.X_WB;  // take_trial swaps them
   for (Index i = 0; i < world.bodies.size(); ++i)
     if (state.free.near_held[i]) state.world.V_WB[i] = twist_between(before[i], state.world.X_WB[i], dt_s);
@@ -371,7 +371,7 @@ void respond_constrained(const World& world, const FrameSettings& settings, doub
   c.gap_least.resize(c.gap.size());
   c.gap_answer.resize(c.gap.size());
 
-  state.free.any = others_move(world, state.tool.body);
+  state.free.others = others_move(world, state.tool.body);
   let_wait(world, settings, dt_s, state, report);
   find_islands(world, state);
   begin_balance(world, dt_s, state);

@@ -25,17 +25,23 @@ std::uint64_t name_of(const ContactPatch& patch, Index corner) {
 }
 
 /// How the shading of the two bodies' faces bends a normal at a corner, A's frame. The one face that there is
-/// decides; of two curved faces each has half a say, and a flat one against a curved one all of it.
+/// decides; of two curved faces each has half a say, and a flat one against a curved one all of it. A face
+/// beside the edge that touches has none, as the edge has none.
 Vec3 bend(const ShadingNormals& a, const ShadingNormals& b, const Pose& X_AB, const ContactPatch& patch,
           const PatchCorner& corner) {
+  const auto deviation = [&](const ShadingNormals& shading, int piece, const Feature& on, bool beside,
+                             const Vec3& p) -> Vec3 {
+    if (beside) return Vec3::Zero();
+    return patch.of_surfaces ? shading.deviation_on_surface(on, p) : shading.deviation(piece, on, p);
+  };
   const Feature& on_a = patch.manifold.a;
   const Feature& on_b = patch.manifold.b;
   const Vec3 p_B = rotated_back(X_AB.R, corner.p_A - X_AB.p);
-  const Vec3 by_a = patch.of_surfaces ? a.deviation_on_surface(on_a, corner.p_A)
-                                      : a.deviation(patch.piece_a, on_a, corner.p_A);
-  const Vec3 by_b =
-      patch.of_surfaces ? b.deviation_on_surface(on_b, p_B) : b.deviation(patch.piece_b, on_b, p_B);
-  if (on_a.kind != FeatureKind::kFace || on_b.kind != FeatureKind::kFace) return rotated(X_AB.R, by_b) - by_a;
+  const Vec3 by_a = deviation(a, patch.piece_a, on_a, patch.beside_a, corner.p_A);
+  const Vec3 by_b = deviation(b, patch.piece_b, on_b, patch.beside_b, p_B);
+  const bool faces = on_a.kind == FeatureKind::kFace && !patch.beside_a && on_b.kind == FeatureKind::kFace &&
+                     !patch.beside_b;
+  if (!faces) return rotated(X_AB.R, by_b) - by_a;
   if (by_a.isZero(0.0) || by_b.isZero(0.0)) return Vec3::Zero();
   return 0.5 * (rotated(X_AB.R, by_b) - by_a);
 }

@@ -18,7 +18,8 @@ constexpr double kKnownGap = tolerances::kCertificate;
 /// What a gap may become: open, and if it must shrink below half the skin, then by no more than half. Held to
 /// the exact last gap, a part that is a rounding too near could never move again.
 double least_gap(double now, double skin) {
-  return std::min(0.5 * skin, now > 0.0 ? 0.5 * now : now - kKnownGap * skin);
+  const double known = kKnownGap * skin;
+  return std::min(0.5 * skin, now > known ? 0.5 * now : now - known);
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ FrameState::FrameState(const World& constant_world, const FrameSettings& setting
   if (!settings.shading.on) return;
   bool some_bend = false;
   for (const Body& body : constant_world.bodies)
-    some_bend |= shading.emplace_back(*body.part, settings.shading.crease_rad).bend();
+    some_bend |= shading.emplace_back(*body.part, settings.shading.crease_rad).bends();
   if (!some_bend) shading.clear();
 }
 

@@ -311,7 +311,7 @@ void find_islands(const World& world, FrameState& state) noexcept {
 
 void strike(const World& world, const FrameSettings& settings, double dt_s, FrameState& state,
             FrameReport& report) noexcept {
-  if (!state.free.any) return;
+  if (!state.free.others) return;
   std::vector<Twist>& V_WB = state.world.V_WB;
   const std::vector<Pose>& X_WB = state.world.X_WB;
   const int held = state.tool.body;

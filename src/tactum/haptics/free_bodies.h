@@ -32,7 +32,7 @@ struct FreeBodies {
   Momentum momentum;
   int held_island = -1;         ///< the island that constraint.h answers for; -1: none
   bool held_here = false;       ///< the held part's island had no room there
-  bool any = false;             ///< some body moves by itself
+  bool others = false;          ///< some body moves by itself
   bool alone = true;            ///< nothing but the held part's island moves
   std::vector<char> near_held;  ///< of each body: in the held part's island in the last frame
 

@@ -19,9 +19,11 @@ double allowance(const FrictionPatch& patch, Index k) {
 /// what a wedged part could move by in such gaps would grow without bound near the limit.
 constexpr double kSettled = 0.25;
 
-/// A patch that moves off the other surface by more than this share of its way along it peels off: well above
-/// the tilt of a part in its clearance, below that of the line between two contacts that are worth the name.
-constexpr double kPeeling = 0.15;
+/// How far the patch's anchor has come apart in the surface.
+Vec3 apart(const FrictionPatch& patch, const Pose& X_WA, const Pose& X_W_B) {
+  const Vec3 way = X_WA * patch.on_A - X_W_B * patch.on_B;
+  return way - patch.n_BA_W * patch.n_BA_W.dot(way);
+}
 
 /// How far beyond the skin a patch is.
 double gap_beyond(double distance_m, double skin_m) {
@@ -76,8 +78,7 @@ void Friction::find_pushing(const World& world, const PairCoefficients& settings
 /// The patches that held in the last frame, do not push by themselves, and touch.
 void Friction::find_holding(const World& world, const PairCoefficients& settings,
                             std::span<const ContactRow> rows, std::span<const ContactPatch> patches,
-                            std::span<const Pose> X_WB, double skin_m,
-                            const ConstraintProblem& problem) noexcept {
+                            std::span<const Pose> X_WB, double skin_m) noexcept {
   for (const Anchor& last : anchors_) {
     if (!last.held || patch_of(last.key) != nullptr) continue;
     FrictionPatch patch;
@@ -93,9 +94,6 @@ void Friction::find_holding(const World& world, const PairCoefficients& settings
     }
     if (patch.finder_patch < 0) continue;
     patch.n_BA_W.normalize();
-    patch.motion = motion_of(patch, any_orthogonal(patch.n_BA_W), problem);
-    const Slide free = slide_of(patch, problem);
-    if (free.lift > kPeeling * free.way.norm()) continue;
     if (!patches_.push_back(patch)) return;
   }
 }
@@ -137,7 +135,7 @@ bool Friction::begin(const World& world, const PairCoefficients& settings, std::
   patches_.clear();
   if (settings.coefficients.empty()) return false;
   find_pushing(world, settings, rows, patches, skin_m, first_row, problem);
-  find_holding(world, settings, rows, patches, X_WB, skin_m, problem);
+  find_holding(world, settings, rows, patches, X_WB, skin_m);
   drop_unsqueezed(problem);
   for (FrictionPatch& patch : patches_) {
     anchor(patch, X_WB, kSettled * skin_m);
@@ -149,20 +147,24 @@ bool Friction::begin(const World& world, const PairCoefficients& settings, std::
   return acts();
 }
 
-/// The anchor and the centre of the patch's last frame, if it had one.
+/// The anchor and the centre of the patch's last frame; if it had none, it is anchored here.
 void Friction::anchor(FrictionPatch& patch, std::span<const Pose> X_WB, double settled_m) noexcept {
-  for (const Anchor& last : anchors_) {
-    if (!(last.key == patch.key)) continue;
-    const Pose& X_WA = X_WB[Index(patch.key.body_a)];
-    const Pose& X_W_B = X_WB[Index(patch.key.body_b)];
-    patch.apart_W = X_WA * last.on_A - X_W_B * last.on_B;
-    patch.apart_W -= patch.n_BA_W * patch.n_BA_W.dot(patch.apart_W);
-    if (last.stuck) patch.gap_m = 0.0;
-    patch.sticks_by = last.sticks_by;
-    if (patch.apart_W.norm() <= settled_m) std::swap(patch.apart_W, patch.left_W);
-    const Vec3 centre = X_WA * last.centre_A;
-    patch.centre_W = centre + patch.n_BA_W * patch.n_BA_W.dot(patch.centre_W - centre);
+  const Pose& X_WA = X_WB[Index(patch.key.body_a)];
+  const Pose& X_W_B = X_WB[Index(patch.key.body_b)];
+  const auto last = std::find_if(anchors_.begin(), anchors_.end(),
+                                 [&](const Anchor& other) { return other.key == patch.key; });
+  if (last == anchors_.end()) {
+    patch.on_A = X_WA.inverse() * patch.centre_W;
+    patch.on_B = X_W_B.inverse() * patch.centre_W;
+    return;
   }
+  patch.on_A = last->on_A;
+  patch.on_B = last->on_B;
+  patch.sticks_by = last->sticks_by;
+  patch.apart_W = apart(patch, X_WA, X_W_B);
+  if (patch.apart_W.norm() <= settled_m) patch.apart_W.setZero();
+  const Vec3 centre = X_WA * last->centre_A;
+  patch.centre_W = centre + patch.n_BA_W * patch.n_BA_W.dot(patch.centre_W - centre);
 }
 
 void Friction::add_cone(FrictionPatch& patch, ConstraintProblem& problem) noexcept {
@@ -230,11 +232,12 @@ void Friction::forget_anchors(ConstraintProblem& problem) noexcept {
     QpCone& cone = problem.cone(patch.first_row);
     for (Index k = 0; k < kRowsAPatch; ++k) cone.more[k] += allowance(patch, k);
     patch.apart_W.setZero();
+    patch.anchored = false;
   }
 }
 
-void Friction::end(double share, std::span<const ContactRow> rows, std::size_t first_row,
-                   const ConstraintProblem& problem, std::span<const Pose> X_WB) noexcept {
+void Friction::end(std::span<const ContactRow> rows, std::size_t first_row, const ConstraintProblem& problem,
+                   std::span<const Pose> X_WB) noexcept {
   anchors_.clear();
   for (const FrictionPatch& patch : patches_) {
     if (!patch.acts) continue;
@@ -255,14 +258,13 @@ void Friction::end(double share, std::span<const ContactRow> rows, std::size_t f
       }
     }
     const Vec3 centre = load > 0.0 ? Vec3(moment / load) : patch.centre_W;
-    const bool slid = patch.slip_m > 0.0;
-    const Vec3 apart =
-        slid ? Vec3(Vec3::Zero())
-             : Vec3(patch.left_W + patch.apart_W + share * (slide_of(patch, problem).way - patch.apart_W));
-    const Pose X_AW = X_WB[Index(patch.key.body_a)].inverse();
-    const Pose X_BW = X_WB[Index(patch.key.body_b)].inverse();
-    anchors_.push_back({patch.key, X_AW * (centre + apart), X_BW * centre, X_AW * centre, patch.radius_m,
-                        patch.sticks_by, held, held && !slid});
+    const Pose& X_WA = X_WB[Index(patch.key.body_a)];
+    const Pose& X_W_B = X_WB[Index(patch.key.body_b)];
+    // By where the bodies are: the answer, being of first order, has never come apart.
+    Vec3 on_A_W = centre;
+    if (patch.anchored && patch.slip_m == 0.0) on_A_W += apart(patch, X_WA, X_W_B);
+    anchors_.push_back({patch.key, X_WA.inverse() * on_A_W, X_W_B.inverse() * centre, X_WA.inverse() * centre,
+                        patch.radius_m, patch.sticks_by, held});
   }
 }
 

@@ -8,11 +8,13 @@
 ///     B                a  how far the anchor, a point of each body, has come apart in the plane
 ///
 /// With slip = 0 these rows let the point move sideways only if it lifts by mu times as much, so no force
-/// within the cone moves it: it sticks, and goes back to its anchor if rounding took it off. Where the force
-/// lies on the cone, it lifts; slip is then set to the sideways motion it made and the problem solved again,
-/// which ends with no lift, sliding, and the force mu N against the motion [Anitescu and Potra 1997; De Saxce
-/// and Feng 1998]. A patch that slid is anchored where it came to rest. The forces of a patch's corners count
-/// to N, as c is the centre of them all; found from the last frame's, it settles within a few.
+/// within the cone moves it: it sticks. A step is answered to first order and a turn leaves that by its
+/// square, always to the same side: the anchor takes the patch back, or a part rocked on its edge would walk.
+/// Where the force lies on the cone, it lifts; slip is then set to the sideways motion it made and the
+/// problem solved again, which ends with no lift, sliding, and the force mu N against the motion [Anitescu
+/// and Potra 1997; De Saxce and Feng 1998]. A patch that slid is anchored where it came to rest. The forces
+/// of a patch's corners count to N, as c is the centre of them all; found from the last frame's, it settles
+/// within a few.
 ///
 /// Turning about the normal has two rows of the same kind, with the torque mu N r of the patch's mean radius
 /// r; force and torque share the cone linearly, a diamond inside the ellipse that an area has.
@@ -21,9 +23,9 @@
 /// touch: where the line between two of these lies inside both cones no motion is left, and the part is
 /// wedged though nothing presses it there [Simunovic 1975; Whitney 1982]. Forces within the cones could hold
 /// it against a turn that takes the points off their walls as well, for ever; so of those that only held, one
-/// that the hand peels off is let go, one that would have to slip, and one that the hand's turning does not
-/// squeeze: a force through two contacts on opposite walls is what a torque has pressed in, as a push or a
-/// pull takes off the one wall what it adds to the other.
+/// that would have to slip is let go, and one that the hand's turning does not squeeze: a force through two
+/// contacts on opposite walls is what a torque has pressed in, as a push or a pull takes off the one wall
+/// what it adds to the other.
 
 #include "tactum/dynamics/contact_row.h"
 #include "tactum/haptics/friction_cone.h"
@@ -50,9 +52,9 @@ class Friction {
   bool let_slip(double skin_m, ConstraintProblem& problem) noexcept;
   /// Takes the anchors off, when they ask for what cannot be.
   void forget_anchors(ConstraintProblem& problem) noexcept;
-  /// Remembers anchors and centres: `share` of the last answer was taken, which led to X_WB.
-  void end(double share, std::span<const ContactRow> rows, std::size_t first_row,
-           const ConstraintProblem& problem, std::span<const Pose> X_WB) noexcept;
+  /// Remembers anchors and centres; the step led to X_WB.
+  void end(std::span<const ContactRow> rows, std::size_t first_row, const ConstraintProblem& problem,
+           std::span<const Pose> X_WB) noexcept;
   /// Appends a row per cone edge that pushes; returns the torques about normals on `body`.
   Vec3 add_forces(int body, double dt_s, const ConstraintProblem& problem,
                   std::vector<ContactRow>& rows) const noexcept;
@@ -68,21 +70,20 @@ class Friction {
   void clear() noexcept { patches_.clear(); }
 
  private:
-  /// Of a patch, from frame to frame: its anchor on either body, and the centre as A carries it.
+  /// Of a patch, from frame to frame: its anchor in either body's frame, and the centre as A carries it.
   struct Anchor {
     PatchKey key;
     Vec3 on_A = Vec3::Zero(), on_B = Vec3::Zero(), centre_A = Vec3::Zero();  // [m]
     double radius_m = 0.0;
     std::uint32_t sticks_by = 0;
-    bool held = false;   ///< its cone pushed
-    bool stuck = false;  ///< ... and it did not slip
+    bool held = false;  ///< its cone pushed
   };
   void find_pushing(const World& world, const PairCoefficients& settings, std::span<const ContactRow> rows,
                     std::span<const ContactPatch> patches, double skin_m, std::size_t first_row,
                     const ConstraintProblem& problem) noexcept;
   void find_holding(const World& world, const PairCoefficients& settings, std::span<const ContactRow> rows,
-                    std::span<const ContactPatch> patches, std::span<const Pose> X_WB, double skin_m,
-                    const ConstraintProblem& problem) noexcept;
+                    std::span<const ContactPatch> patches, std::span<const Pose> X_WB,
+                    double skin_m) noexcept;
   double taken_off(const FrictionPatch& patch, const ConstraintProblem& problem) const noexcept;
   void drop_unsqueezed(const ConstraintProblem& problem) noexcept;
   FrictionPatch* patch_of(const PatchKey& key) noexcept;

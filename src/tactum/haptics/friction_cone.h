@@ -30,8 +30,9 @@ struct FrictionPatch {
   double gap_m = 0.0;            ///< at the centre, beyond the skin; none where it is too small to count [m]
   Vec3 n_BA_W = Vec3::Zero();    ///< [-]
   Vec3 centre_W = Vec3::Zero();  ///< c [m]
-  Vec3 apart_W = Vec3::Zero();   ///< a; none where it is too small to count [m]
-  Vec3 left_W = Vec3::Zero();    ///< how far the anchor has come apart that was too small to count [m]
+  Vec3 on_A = Vec3::Zero(), on_B = Vec3::Zero();  ///< the anchor, in either body's frame [m]
+  bool anchored = true;                           ///< false: the anchor was taken off
+  Vec3 apart_W = Vec3::Zero();                    ///< a; none where it is too small to count [m]
   PatchMotion motion;
   double slip_m = 0.0;    ///< allowed without lifting [m]
   double slip_rad = 0.0;  ///< of turning about the normal [rad]

@@ -29,7 +29,7 @@ void give_by_island(double dt_s, FrameState& state) {
 }  // namespace
 
 void begin_balance(const World& world, double dt_s, FrameState& state) noexcept {
-  if (!state.free.any) return;
+  if (!state.free.others) return;
   Momentum& momentum = state.free.momentum;
   momentum.due_Ns.setZero();
   for (Index i = 0; i < world.bodies.size(); ++i) {
@@ -44,7 +44,7 @@ void begin_balance(const World& world, double dt_s, FrameState& state) noexcept 
 
 void end_balance(const World& world, double dt_s, bool as_forced, FrameState& state,
                  FrameReport& report) noexcept {
-  if (!state.free.any) return;
+  if (!state.free.others) return;
   Momentum& momentum = state.free.momentum;
   bool near_held = false;
   if (state.free.held_island >= 0) {

@@ -37,7 +37,7 @@ class ShadingNormals {
   ShadingNormals(const Part& part, double crease_rad);
 
   /// Whether any normal of the part deviates.
-  bool bend() const noexcept { return !corners_.empty() || !triangle_normals_.empty(); }
+  bool bends() const noexcept { return !corners_.empty() || !triangle_normals_.empty(); }
   /// How much the interpolated normal at `point` (part's frame) differs from the face's own; zero for
   /// features that are no faces, and on faces whose edges are all sharp.
   Vec3 deviation(int piece, const Feature& feature, const Vec3& point) const noexcept;

@@ -157,7 +157,7 @@ void let_wait(const World& world, const FrameSettings& settings, double dt_s, Fr
     std::fill(w.waited.begin(), w.waited.end(), 0);
     std::fill(w.rested.begin(), w.rested.end(), 0);
     std::fill(w.contacts_at_rest.begin(), w.contacts_at_rest.end(), 0);
-    if (!state.free.any) {
+    if (!state.free.others) {
       wake(state.sleep);
     } else if (settings.budget.sleep) {
       let_sleep(world, state, report);

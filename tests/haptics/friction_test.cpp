@@ -1,0 +1,66 @@
+#include "tactum/haptics/friction.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support/block_rig.h"
+
+namespace tactum {
+namespace {
+
+constexpr double kFlat_m = 0.008;   // height of the block's middle in the rig's first pose [m]
+constexpr double kPress_m = 0.005;  // of the hand, into the plate [m]
+
+/// A block that stands on a point of its own, its foot, which stays where it is as the hand turns it.
+struct Standing : BlockRig {
+  Vec3 foot_B, foot_W;
+
+  explicit Standing(const Vec3& foot) : BlockRig(0.6), foot_B(foot), foot_W(foot.x(), foot.y(), 0.0) {
+    settings.coupling.stiffness_Nm_per_rad = 3.0;
+    step({});
+  }
+  Pose hand(const Vec3& turn, double above_m) const {
+    const Mat3 R = exp_rotation(turn);
+    return {R, foot_W - R * foot_B + Vec3(0, 0, above_m - kFlat_m)};
+  }
+  Vec3 foot() { return X_WB() * foot_B; }
+};
+
+/// Rocks the block for ten seconds, `hz` times a second, by turns that `turn` gives of the angle reached.
+template <class Turn>
+void expect_stays(const Vec3& foot_B, double hz, const Turn& turn) {
+  Standing block(foot_B);
+  block.go(block.hand(turn(0.0), 0.006), 200);
+  block.go(block.hand(turn(0.0), -kPress_m), 200);
+  const Vec3 before = block.foot();
+  double most_aside = 0.0, most_off = 0.0;
+  for (int i = 0; i <= 10'000; ++i) {
+    const FrameReport& report = block.step(block.hand(turn(2.0 * kPi * hz * 1e-3 * i), -kPress_m));
+    EXPECT_EQ(report.friction.sticking, 1);
+    most_aside = std::max(most_aside, (block.foot() - before).head<2>().norm());
+    most_off = std::max(most_off, block.foot().z());
+  }
+  EXPECT_EQ(block.penetrating_frames, 0);
+  // A step of one frame leaves the first order by half the square of its turn times the arm.
+  const double turned_rad = 0.2 * 2.0 * kPi * hz * 1e-3;
+  const double one_step = 0.5 * turned_rad * turned_rad * foot_B.norm();
+  EXPECT_LT(most_aside, block.skin() + 2.0 * one_step) << hz << " Hz";
+  EXPECT_LT(most_off, 2.0 * block.skin() + 2.0 * one_step) << hz << " Hz";
+}
+
+TEST(Friction, APartThatIsRockedOnItsEdgeDoesNotWalk) {
+  for (const double hz : {0.5, 2.0, 5.0})
+    expect_stays({0.010, 0, -0.005}, hz,
+                 [](double angle) { return Vec3(0, 0.4 + 0.2 * std::sin(angle), 0); });
+}
+
+TEST(Friction, APartThatCirclesOnItsCornerDoesNotWalk) {
+  for (const double hz : {0.5, 2.0, 5.0})
+    expect_stays({0.010, 0.007, -0.005}, hz, [](double angle) {
+      return Vec3(-0.4 + 0.2 * std::sin(angle), 0.4 + 0.2 * std::cos(angle), 0);
+    });
+}
+
+}  // namespace
+}  // namespace tactum
