@@ -72,7 +72,9 @@ struct FrictionRow {
   /// Returns the largest change of a velocity [m/s].
   double relax(double wanted, Twist& a, Twist& b) noexcept {
     if (!(along[0].mobility > 0.0)) return 0.0;
-    const double normal = std::max(0.0, impulse[0] + (wanted - along[0].velocity(a, b)) / along[0].mobility);
+    const double missing = wanted - along[0].velocity(a, b);
+    if (impulse[0] == 0.0 && missing <= 0.0) return 0.0;  // it does not push, so it does not rub
+    const double normal = std::max(0.0, impulse[0] + missing / along[0].mobility);
     double change = std::abs(normal - impulse[0]) * along[0].mobility;
     along[0].push(normal - impulse[0], a, b);
     impulse[0] = normal;

@@ -165,7 +165,7 @@ void RestingContact::accelerate(const Range& island, Pace& pace, std::span<Twist
     Row& row = rows_[Index(order_[Index(island.first + i)])];
     const Vec3 on = share * (row.contact.impulse - row.swept);
     row.swept = row.contact.impulse;
-    if (share == 0.0) continue;
+    if (on.isZero(0.0)) continue;
     row.contact.impulse += on;
     push(row, on, V);
   }
