@@ -17,8 +17,10 @@ class StaticVector {
   static_assert(std::is_trivially_destructible_v<T>, "items are forgotten, not destroyed");
 
  public:
-  StaticVector() noexcept {}  // NOLINT(modernize-use-equals-default): that fills the room
+  // NOLINTBEGIN(modernize-use-equals-default,cppcoreguidelines-pro-type-member-init): the room is not filled
+  StaticVector() noexcept {}
   StaticVector(const StaticVector& other) noexcept { assign(other.begin(), other.size_); }
+  // NOLINTEND(modernize-use-equals-default,cppcoreguidelines-pro-type-member-init)
   StaticVector& operator=(const StaticVector& other) noexcept {
     if (this != &other) assign(other.begin(), other.size_);
     return *this;

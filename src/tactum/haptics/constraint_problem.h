@@ -124,9 +124,9 @@ class ConstraintProblem {
     std::size_t unknown;
   };
   struct Limit {
-    int body;
-    Push push;        // along the joint's position
-    double way_left;  // [rad or m], not negative
+    int body = -1;
+    Push push;              // along the joint's position
+    double way_left = 0.0;  // [rad or m], not negative
   };
   static constexpr std::size_t kMostMovers = kMostUnknowns;
 
