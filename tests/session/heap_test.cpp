@@ -109,8 +109,8 @@ TEST(Heap, StaysWithinATenthOfItsPairsAndEntersNothing) {
     watch.budget = 45;
     times_near = 4;
   } else {
-    options = {.bodies = 24, .width_m = 0.12, .calm_s = 0.6};
-    watch.budget = 75;
+    options = {.bodies = 32, .width_m = 0.12, .calm_s = 0.6};
+    watch.budget = 100;
   }
   Result<Scene> made = heap_scene(options);
   ASSERT_TRUE(made) << made.error().message();

@@ -58,9 +58,9 @@ class StaticVector {
     return begin()[i];
   }
   T& back() noexcept { return (*this)[size_ - 1]; }
-  T* begin() noexcept { return std::launder(reinterpret_cast<T*>(room_)); }
+  T* begin() noexcept { return reinterpret_cast<T*>(room_); }
   T* end() noexcept { return begin() + size_; }
-  const T* begin() const noexcept { return std::launder(reinterpret_cast<const T*>(room_)); }
+  const T* begin() const noexcept { return reinterpret_cast<const T*>(room_); }
   const T* end() const noexcept { return begin() + size_; }
 
  private:

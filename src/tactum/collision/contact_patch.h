@@ -15,7 +15,8 @@ struct ContactPatch {
   int piece_a = -1, piece_b = -1;  ///< within their parts; triangles where two surfaces meet
   int pair = -1;                   ///< of pieces, in the finder's list
   bool of_surfaces = false;        ///< the features of the manifold are those of SurfaceTree
-  /// The feature of A (of B) is the face beside the edge or corner that touches, on another piece.
+  /// An edge or corner of A (of B) touches on another piece; the feature, if any, is the face beside it on
+  /// this one.
   bool beside_a = false, beside_b = false;
   /// Patches of the same bodies and facets share one stiffness: they touch on the same two flat walls.
   int facet_a = -1, facet_b = -1;

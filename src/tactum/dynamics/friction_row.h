@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 #include <span>
 
 #include "tactum/dynamics/contact_row.h"
@@ -52,6 +53,8 @@ struct FrictionRow {
   std::array<Vec3, 3> direction{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
   Vec3 impulse = Vec3::Zero();  ///< along these [N s]
   double friction = 0.0;
+  double most_across =
+      std::numeric_limits<double>::infinity();  ///< of what it rubs with, beside the cone [N s]
 
   void set(const ContactRow& row, std::span<const Pose> X_WB, std::span<const Mobility> W) noexcept {
     const auto a = static_cast<std::size_t>(row.body_a);
@@ -73,7 +76,7 @@ struct FrictionRow {
   double relax(double wanted, Twist& a, Twist& b) noexcept {
     if (!(along[0].mobility > 0.0)) return 0.0;
     const double missing = wanted - along[0].velocity(a, b);
-    if (impulse[0] == 0.0 && missing <= 0.0) return 0.0;  // it does not push, so it does not rub
+    if (missing <= 0.0 && impulse.isZero(0.0)) return 0.0;  // it does not push, so it does not rub
     const double normal = std::max(0.0, impulse[0] + missing / along[0].mobility);
     double change = std::abs(normal - impulse[0]) * along[0].mobility;
     along[0].push(normal - impulse[0], a, b);
@@ -83,7 +86,7 @@ struct FrictionRow {
     for (std::size_t i = 1; i < 3; ++i)
       if (along[i].mobility > 0.0) after[i] -= along[i].velocity(a, b) / along[i].mobility;
     const double across = std::sqrt(after[1] * after[1] + after[2] * after[2]);
-    const double most = friction * normal;
+    const double most = std::min(most_across, friction * normal);
     if (across > most) {
       after[1] *= most / across;
       after[2] *= most / across;

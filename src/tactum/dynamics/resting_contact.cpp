@@ -16,30 +16,34 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// before an impulse is forgotten.
 constexpr Index kLookAhead = 64;
 
-/// After so many sweeps contacts are no longer asked to open: what is wedged cannot, and would be pressed
-/// together by as much more in every sweep, for ever.
-constexpr int kOpeningSweeps = 40;
+/// In this share of the sweeps contacts are asked to open; what has not come to an end by then is wedged, and
+/// is not asked again for some frames.
+constexpr int kOpeningShare = 3;
+constexpr int kLeftShut = 16;
 
-/// A sweep has more to change than the one before by this factor: where loads move from contact to contact at
-/// a steady rate, it has as much, give or take a little, and there the way on is what helps most.
+/// In the last sweeps, so many in one of all, friction grows no more with what it presses together.
+constexpr int kLimitedShare = 6;
+
+/// A sweep has more to change than the one before by this factor, squared: where loads move from contact to
+/// contact at a steady rate, it has as much, give or take a little, and there the way on is what helps most.
 constexpr double kMoreToChange = 1.01;
 
 }  // namespace
 
-Vec3 RestingContact::last_impulse(std::uint64_t name) noexcept {
+RestingContact::Last RestingContact::last(std::uint64_t name) noexcept {
   for (Index ahead = 0; ahead < std::min(kLookAhead, last_.size()); ++ahead) {
     const Index i = (next_ + ahead) % last_.size();
     if (last_[i].name != name) continue;
     next_ = i + 1;
-    return last_[i].impulse_W;
+    return last_[i];
   }
-  return Vec3::Zero();
+  return {.name = name};
 }
 
 Vec3 RestingContact::keep(std::uint64_t name) noexcept {
-  const Vec3 impulse_W = last_impulse(name);
-  if (now_.size() < now_.capacity()) now_.push_back({name, impulse_W});
-  return impulse_W;
+  const Last kept = last(name);
+  if (now_.size() < now_.capacity()) now_.push_back(kept);
+  return kept.impulse_W;
 }
 
 void RestingContact::add(const ContactRow& row, int index, int island, std::uint64_t name, double gap_m,
@@ -51,38 +55,42 @@ void RestingContact::add(const ContactRow& row, int index, int island, std::uint
   next.index = index;
   next.island = island;
   next.last = now_.size();
-  now_.push_back({name, Vec3::Zero()});
-  next.wanted = -gap_m / h;
+  const Last before = last(name);
+  now_.push_back({.name = name, .left_shut = std::max(0, before.left_shut - 1)});
+  next.wanted = before.left_shut > 0 ? std::min(0.0, -gap_m / h) : -gap_m / h;
+  next.opening = std::max(0.0, next.wanted);
   next.contact.set(row, X_WB, W);
-  const Vec3 last = last_impulse(name);
   Vec3& impulse = next.contact.impulse;
   for (int d = 0; d < (next.contact.friction > 0.0 ? 3 : 1); ++d)
-    impulse[d] = next.contact.direction[Index(d)].dot(last);
+    impulse[d] = next.contact.direction[Index(d)].dot(before.impulse_W);
   impulse[0] = std::max(0.0, impulse[0]);
 }
 
 void RestingContact::add_joint(int body, int island, const Body& what, const Pose& X_WB, const Mobility& W,
                                double h) noexcept {
   const Joint& joint = what.joint;
-  const auto add_row = [&](const Vec6& along, double wanted, double softness, double lower, double upper) {
+  const auto add_row = [&](const Vec6& along, double wanted, double opening, double softness, double lower,
+                           double upper) {
     const Vec6 response = W * along;
     const double mobile = along.dot(response);
     if (mobile > 0.0)
-      joints_.push_back({body, island, along, response, mobile, wanted, softness, lower, upper});
+      joints_.push_back({body, island, along, response, mobile, wanted, opening, softness, lower, upper});
   };
   if (joint.kind == JointKind::kBall && joint.damping > 0.0)
     for (int i = 0; i < 3; ++i)
-      add_row(Vec6::Unit(3 + i), 0.0, 1.0 / (h * joint.damping), -kInfinity, kInfinity);
+      add_row(Vec6::Unit(3 + i), 0.0, 0.0, 1.0 / (h * joint.damping), -kInfinity, kInfinity);
   const Vec6 along = joint_rate(what, X_WB);
   const double position = joint_position(what, X_WB);
   // A spring and a damper at the end of the step: impulse = -h (k (position + h rate - rest) + c rate).
   const double stiff = joint.damping + h * joint.stiffness;
   if (joint.kind != JointKind::kBall && stiff > 0.0)
-    add_row(along, -joint.stiffness * (position - joint.rest) / stiff, 1.0 / (h * stiff), -kInfinity,
+    add_row(along, -joint.stiffness * (position - joint.rest) / stiff, 0.0, 1.0 / (h * stiff), -kInfinity,
             kInfinity);
-  if (joint.friction > 0.0) add_row(along, 0.0, 0.0, -joint.friction * h, joint.friction * h);
-  if (std::isfinite(joint.lower)) add_row(along, (joint.lower - position) / h, 0.0, 0.0, kInfinity);
-  if (std::isfinite(joint.upper)) add_row(along, (joint.upper - position) / h, 0.0, -kInfinity, 0.0);
+  if (joint.friction > 0.0) add_row(along, 0.0, 0.0, 0.0, -joint.friction * h, joint.friction * h);
+  const double below = (joint.lower - position) / h;
+  const double above = (joint.upper - position) / h;
+  if (std::isfinite(below)) add_row(along, below, std::max(0.0, below), 0.0, 0.0, kInfinity);
+  if (std::isfinite(above)) add_row(along, above, std::min(0.0, above), 0.0, -kInfinity, 0.0);
 }
 
 void RestingContact::tighten(int index, double by_m, double h) noexcept {
@@ -179,10 +187,39 @@ void RestingContact::accelerate(const Range& island, Pace& pace, std::span<Twist
   }
 }
 
-void RestingContact::open_nothing(const Range& island) noexcept {
+/// Asks nothing of the island to open any more and sets it back to where it began; false when nothing was.
+bool RestingContact::open_nothing(const Range& island, std::span<Twist> V) noexcept {
+  bool asked = false;
+  const auto take_off = [&](auto& row) {
+    asked |= row.opening != 0.0;
+    row.wanted -= std::exchange(row.opening, 0.0);
+  };
+  for (int i = 0; i < island.joint_count; ++i)
+    take_off(joints_[Index(joint_order_[Index(island.joint_first + i)])]);
   for (int i = 0; i < island.count; ++i) {
-    double& wanted = rows_[Index(order_[Index(island.first + i)])].wanted;
-    wanted = std::min(wanted, 0.0);
+    Row& row = rows_[Index(order_[Index(island.first + i)])];
+    if (row.opening > 0.0) now_[row.last].left_shut = kLeftShut;
+    take_off(row);
+  }
+  if (!asked) return false;
+  for (int i = 0; i < island.joint_count; ++i) {
+    JointRow& row = joints_[Index(joint_order_[Index(island.joint_first + i)])];
+    Twist& v = V[Index(row.body)];
+    v = v + to_twist(row.response * (row.begun - row.impulse));
+    row.impulse = row.begun;
+  }
+  for (int i = 0; i < island.count; ++i) {
+    Row& row = rows_[Index(order_[Index(island.first + i)])];
+    push(row, row.begun - row.contact.impulse, V);
+    row.contact.impulse = row.begun;
+  }
+  return true;
+}
+
+void RestingContact::limit_friction(const Range& island) noexcept {
+  for (int i = 0; i < island.count; ++i) {
+    FrictionRow& contact = rows_[Index(order_[Index(island.first + i)])].contact;
+    contact.most_across = contact.friction * contact.impulse[0];
   }
 }
 
@@ -191,16 +228,19 @@ SolverResult RestingContact::solve_island(const Range& island, int max_sweeps, d
   SolverResult result;
   double fastest = 0.0;
   for (int i = 0; i < island.count; ++i) {
-    const Row& row = rows_[Index(order_[Index(island.first + i)])];
+    Row& row = rows_[Index(order_[Index(island.first + i)])];
+    row.begun = row.contact.impulse;
     fastest = std::max({fastest, V[Index(row.body_a)].v.norm(), V[Index(row.body_b)].v.norm()});
+  }
+  for (int i = 0; i < island.joint_count; ++i) {
+    JointRow& row = joints_[Index(joint_order_[Index(island.joint_first + i)])];
+    row.begun = row.impulse;
   }
   const double enough = tolerances::kRestingVelocity + tolerances::kSlidingVelocity * fastest;
   Pace pace;
   while (result.iterations < max_sweeps) {
-    if (result.iterations++ == kOpeningSweeps) {
-      open_nothing(island);
-      pace = {};
-    }
+    if (result.iterations++ == max_sweeps / kOpeningShare && open_nothing(island, V)) pace = {};
+    if (result.iterations == max_sweeps - max_sweeps / kLimitedShare) limit_friction(island);
     const double change = sweep(island, V);
     result.converged = change <= harmless;
     if (change <= enough || result.iterations == max_sweeps) break;

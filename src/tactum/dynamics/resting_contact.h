@@ -9,7 +9,11 @@
 /// impulse acts on both bodies, so momentum is kept to rounding however few sweeps there were; what sweeps
 /// are for is that no contact closes too far. A heap at rest begins at its answer and stays there.
 ///
-/// A gap below nothing is asked to open, unless sweeps find no way to.
+/// A gap below nothing is asked to open. What is wedged has no room to, and its rows no answer: each sweep
+/// would press it together by as much more. An island whose sweeps have not ended after a third of their
+/// number is therefore set back to where it began and only kept from closing further, and so are its contacts
+/// for some frames. What friction presses together ever harder finds an end where, in the last sweeps,
+/// friction may only be what it was.
 ///
 /// Springs, damping, friction and limits of joints are rows of the same kind.
 
@@ -74,19 +78,22 @@ class RestingContact {
     int body_a = -1, body_b = -1, index = -1, island = -1;
     std::size_t last = 0;  // in now_
     double wanted = 0.0;   // least normal velocity [m/s]
+    double opening = 0.0;  // how much of it is to open a gap
     FrictionRow contact;
     Vec3 before = Vec3::Zero(), swept = Vec3::Zero();  // impulses before the last sweep; after the one before
+    Vec3 begun = Vec3::Zero();                         // before the first
   };
   struct Last {
-    std::uint64_t name;
-    Vec3 impulse_W;
+    std::uint64_t name = 0;
+    Vec3 impulse_W = Vec3::Zero();
+    int left_shut = 0;  // in so many frames it is not asked to open
   };
   /// rate + softness impulse -> wanted, lower <= impulse <= upper.
   struct JointRow {
     int body, island;
     Vec6 along, response;
-    double mobility, wanted, softness, lower, upper;
-    double impulse = 0.0, before = 0.0, swept = 0.0;
+    double mobility, wanted, opening, softness, lower, upper;
+    double impulse = 0.0, before = 0.0, swept = 0.0, begun = 0.0;
   };
   /// Where an island's rows stand in order_ and joint_order_.
   struct Range {
@@ -97,11 +104,12 @@ class RestingContact {
     double sweeps = 0.0;
     double last_change = 0.0;  // of the impulses, squared
   };
-  Vec3 last_impulse(std::uint64_t name) noexcept;
+  Last last(std::uint64_t name) noexcept;
   static void push(const Row& row, const Vec3& impulse, std::span<Twist> V) noexcept;
   void arrange(std::span<Twist> V) noexcept;
   double sweep(const Range& island, std::span<Twist> V) noexcept;
-  void open_nothing(const Range& island) noexcept;
+  bool open_nothing(const Range& island, std::span<Twist> V) noexcept;
+  void limit_friction(const Range& island) noexcept;
   void accelerate(const Range& island, Pace& pace, std::span<Twist> V) noexcept;
   SolverResult solve_island(const Range& island, int max_sweeps, double harmless,
                             std::span<Twist> V) noexcept;

@@ -24,6 +24,9 @@ std::uint64_t name_of(const ContactPatch& patch, Index corner) {
   return (bodies << 40 ^ pieces) << 8 ^ corner;
 }
 
+/// Whether a whole face of the body touches: a face beside the edge or corner that touches does not.
+bool by_face(const Feature& on, bool beside) { return on.kind == FeatureKind::kFace && !beside; }
+
 /// How the shading of the two bodies' faces bends a normal at a corner, A's frame. The one face that there is
 /// decides; of two curved faces each has half a say, and a flat one against a curved one all of it. A face
 /// beside the edge that touches has none, as the edge has none.
@@ -39,9 +42,7 @@ Vec3 bend(const ShadingNormals& a, const ShadingNormals& b, const Pose& X_AB, co
   const Vec3 p_B = rotated_back(X_AB.R, corner.p_A - X_AB.p);
   const Vec3 by_a = deviation(a, patch.piece_a, on_a, patch.beside_a, corner.p_A);
   const Vec3 by_b = deviation(b, patch.piece_b, on_b, patch.beside_b, p_B);
-  const bool faces = on_a.kind == FeatureKind::kFace && !patch.beside_a && on_b.kind == FeatureKind::kFace &&
-                     !patch.beside_b;
-  if (!faces) return rotated(X_AB.R, by_b) - by_a;
+  if (!by_face(on_a, patch.beside_a) || !by_face(on_b, patch.beside_b)) return rotated(X_AB.R, by_b) - by_a;
   if (by_a.isZero(0.0) || by_b.isZero(0.0)) return Vec3::Zero();
   return 0.5 * (rotated(X_AB.R, by_b) - by_a);
 }
@@ -149,13 +150,14 @@ void exchange_normals(FrameState& state) noexcept {
 
 double gap_at_trial(const ContactRow& row, const FrameState& state) noexcept {
   const ConstraintState& c = state.constraint;
-  const Manifold& patch = state.finder.patches()[Index(row.patch)].manifold;
+  const ContactPatch& patch = state.finder.patches()[Index(row.patch)];
   const auto carried = [&](int body, const Vec3& p_W) {
     const Pose& before = state.world.X_WB[Index(body)];
     return c.X_WB_trial[Index(body)] * rotated_back(before.R, p_W - before.p);
   };
-  const int owner =
-      patch.b.kind != FeatureKind::kFace && patch.a.kind == FeatureKind::kFace ? row.body_a : row.body_b;
+  const bool on_a = by_face(patch.manifold.a, patch.beside_a);
+  const bool on_b = by_face(patch.manifold.b, patch.beside_b);
+  const int owner = on_a && !on_b ? row.body_a : row.body_b;
   const Vec3 half = 0.5 * row.distance * row.n_BA_W;
   const Vec3 normal =
       c.X_WB_trial[Index(owner)].R * rotated_back(state.world.X_WB[Index(owner)].R, row.n_BA_W);

@@ -15,8 +15,9 @@ using Index = std::size_t;
 /// hold for ever what is jammed without play, and all that touches it.
 constexpr double kKnownGap = tolerances::kCertificate;
 
-/// What a gap may become: open, and if it must shrink below half the skin, then by no more than half. Held to
-/// the exact last gap, a part that is a rounding too near could never move again.
+/// What a gap may become: open, and if it must shrink below half the skin, then by no more than half, or by
+/// as much as it is known to. Held to the exact last gap, a part that is a rounding too near could never move
+/// again.
 double least_gap(double now, double skin) {
   const double known = kKnownGap * skin;
   return std::min(0.5 * skin, now > known ? 0.5 * now : now - known);
