@@ -55,6 +55,22 @@ TEST(Shading, SharpEdgesAndOtherFeaturesAreLeftAlone) {
   EXPECT_EQ(round_shading.deviation(0, {FeatureKind::kEdge, 3}, Vec3::Zero()).norm(), 0.0);
 }
 
+/// Around faces that pieces cover from each other there are no faces whose normals could be meant.
+TEST(Shading, WallsBetweenPiecesBendNothing) {
+  std::vector<std::vector<Vec3>> clouds(2, make_box({0.01, 0.02, 0.03}).vertices);
+  for (Vec3& p : clouds[1]) p.x() += 0.02;
+  Result<Part> part = part_from_clouds(clouds);
+  ASSERT_TRUE(part);
+  ASSERT_FALSE(part->true_surface.alone());
+  const ShadingNormals shading(*part, 0.6);
+  EXPECT_FALSE(shading.bends());
+  for (std::size_t p = 0; p < part->pieces.size(); ++p) {
+    for (int f = 0; f < part->pieces[p].counts[2]; ++f)
+      EXPECT_EQ(shading.deviation(int(p), {FeatureKind::kFace, f}, Vec3::Zero()).norm(), 0.0)
+          << p << ' ' << f;
+  }
+}
+
 TEST(Shading, ContinuousAcrossTheEdgesOfASphere) {
   const Part part = part_of(make_icosphere(2, 0.02));
   const ShadingNormals shading(part, 0.6);

@@ -201,8 +201,9 @@ class TwoBodies {
   static bool map_features(const Feature& a, const Feature& b, const SeamCandidate& of,
                            const SeamCandidate& other, PairDistance& out) noexcept {
     out.a = same_feature(*other.part_a, of.piece_a, a, other.piece_a);
+    if (out.a.index < 0) return false;
     out.b = same_feature(*other.part_b, of.piece_b, b, other.piece_b);
-    return out.a.index >= 0 && out.b.index >= 0;
+    return out.b.index >= 0;
   }
 
   /// Settles `other` when it touches where the nearest does, with nothing to add: on the same features, or at

@@ -72,6 +72,10 @@ Mobility mobility(const Joint& joint, const Pose& X_WB, const Resistance& M) noe
   if (joint.kind == JointKind::kFixed) return Mobility::Zero();
   if (joint.kind == JointKind::kFree) return M.llt().solve(Mat6::Identity());
   const JointMotions S = joint_motions(joint, X_WB);
+  if (S.cols() == 1) {
+    const Vec6 s = S;
+    return s * (s / s.dot(M * s)).transpose();
+  }
   return S * SmallMatrix(S.transpose() * M * S).llt().solve(S.transpose());
 }
 
@@ -88,6 +92,11 @@ Twist constrained_velocity(const Joint& joint, const Pose& X_WB, const Resistanc
   if (joint.kind == JointKind::kFixed) return {};
   if (joint.kind == JointKind::kFree) return V;
   const JointMotions S = joint_motions(joint, X_WB);
+  if (S.cols() == 1) {
+    const Vec6 s = S;
+    const Vec6 Ms = M * s;
+    return to_twist(s * (Ms.dot(to_vector(V)) / s.dot(Ms)));
+  }
   const JointMotions MS = M * S;
   return to_twist(S * SmallMatrix(MS.transpose() * S).llt().solve(MS.transpose() * to_vector(V)));
 }

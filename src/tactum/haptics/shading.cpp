@@ -176,10 +176,12 @@ void ShadingNormals::shade_pieces(double cosine) {
     const int piece = static_cast<int>(p);
     first_face_.push_back(static_cast<int>(face_of_.size()));
     for (int face = 0; face < part.pieces[p].counts[2]; ++face) {
-      face_of_.push_back(add_face(corners_of(part, piece, face), part.pieces[p].faces[Index(face)].normal));
-      if (part.true_surface.alone()) continue;
-      if (const int group = part.true_surface.group_of(piece, 2, face); group >= 0)
-        groups[group].emplace_back(piece, face);
+      const bool alone = part.true_surface.alone();
+      const int group = alone ? 0 : part.true_surface.group_of(piece, 2, face);
+      const bool covered = group < 0;  // by other pieces: nothing there is curved
+      face_of_.push_back(add_face(covered ? std::vector<CornerName>{} : corners_of(part, piece, face),
+                                  part.pieces[p].faces[Index(face)].normal));
+      if (!alone && !covered) groups[group].emplace_back(piece, face);
     }
   }
   for (const auto& [group, faces] : groups) {
