@@ -2,9 +2,10 @@
 /// Exact distance of two triangle surfaces at any pose, and how many of their triangles touch.
 ///
 /// Branch and bound over two trees of boxes: nearer boxes first, boxes no nearer than the best pair so far
-/// are left out. The pair that was nearest last time gives the first bound, so that along a motion little but
-/// the neighbourhood of the contact is looked at. When surfaces cross, the distance is zero and a second walk
-/// counts the touching pairs. A surface wholly inside another is free: this asks of surfaces, not of solids.
+/// are left out. The pair that was nearest last time gives the first bound, its neighbourhood is looked at
+/// first, so that along a motion little but the surroundings of the contact is looked at. When surfaces
+/// cross, the distance is zero and a second walk counts the touching pairs. A surface wholly inside another
+/// is free: this asks of surfaces, not of solids.
 ///
 /// Queries are noexcept, allocate nothing and give the same bits for the same input.
 
