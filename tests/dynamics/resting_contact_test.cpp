@@ -90,10 +90,34 @@ TEST(RestingContact, AJointBeyondItsEndIsNotPressedAgainstAWall) {
   joint.axis_W = Vec3(1, 0, 0);
   joint.upper = -1e-7;
   RestingContact resting(2, 2);
+  int sweeps = 0;
   for (int frame = 0; frame < 100; ++frame) {
     const Pushed pushed = frame_between(resting, std::array<Vec3, 1>{Vec3(1, 0, 0)}, 120, joint);
     EXPECT_LT(pushed.V.v.norm(), 1e-9) << "m/s";
     EXPECT_LT(pushed.impulse[0], 1e-12) << "N s, frame " << frame;
+    sweeps += pushed.result.iterations;
+  }
+  EXPECT_LT(sweeps, 600);
+}
+
+/// Two walls that just touch, and a second order that would have either open.
+TEST(RestingContact, WhatIsTightenedWithoutRoomIsNotPressedTogether) {
+  const std::array<Pose, 2> X_WB{};
+  const std::array<Mobility, 2> W = mobilities();
+  RestingContact resting(2, 2);
+  std::array<Twist, 2> V{};
+  for (int frame = 0; frame < 20; ++frame) {
+    resting.begin();
+    for (const int side : {0, 1}) {
+      const Vec3 n(side == 0 ? 1.0 : -1.0, 0, 0);
+      resting.add(contact_at(-0.01 * n, n), side, 0, static_cast<std::uint64_t>(side), 0.0, X_WB, W, kStep);
+    }
+    V[0] = {};
+    resting.solve(120, 1e-9, std::array<char, 2>{}, V);
+    for (const int side : {0, 1}) resting.tighten(side, 1e-7, kStep);
+    EXPECT_TRUE(resting.solve(120, 1e-9, std::array<char, 2>{}, V).converged);
+    resting.for_each([&](int, double normal, const Vec3&) { EXPECT_LT(normal, 1e-12) << "N s"; });
+    resting.end();
   }
 }
 
@@ -127,6 +151,8 @@ TEST(RestingContact, WhatDigsInIsPressedNoHarderForEver) {
   resting.begin();
   resting.add(row, 0, 0, 7, 0.0, X_WB, W, kStep);
   std::array<Twist, 2> V{Twist{.v = Vec3(100, 0, -0.01)}, Twist{}};
+  EXPECT_TRUE(resting.solve(120, 1e-9, std::array<char, 2>{}, V).converged);
+  resting.tighten(0, 1e-9, kStep);  // sweeps begin again, with friction as its cone has it
   EXPECT_TRUE(resting.solve(120, 1e-9, std::array<char, 2>{}, V).converged);
   const Vec3 at_edge = V[0].v + V[0].w.cross(row.p_W);
   EXPECT_GT(at_edge.z(), -1e-9) << "m/s";

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "support/pressed_block.h"
+#include "support/rig.h"
+#include "support/sandbox.h"
 #include "tactum/math/screw.h"
 
 namespace tactum {
@@ -210,6 +212,18 @@ TEST(Frame, GraspingPullsNothing) {
   haptic_frame(bench.world, bench.settings, sample, FrameTick{}, state, report);
   EXPECT_LT(report.coupling.f.norm(), 1e-9);
   EXPECT_LT(report.coupling.t.norm(), 1e-9);
+}
+
+/// What was near at load time is known: the first frame has nothing to walk to from afar.
+TEST(Frame, TheFirstBeginsWithWhatIsNear) {
+  Rig rig(2);
+  const Polytope ball = make_icosphere(3, 0.02);
+  for (Body& body : rig.world.bodies) body.part = solid_of(ball);
+  rig.world.bodies[1].joint.kind = JointKind::kFixed;
+  rig.world.bodies[1].X_WB = {exp_rotation(Vec3(0.3, 0.5, 0.1)), Vec3(0.024, 0.02, 0.02501)};  // 20 um apart
+  rig.step({});
+  EXPECT_EQ(rig.report.work.near_pairs, 1);
+  EXPECT_EQ(rig.report.work.feature_steps, 0);
 }
 
 TEST(Hand, TheClutchLetsTheHandleMoveAndTheHandStay) {

@@ -87,8 +87,13 @@ void RestingContact::add_joint(int body, int island, const Body& what, const Pos
     add_row(along, -joint.stiffness * (position - joint.rest) / stiff, 0.0, 1.0 / (h * stiff), -kInfinity,
             kInfinity);
   if (joint.friction > 0.0) add_row(along, 0.0, 0.0, 0.0, -joint.friction * h, joint.friction * h);
-  const double below = (joint.lower - position) / h;
-  const double above = (joint.upper - position) / h;
+  double below = (joint.lower - position) / h;
+  double above = (joint.upper - position) / h;
+  if (int& left_shut = joint_left_shut_[Index(body)]; left_shut > 0) {
+    --left_shut;
+    below = std::min(0.0, below);
+    above = std::max(0.0, above);
+  }
   if (std::isfinite(below)) add_row(along, below, std::max(0.0, below), 0.0, 0.0, kInfinity);
   if (std::isfinite(above)) add_row(along, above, std::min(0.0, above), 0.0, -kInfinity, 0.0);
 }
@@ -96,7 +101,10 @@ void RestingContact::add_joint(int body, int island, const Body& what, const Pos
 void RestingContact::tighten(int index, double by_m, double h) noexcept {
   const auto found = std::lower_bound(rows_.begin(), rows_.end(), index,
                                       [](const Row& row, int i) { return row.index < i; });
-  if (found != rows_.end() && found->index == index) found->wanted += by_m / h;
+  if (found == rows_.end() || found->index != index) return;
+  const double opened = std::max(0.0, found->wanted);
+  found->wanted += by_m / h;
+  found->opening += std::max(0.0, found->wanted) - opened;
 }
 
 void RestingContact::push(const Row& row, const Vec3& impulse, std::span<Twist> V) noexcept {
@@ -187,19 +195,24 @@ void RestingContact::accelerate(const Range& island, Pace& pace, std::span<Twist
   }
 }
 
-/// Asks nothing of the island to open any more and sets it back to where it began; false when nothing was.
+/// Asks nothing of the island to open any more and sets it back to where it began; false when nothing was
+/// asked that is more than rounding.
 bool RestingContact::open_nothing(const Range& island, std::span<Twist> V) noexcept {
   bool asked = false;
-  const auto take_off = [&](auto& row) {
-    asked |= row.opening != 0.0;
-    row.wanted -= std::exchange(row.opening, 0.0);
+  const auto take_off = [&](auto& row, int& left_shut) {
+    const double opening = std::exchange(row.opening, 0.0);
+    row.wanted -= opening;
+    if (!(std::abs(opening) > tolerances::kRestingVelocity)) return;
+    left_shut = kLeftShut;
+    asked = true;
   };
-  for (int i = 0; i < island.joint_count; ++i)
-    take_off(joints_[Index(joint_order_[Index(island.joint_first + i)])]);
+  for (int i = 0; i < island.joint_count; ++i) {
+    JointRow& row = joints_[Index(joint_order_[Index(island.joint_first + i)])];
+    take_off(row, joint_left_shut_[Index(row.body)]);
+  }
   for (int i = 0; i < island.count; ++i) {
     Row& row = rows_[Index(order_[Index(island.first + i)])];
-    if (row.opening > 0.0) now_[row.last].left_shut = kLeftShut;
-    take_off(row);
+    take_off(row, now_[row.last].left_shut);
   }
   if (!asked) return false;
   for (int i = 0; i < island.joint_count; ++i) {
@@ -219,7 +232,7 @@ bool RestingContact::open_nothing(const Range& island, std::span<Twist> V) noexc
 void RestingContact::limit_friction(const Range& island) noexcept {
   for (int i = 0; i < island.count; ++i) {
     FrictionRow& contact = rows_[Index(order_[Index(island.first + i)])].contact;
-    contact.most_across = contact.friction * contact.impulse[0];
+    if (contact.impulse[0] > 0.0) contact.most_across = contact.friction * contact.impulse[0];
   }
 }
 
@@ -230,6 +243,7 @@ SolverResult RestingContact::solve_island(const Range& island, int max_sweeps, d
   for (int i = 0; i < island.count; ++i) {
     Row& row = rows_[Index(order_[Index(island.first + i)])];
     row.begun = row.contact.impulse;
+    row.contact.most_across = kInfinity;
     fastest = std::max({fastest, V[Index(row.body_a)].v.norm(), V[Index(row.body_b)].v.norm()});
   }
   for (int i = 0; i < island.joint_count; ++i) {
@@ -239,7 +253,7 @@ SolverResult RestingContact::solve_island(const Range& island, int max_sweeps, d
   const double enough = tolerances::kRestingVelocity + tolerances::kSlidingVelocity * fastest;
   Pace pace;
   while (result.iterations < max_sweeps) {
-    if (result.iterations++ == max_sweeps / kOpeningShare && open_nothing(island, V)) pace = {};
+    if (result.iterations++ == std::max(1, max_sweeps / kOpeningShare) && open_nothing(island, V)) pace = {};
     if (result.iterations == max_sweeps - max_sweeps / kLimitedShare) limit_friction(island);
     const double change = sweep(island, V);
     result.converged = change <= harmless;

@@ -35,6 +35,7 @@ class RestingContact {
     order_.reserve(most_rows);
     joint_order_.reserve(bodies * kMostJointRows);
     islands_.resize(bodies);
+    joint_left_shut_.resize(bodies, 0);
   }
 
   /// Forgets the rows, not the last frame's impulses.
@@ -59,8 +60,8 @@ class RestingContact {
 
   /// Changes the twists of the islands that are not settled, each by at most so many sweeps; may be called
   /// again after tighten(). They have converged when the last sweep changed no velocity by more than
-  /// `harmless` [m/s]; sweeps go on to far less. The result's iterations are those of the island that took
-  /// most.
+  /// `harmless` [m/s], with friction as the last sweeps have it; sweeps go on to far less. The result's
+  /// iterations are those of the island that took most.
   SolverResult solve(int max_sweeps, double harmless, std::span<const char> settled,
                      std::span<Twist> V) noexcept;
   /// The impulses that act on body_a of the contact added as `index`, world axes, the normal one's size.
@@ -119,6 +120,7 @@ class RestingContact {
   std::vector<JointRow> joints_;
   std::vector<int> order_, joint_order_;  // rows, island by island
   std::vector<Range> islands_;            // by the island's number
+  std::vector<int> joint_left_shut_;      // as Last::left_shut, by body
   std::size_t next_ = 0;                  // in last_: names come in the same order from frame to frame
   bool started_ = false;
 };

@@ -1,5 +1,7 @@
 #include "tactum/haptics/frame_state.h"
 
+#include "tactum/haptics/response.h"
+
 namespace tactum {
 namespace {
 
@@ -28,6 +30,9 @@ FrameState::FrameState(const World& constant_world, const FrameSettings& setting
       sleep(constant_world) {
   if (settings.response == ResponseModel::kConstraint) begin_midway(constant_world, settings.dt_s, world);
   hand.X_WD = settings.workspace.X_WD;
+  // The first frame begins with what is near, as every other does.
+  finder.find_near_pairs(world.X_WB, reach, settings.penalty.min_tolerance_m);
+  finder.find_patches(world.X_WB, settings.budget.max_exact_tests, points_wanted(settings), waiting.urgency);
   if (!settings.shading.on) return;
   bool some_bend = false;
   for (const Body& body : constant_world.bodies)
