@@ -310,5 +310,27 @@ TEST(ShapeEdges, SeamsBetweenPiecesAreNotDrawn) {
   EXPECT_EQ(std::count(covered.begin(), covered.end(), true), 4);  // two a face, on either side
 }
 
+/// A wall that stands on a slab: where they meet the part bends inward, and neither piece does.
+TEST(ShapeEdges, WhereTwoPiecesBendInwardTheyAreReflex) {
+  const auto box = [](const Vec3& from, const Vec3& to) {
+    std::vector<Vec3> corners;
+    for (int i = 0; i < 8; ++i)
+      corners.emplace_back((i & 1) != 0 ? to.x() : from.x(), (i & 2) != 0 ? to.y() : from.y(),
+                           (i & 4) != 0 ? to.z() : from.z());
+    return corners;
+  };
+  const Result<Part> bracket = part_from_clouds({box({0, 0, 0}, {3, 1, 1}), box({0, 0, 1}, {1, 1, 2})});
+  ASSERT_TRUE(bracket);
+  int reflex = 0;
+  for (const DrawnEdge& edge : edges_to_draw(*bracket)) {
+    const bool inner = std::abs(edge.tail.x() - 1.0) + std::abs(edge.head.x() - 1.0) +
+                           std::abs(edge.tail.z() - 1.0) + std::abs(edge.head.z() - 1.0) <
+                       1e-9;
+    EXPECT_EQ(edge.kind == EdgeKind::kReflex, inner);
+    reflex += edge.kind == EdgeKind::kReflex ? 1 : 0;
+  }
+  EXPECT_EQ(reflex, 1);
+}
+
 }  // namespace
 }  // namespace tactum

@@ -8,7 +8,8 @@
 namespace tactum {
 namespace {
 
-constexpr double kAside = 0.001;  // of the part's size: how far beyond a face is looked
+constexpr double kAside = 0.001;     // of the part's size: how far beyond a face is looked
+constexpr double kSamePlace = 1e-9;  // of the part's size
 
 bool contains(const Polytope& piece, const Vec3& point) {
   return std::all_of(piece.faces.begin(), piece.faces.end(),
@@ -32,13 +33,48 @@ std::vector<Aabb> boxes_of(const Part& part) {
   return boxes;
 }
 
+/// The pieces whose boxes come as near to `point` as that.
+std::vector<const Polytope*> pieces_near(const Part& part, const std::vector<Aabb>& boxes, const Vec3& point,
+                                         double distance) {
+  std::vector<const Polytope*> near;
+  for (std::size_t i = 0; i < boxes.size(); ++i)
+    if ((point.array() > boxes[i].min.array() - distance).all() &&
+        (point.array() < boxes[i].max.array() + distance).all())
+      near.push_back(&part.pieces[i]);
+  return near;
+}
+
+/// How much of the turn about an edge the pieces fill, `aside` from it [rad]: of a box's edge a right angle.
+/// `u` and `w` span the plane square to the edge.
+double filled_turn(const std::vector<const Polytope*>& pieces, const Vec3& middle, const Vec3& u,
+                   const Vec3& w, double aside) {
+  constexpr int kDirections = 64;
+  int filled = 0;
+  for (int k = 0; k < kDirections; ++k) {
+    const double angle = 2.0 * kPi * (k + 0.5) / kDirections;
+    const Vec3 point = middle + aside * (std::cos(angle) * u + std::sin(angle) * w);
+    filled += std::any_of(pieces.begin(), pieces.end(),
+                          [&](const Polytope* piece) { return contains(*piece, point); })
+                  ? 1
+                  : 0;
+  }
+  return 2.0 * kPi * filled / kDirections;
+}
+
+bool same_edge(const DrawnEdge& p, const DrawnEdge& q, double noise) {
+  const auto ends = [&](const Vec3& a, const Vec3& b) {
+    return (p.tail - a).norm() < noise && (p.head - b).norm() < noise;
+  };
+  return ends(q.tail, q.head) || ends(q.head, q.tail);
+}
+
 std::vector<DrawnEdge> edges_of_solids(const Part& part) {
   const std::vector<Aabb> boxes = boxes_of(part);
-  const double aside = kAside * bounds(part.surface.vertices).diagonal();
+  const double size = bounds(part.surface.vertices).diagonal();
+  const double aside = kAside * size;
   const double flattest = std::cos(kDrawnBend_rad);
-  std::vector<DrawnEdge> edges;
-  for (std::size_t i = 0; i < part.pieces.size(); ++i) {
-    const Polytope& piece = part.pieces[i];
+  std::vector<DrawnEdge> edges, reflex;
+  for (const Polytope& piece : part.pieces) {
     for (const Polytope::Edge& edge : piece.edges) {
       const Vec3& left = piece.faces[static_cast<std::size_t>(edge.left)].normal;
       const Vec3& right = piece.faces[static_cast<std::size_t>(edge.right)].normal;
@@ -46,13 +82,22 @@ std::vector<DrawnEdge> edges_of_solids(const Part& part) {
       const Vec3& tail = piece.vertices[static_cast<std::size_t>(edge.tail)];
       const Vec3& head = piece.vertices[static_cast<std::size_t>(edge.head)];
       const Vec3 middle = 0.5 * (tail + head);
-      const Vec3 step = aside * (left - right).normalized();
-      if (filled_by_another(part, boxes, i, middle + step) ||
-          filled_by_another(part, boxes, i, middle - step))
-        continue;
-      edges.push_back({tail, head, EdgeKind::kSharp});
+      const Vec3 across = (left - right).normalized();
+      const double filled = filled_turn(pieces_near(part, boxes, middle, aside), middle, across,
+                                        across.cross(edge.direction), aside);
+      if (filled < kPi - kDrawnBend_rad) {
+        edges.push_back({tail, head, EdgeKind::kSharp});
+      } else if (filled > kPi + kDrawnBend_rad && filled < 2.0 * kPi - kDrawnBend_rad) {
+        // The pieces on either side of it may both have it.
+        const DrawnEdge bent_inward{tail, head, EdgeKind::kReflex};
+        const bool known = std::any_of(reflex.begin(), reflex.end(), [&](const DrawnEdge& other) {
+          return same_edge(bent_inward, other, kSamePlace * size);
+        });
+        if (!known) reflex.push_back(bent_inward);
+      }
     }
   }
+  edges.insert(edges.end(), reflex.begin(), reflex.end());
   return edges;
 }
 

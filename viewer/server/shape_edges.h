@@ -1,10 +1,12 @@
 #pragma once
 /// What of a part a drawing shows: the edges where its surface bends, and the triangles that lie on its
-/// surface. A part of several solid pieces has seams too, edges and faces that lie inside the part or in the
-/// middle of a flat wall; those are left out:
+/// surface. Of the edges of solid pieces each counts as what the whole part is about its middle:
 ///
-///      piece 1 | piece 2        just beyond face f of an edge, and just below its other face, lies another
-///     ---------+---------       piece: f is no surface there, so the edge is a seam
+///      piece 1 | piece 2       a quarter of the turn about a box's edge is filled: it is sharp. Half of it:
+///      a
+///     ---------+---------      seam in a flat wall, all of it: inside the part; neither is drawn. Three
+///     quarters,
+///                              where a wall stands on a floor: it is reflex.
 ///
 /// Cost: edges times pieces that are near, once a scene.
 
