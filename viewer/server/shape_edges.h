@@ -2,11 +2,10 @@
 /// What of a part a drawing shows: the edges where its surface bends, and the triangles that lie on its
 /// surface. Of the edges of solid pieces each counts as what the whole part is about its middle:
 ///
-///      piece 1 | piece 2       a quarter of the turn about a box's edge is filled: it is sharp. Half of it:
-///      a
-///     ---------+---------      seam in a flat wall, all of it: inside the part; neither is drawn. Three
-///     quarters,
-///                              where a wall stands on a floor: it is reflex.
+///               |
+///        wall   |          at s a quarter of the turn about the edge is filled: sharp;
+///     ----------r-----s    at r three quarters: reflex, where a wall stands on a floor;
+///        floor        |    along the seam between the two half or all of it: not drawn
 ///
 /// Cost: edges times pieces that are near, once a scene.
 

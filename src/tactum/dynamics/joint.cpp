@@ -72,7 +72,7 @@ Mobility mobility(const Joint& joint, const Pose& X_WB, const Resistance& M) noe
   if (joint.kind == JointKind::kFixed) return Mobility::Zero();
   if (joint.kind == JointKind::kFree) return M.llt().solve(Mat6::Identity());
   const JointMotions S = joint_motions(joint, X_WB);
-  if (S.cols() == 1) {
+  if (S.cols() == 1) {  // a hinge or slider: a number stands for the small matrix
     const Vec6 s = S;
     return s * (s / s.dot(M * s)).transpose();
   }
