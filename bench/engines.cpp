@@ -20,8 +20,11 @@ class Tracked final : public Engine {
   }
   void forget() override { cache_ = {}; }
   void place(const Recording& recording, std::size_t i) override { X_AB_ = recording.poses[i]; }
-  void query() override { found_ = function_(*a_, *b_, X_AB_, cache_); }
-  Answer answer() const override { return {found_.certified(), found_.distance, found_.steps}; }
+  void query() override {
+    const PairDistance x = function_(*a_, *b_, X_AB_, cache_);
+    found_ = {x.certified(), x.distance, x.steps};
+  }
+  Answer answer() const override { return found_; }
 
  private:
   Query function_;
@@ -29,7 +32,7 @@ class Tracked final : public Engine {
   const Polytope* b_ = nullptr;
   Pose X_AB_;
   PairCache cache_;
-  PairDistance found_;
+  Answer found_;
 };
 
 }  // namespace

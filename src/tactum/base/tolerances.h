@@ -30,6 +30,14 @@ inline constexpr double kTouching = 1e-12;
 /// keeps about eight digits there.
 inline constexpr double kParallelSine = 1e-8;
 
+/// Edges cross at an angle when its sine is above this: all that follows from their cross and dot products is
+/// then right to kCrossingRounding of the lengths over the sine squared, a thousandth of the certificate.
+/// Lower, and doubt grows that careful means would not leave.
+inline constexpr double kCrossingSine = 0.1;
+/// ... as a cross product of unit vectors has an error of some 4 roundings (1.1e-16), the places along the
+/// edges one of some 16 of what they are made of.
+inline constexpr double kCrossingRounding = 1e-14;
+
 /// Arcs of two edges on the Gauss map are one arc when their planes differ by less than this angle: what is
 /// left of a crossing is then smaller than the certificate can see.
 inline constexpr double kSameArc = 1e-12;

@@ -28,7 +28,7 @@ namespace tactum {
 
 enum class MarchEnd : std::uint8_t {
   kClosest,  ///< no Voronoi plane is violated
-  kOverlap,  ///< p_a is a point of both pieces
+  kOverlap,  ///< an edge goes through a face
   kBehind,   ///< a vertex is behind the face in whose column it is: overlapping, or far beyond the piece
   kCircle,   ///< came back to a state: the nearest of the circle is told
   kBounded,  ///< out of steps

@@ -1,0 +1,372 @@
+#pragma once
+/// The steps of the walk of voronoi_march.h, inline: under haptic motion nearly every query is one step, and
+/// what calls and copies of answers around it take would be half of its time.
+
+#include <cmath>
+#include <limits>
+
+#include "tactum/collision/pair_view.h"
+#include "tactum/collision/segments.h"
+#include "tactum/collision/voronoi_march.h"
+
+namespace tactum::march {
+
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// One step as seen from the piece P that owns the feature of lower dimension; Q is the other. `swapped`: P
+/// is B.
+template <bool swapped>
+struct Sides {
+  const Polytope& P;
+  const Polytope& Q;
+  const Pose& X_AB;
+  double slack;
+
+  explicit Sides(const PiecePair& pair, double crossing_slack) noexcept
+      : P(swapped ? pair.B : pair.A), Q(swapped ? pair.A : pair.B), X_AB(pair.X_AB), slack(crossing_slack) {}
+
+  /// A point of P, in Q's frame.
+  Vec3 in_Q(const Vec3& p) const noexcept { return swapped ? X_AB * p : rotated_back(X_AB.R, p - X_AB.p); }
+  /// A point of Q, in P's frame.
+  Vec3 in_P(const Vec3& q) const noexcept { return swapped ? rotated_back(X_AB.R, q - X_AB.p) : X_AB * q; }
+  /// Of a point of each piece, in its own frame, the one of A.
+  static const Vec3& of_A(const Vec3& p, const Vec3& q) noexcept { return swapped ? q : p; }
+  /// The normal from B to A, in A's frame, of a vector from P to Q told in both frames.
+  static Vec3 normal(const Vec3& d_P, const Vec3& d_Q) noexcept { return swapped ? d_Q : Vec3(-d_P); }
+  Vec3 turned_to_Q(const Vec3& d) const noexcept {
+    return swapped ? rotated(X_AB.R, d) : rotated_back(X_AB.R, d);
+  }
+  Vec3 turned_to_P(const Vec3& d) const noexcept {
+    return swapped ? rotated_back(X_AB.R, d) : rotated(X_AB.R, d);
+  }
+};
+
+/// How far beyond a plane through `v` the piece may reach when the steepest of the edges at `v` rises by
+/// `slope` over it (sine). A point of the piece is v + sum c_i u_i, c_i >= 0 over the edges at v, and the sum
+/// of the c_i is at most its distance from v over the least cosine between an edge and their mean.
+inline double reach_beyond(const Polytope& P, int v, double slope) noexcept {
+  if (slope <= 0.0) return 0.0;
+  Vec3 mean = Vec3::Zero();
+  for (const Polytope::Ray& ray : P.rays_at(v)) mean += ray.direction;
+  double least = kInfinity;
+  for (const Polytope::Ray& ray : P.rays_at(v)) least = std::min(least, ray.direction.dot(mean));
+  return least > 0.0 ? slope * P.size * mean.norm() / least : kInfinity;
+}
+
+/// The same at an edge whose steeper face rises by `slope`: the piece lies in the wedge of its two faces.
+/// What the edge's own line rises by comes on top, over the whole size: the wedge goes on beyond the edge's
+/// ends.
+inline double reach_beyond(const Polytope& P, const Polytope::Edge& e, double slope) noexcept {
+  if (slope <= 0.0) return 0.0;
+  const double cosine = P.sides[e.left_slot].normal.dot(P.sides[e.right_slot].normal);
+  return cosine > -1.0 ? slope * P.size * std::sqrt(2.0 / (1.0 + cosine)) : kInfinity;
+}
+
+/// The edge at a vertex that rises most along a direction.
+struct Steepest {
+  int edge = -1;
+  double slope = -kInfinity;
+};
+
+inline Steepest steepest_edge(const Polytope& P, int v, const Vec3& d) noexcept {
+  Steepest best;
+  for (const Polytope::Ray& ray : P.rays_at(v))
+    if (const double slope = ray.direction.dot(d); slope > best.slope) best = {ray.edge, slope};
+  return best;
+}
+
+enum class Outcome : std::uint8_t { kClosest, kMoved, kOverlap, kBehind };
+
+/// How a step ended, and the features of P and Q to go on from.
+struct Step {
+  Outcome outcome;
+  Feature p, q;
+};
+
+/// Where a step stood: the closest points of its two features, each in its own piece's frame.
+struct Place {
+  double gap = kInfinity;  ///< the points' distance; infinite where the step does not know them [m]
+  Vec3 p, q;               ///< known when the gap is [m]
+};
+
+inline Feature vertex(int index) noexcept { return {FeatureKind::kVertex, index}; }
+inline Feature edge(int index) noexcept { return {FeatureKind::kEdge, index}; }
+inline Feature face(int index) noexcept { return {FeatureKind::kFace, index}; }
+
+/// The end of a walk at the point `p_a` of A, across the normal `n` from B to A, in A's frame. Number by
+/// number: what is copied as a whole waits for parts that have just been written.
+inline void tell(const Vec3& p_a, const Vec3& n, double gap, double doubt, PairDistance& x) noexcept {
+  x.p_a << p_a.x(), p_a.y(), p_a.z();
+  x.normal << n.x(), n.y(), n.z();
+  x.p_b = x.p_a - x.normal * gap;
+  x.distance = gap;
+  x.doubt = doubt;
+}
+
+/// The points of a place that proves nothing.
+template <bool swapped>
+void tell_points(const Sides<swapped>& S, const Place& at, PairDistance& x) noexcept {
+  x.p_a = swapped ? at.q : at.p;
+  x.p_b = S.X_AB * (swapped ? at.p : at.q);
+  x.normal.setZero();
+  x.distance = at.gap;
+  x.doubt = kInfinity;
+}
+
+template <bool swapped>
+Step vertex_vertex(const Sides<swapped>& S, Feature fp, Feature fq, Place& at, PairDistance& x) noexcept {
+  at.p = S.P.vertices[fp.index];
+  at.q = S.Q.vertices[fq.index];
+  const Vec3 d_Q = at.q - S.in_Q(at.p);
+  const Vec3 d_P = S.turned_to_P(d_Q);
+  at.gap = d_Q.norm();
+  const Steepest at_p = steepest_edge(S.P, fp.index, d_P);
+  if (at_p.slope > S.slack) return {Outcome::kMoved, edge(at_p.edge), fq};
+  const Steepest at_q = steepest_edge(S.Q, fq.index, -d_Q);
+  if (at_q.slope > S.slack) return {Outcome::kMoved, fp, edge(at_q.edge)};
+  if (at.gap <= tolerances::kTouching * S.P.size) {
+    tell_points(S, at, x);
+  } else {
+    tell(S.of_A(at.p, at.q), S.normal(d_P, d_Q) / at.gap, at.gap,
+         reach_beyond(S.P, fp.index, at_p.slope / at.gap) + reach_beyond(S.Q, fq.index, at_q.slope / at.gap),
+         x);
+  }
+  return {Outcome::kClosest, fp, fq};
+}
+
+template <bool swapped>
+Step vertex_edge(const Sides<swapped>& S, Feature fp, Feature fq, Place& at, PairDistance& x) noexcept {
+  at.p = S.P.vertices[fp.index];
+  const Polytope::Edge& g = S.Q.edges[fq.index];
+  const Vec3& tail = S.Q.vertices[g.tail];
+  const Vec3 p_Q = S.in_Q(at.p);
+  const double along = g.direction.dot(p_Q - tail);
+  at.q = tail + g.direction * std::clamp(along, 0.0, g.length);
+  const Vec3 d_Q = at.q - p_Q;
+  at.gap = d_Q.norm();
+  if (along < -S.slack) return {Outcome::kMoved, fp, vertex(g.tail)};
+  if (along > g.length + S.slack) return {Outcome::kMoved, fp, vertex(g.head)};
+  const Polytope::Side& left = S.Q.sides[g.left_slot];
+  const Polytope::Side& right = S.Q.sides[g.right_slot];
+  const double above_left = left.normal.dot(p_Q) - left.offset;
+  const double above_right = right.normal.dot(p_Q) - right.offset;
+  if (std::min(above_left, above_right) < -S.slack)
+    return {Outcome::kMoved, fp, face(above_left < above_right ? g.left : g.right)};
+  const Vec3 d_P = S.turned_to_P(d_Q);
+  const Steepest at_p = steepest_edge(S.P, fp.index, d_P);
+  if (at_p.slope > S.slack) return {Outcome::kMoved, edge(at_p.edge), fq};
+  if (at.gap <= tolerances::kTouching * S.P.size) {
+    tell_points(S, at, x);
+  } else {
+    // The normal itself is judged: over a small gap it is off by more than the point is.
+    const double rise = std::max(left.normal.dot(d_Q), right.normal.dot(d_Q));
+    const double doubt = reach_beyond(S.P, fp.index, at_p.slope / at.gap) +
+                         reach_beyond(S.Q, g, rise / at.gap) +
+                         std::abs(g.direction.dot(d_Q)) / at.gap * S.Q.size;
+    tell(S.of_A(at.p, at.q), S.normal(d_P, d_Q) / at.gap, at.gap, doubt, x);
+  }
+  return {Outcome::kClosest, fp, fq};
+}
+
+/// The slot of the side plane that `p` is farthest outside of, beyond `slack`; -1 inside the face's column.
+inline int slot_outside(const Polytope& Q, const Polytope::Face& face, const Vec3& p, double slack) noexcept {
+  int best = -1;
+  for (int slot = face.first; slot < face.first + face.count; ++slot) {
+    const double out = Q.sides[slot].normal.dot(p) - Q.sides[slot].offset;
+    if (out > slack) {
+      slack = out;
+      best = slot;
+    }
+  }
+  return best;
+}
+
+template <bool swapped>
+Step vertex_face(const Sides<swapped>& S, Feature fp, Feature fq, Place& at, PairDistance& x) noexcept {
+  const Vec3& p = S.P.vertices[fp.index];
+  const Polytope::Face& f = S.Q.faces[fq.index];
+  const Vec3 p_Q = S.in_Q(p);
+  if (const int slot = slot_outside(S.Q, f, p_Q, S.slack); slot >= 0)
+    return {Outcome::kMoved, fp, edge(S.Q.face_edges[slot])};
+  const double height = f.normal.dot(p_Q) - f.offset;
+  if (height < -S.slack) {
+    if (!S.Q.flat) return {Outcome::kBehind, fp, fq};
+    return {Outcome::kMoved, fp, face(1 - fq.index)};
+  }
+  const Vec3 outward_P = S.turned_to_P(-f.normal);
+  const Steepest at_p = steepest_edge(S.P, fp.index, outward_P);
+  if (at_p.slope > tolerances::kVoronoiSlack) {
+    at.gap = std::abs(height);
+    at.p = p;
+    at.q = p_Q - f.normal * height;
+    return {Outcome::kMoved, edge(at_p.edge), fq};
+  }
+  tell(S.of_A(p, p_Q - f.normal * height), S.normal(outward_P, -f.normal), std::abs(height),
+       reach_beyond(S.P, fp.index, at_p.slope), x);
+  return {Outcome::kClosest, fp, fq};
+}
+
+/// The face at an edge toward whose column a direction from the edge leads most, and how much it leads there
+/// (sine; negative when it leads away from both).
+struct Toward {
+  int face = -1;
+  double slope = 0.0;
+};
+
+inline Toward face_toward(const Polytope& P, const Polytope::Edge& e, const Vec3& d) noexcept {
+  const double left = P.sides[e.left_slot].normal.dot(d);
+  const double right = P.sides[e.right_slot].normal.dot(d);
+  return left < right ? Toward{e.left, -left} : Toward{e.right, -right};
+}
+
+/// The unit direction from edge to edge and its angular error: the points' difference `d`, or the cross
+/// product `c` of the edges where it has more digits.
+struct Across {
+  Vec3 direction;
+  double slack;
+  double aside;  // of the points, from the direction [m]
+};
+
+inline Across across_edges(double size, double slack, const Vec3& c, const Vec3& d, double gap) noexcept {
+  const double sine_sq = c.squaredNorm();
+  if (gap * gap >= sine_sq * size * size)
+    return gap > 0.0 ? Across{d / gap, slack / gap, 0.0} : Across{d, 0.0, kInfinity};
+  const double sine = std::sqrt(sine_sq);
+  const Vec3 direction = c.dot(d) < 0.0 ? Vec3(-c / sine) : Vec3(c / sine);
+  return {direction, std::max(slack / size, tolerances::kVoronoiSlack) / sine, (d - direction * gap).norm()};
+}
+
+/// A segment's end, when the closest point is there; else the edge.
+inline Feature end_or_edge(const Polytope::Edge& e, double s, Feature whole) noexcept {
+  if (s > 0.0 && s < e.length) return whole;
+  return vertex(s > 0.0 ? e.head : e.tail);
+}
+
+/// Edges of any kind: alike, nearest at an end, touching. Out of line and from the start, so that nothing is
+/// kept at hand for it where edges cross.
+[[gnu::noinline]] Step edges_along(const PiecePair& pair, double slack, int a, int b, Place& at,
+                                   PairDistance& x) noexcept;
+
+/// Where a hand moves two parts half of all walks end at edges that cross at an angle and are nearest between
+/// their ends. Nothing there needs the points: the normal is the edges' cross product c, the gap r . c / |c|,
+/// and where along the edges it is, s and t times the sine squared, are dot products. What rounding leaves is
+/// known beforehand.
+inline Step edge_edge(const PiecePair& pair, const Sides<false>& S, Feature fp, Feature fq, Place& at,
+                      PairDistance& x) noexcept {
+  const Polytope::Edge& e = S.P.edges[fp.index];
+  const Polytope::Edge& g = S.Q.edges[fq.index];
+  const Vec3& e_tail = S.P.vertices[e.tail];
+  const Vec3& g_tail = S.Q.vertices[g.tail];
+  const Vec3 w = S.turned_to_P(g.direction);
+  const Vec3 r = S.in_P(g_tail) - e_tail;
+  const Vec3 c = e.direction.cross(w);
+  const double sine_sq = c.squaredNorm();
+  const double cosine = e.direction.dot(w);
+  const double r_e = r.dot(e.direction);
+  const double r_g = r.dot(w);
+  const double s = r_e - r_g * cosine;
+  const double t = r_e * cosine - r_g;
+  const bool between = s > 0.0 && s < e.length * sine_sq && t > 0.0 && t < g.length * sine_sq;
+  if (!between || sine_sq < tolerances::kCrossingSine * tolerances::kCrossingSine)
+    return edges_along(pair, S.slack, fp.index, fq.index, at, x);
+
+  const double along = r.dot(c);
+  const Vec3 outward = along < 0.0 ? Vec3(-c) : c;
+  const double per_square = 1.0 / sine_sq;
+  const double per_sine = std::sqrt(sine_sq) * per_square;
+  const double gap = std::abs(along) * per_sine;
+  const Vec3 p = e_tail + e.direction * (s * per_square);
+  const Toward of_p = face_toward(S.P, e, outward);
+  const Toward of_q = face_toward(S.Q, g, S.turned_to_Q(-outward));
+  if (of_p.slope > 0.0 || of_q.slope > 0.0) {
+    if (std::max(of_p.slope, of_q.slope) * S.P.size <= S.slack)
+      return edges_along(pair, S.slack, fp.index, fq.index, at, x);
+    at.gap = gap;
+    at.p = p;
+    at.q = g_tail + g.direction * (t * per_square);
+    if (of_p.slope * S.P.size > S.slack) return {Outcome::kMoved, face(of_p.face), fq};
+    return {Outcome::kMoved, fp, face(of_q.face)};
+  }
+  const double lengths = S.P.size + S.Q.size + r.lpNorm<1>();
+  tell(p, outward * -per_sine, gap, tolerances::kCrossingRounding * lengths * per_square, x);
+  return {Outcome::kClosest, fp, fq};
+}
+
+/// P has the edge, Q the face. Never the end of the walk: the nearer end of the clipped edge is a vertex or
+/// on an edge.
+[[gnu::noinline]] Step edge_face(const Polytope& Q, const Polytope::Edge& e, const Vec3& p0, const Vec3& u,
+                                 double slack, Feature fp, Feature fq) noexcept;
+
+/// Dispatch on the kinds, P owning the lower one. Tells `x` where the features are closest, and the place
+/// where it moved on.
+template <bool swapped>
+Step step(const PiecePair& pair, const Sides<swapped>& S, Feature fp, Feature fq, Place& at,
+          PairDistance& x) noexcept {
+  if (fp.kind == FeatureKind::kVertex) {
+    if (fq.kind == FeatureKind::kFace) return vertex_face(S, fp, fq, at, x);
+    return fq.kind == FeatureKind::kEdge ? vertex_edge(S, fp, fq, at, x) : vertex_vertex(S, fp, fq, at, x);
+  }
+  if constexpr (!swapped)
+    if (fq.kind == FeatureKind::kEdge) return edge_edge(pair, S, fp, fq, at, x);
+  const Polytope::Edge& e = S.P.edges[fp.index];
+  return edge_face(S.Q, e, S.in_Q(S.P.vertices[e.tail]), S.turned_to_Q(e.direction), S.slack, fp, fq);
+}
+
+/// A step from the features `at` of A and B, which become those to go on from.
+inline Outcome step_on(const PiecePair& pair, double slack, FeaturePair& at, Place& place,
+                       PairDistance& x) noexcept {
+  if (at.a.kind > at.b.kind) {
+    const Step next = step(pair, Sides<true>(pair, slack), at.b, at.a, place, x);
+    at = {next.q, next.p};
+    return next.outcome;
+  }
+  const Step next = step(pair, Sides<false>(pair, slack), at.a, at.b, place, x);
+  at = {next.p, next.q};
+  return next.outcome;
+}
+
+/// The end of a walk that proves nothing: where the features `x.a`, `x.b` are nearest.
+[[gnu::noinline]] void tell_features(const PiecePair& pair, double slack, PairDistance& x) noexcept;
+
+/// voronoi_march, to be made part of its caller.
+inline March walk(const PiecePair& pair, FeaturePair at, double slack, PairDistance& x) noexcept {
+  if (at.a.kind == FeatureKind::kFace && at.b.kind == FeatureKind::kFace)
+    at.b = vertex(vertex_of(pair.B, at.b));
+  double least = kInfinity;
+  FeaturePair nearest = at;
+  FeaturePair mark;  // a state to be met again, if the walk goes in circles [Brent 1980]
+  int next_mark = 8;
+  const auto bound = [&] { return 64 + static_cast<int>(pair.A.edges.size() + pair.B.edges.size()) / 4; };
+  March march;
+  while (march.steps < 64 || march.steps < bound()) {
+    const FeaturePair was = at;
+    Place place;
+    const Outcome outcome = step_on(pair, slack, at, place, x);
+    ++march.steps;
+    if (outcome != Outcome::kMoved) {
+      x.a = was.a;
+      x.b = was.b;
+      if (outcome == Outcome::kClosest) return {x.doubt, MarchEnd::kClosest, march.steps};
+      march.end = outcome == Outcome::kOverlap ? MarchEnd::kOverlap : MarchEnd::kBehind;
+      return march;
+    }
+    if (place.gap < least) {
+      least = place.gap;
+      nearest = was;
+    }
+    if (at.a == mark.a && at.b == mark.b) {
+      march.end = MarchEnd::kCircle;
+      break;
+    }
+    if (march.steps == next_mark) {
+      mark = at;
+      next_mark *= 2;
+    }
+  }
+  x.a = nearest.a;
+  x.b = nearest.b;
+  tell_features(pair, slack, x);
+  return march;
+}
+
+}  // namespace tactum::march
