@@ -20,39 +20,38 @@ struct Arc {
   Vec3 t0 = Vec3::Zero();
 };
 
-/// What the arc meets first.
+/// What the arc meets first: P's outward direction there is  cosine m0 + sine t0.
 struct ArcEnd {
-  int edge = -1;          // of Q; -1: the end face
-  Vec3 m = Vec3::Zero();  // P's outward direction there, when it is an edge
+  int edge = -1;  // of Q; -1: the end face
+  double cosine = 1.0, sine = 0.0;
 };
 
-/// Angles along the arc are compared by their cotangents: larger is earlier. A flat piece's arcs are half
-/// circles.
-double cotangent(double cosine, double sine) noexcept {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  if (sine > 0.0) return cosine / sine;
-  return cosine > 0.0 ? kInfinity : -kInfinity;
+/// Does (cosine, sine) come before the end along an arc? Angles are from 0 to a half circle (a flat piece's),
+/// so the earlier one has the larger cotangent; told without dividing.
+bool comes_before(double cosine, double sine, const ArcEnd& end) noexcept {
+  return cosine * end.sine > end.cosine * sine;
 }
 
 ArcEnd follow_arc(const Polytope& P, const Polytope& Q, const Mat3& R_QP, const Arc& arc,
                   int excluded) noexcept {
   const Vec3& m1 = P.faces[arc.end].normal;
-  double first = cotangent(arc.m0.dot(m1), arc.t0.dot(m1));
+  // Never quite zero: the end of a half circle comes after what is met at once.
+  ArcEnd end{-1, arc.m0.dot(m1), std::max(arc.t0.dot(m1), std::numeric_limits<double>::min())};
   const Vec3 o0 = -rotated(R_QP, arc.m0);  // Q's outward direction
   const Vec3 o_t = -rotated(R_QP, arc.t0);
-  ArcEnd meets;
   for (const Polytope::Ray& ray : Q.rays_at(arc.vertex)) {
     if (ray.edge == excluded) continue;
     const double below = std::max(0.0, -ray.direction.dot(o0));  // how much lower the far end is, per metre
     const double rising = ray.direction.dot(o_t);
     if (rising <= tolerances::kSameArc && below <= tolerances::kSameArc) continue;  // rolls on the edge
-    const double at = cotangent(rising, below);
-    if (at <= first) continue;
-    first = at;
-    meets.edge = ray.edge;
-    meets.m = (rising * arc.m0 + below * arc.t0).normalized();
+    if (comes_before(rising, below, end)) end = {ray.edge, rising, below};
   }
-  return meets;
+  if (end.edge >= 0) {
+    const double length = std::sqrt(end.cosine * end.cosine + end.sine * end.sine);
+    end.cosine /= length;
+    end.sine /= length;
+  }
+  return end;
 }
 
 /// Outward direction of N on two crossing arcs, by the edges; `near` decides the sign, and stands in for the
@@ -83,14 +82,22 @@ struct Passage {
   int excluded = -1;
 };
 
-/// The facet of N at the other end.
-MinkowskiFacet facet_behind(const PairView& pair, const Passage& passage) noexcept {
+ArcEnd end_of(const PairView& pair, const Passage& passage) noexcept {
+  return passage.on_a ? follow_arc(pair.A, pair.B, pair.X_BA.R, passage.arc, passage.excluded)
+                      : follow_arc(pair.B, pair.A, pair.X_AB.R, passage.arc, passage.excluded);
+}
+
+/// The facet of N at the passage's end.
+MinkowskiFacet facet_at(const PairView& pair, const Passage& passage, const ArcEnd& end) noexcept {
   const Arc& arc = passage.arc;
-  const ArcEnd end = passage.on_a ? follow_arc(pair.A, pair.B, pair.X_BA.R, arc, passage.excluded)
-                                  : follow_arc(pair.B, pair.A, pair.X_AB.R, arc, passage.excluded);
   if (end.edge < 0) return facet_of_face(pair, passage.on_a, arc.end, arc.vertex);
-  return passage.on_a ? edge_facet(pair, arc.edge, end.edge, -end.m)
-                      : edge_facet(pair, end.edge, arc.edge, rotated(pair.X_AB.R, end.m));
+  const Vec3 m = arc.m0 * end.cosine + arc.t0 * end.sine;
+  return passage.on_a ? edge_facet(pair, arc.edge, end.edge, -m)
+                      : edge_facet(pair, end.edge, arc.edge, rotated(pair.X_AB.R, m));
+}
+
+MinkowskiFacet facet_behind(const PairView& pair, const Passage& passage) noexcept {
+  return facet_at(pair, passage, end_of(pair, passage));
 }
 
 /// A border of a facet that the target point lies beyond, and by how much.
@@ -101,28 +108,35 @@ struct Crossing {
   bool at_tail = true;  // ... and at which end
 };
 
-/// The worst border among those with less than `cap` outside.
+/// The two worst borders among those with less than `cap` outside.
 struct Worst {
   double cap;
-  Crossing crossing{-std::numeric_limits<double>::infinity()};
+  Crossing first{-std::numeric_limits<double>::infinity()};
+  Crossing second{-std::numeric_limits<double>::infinity()};
 
   void consider(const Crossing& next) noexcept {
-    if (next.outside > crossing.outside && next.outside < cap) crossing = next;
+    if (!(next.outside < cap)) return;
+    if (next.outside > first.outside) {
+      second = first;
+      first = next;
+    } else if (next.outside > second.outside) {
+      second = next;
+    }
   }
 };
 
-Crossing worst_side(const Polytope& P, int face_index, const Vec3& point, double cap) noexcept {
+Worst worst_side(const Polytope& P, int face_index, const Vec3& point, double cap) noexcept {
   const Polytope::Face& face = P.faces[face_index];
   Worst worst{cap};
   for (int slot = face.first; slot < face.first + face.count; ++slot)
     worst.consider({P.sides[slot].normal.dot(point) - P.sides[slot].offset, slot});
-  return worst.crossing;
+  return worst;
 }
 
-/// Puts the witness points (p_b - p_a = target) on the features and tells the worst border they are beyond,
+/// Puts the witness points (p_b - p_a = target) on the features and tells the worst borders they are beyond,
 /// of those with less than `cap` outside.
-Crossing place(const PairView& pair, const MinkowskiFacet& facet, const Vec3& target, double cap,
-               MinkowskiWalk& walk) noexcept {
+Worst place(const PairView& pair, const MinkowskiFacet& facet, const Vec3& target, double cap,
+            MinkowskiWalk& walk) noexcept {
   if (facet.a.kind == Kind::kFace) {
     walk.p_b = pair.vertex_b(facet.b.index);
     walk.p_a = walk.p_b - target;
@@ -154,7 +168,7 @@ Crossing place(const PairView& pair, const MinkowskiFacet& facet, const Vec3& ta
   worst.consider({s - ea.length, -1, true, false});
   worst.consider({-t, -1, false, true});
   worst.consider({t - eb.length, -1, false, false});
-  return worst.crossing;
+  return worst;
 }
 
 int other_face(const Polytope::Edge& edge, int face) noexcept {
@@ -208,20 +222,13 @@ Passage across(const PairView& pair, const MinkowskiFacet& facet, const Crossing
   return edges ? across_edge_border(pair, facet, crossing) : across_face_border(pair, facet, crossing.slot);
 }
 
-/// Can the plane behind the border be nearer although the foot is inside? Seen along the common ridge, a foot
-/// at depth d and `inside` from a ridge where the planes turn by alpha is at depth  inside sin alpha + d cos
-/// alpha  under the other: less than d when  inside < d tan(alpha / 2). The arc's end bounds alpha.
-bool maybe_lower_behind(const PairView& pair, const MinkowskiFacet& facet, const Passage& passage,
-                        double inside, double d) noexcept {
-  const Polytope& P = passage.on_a ? pair.A : pair.B;
-  const double cosine = passage.arc.m0.dot(P.faces[passage.arc.end].normal);
-  double inside_sq = inside * inside;
-  if (facet.a.kind == Kind::kEdge && facet.b.kind == Kind::kEdge) {  // told along an edge, not square to it
-    const double along = pair.A.edges[facet.a.index].direction.dot(
-        rotated(pair.X_AB.R, pair.B.edges[facet.b.index].direction));
-    inside_sq *= 1.0 - along * along;
-  }
-  return inside_sq * (1.0 + cosine) < d * d * (1.0 - cosine);
+/// Square to the border, of the foot that is `inside` of it as told by place(): for two edges along one of
+/// them, not square to the other.
+double square_to_border(const PairView& pair, const MinkowskiFacet& facet, double inside) noexcept {
+  if (facet.a.kind != Kind::kEdge || facet.b.kind != Kind::kEdge) return inside;
+  const double along =
+      pair.A.edges[facet.a.index].direction.dot(rotated(pair.X_AB.R, pair.B.edges[facet.b.index].direction));
+  return inside * std::sqrt(std::max(0.0, 1.0 - along * along));
 }
 
 /// What the walk goes down on: the height of a facet's plane, or the length of the ray to it.
@@ -246,26 +253,29 @@ bool moved_outside(const PairView& pair, const Measure& measure, Crossing crossi
       here.facet = next;
       return true;
     }
-    crossing = place(pair, here.facet, target, crossing.outside, here);
+    crossing = place(pair, here.facet, target, crossing.outside, here).first;
   }
   return false;
 }
 
 /// The foot is inside; the nearest borders may still have a lower facet behind them: two local minima side by
-/// side, of which the walk takes the better.
-bool moved_inside(const PairView& pair, Crossing crossing, double limit, MinkowskiWalk& here) noexcept {
-  constexpr int kBorders = 2;
+/// side, of which the walk takes the better. Seen along the common ridge, a foot at depth d and `inside` from
+/// a ridge where the planes turn by alpha is at depth  d cos alpha + inside sin alpha  under the other.
+bool moved_inside(const PairView& pair, const Worst& nearest, double limit, MinkowskiWalk& here) noexcept {
   const double d = here.facet.height;
-  for (int k = 0; k < kBorders && -crossing.outside < d; ++k) {
-    const Passage passage = across(pair, here.facet, crossing);
-    if (maybe_lower_behind(pair, here.facet, passage, -crossing.outside, d)) {
-      const MinkowskiFacet next = facet_behind(pair, passage);
-      if (next.height < limit) {
-        here.facet = next;
-        return true;
-      }
-    }
-    if (k + 1 < kBorders) crossing = place(pair, here.facet, here.facet.n * d, crossing.outside, here);
+  for (const Crossing* border : {&nearest.first, &nearest.second}) {
+    if (-border->outside >= d) return false;
+    const Passage passage = across(pair, here.facet, *border);
+    const double inside = square_to_border(pair, here.facet, -border->outside);
+    const Vec3& end_normal = (passage.on_a ? pair.A : pair.B).faces[passage.arc.end].normal;
+    const double farthest = passage.arc.m0.dot(end_normal);  // no arc turns more: alpha at most
+    if (inside * inside * (1.0 + farthest) >= d * d * (1.0 - farthest)) continue;
+    const ArcEnd end = end_of(pair, passage);
+    if (d * end.cosine + inside * end.sine >= limit) continue;
+    const MinkowskiFacet next = facet_at(pair, passage, end);
+    if (next.height >= limit) continue;
+    here.facet = next;
+    return true;
   }
   return false;
 }
@@ -285,8 +295,8 @@ MinkowskiWalk walk(const PairView& pair, const MinkowskiFacet& start, const Vec3
   for (int step = 1; step <= bound && step - improved <= kLevelSteps; ++step) {
     here.outside = 0.0;
     const double length = measure(here.facet);
-    const Crossing crossing = place(pair, here.facet, measure.target(here.facet), kInfinity, here);
-    here.outside = std::max(here.outside, crossing.outside);
+    const Worst worst = place(pair, here.facet, measure.target(here.facet), kInfinity, here);
+    here.outside = std::max(here.outside, worst.first.outside);
     const double best_length = measure(best.facet);
     if (length < best_length - level || (length < best_length + level && here.outside < best.outside)) {
       best = here;
@@ -294,9 +304,9 @@ MinkowskiWalk walk(const PairView& pair, const MinkowskiFacet& start, const Vec3
     }
     best.steps = step;
     const bool inside = here.outside <= slack;
-    const bool moved = inside
-                           ? !ray && moved_inside(pair, crossing, length - level, here)
-                           : moved_outside(pair, measure, crossing, measure(best.facet) + level, slack, here);
+    const bool moved =
+        inside ? !ray && moved_inside(pair, worst, length - level, here)
+               : moved_outside(pair, measure, worst.first, measure(best.facet) + level, slack, here);
     if (!moved) break;
   }
   return best;
@@ -339,20 +349,21 @@ MinkowskiFacet facet_of_face(const PairView& pair, bool on_a, int face, int vert
   return facet;
 }
 
-std::optional<MinkowskiFacet> facet_of_edges(const PairView& pair, int edge_a, int edge_b) noexcept {
+bool facet_of_edges(const PairView& pair, int edge_a, int edge_b, MinkowskiFacet& facet) noexcept {
   const Polytope::Edge& ea = pair.A.edges[edge_a];
   const Polytope::Edge& eb = pair.B.edges[edge_b];
   const Vec3 c = ea.direction.cross(rotated(pair.X_AB.R, eb.direction));
   const double a_left = pair.A.sides[ea.left_slot].normal.dot(c);
   const double a_right = pair.A.sides[ea.right_slot].normal.dot(c);
-  if (a_left * a_right < 0.0) return std::nullopt;
+  if (a_left * a_right < 0.0) return false;
   const Vec3 c_B = rotated(pair.X_BA.R, c);
   const double b_left = pair.B.sides[eb.left_slot].normal.dot(c_B);
   const double b_right = pair.B.sides[eb.right_slot].normal.dot(c_B);
   // The normal cone of an edge is outside both its side planes; A's and B's outward directions are opposite.
-  if (b_left * b_right < 0.0 || (a_left + a_right) * (b_left + b_right) >= 0.0) return std::nullopt;
-  if (c.squaredNorm() < tolerances::kParallelSine * tolerances::kParallelSine) return std::nullopt;
-  return edge_facet(pair, edge_a, edge_b, (b_left + b_right > 0.0 ? c : Vec3(-c)).normalized());
+  if (b_left * b_right < 0.0 || (a_left + a_right) * (b_left + b_right) >= 0.0) return false;
+  if (c.squaredNorm() < tolerances::kParallelSine * tolerances::kParallelSine) return false;
+  facet = edge_facet(pair, edge_a, edge_b, b_left + b_right > 0.0 ? c : Vec3(-c));
+  return true;
 }
 
 MinkowskiFacet facet_near(const PairView& pair, const Vec3& n, int from_a, int from_b) noexcept {
@@ -384,9 +395,9 @@ bool is_real(const PairView& pair, const MinkowskiFacet& facet) noexcept {
 MinkowskiWalk stand_on(const PairView& pair, const MinkowskiFacet& facet) noexcept {
   MinkowskiWalk here;
   here.facet = facet;
-  const Crossing crossing =
+  const Worst worst =
       place(pair, facet, facet.n * facet.height, std::numeric_limits<double>::infinity(), here);
-  here.outside = std::max(here.outside, crossing.outside);
+  here.outside = std::max(here.outside, worst.first.outside);
   here.steps = 1;
   return here;
 }

@@ -17,7 +17,6 @@
 /// not stored.) Cost: about 60 ns a facet.
 
 #include <limits>
-#include <optional>
 
 #include "tactum/collision/pair_view.h"
 
@@ -52,8 +51,8 @@ struct MinkowskiWalk {
 /// The facet of a face of A (`on_a`) or of B, with the other piece's support vertex climbed to from `vertex`.
 MinkowskiFacet facet_of_face(const PairView& pair, bool on_a, int face, int vertex) noexcept;
 
-/// The facet where two edges' arcs cross; none when they do not.
-std::optional<MinkowskiFacet> facet_of_edges(const PairView& pair, int edge_a, int edge_b) noexcept;
+/// The facet where two edges' arcs cross; false when they do not.
+bool facet_of_edges(const PairView& pair, int edge_a, int edge_b, MinkowskiFacet& facet) noexcept;
 
 /// A facet near the outward direction `n` (any length): the best aligned face at either support vertex.
 MinkowskiFacet facet_near(const PairView& pair, const Vec3& n) noexcept;

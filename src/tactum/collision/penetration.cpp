@@ -35,9 +35,10 @@ void for_every_facet(const PairView& pair, const Visit& visit) noexcept {
     vertex = facet.a.index;
     visit(facet);
   }
+  MinkowskiFacet facet;
   for (std::size_t i = 0; i < pair.A.edges.size(); ++i)
     for (std::size_t j = 0; j < pair.B.edges.size(); ++j)
-      if (const auto facet = facet_of_edges(pair, static_cast<int>(i), static_cast<int>(j))) visit(*facet);
+      if (facet_of_edges(pair, static_cast<int>(i), static_cast<int>(j), facet)) visit(facet);
 }
 
 /// Where faces or edges of both pieces lie in the support planes, several facets of the difference make one,
@@ -124,15 +125,20 @@ class Shallowest {
   int steps_ = 0;
 };
 
-/// The facet of features of the last frame, if their kinds make one and (for edges) their arcs still cross.
-std::optional<MinkowskiFacet> cached_facet(const PairView& pair, const FeaturePair& last) noexcept {
+/// The facet of features of the last frame: false when their kinds make none, or (of edges) their arcs no
+/// longer cross.
+bool facet_again(const PairView& pair, const FeaturePair& last, MinkowskiFacet& facet) noexcept {
   const Feature& a = last.a;
   const Feature& b = last.b;
-  if (!valid_feature(pair.A, a) || !valid_feature(pair.B, b)) return std::nullopt;
-  if (a.kind == Kind::kFace) return facet_of_face(pair, true, a.index, vertex_of(pair.B, b));
-  if (b.kind == Kind::kFace) return facet_of_face(pair, false, b.index, vertex_of(pair.A, a));
-  if (a.kind == Kind::kEdge && b.kind == Kind::kEdge) return facet_of_edges(pair, a.index, b.index);
-  return std::nullopt;
+  if (!valid_feature(pair.A, a) || !valid_feature(pair.B, b)) return false;
+  if (a.kind == Kind::kFace) {
+    facet = facet_of_face(pair, true, a.index, vertex_of(pair.B, b));
+  } else if (b.kind == Kind::kFace) {
+    facet = facet_of_face(pair, false, b.index, vertex_of(pair.A, a));
+  } else {
+    return a.kind == Kind::kEdge && b.kind == Kind::kEdge && facet_of_edges(pair, a.index, b.index, facet);
+  }
+  return true;
 }
 
 Vec3 line_of_centers(const PairView& pair) noexcept {
@@ -189,8 +195,9 @@ class Tracker {
   Tracker(const PairView& pair, PairCache& cache) noexcept : pair_(pair), cache_(cache) {}
 
   PairDistance run() noexcept {
-    const auto facet = cached_facet(pair_, {cache_.a, cache_.b});
-    current_ = walk_to_foot(pair_, facet ? *facet : facet_near(pair_, cache_.normal_A));
+    MinkowskiFacet start;
+    if (!facet_again(pair_, {cache_.a, cache_.b}, start)) start = facet_near(pair_, cache_.normal_A);
+    current_ = walk_to_foot(pair_, start);
     steps_ = current_.steps;
     const std::uint32_t phase = cache_.turn++ % kRound;
     if (phase == 0) scout();
@@ -200,14 +207,14 @@ class Tracker {
 
  private:
   static constexpr std::uint32_t kRound = 4;  ///< frames from one look around to the next
-  static constexpr int kSteps = 4;            ///< facets walked beside the tracked minimum in a frame
+  static constexpr int kSteps = 2;            ///< facets walked beside the tracked minimum in a frame
 
   static bool same(const MinkowskiFacet& f, const MinkowskiFacet& g) noexcept {
     return f.a == g.a && f.b == g.b;
   }
   double height(const FeaturePair& features) const noexcept {
-    const auto facet = cached_facet(pair_, features);
-    return facet ? facet->height : std::numeric_limits<double>::infinity();
+    MinkowskiFacet facet;
+    return facet_again(pair_, features, facet) ? facet.height : std::numeric_limits<double>::infinity();
   }
 
   /// The scout sets out, or walks on and arrives, or waits for its next turn.
@@ -245,13 +252,14 @@ class Tracker {
   }
 
   MinkowskiWalk go_on(const FeaturePair& from) noexcept {
-    const MinkowskiWalk walk = walk_to_foot(pair_, facet_again(from), kSteps);
+    const MinkowskiWalk walk = walk_to_foot(pair_, beside(from), kSteps);
     steps_ += walk.steps;
     return walk;
   }
 
-  MinkowskiFacet facet_again(const FeaturePair& features) const noexcept {
-    if (const auto facet = cached_facet(pair_, features)) return *facet;
+  MinkowskiFacet beside(const FeaturePair& features) const noexcept {
+    MinkowskiFacet facet;
+    if (facet_again(pair_, features, facet)) return facet;
     if (!valid_feature(pair_.A, features.a) || !valid_feature(pair_.B, features.b)) return current_.facet;
     // Edges that no longer cross: a face beside.
     return facet_of_face(pair_, true, face_of(pair_.A, features.a), vertex_of(pair_.B, features.b));
@@ -292,9 +300,10 @@ PairDistance tracked_depth(const PairView& pair, PairCache& cache) noexcept {
 PairDistance penetration_depth(const Polytope& A, const Polytope& B, const Pose& X_AB,
                                PairCache& cache) noexcept {
   const PairView pair(A, B, X_AB);
+  PairDistance x;  // what every way returns: an answer copied right after it was written waits for its parts
   if (!cache.normal_A.isZero()) {
-    const PairDistance result = tracked_depth(pair, cache);
-    if (result.certified()) return result;
+    x = tracked_depth(pair, cache);
+    if (x.certified()) return x;
   }
   Shallowest shallowest(pair);
   if (small_pair(pair)) {
@@ -302,9 +311,9 @@ PairDistance penetration_depth(const Polytope& A, const Polytope& B, const Pose&
   } else {
     from_many_directions(pair, shallowest);
   }
-  const PairDistance result = shallowest.best();
-  remember(result, cache);
-  return result;
+  x = shallowest.best();
+  remember(x, cache);
+  return x;
 }
 
 PairDistance penetration_exhaustive(const Polytope& A, const Polytope& B, const Pose& X_AB) noexcept {
