@@ -66,8 +66,7 @@ class Overlap {
 };
 
 /// The moments of all polygons as those of one figure.
-PatchMoments moments_over(const Overlap& overlap, bool alone) noexcept {
-  if (alone) return moments_of(overlap.own());
+PatchMoments moments_of_all(const Overlap& overlap) noexcept {
   PatchMoments sum;
   overlap.visit([&](const PatchPolygon& polygon) {
     const PatchMoments m = moments_of(polygon);
@@ -125,7 +124,7 @@ void face_face_contact(const PatchWork& w) noexcept {
     cut_toward_edge(rise_from_edge(w.tangent, w.A, w.a.edge, {}, za.slope), w.a.face_share);
   if (w.b.face_share < 1.0)
     cut_toward_edge(rise_from_edge(w.tangent, w.B, w.b.edge, w.X_AB, -zb.slope), w.b.face_share);
-  const PatchMoments m = moments_over(overlap, alone);
+  const PatchMoments m = alone ? moments_of(overlap.own()) : moments_of_all(overlap);
   const double size = std::max(w.A.size, w.B.size);
   if (m.area <= tolerances::kPatchArea * size * size) return sliver_of(w, overlap.own(), za, zb);
   w.out.area = m.area;

@@ -203,7 +203,7 @@ void clip_polygon(PatchPolygon& polygon, const PatchPolygon& window) noexcept {
   }
   // One number at a time: wider loads would wait for the stores of the last cut.
   polygon.clear();
-  for (std::size_t i = 0; i < n; ++i) polygon.push_back(from[i]);
+  for (std::size_t i = 0; i < n; ++i) polygon.push_back({from[i].x(), from[i].y()});
 }
 
 double twice_area(const PatchPolygon& polygon) noexcept {
