@@ -9,7 +9,7 @@ function(tactum_layer name)
     target_include_directories(tactum_${name} PUBLIC ${PROJECT_SOURCE_DIR}/src)
     target_link_libraries(tactum_${name} PUBLIC ${LAYER_USES} PRIVATE ${LAYER_PRIVATELY} tactum_warnings)
     if(LAYER_HOT)
-      target_compile_options(tactum_${name} PRIVATE "$<$<CONFIG:Release>:-O3;-fno-tree-slp-vectorize>")
+      target_compile_options(tactum_${name} PRIVATE "$<$<CONFIG:Release>:-O3;-fno-tree-slp-vectorize;-fno-math-errno;-fno-trapping-math>")
     endif()
   else()  # a layer of headers only
     add_library(tactum_${name} INTERFACE)

@@ -264,5 +264,40 @@ TEST(ClosestFeatures, TrackedMotionIsCertifiedInFewSteps) {
   EXPECT_LT(double(steps), 1.5 * double(frames));
 }
 
+/// How far `point` is from the line of an edge of P, whose pose in the point's frame is X [m].
+double off_line(const Polytope& P, int edge, const Pose& X, const Vec3& point) {
+  const Polytope::Edge& e = P.edges[std::size_t(edge)];
+  return (X.R * e.direction).cross(point - X * P.vertices[std::size_t(e.tail)]).norm();
+}
+
+/// Between edges that cross nothing is measured of what rounding leaves: the bound told must hold, of the
+/// support planes in long double and of the points on their edges, at any angle and from any place.
+TEST(ClosestFeatures, TheDoubtOfCrossingEdgesHolds) {
+  Random random(20268);
+  const auto shapes = cases::shapes(random, false);
+  int crossing = 0;
+  for (int pose = 0; pose < cases::some_of(200000); ++pose) {
+    const Polytope& A = shapes[std::size_t(random.index(int(shapes.size())))].polytope;
+    const Polytope& B = shapes[std::size_t(random.index(int(shapes.size())))].polytope;
+    Pose X{cases::random_rotation(random), Vec3::Zero()};
+    X.p = A.center - X.R * B.center + cases::random_unit(random) * (A.radius + B.radius);
+    PairCache cache;
+    const PairDistance x = closest_features(A, B, X, cache);
+    if (x.stop != Stop::kCertified || x.distance <= 0.0) continue;
+    if (x.a.kind != FeatureKind::kEdge || x.b.kind != FeatureKind::kEdge) continue;
+    const Vec3 across =
+        A.edges[std::size_t(x.a.index)].direction.cross(X.R * B.edges[std::size_t(x.b.index)].direction);
+    if (across.norm() <= tolerances::kCrossingSine) continue;
+    ++crossing;
+    const double left = double(x.distance - oracle::support_gap(A, B, X, x.normal));
+    ASSERT_LE(left, x.doubt) << cases::describe(X);
+    ASSERT_LE((x.p_a - x.p_b - x.normal * x.distance).norm(), x.doubt);
+    ASSERT_LE(off_line(A, x.a.index, {}, x.p_a), x.doubt + 1e-15 * A.size);
+    ASSERT_LE(off_line(B, x.b.index, X, x.p_b), x.doubt + 1e-15 * (A.size + B.size));
+  }
+  std::printf("  %d pairs of crossing edges\n", crossing);
+  EXPECT_GT(crossing, cases::some_of(200000) / 20);
+}
+
 }  // namespace
 }  // namespace tactum

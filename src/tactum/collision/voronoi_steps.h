@@ -13,9 +13,9 @@ namespace tactum::march {
 
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// One step as seen from the piece P that owns the feature of lower dimension; Q is the other. `swapped`: P
+/// One step as seen from the piece P that owns the feature of lower dimension; Q is the other. `Swapped`: P
 /// is B.
-template <bool swapped>
+template <bool Swapped>
 struct Sides {
   const Polytope& P;
   const Polytope& Q;
@@ -23,21 +23,21 @@ struct Sides {
   double slack;
 
   explicit Sides(const PiecePair& pair, double crossing_slack) noexcept
-      : P(swapped ? pair.B : pair.A), Q(swapped ? pair.A : pair.B), X_AB(pair.X_AB), slack(crossing_slack) {}
+      : P(Swapped ? pair.B : pair.A), Q(Swapped ? pair.A : pair.B), X_AB(pair.X_AB), slack(crossing_slack) {}
 
   /// A point of P, in Q's frame.
-  Vec3 in_Q(const Vec3& p) const noexcept { return swapped ? X_AB * p : rotated_back(X_AB.R, p - X_AB.p); }
+  Vec3 in_Q(const Vec3& p) const noexcept { return Swapped ? X_AB * p : rotated_back(X_AB.R, p - X_AB.p); }
   /// A point of Q, in P's frame.
-  Vec3 in_P(const Vec3& q) const noexcept { return swapped ? rotated_back(X_AB.R, q - X_AB.p) : X_AB * q; }
+  Vec3 in_P(const Vec3& q) const noexcept { return Swapped ? rotated_back(X_AB.R, q - X_AB.p) : X_AB * q; }
   /// Of a point of each piece, in its own frame, the one of A.
-  static const Vec3& of_A(const Vec3& p, const Vec3& q) noexcept { return swapped ? q : p; }
+  static const Vec3& of_A(const Vec3& p, const Vec3& q) noexcept { return Swapped ? q : p; }
   /// The normal from B to A, in A's frame, of a vector from P to Q told in both frames.
-  static Vec3 normal(const Vec3& d_P, const Vec3& d_Q) noexcept { return swapped ? d_Q : Vec3(-d_P); }
+  static Vec3 normal(const Vec3& d_P, const Vec3& d_Q) noexcept { return Swapped ? d_Q : Vec3(-d_P); }
   Vec3 turned_to_Q(const Vec3& d) const noexcept {
-    return swapped ? rotated(X_AB.R, d) : rotated_back(X_AB.R, d);
+    return Swapped ? rotated(X_AB.R, d) : rotated_back(X_AB.R, d);
   }
   Vec3 turned_to_P(const Vec3& d) const noexcept {
-    return swapped ? rotated_back(X_AB.R, d) : rotated(X_AB.R, d);
+    return Swapped ? rotated_back(X_AB.R, d) : rotated(X_AB.R, d);
   }
 };
 
@@ -79,7 +79,7 @@ enum class Outcome : std::uint8_t { kClosest, kMoved, kOverlap, kBehind };
 
 /// How a step ended, and the features of P and Q to go on from.
 struct Step {
-  Outcome outcome;
+  Outcome outcome = Outcome::kMoved;
   Feature p, q;
 };
 
@@ -104,17 +104,17 @@ inline void tell(const Vec3& p_a, const Vec3& n, double gap, double doubt, PairD
 }
 
 /// The points of a place that proves nothing.
-template <bool swapped>
-void tell_points(const Sides<swapped>& S, const Place& at, PairDistance& x) noexcept {
-  x.p_a = swapped ? at.q : at.p;
-  x.p_b = S.X_AB * (swapped ? at.p : at.q);
+template <bool Swapped>
+void tell_points(const Sides<Swapped>& S, const Place& at, PairDistance& x) noexcept {
+  x.p_a = Swapped ? at.q : at.p;
+  x.p_b = S.X_AB * (Swapped ? at.p : at.q);
   x.normal.setZero();
   x.distance = at.gap;
   x.doubt = kInfinity;
 }
 
-template <bool swapped>
-Step vertex_vertex(const Sides<swapped>& S, Feature fp, Feature fq, Place& at, PairDistance& x) noexcept {
+template <bool Swapped>
+Step vertex_vertex(const Sides<Swapped>& S, Feature fp, Feature fq, Place& at, PairDistance& x) noexcept {
   at.p = S.P.vertices[fp.index];
   at.q = S.Q.vertices[fq.index];
   const Vec3 d_Q = at.q - S.in_Q(at.p);
@@ -134,8 +134,8 @@ Step vertex_vertex(const Sides<swapped>& S, Feature fp, Feature fq, Place& at, P
   return {Outcome::kClosest, fp, fq};
 }
 
-template <bool swapped>
-Step vertex_edge(const Sides<swapped>& S, Feature fp, Feature fq, Place& at, PairDistance& x) noexcept {
+template <bool Swapped>
+Step vertex_edge(const Sides<Swapped>& S, Feature fp, Feature fq, Place& at, PairDistance& x) noexcept {
   at.p = S.P.vertices[fp.index];
   const Polytope::Edge& g = S.Q.edges[fq.index];
   const Vec3& tail = S.Q.vertices[g.tail];
@@ -181,8 +181,8 @@ inline int slot_outside(const Polytope& Q, const Polytope::Face& face, const Vec
   return best;
 }
 
-template <bool swapped>
-Step vertex_face(const Sides<swapped>& S, Feature fp, Feature fq, Place& at, PairDistance& x) noexcept {
+template <bool Swapped>
+Step vertex_face(const Sides<Swapped>& S, Feature fp, Feature fq, Place& at, PairDistance& x) noexcept {
   const Vec3& p = S.P.vertices[fp.index];
   const Polytope::Face& f = S.Q.faces[fq.index];
   const Vec3 p_Q = S.in_Q(p);
@@ -299,14 +299,14 @@ inline Step edge_edge(const PiecePair& pair, const Sides<false>& S, Feature fp, 
 
 /// Dispatch on the kinds, P owning the lower one. Tells `x` where the features are closest, and the place
 /// where it moved on.
-template <bool swapped>
-Step step(const PiecePair& pair, const Sides<swapped>& S, Feature fp, Feature fq, Place& at,
+template <bool Swapped>
+Step step(const PiecePair& pair, const Sides<Swapped>& S, Feature fp, Feature fq, Place& at,
           PairDistance& x) noexcept {
   if (fp.kind == FeatureKind::kVertex) {
     if (fq.kind == FeatureKind::kFace) return vertex_face(S, fp, fq, at, x);
     return fq.kind == FeatureKind::kEdge ? vertex_edge(S, fp, fq, at, x) : vertex_vertex(S, fp, fq, at, x);
   }
-  if constexpr (!swapped)
+  if constexpr (!Swapped)
     if (fq.kind == FeatureKind::kEdge) return edge_edge(pair, S, fp, fq, at, x);
   const Polytope::Edge& e = S.P.edges[fp.index];
   return edge_face(S.Q, e, S.in_Q(S.P.vertices[e.tail]), S.turned_to_Q(e.direction), S.slack, fp, fq);

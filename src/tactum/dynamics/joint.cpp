@@ -13,6 +13,20 @@ namespace {
 /// One or three unknowns, without allocation.
 using SmallMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 3, 3>;
 
+/// The turn by hinge_angle() about the hinge's axis, from the cosine and sine of half of it, as the
+/// quaternion has them: without the angle.
+Mat3 hinge_turn(const Body& body, const Pose& X_WB) noexcept {
+  const Vec3& u = body.joint.axis_W;
+  const Quat turn(X_WB.R * body.X_WB.R.transpose());
+  const double w = turn.w();
+  const double x = u.dot(turn.vec());
+  const double square = w * w + x * x;
+  if (!(square > 0.0)) return Mat3::Identity();  // half a turn about an axis square to the hinge's
+  const double sine = 2.0 * w * x / square;
+  const double less = 2.0 * x * x / square;  // 1 - cosine
+  return Mat3::Identity() * (1.0 - less) + skew(u) * sine + u * u.transpose() * less;
+}
+
 }  // namespace
 
 Resistance inertial_resistance(const Body& body, const Pose& X_WB) noexcept {
@@ -138,7 +152,7 @@ Pose constrained_pose(const Body& body, const Pose& X_WB) noexcept {
     case JointKind::kFree:
       return renormalized(X_WB);
     case JointKind::kHinge:
-      return turned(exp_rotation(body.joint.axis_W * hinge_angle(body, X_WB)));
+      return turned(hinge_turn(body, X_WB));
     case JointKind::kSlider:
       return {body.X_WB.R, body.X_WB.p + body.joint.axis_W * joint_position(body, X_WB)};
     case JointKind::kBall:
