@@ -264,6 +264,37 @@ TEST(ClosestFeatures, TrackedMotionIsCertifiedInFewSteps) {
   EXPECT_LT(double(steps), 1.5 * double(frames));
 }
 
+/// Two long edges at the angle where the walk changes from one way of telling them to the other, over each
+/// other's ends and between, from touching to apart: both ways say the same, and neither sends it in circles.
+TEST(ClosestFeatures, EdgesAreTheSameEitherWayTheyAreTold) {
+  const Polytope A = make_prism(3, 0.01, 0.1);
+  const Polytope B = make_prism(3, 0.01, 0.1);
+  const double size = A.size;
+  for (double sine : {0.05, 0.0999999999, 0.1, 0.1000000001, 0.2})
+    for (double along : {0.0, 0.049, 0.05, 0.05 - 1e-15, 0.05 + 1e-15, 0.051})
+      for (double gap : {0.0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3}) {
+        const Polytope::Edge* edge = nullptr;
+        for (const Polytope::Edge& e : A.edges)
+          if (e.length > 0.09) edge = &e;
+        ASSERT_NE(edge, nullptr);
+        const Vec3 out =
+            (A.faces[std::size_t(edge->left)].normal + A.faces[std::size_t(edge->right)].normal).normalized();
+        const Vec3 middle = A.vertices[std::size_t(edge->tail)] + edge->direction * (0.5 * edge->length);
+        // B turned over, its same edge facing A's across the gap, then turned by the angle.
+        const Vec3 square = edge->direction.cross(out);
+        const Mat3 over = exp_rotation(edge->direction * kPi);
+        const Mat3 R = exp_rotation(out * std::asin(sine)) * over;
+        const Pose X{R, middle + out * gap + edge->direction * along + square * 1e-4 - R * middle};
+        PairCache cache;
+        const PairDistance x = closest_features(A, B, X, cache);
+        EXPECT_EQ(oracle::complaint(A, B, X, x, 2e-9 * size), "")
+            << "sine " << sine << " along " << along << " gap " << gap;
+        const PairDistance again = closest_features(A, B, X, cache);
+        EXPECT_NEAR(again.distance, x.distance, 2e-9 * size);
+        EXPECT_LE(again.steps, x.steps + 2);
+      }
+}
+
 /// How far `point` is from the line of an edge of P, whose pose in the point's frame is X [m].
 double off_line(const Polytope& P, int edge, const Pose& X, const Vec3& point) {
   const Polytope::Edge& e = P.edges[std::size_t(edge)];

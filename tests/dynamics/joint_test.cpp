@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "tactum/base/random.h"
 #include "tactum/math/screw.h"
 
@@ -91,6 +93,33 @@ TEST(Joint, ConstrainedPoseIsTheTurnAboutTheAxis) {
     const Pose back = constrained_pose(body, drifted);
     EXPECT_LT((back.R - exact.R).norm(), 1e-5);
     EXPECT_NEAR((back.p - anchor).norm(), (body.X_WB.p - anchor).norm(), 1e-14);
+  }
+}
+
+TEST(Joint, AnyTurnOfAHingeBecomesItsTurnAboutTheAxis) {
+  Random random(6);
+  for (int i = 0; i < 1000; ++i) {
+    const Body body = random_body(random, JointKind::kHinge);
+    const Pose any{exp_rotation(random_vector(random, 3)) * body.X_WB.R, random_vector(random, 0.1)};
+    const Pose back = constrained_pose(body, any);
+    const Mat3 turn = exp_rotation(body.joint.axis_W * hinge_angle(body, any));
+    EXPECT_LT((back.R - turn * body.X_WB.R).norm(), 1e-13);
+    EXPECT_LT((back.R * back.R.transpose() - Mat3::Identity()).norm(), 1e-14);
+  }
+  // Half a turn about an axis square to the hinge's says nothing of the angle.
+  Body body = random_body(random, JointKind::kHinge);
+  body.X_WB.R = Mat3::Identity();
+  body.joint.axis_W = Vec3::UnitZ();
+  EXPECT_EQ(constrained_pose(body, {Vec3(1, -1, -1).asDiagonal(), Vec3::Zero()}).R, Mat3::Identity());
+}
+
+/// What is no number must stay none, for the frame to see it.
+TEST(Joint, APoseThatIsNoNumberStaysNone) {
+  Random random(7);
+  for (JointKind kind : {JointKind::kFree, JointKind::kHinge, JointKind::kBall}) {
+    const Body body = random_body(random, kind);
+    const double none = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_FALSE(constrained_pose(body, {Mat3::Constant(none), Vec3::Constant(none)}).finite());
   }
 }
 

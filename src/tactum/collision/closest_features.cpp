@@ -27,7 +27,7 @@ namespace {
   const bool tracked = valid_feature(A, cache.a) && valid_feature(B, cache.b);
   const FeaturePair seed = tracked ? FeaturePair{cache.a, cache.b} : first_seed(pair);
   const March march = march::walk(pair, seed, tolerances::kVoronoiSlack * pair.scale, x);
-  if (march.doubt > certificate(pair)) {
+  if (!(march.doubt <= certificate(pair))) {
     x = settle_doubt(PairView(pair), cache, march, x);
     return x;
   }

@@ -36,7 +36,7 @@ ArcEnd follow_arc(const Polytope& P, const Polytope& Q, const Mat3& R_QP, const 
                   int excluded) noexcept {
   const Vec3& m1 = P.faces[arc.end].normal;
   // Never quite zero: the end of a half circle comes after what is met at once.
-  ArcEnd end{-1, arc.m0.dot(m1), std::max(arc.t0.dot(m1), std::numeric_limits<double>::min())};
+  ArcEnd end{-1, arc.m0.dot(m1), std::max(arc.t0.dot(m1), tolerances::kSameArc * tolerances::kSameArc)};
   const Vec3 o0 = -rotated(R_QP, arc.m0);  // Q's outward direction
   const Vec3 o_t = -rotated(R_QP, arc.t0);
   for (const Polytope::Ray& ray : Q.rays_at(arc.vertex)) {
@@ -128,8 +128,23 @@ struct Worst {
 Worst worst_side(const Polytope& P, int face_index, const Vec3& point, double cap) noexcept {
   const Polytope::Face& face = P.faces[face_index];
   Worst worst{cap};
-  for (int slot = face.first; slot < face.first + face.count; ++slot)
-    worst.consider({P.sides[slot].normal.dot(point) - P.sides[slot].offset, slot});
+  // Numbers of their own, chosen without branches: which sides are worst is hard to foretell.
+  double first = worst.first.outside;
+  double second = first;
+  int first_slot = -1;
+  int second_slot = -1;
+  for (int slot = face.first; slot < face.first + face.count; ++slot) {
+    const double out = P.sides[slot].normal.dot(point) - P.sides[slot].offset;
+    const bool counts = out < cap;
+    const bool is_first = counts && out > first;
+    const bool is_second = counts && out > second;
+    second = is_first ? first : is_second ? out : second;
+    second_slot = is_first ? first_slot : is_second ? slot : second_slot;
+    first = is_first ? out : first;
+    first_slot = is_first ? slot : first_slot;
+  }
+  worst.first = {first, first_slot};
+  worst.second = {second, second_slot};
   return worst;
 }
 
@@ -264,7 +279,7 @@ bool moved_outside(const PairView& pair, const Measure& measure, Crossing crossi
 bool moved_inside(const PairView& pair, const Worst& nearest, double limit, MinkowskiWalk& here) noexcept {
   const double d = here.facet.height;
   for (const Crossing* border : {&nearest.first, &nearest.second}) {
-    if (-border->outside >= d) return false;
+    if (!(-border->outside < d)) return false;
     const Passage passage = across(pair, here.facet, *border);
     const double inside = square_to_border(pair, here.facet, -border->outside);
     const Vec3& end_normal = (passage.on_a ? pair.A : pair.B).faces[passage.arc.end].normal;
@@ -280,13 +295,14 @@ bool moved_inside(const PairView& pair, const Worst& nearest, double limit, Mink
   return false;
 }
 
-MinkowskiWalk walk(const PairView& pair, const MinkowskiFacet& start, const Vec3* ray, int most) noexcept {
+MinkowskiWalk walk(const PairView& pair, const MinkowskiFacet& start, const Vec3* ray,
+                   int most_moves) noexcept {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   constexpr int kLevelSteps = 16;  // between facets of one plane, while nothing gets better
   const Measure measure{ray};
   const double slack = tolerances::kVoronoiSlack * pair.scale;
   const double level = tolerances::kCoplanar * pair.scale;  // facets of one plane, by rounding this far apart
-  const int bound = std::min(most, 32 + static_cast<int>(pair.A.edges.size() + pair.B.edges.size()) / 2);
+  const int bound = 32 + static_cast<int>(pair.A.edges.size() + pair.B.edges.size()) / 2;
   MinkowskiWalk best;
   best.facet = start;
   best.outside = kInfinity;
@@ -303,11 +319,18 @@ MinkowskiWalk walk(const PairView& pair, const MinkowskiFacet& start, const Vec3
       improved = step;
     }
     best.steps = step;
+    if (step > most_moves) {  // the next walk goes on from here, not above the best
+      here.steps = step;
+      return here;
+    }
     const bool inside = here.outside <= slack;
     const bool moved =
         inside ? !ray && moved_inside(pair, worst, length - level, here)
                : moved_outside(pair, measure, worst.first, measure(best.facet) + level, slack, here);
-    if (!moved) break;
+    if (!moved) {
+      best.settled = true;
+      break;
+    }
   }
   return best;
 }
@@ -402,13 +425,13 @@ MinkowskiWalk stand_on(const PairView& pair, const MinkowskiFacet& facet) noexce
   return here;
 }
 
-MinkowskiWalk walk_to_foot(const PairView& pair, const MinkowskiFacet& start, int most_steps) noexcept {
-  return walk(pair, start, nullptr, most_steps);
+MinkowskiWalk walk_to_foot(const PairView& pair, const MinkowskiFacet& start, int most_moves) noexcept {
+  return walk(pair, start, nullptr, most_moves);
 }
 
 MinkowskiWalk walk_along_ray(const PairView& pair, const MinkowskiFacet& start,
                              const Vec3& direction) noexcept {
-  return walk(pair, start, &direction, kAllSteps);
+  return walk(pair, start, &direction, kAllMoves);
 }
 
 }  // namespace tactum

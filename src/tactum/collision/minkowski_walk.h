@@ -41,6 +41,7 @@ struct MinkowskiWalk {
   Vec3 p_b = Vec3::Zero();
   double outside = 0.0;  ///< how far the witness points lie outside their features [m]
   int steps = 0;
+  bool settled = false;  ///< nothing lower was found beside it
 
   /// At a local minimum of the depth, proved: the facet is real and holds its foot.
   bool arrived(const PairView& pair) const noexcept {
@@ -64,12 +65,12 @@ MinkowskiFacet facet_near(const PairView& pair, const Vec3& n, int from_a, int f
 MinkowskiWalk stand_on(const PairView& pair, const MinkowskiFacet& facet) noexcept;
 
 /// No bound but the walk's own.
-inline constexpr int kAllSteps = std::numeric_limits<int>::max();
+inline constexpr int kAllMoves = std::numeric_limits<int>::max();
 
 /// Walks from `start` to the facet that holds its own foot: a local minimum of the depth, and not above those
-/// behind its nearest borders. After `most_steps` facets it stops at the lowest so far; its `outside` tells.
+/// behind its nearest borders. After `most_moves` it stops where it is, not `settled`.
 MinkowskiWalk walk_to_foot(const PairView& pair, const MinkowskiFacet& start,
-                           int most_steps = kAllSteps) noexcept;
+                           int most_moves = kAllMoves) noexcept;
 
 /// Walks from `start` to the facet where the ray along unit `direction` leaves N; start.n . direction > 0.
 MinkowskiWalk walk_along_ray(const PairView& pair, const MinkowskiFacet& start,

@@ -207,7 +207,7 @@ class Tracker {
 
  private:
   static constexpr std::uint32_t kRound = 4;  ///< frames from one look around to the next
-  static constexpr int kSteps = 2;            ///< facets walked beside the tracked minimum in a frame
+  static constexpr int kMoves = 2;            ///< from facet to facet beside the tracked minimum in a frame
 
   static bool same(const MinkowskiFacet& f, const MinkowskiFacet& g) noexcept {
     return f.a == g.a && f.b == g.b;
@@ -225,7 +225,7 @@ class Tracker {
       return;
     }
     const MinkowskiWalk walk = go_on(cache_.scout);
-    if (!walk.arrived(pair_)) {
+    if (!walk.settled || !walk.arrived(pair_)) {
       cache_.scout = {walk.facet.a, walk.facet.b};
       return;
     }
@@ -239,7 +239,7 @@ class Tracker {
   void watch(bool due) noexcept {
     if (cache_.rival.empty() || (!due && !(height(cache_.rival) < current_.facet.height))) return;
     const MinkowskiWalk walk = go_on(cache_.rival);
-    if (walk.arrived(pair_) && compare(walk)) return;
+    if (walk.settled && walk.arrived(pair_) && compare(walk)) return;
     cache_.rival = same(walk.facet, current_.facet) ? FeaturePair{} : FeaturePair{walk.facet.a, walk.facet.b};
   }
 
@@ -252,7 +252,7 @@ class Tracker {
   }
 
   MinkowskiWalk go_on(const FeaturePair& from) noexcept {
-    const MinkowskiWalk walk = walk_to_foot(pair_, beside(from), kSteps);
+    const MinkowskiWalk walk = walk_to_foot(pair_, beside(from), kMoves);
     steps_ += walk.steps;
     return walk;
   }

@@ -1,9 +1,36 @@
 #include "tactum/collision/voronoi_march.h"
 
+#include "tactum/collision/segments.h"
 #include "tactum/collision/voronoi_steps.h"
 
 namespace tactum {
 namespace march {
+namespace {
+
+/// The unit direction from edge to edge and its angular error: the points' difference `d`, or the cross
+/// product `c` of the edges where it has more digits.
+struct Across {
+  Vec3 direction;
+  double slack;
+  double aside;  // of the points, from the direction [m]
+};
+
+Across across_edges(double size, double slack, const Vec3& c, const Vec3& d, double gap) noexcept {
+  const double sine_sq = c.squaredNorm();
+  if (gap * gap >= sine_sq * size * size)
+    return gap > 0.0 ? Across{d / gap, slack / gap, 0.0} : Across{d, 0.0, kInfinity};
+  const double sine = std::sqrt(sine_sq);
+  const Vec3 direction = c.dot(d) < 0.0 ? Vec3(-c / sine) : Vec3(c / sine);
+  return {direction, std::max(slack / size, tolerances::kVoronoiSlack) / sine, (d - direction * gap).norm()};
+}
+
+/// A segment's end, when the closest point is there; else the edge.
+Feature end_or_edge(const Polytope::Edge& e, double s, Feature whole) noexcept {
+  if (s > 0.0 && s < e.length) return whole;
+  return vertex(s > 0.0 ? e.head : e.tail);
+}
+
+}  // namespace
 
 Step edges_along(const PiecePair& pair, double slack, int a, int b, Place& at, PairDistance& x) noexcept {
   const Sides<false> S(pair, slack);

@@ -9,10 +9,10 @@
 ///                            |                  |
 ///                         edge-edge   <->   edge-face  ->  overlap, when the edge goes through the face
 ///
-/// Departs from Mirtich in edge-edge, where the closest points of the two segments are computed (his clipping
-/// against the four planes says the same and rounds worse near parallel edges), and in what happens when
-/// rounding makes the walk go in circles: the nearest state of the circle is returned and the caller's
-/// certificate judges it.
+/// Departs from Mirtich in edge-edge, where the place along both edges is computed, by dot products where
+/// they cross at an angle and by cross products where they run alike (his clipping against the four planes
+/// says the same and rounds worse near parallel edges), and in what happens when rounding makes the walk go
+/// in circles: the nearest state of the circle is returned and the caller's certificate judges it.
 ///
 /// The walk's last tests are a proof. A vertex all of whose edges fall away from a plane is the support
 /// vertex of a convex piece, an edge square to the plane whose two faces fall away is its support edge, a
@@ -42,9 +42,10 @@ struct March {
   int steps = 0;
 };
 
-/// Walks from the features `a`, `b` (which must exist) and tells in `x` features, points, normal and distance
-/// where it ended; the stop and the steps of `x` are the caller's. `slack` [m] is how far a point must be
-/// outside a plane to cross it.
+/// Walks from the features `a`, `b` (which must exist) and tells in `x` the features where it ended, and
+/// their points, normal and distance when it ended kClosest, kCircle or kBounded (the normal only when
+/// closest); the stop and the steps of `x` are the caller's. `slack` [m] is how far a point must be outside a
+/// plane to cross it.
 March voronoi_march(const PiecePair& pair, Feature a, Feature b, double slack, PairDistance& x) noexcept;
 
 }  // namespace tactum

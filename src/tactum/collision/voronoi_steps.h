@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "tactum/collision/pair_view.h"
-#include "tactum/collision/segments.h"
 #include "tactum/collision/voronoi_march.h"
 
 namespace tactum::march {
@@ -219,31 +218,8 @@ inline Toward face_toward(const Polytope& P, const Polytope::Edge& e, const Vec3
   return left < right ? Toward{e.left, -left} : Toward{e.right, -right};
 }
 
-/// The unit direction from edge to edge and its angular error: the points' difference `d`, or the cross
-/// product `c` of the edges where it has more digits.
-struct Across {
-  Vec3 direction;
-  double slack;
-  double aside;  // of the points, from the direction [m]
-};
-
-inline Across across_edges(double size, double slack, const Vec3& c, const Vec3& d, double gap) noexcept {
-  const double sine_sq = c.squaredNorm();
-  if (gap * gap >= sine_sq * size * size)
-    return gap > 0.0 ? Across{d / gap, slack / gap, 0.0} : Across{d, 0.0, kInfinity};
-  const double sine = std::sqrt(sine_sq);
-  const Vec3 direction = c.dot(d) < 0.0 ? Vec3(-c / sine) : Vec3(c / sine);
-  return {direction, std::max(slack / size, tolerances::kVoronoiSlack) / sine, (d - direction * gap).norm()};
-}
-
-/// A segment's end, when the closest point is there; else the edge.
-inline Feature end_or_edge(const Polytope::Edge& e, double s, Feature whole) noexcept {
-  if (s > 0.0 && s < e.length) return whole;
-  return vertex(s > 0.0 ? e.head : e.tail);
-}
-
-/// Edges of any kind: alike, nearest at an end, touching. Out of line and from the start, so that nothing is
-/// kept at hand for it where edges cross.
+/// Edges of any kind: alike, nearest at an end, far off, level with a face. Out of line and from the start,
+/// so that nothing is kept at hand for it where edges cross.
 [[gnu::noinline]] Step edges_along(const PiecePair& pair, double slack, int a, int b, Place& at,
                                    PairDistance& x) noexcept;
 
@@ -288,7 +264,10 @@ inline Step edge_edge(const PiecePair& pair, const Sides<false>& S, Feature fp, 
     return {Outcome::kMoved, fp, face(of_q.face)};
   }
   const double lengths = S.P.size + S.Q.size + r.lpNorm<1>();
-  tell(p, outward * -per_sine, gap, tolerances::kCrossingRounding * lengths * per_square, x);
+  const double doubt = (tolerances::kCrossingRounding * lengths + S.slack) * per_square;
+  if (doubt > tolerances::kCertificate * pair.size)
+    return edges_along(pair, S.slack, fp.index, fq.index, at, x);
+  tell(p, outward * -per_sine, gap, doubt, x);
   return {Outcome::kClosest, fp, fq};
 }
 
@@ -346,7 +325,10 @@ inline March walk(const PiecePair& pair, FeaturePair at, double slack, PairDista
     if (outcome != Outcome::kMoved) {
       x.a = was.a;
       x.b = was.b;
-      if (outcome == Outcome::kClosest) return {x.doubt, MarchEnd::kClosest, march.steps};
+      if (outcome == Outcome::kClosest) {
+        x.doubt += slack;  // of the numbers that were added up
+        return {x.doubt, MarchEnd::kClosest, march.steps};
+      }
       march.end = outcome == Outcome::kOverlap ? MarchEnd::kOverlap : MarchEnd::kBehind;
       return march;
     }

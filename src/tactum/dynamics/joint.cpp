@@ -21,7 +21,7 @@ Mat3 hinge_turn(const Body& body, const Pose& X_WB) noexcept {
   const double w = turn.w();
   const double x = u.dot(turn.vec());
   const double square = w * w + x * x;
-  if (!(square > 0.0)) return Mat3::Identity();  // half a turn about an axis square to the hinge's
+  if (square <= 0.0) return Mat3::Identity();  // half a turn about an axis square to the hinge's
   const double sine = 2.0 * w * x / square;
   const double less = 2.0 * x * x / square;  // 1 - cosine
   return Mat3::Identity() * (1.0 - less) + skew(u) * sine + u * u.transpose() * less;
