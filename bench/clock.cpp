@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
+#include <limits>
+#include <vector>
 
 #if defined(__x86_64__)
 #include <cpuid.h>
@@ -51,20 +54,36 @@ std::uint64_t counter_stop() { return 0; }
 }  // namespace
 
 FineClock::FineClock() : counter_(invariant_counter()) {
-  if (!counter_) return;
-  constexpr std::uint64_t kCalibration_ns = 50'000'000;
-  const std::uint64_t begin_ns = steady_ns();
-  const std::uint64_t begin = counter_start();
-  std::uint64_t end_ns = begin_ns;
-  while (end_ns - begin_ns < kCalibration_ns) end_ns = steady_ns();
-  ns_per_tick_ = static_cast<double>(end_ns - begin_ns) / static_cast<double>(counter_stop() - begin);
+  if (counter_) {
+    constexpr std::uint64_t kCalibration_ns = 50'000'000;
+    const std::uint64_t begin_ns = steady_ns();
+    const std::uint64_t begin = counter_start();
+    std::uint64_t end_ns = begin_ns;
+    while (end_ns - begin_ns < kCalibration_ns) end_ns = steady_ns();
+    ns_per_tick_ = static_cast<double>(end_ns - begin_ns) / static_cast<double>(counter_stop() - begin);
+  }
+  // Intervals of many lengths differ by a step at least.
+  std::vector<std::uint64_t> lengths;
+  volatile int work = 0;
+  for (int i = 0; i < 10000; ++i) {
+    const std::uint64_t before = start();
+    for (int k = 0; k < i % 64; ++k) work = work + 1;
+    lengths.push_back(stop() - before);
+  }
+  std::sort(lengths.begin(), lengths.end());
+  std::uint64_t least = std::numeric_limits<std::uint64_t>::max();
+  for (std::size_t i = 1; i < lengths.size(); ++i)
+    if (lengths[i] > lengths[i - 1]) least = std::min(least, lengths[i] - lengths[i - 1]);
+  if (least < std::numeric_limits<std::uint64_t>::max()) step_ = least;
 }
 
 std::uint64_t FineClock::start() const noexcept { return counter_ ? counter_start() : steady_ns(); }
 std::uint64_t FineClock::stop() const noexcept { return counter_ ? counter_stop() : steady_ns(); }
 
 std::string FineClock::describe() const {
-  return counter_ ? fmt::format("the processor's counter ({:.2f} ns a tick)", ns_per_tick_) : "steady_clock";
+  return counter_ ? fmt::format("the processor's counter ({:.2f} ns a tick, in steps of {:.1f} ns)",
+                                ns_per_tick_, step_ns())
+                  : fmt::format("steady_clock (in steps of {:.1f} ns)", step_ns());
 }
 
 }  // namespace tactum::bench

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <numeric>
 
 namespace tactum::bench {
 namespace {
@@ -45,6 +45,20 @@ void judge(const Answer& answer, const Truth& truth, Row& row) {
 
 }  // namespace
 
+void Readings::add(double ns) {
+  constexpr double kSame = 0.5;  // of a step
+  const double above = ns - least_ns_;
+  if (above < -kSame * step_ns_) {
+    next_ = above > -(1.0 + kSame) * step_ns_ ? least_ : 0;
+    least_ = 1;
+    least_ns_ = ns;
+  } else if (above < kSame * step_ns_) {
+    ++least_;
+  } else if (above < (1.0 + kSame) * step_ns_) {
+    ++next_;
+  }
+}
+
 nlohmann::ordered_json to_json(const Row& row) {
   nlohmann::ordered_json json = {
       {"shape_a", row.shape_a},     {"shape_b", row.shape_b},       {"vertices", row.vertices},
@@ -66,9 +80,9 @@ nlohmann::ordered_json to_json(const Row& row) {
 Meter::Meter(int replays) : replays_(replays) {
   constexpr std::size_t kCalls = 10000;
   Nothing nothing;
-  std::vector<double> empty = fastest_ns(nothing, {}, kCalls, false);
+  std::vector<double> empty = undisturbed_ns(nothing, {}, kCalls, false);
   std::sort(empty.begin(), empty.end());
-  overhead_ns_ = quantile(empty, 0.5);
+  overhead_ns_ = std::accumulate(empty.begin() + kCalls / 4, empty.end() - kCalls / 4, 0.0) / (kCalls / 2);
 }
 
 std::string Meter::describe() const {
@@ -78,9 +92,9 @@ std::string Meter::describe() const {
       replays_, clock_.describe(), overhead_ns_);
 }
 
-std::vector<double> Meter::fastest_ns(Engine& engine, const Recording& recording, std::size_t count,
-                                      bool cold) const {
-  std::vector<double> least(count, std::numeric_limits<double>::infinity());
+std::vector<double> Meter::undisturbed_ns(Engine& engine, const Recording& recording, std::size_t count,
+                                          bool cold) const {
+  std::vector<Readings> readings(count, Readings(clock_.step_ns()));
   for (int replay = 0; replay < replays_; ++replay) {
     engine.forget();
     engine.place(recording, 0);
@@ -91,10 +105,13 @@ std::vector<double> Meter::fastest_ns(Engine& engine, const Recording& recording
       const std::uint64_t start = clock_.start();
       engine.query();
       const std::uint64_t stop = clock_.stop();
-      least[i] = std::min(least[i], clock_.ns(stop - start));
+      readings[i].add(clock_.ns(stop - start));
     }
   }
-  return least;
+  std::vector<double> ns;
+  ns.reserve(count);
+  for (const Readings& of_pose : readings) ns.push_back(of_pose.ns());
+  return ns;
 }
 
 double Meter::batched_ns(Engine& engine, const Recording& recording, std::size_t count, bool cold) const {
@@ -138,7 +155,7 @@ Row Meter::measure(Engine& engine, const Recording& recording, const std::vector
   row.frames = static_cast<int>(count);
   row.steps_mean /= static_cast<double>(count);
 
-  std::vector<double> ns = fastest_ns(engine, recording, count, cold);
+  std::vector<double> ns = undisturbed_ns(engine, recording, count, cold);
   for (double& value : ns) value = std::max(0.0, value - overhead_ns_);
   std::sort(ns.begin(), ns.end());
   row.median_ns = quantile(ns, 0.5);

@@ -1,8 +1,9 @@
 #pragma once
 /// One engine on one recording: what a query costs and how far off it is. Every pose is replayed several
-/// times and counts with its fastest, so that what the machine did meanwhile is left out; the cost of reading
-/// the clock, measured the same way on an engine that does nothing, is taken off.
+/// times and counts with its fastest (`Readings`), so that what the machine did meanwhile is left out; the
+/// cost of reading the clock, measured the same way on an engine that does nothing, is taken off.
 
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -34,6 +35,22 @@ struct Row {
 /// The keys are the members' names.
 nlohmann::ordered_json to_json(const Row& row);
 
+/// What one thing costs when nothing disturbs it, by a clock that moves in steps. What ends between two of
+/// them reads now as the one, now as the other, with the right mean: so the mean of the readings within a
+/// step of the fastest.
+class Readings {
+ public:
+  explicit Readings(double step_ns) : step_ns_(step_ns) {}
+  void add(double ns);
+  /// At least one reading has been added.
+  double ns() const { return least_ns_ + step_ns_ * next_ / (least_ + next_); }
+
+ private:
+  double step_ns_;
+  double least_ns_ = std::numeric_limits<double>::infinity();
+  int least_ = 0, next_ = 0;  // readings of the least, and of a step more
+};
+
 class Meter {
  public:
   explicit Meter(int replays);
@@ -45,9 +62,9 @@ class Meter {
   std::string describe() const;
 
  private:
-  /// Fastest of the replays of each pose, the clock's cost still in it [ns].
-  std::vector<double> fastest_ns(Engine& engine, const Recording& recording, std::size_t count,
-                                 bool cold) const;
+  /// Of each pose, the clock's cost still in it [ns].
+  std::vector<double> undisturbed_ns(Engine& engine, const Recording& recording, std::size_t count,
+                                     bool cold) const;
   double batched_ns(Engine& engine, const Recording& recording, std::size_t count, bool cold) const;
 
   FineClock clock_;

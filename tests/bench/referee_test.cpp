@@ -123,6 +123,24 @@ class Parrot final : public Engine {
   Answer answer_;
 };
 
+TEST(Readings, TellBetweenTheClocksSteps) {
+  constexpr double kStep = 10.0;
+  constexpr double kCost = 33.4;
+  Readings readings(kStep);
+  for (int i = 0; i < 1000; ++i) {
+    const double begin = 7.37 * i;
+    const double late = i % 3 == 0 ? 40.0 + i : 0.0;  // disturbed
+    readings.add(kStep * (std::floor((begin + kCost + late) / kStep) - std::floor(begin / kStep)));
+  }
+  EXPECT_NEAR(readings.ns(), kCost, 0.2);
+}
+
+TEST(Readings, OfAFineClockAreTheFastest) {
+  Readings readings(0.4);
+  for (const double ns : {41.0, 35.2, 38.0, 30.4, 33.3}) readings.add(ns);
+  EXPECT_DOUBLE_EQ(readings.ns(), 30.4);
+}
+
 TEST(Meter, CountsWhatIsMissedAndHowFarOffTheRestIs) {
   const Recording recording = two_boxes(0.001);
   const std::vector<Truth> truth = truths(shape("box"), shape("box"), recording);
