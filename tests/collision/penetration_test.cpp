@@ -177,5 +177,56 @@ TEST(Penetration, WarmTrackingStaysCertified) {
   EXPECT_EQ(frames, 200 * std::max(2, cases::some_of(60)));
 }
 
+/// What a pair remembers may come from other pieces, or be anything: the answer is a certified depth all the
+/// same.
+TEST(Penetration, AnyMemoryGivesADepth) {
+  const std::uint64_t seed = 47;
+  Random random(seed);
+  const auto shapes = cases::shapes(random, false);
+  const auto anything = [&random] { return Feature{FeatureKind(random.index(3)), random.index(60) - 2}; };
+  int compared = 0;
+  for (int i = 0; i < cases::some_of(3000); ++i) {
+    const cases::Shape& a = shapes[std::size_t(random.index(int(shapes.size())))];
+    const cases::Shape& b = shapes[std::size_t(random.index(int(shapes.size())))];
+    const Pose X = overlapping(random, a.polytope, b.polytope);
+    PairCache cache;
+    cache.a = anything();
+    cache.b = anything();
+    cache.normal_A = cases::random_unit(random);
+    for (FeaturePair* pair : {&cache.rivals[0], &cache.rivals[1], &cache.scout})
+      *pair = {anything(), anything()};
+    cache.turn = std::uint32_t(random.index(24));
+    cache.scouted = std::uint32_t(random.index(100));
+    const double size = std::max(a.polytope.size, b.polytope.size);
+    const PairDistance fresh = penetration_exhaustive(a.polytope, b.polytope, X);
+    if (!fresh.certified()) continue;  // flat pieces that do not overlap
+    ++compared;
+    for (int frame = 0; frame < 16; ++frame) {
+      const PairDistance deep = penetration_depth(a.polytope, b.polytope, X, cache);
+      ASSERT_TRUE(deep.certified()) << a.name << " / " << b.name << " seed " << seed << " case " << i;
+      ASSERT_LE(deep.distance, fresh.distance + 2e-9 * size)
+          << a.name << " / " << b.name << " seed " << seed << " case " << i;
+    }
+  }
+  EXPECT_GT(compared, cases::some_of(2500));
+}
+
+/// Boxes face to face, where feet lie between the facets: pushed sideways the way out through a side becomes
+/// the shorter one, and is found within a few frames.
+TEST(Penetration, AlignedBoxesFindTheirSides) {
+  const Polytope box = make_box({0.02, 0.03, 0.04});  // half extents
+  PairCache cache;
+  int late = 0;
+  for (int frame = 0; frame < 200; ++frame) {
+    const double slid = 2e-4 * frame;  // along x, until only a sliver of the 0.04 is over the other
+    const Pose X{Mat3::Identity(), {slid, 0.0, 0.08 - 0.01}};
+    const double depth = -penetration_depth(box, box, X, cache).distance;
+    const double least = std::min(0.01, 0.04 - slid);
+    ASSERT_GE(depth, least - 1e-10) << frame;
+    late = depth > least + 1e-10 ? late + 1 : 0;
+    ASSERT_LE(late, 20) << frame;
+  }
+}
+
 }  // namespace
 }  // namespace tactum

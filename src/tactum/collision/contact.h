@@ -47,9 +47,11 @@ struct PairCache {
   Feature a, b;
   Vec3 normal_A = Vec3::Zero();  ///< last normal from B to A, unit, or zero when there was none [-]
   OverlapProof overlap;          ///< known when they overlapped in the last frame
-  // Of an overlapping pair: the next best way out, and the walk that looks for others (penetration.h).
-  FeaturePair rival, scout;
-  std::uint32_t turn = 0;  ///< frames tracked inside
+  // Of an overlapping pair: the next best ways out, and the walk that looks for others (penetration.h).
+  std::array<FeaturePair, 2> rivals{};
+  FeaturePair scout;
+  std::uint32_t turn = 0;     ///< frames tracked inside
+  std::uint32_t scouted = 0;  ///< scouts that have set out
 };
 
 /// Why a query stopped.

@@ -295,7 +295,12 @@ bool moved_inside(const PairView& pair, const Worst& nearest, double limit, Mink
   return false;
 }
 
-MinkowskiWalk walk(const PairView& pair, const MinkowskiFacet& start, const Vec3* ray,
+/// No bound but the walk's own.
+constexpr int kAllMoves = std::numeric_limits<int>::max();
+
+/// `ray`: where it leaves N; null: to a foot. `past_ridges`: goes on from a foot to one that is lower behind
+/// a border.
+MinkowskiWalk walk(const PairView& pair, const MinkowskiFacet& start, const Vec3* ray, bool past_ridges,
                    int most_moves) noexcept {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   constexpr int kLevelSteps = 16;  // between facets of one plane, while nothing gets better
@@ -325,7 +330,7 @@ MinkowskiWalk walk(const PairView& pair, const MinkowskiFacet& start, const Vec3
     }
     const bool inside = here.outside <= slack;
     const bool moved =
-        inside ? !ray && moved_inside(pair, worst, length - level, here)
+        inside ? past_ridges && moved_inside(pair, worst, length - level, here)
                : moved_outside(pair, measure, worst.first, measure(best.facet) + level, slack, here);
     if (!moved) {
       best.settled = true;
@@ -425,13 +430,17 @@ MinkowskiWalk stand_on(const PairView& pair, const MinkowskiFacet& facet) noexce
   return here;
 }
 
-MinkowskiWalk walk_to_foot(const PairView& pair, const MinkowskiFacet& start, int most_moves) noexcept {
-  return walk(pair, start, nullptr, most_moves);
+MinkowskiWalk walk_to_foot(const PairView& pair, const MinkowskiFacet& start) noexcept {
+  return walk(pair, start, nullptr, true, kAllMoves);
+}
+
+MinkowskiWalk walk_to_any_foot(const PairView& pair, const MinkowskiFacet& start, int most_moves) noexcept {
+  return walk(pair, start, nullptr, false, most_moves);
 }
 
 MinkowskiWalk walk_along_ray(const PairView& pair, const MinkowskiFacet& start,
                              const Vec3& direction) noexcept {
-  return walk(pair, start, &direction, kAllMoves);
+  return walk(pair, start, &direction, false, kAllMoves);
 }
 
 }  // namespace tactum

@@ -16,8 +16,6 @@
 /// the pseudo-internal Voronoi regions of [Ponamgi 1997]; the facets are found on the fly,
 /// not stored.) Cost: about 60 ns a facet.
 
-#include <limits>
-
 #include "tactum/collision/pair_view.h"
 
 namespace tactum {
@@ -41,7 +39,7 @@ struct MinkowskiWalk {
   Vec3 p_b = Vec3::Zero();
   double outside = 0.0;  ///< how far the witness points lie outside their features [m]
   int steps = 0;
-  bool settled = false;  ///< nothing lower was found beside it
+  bool settled = false;  ///< came to its own end, not to a bound on its moves
 
   /// At a local minimum of the depth, proved: the facet is real and holds its foot.
   bool arrived(const PairView& pair) const noexcept {
@@ -64,13 +62,13 @@ MinkowskiFacet facet_near(const PairView& pair, const Vec3& n, int from_a, int f
 /// The witness points on a facet itself, without walking.
 MinkowskiWalk stand_on(const PairView& pair, const MinkowskiFacet& facet) noexcept;
 
-/// No bound but the walk's own.
-inline constexpr int kAllMoves = std::numeric_limits<int>::max();
-
 /// Walks from `start` to the facet that holds its own foot: a local minimum of the depth, and not above those
-/// behind its nearest borders. After `most_moves` it stops where it is, not `settled`.
-MinkowskiWalk walk_to_foot(const PairView& pair, const MinkowskiFacet& start,
-                           int most_moves = kAllMoves) noexcept;
+/// behind its nearest borders.
+MinkowskiWalk walk_to_foot(const PairView& pair, const MinkowskiFacet& start) noexcept;
+
+/// Walks from `start` to the first facet that holds its own foot, also where the next one is lower: it may
+/// become the lowest before the other does. After `most_moves` it stops where it is, not `settled`.
+MinkowskiWalk walk_to_any_foot(const PairView& pair, const MinkowskiFacet& start, int most_moves) noexcept;
 
 /// Walks from `start` to the facet where the ray along unit `direction` leaves N; start.n . direction > 0.
 MinkowskiWalk walk_along_ray(const PairView& pair, const MinkowskiFacet& start,

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "tactum/collision/manifold.h"
 #include "tactum/collision/minkowski_walk.h"
@@ -146,17 +147,21 @@ Vec3 line_of_centers(const PairView& pair) noexcept {
   return n.isZero() ? Vec3::UnitX() : n;
 }
 
+/// Of the 26 directions to the sides, edges and corners of a cube.
+constexpr int kDirections = 26;
+Vec3 direction_around(int i) noexcept {
+  if (i >= kDirections / 2) ++i;  // not the middle
+  return {static_cast<double>(i % 3 - 1), static_cast<double>(i / 3 % 3 - 1), static_cast<double>(i / 9 - 1)};
+}
+
 /// Walks from the line of centres and from the shallowest facets near 26 directions all around: three of
 /// them, and more until one ends certified.
 void from_many_directions(const PairView& pair, Shallowest& shallowest) noexcept {
   constexpr int kWalked = 8;
   shallowest.from(facet_near(pair, line_of_centers(pair)));
-  std::array<MinkowskiFacet, 26> seeds;
-  std::size_t count = 0;
-  for (int i = 0; i < 27; ++i) {
-    const Vec3 n(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
-    if (!n.isZero()) seeds[count++] = facet_near(pair, n);
-  }
+  std::array<MinkowskiFacet, kDirections> seeds;
+  for (int i = 0; i < kDirections; ++i)
+    seeds[static_cast<std::size_t>(i)] = facet_near(pair, direction_around(i));
   std::sort(seeds.begin(), seeds.end(), [](const auto& a, const auto& b) { return a.height < b.height; });
   int walked = 0;
   for (const MinkowskiFacet& seed : seeds)
@@ -188,8 +193,8 @@ void remember(const PairDistance& result, PairCache& cache) noexcept {
 }
 
 /// The warm query: the last frame's minimum followed, and beside it a search for a better one that costs a
-/// few facets a frame. Two walks wait in the cache: the rival, the best other minimum known, and the scout,
-/// on its way from a direction that turns from one to the next.
+/// few facets a frame. Walks wait in the cache: the rivals, the best other minima known, and the scout, on
+/// its way from one of many directions.
 class Tracker {
  public:
   Tracker(const PairView& pair, PairCache& cache) noexcept : pair_(pair), cache_(cache) {}
@@ -199,86 +204,150 @@ class Tracker {
     if (!facet_again(pair_, {cache_.a, cache_.b}, start)) start = facet_near(pair_, cache_.normal_A);
     current_ = walk_to_foot(pair_, start);
     steps_ = current_.steps;
-    const std::uint32_t phase = cache_.turn++ % kRound;
-    if (phase == 0) scout();
-    watch(phase == kRound / 2);
+    forget(features(current_.facet));
+    const std::uint32_t frame = cache_.turn++;
+    const bool looks = frame % kLook == 0;
+    const bool rivals_are_due = looks && frame / kLook % kDue == kDue - 1;
+    if (looks && !rivals_are_due) scout();
+    watch(lower_rival(), rivals_are_due);
+    if (looks) watch(upper_rival(), rivals_are_due);
+    if (lower_rival().empty() || (rivals_are_due && height(upper_rival()) < height(lower_rival())))
+      std::swap(lower_rival(), upper_rival());
     return answer(pair_, current_, steps_);
   }
 
  private:
-  static constexpr std::uint32_t kRound = 4;  ///< frames from one look around to the next
-  static constexpr int kMoves = 2;            ///< from facet to facet beside the tracked minimum in a frame
+  static constexpr std::uint32_t kLook = 3;  ///< of so many frames one looks around
+  static constexpr std::uint32_t kDue = 4;   ///< of so many of those, one for the rivals instead of the scout
+  static constexpr int kMoves = 2;           ///< from facet to facet, of a walk whose turn it is
 
-  static bool same(const MinkowskiFacet& f, const MinkowskiFacet& g) noexcept {
-    return f.a == g.a && f.b == g.b;
-  }
-  double height(const FeaturePair& features) const noexcept {
+  static bool same(const FeaturePair& f, const FeaturePair& g) noexcept { return f.a == g.a && f.b == g.b; }
+  static FeaturePair features(const MinkowskiFacet& f) noexcept { return {f.a, f.b}; }
+  double height(const FeaturePair& of) const noexcept {
     MinkowskiFacet facet;
-    return facet_again(pair_, features, facet) ? facet.height : std::numeric_limits<double>::infinity();
+    return facet_again(pair_, of, facet) ? facet.height : std::numeric_limits<double>::infinity();
+  }
+  bool lower(const MinkowskiFacet& facet) const noexcept {
+    return facet.height < current_.facet.height - tolerances::kCoplanar * pair_.scale;
   }
 
   /// The scout sets out, or walks on and arrives, or waits for its next turn.
   void scout() noexcept {
     if (cache_.scout.empty()) {
       const MinkowskiFacet start = seed();
-      cache_.scout = {start.a, start.b};
-      return;
+      cache_.scout = features(start);
+      if (!lower(start)) return;
     }
     const MinkowskiWalk walk = go_on(cache_.scout);
-    if (!walk.settled || !walk.arrived(pair_)) {
-      cache_.scout = {walk.facet.a, walk.facet.b};
-      return;
+    const bool on_its_way = !walk.settled && !lower(walk.facet);
+    cache_.scout = on_its_way ? features(walk.facet) : FeaturePair{};
+    if (on_its_way) return;
+    if (lower(walk.facet)) {
+      take(walk);
+    } else {
+      keep(features(walk.facet), walk.facet.height);
     }
-    cache_.scout = {};
-    if (same(walk.facet, current_.facet)) return;
-    if (compare(walk)) return;
-    if (walk.facet.height < height(cache_.rival)) cache_.rival = {walk.facet.a, walk.facet.b};
   }
 
-  /// The rival is only looked at while it is above, but walks on when `due`.
-  void watch(bool due) noexcept {
-    if (cache_.rival.empty() || (!due && !(height(cache_.rival) < current_.facet.height))) return;
-    const MinkowskiWalk walk = go_on(cache_.rival);
-    if (walk.settled && walk.arrived(pair_) && compare(walk)) return;
-    cache_.rival = same(walk.facet, current_.facet) ? FeaturePair{} : FeaturePair{walk.facet.a, walk.facet.b};
+  FeaturePair& lower_rival() noexcept { return cache_.rivals[0]; }
+  FeaturePair& upper_rival() noexcept { return cache_.rivals[1]; }
+
+  bool known(const FeaturePair& minimum) const noexcept {
+    return same(minimum, features(current_.facet)) || same(minimum, cache_.rivals[0]) ||
+           same(minimum, cache_.rivals[1]);
   }
 
-  /// Takes a better minimum; the other becomes the rival.
-  bool compare(const MinkowskiWalk& walk) noexcept {
-    if (!(walk.facet.height < current_.facet.height - tolerances::kCoplanar * pair_.scale)) return false;
-    cache_.rival = {current_.facet.a, current_.facet.b};
+  void forget(const FeaturePair& minimum) noexcept {
+    for (FeaturePair& rival : cache_.rivals)
+      if (same(rival, minimum)) rival = {};
+  }
+
+  /// Another minimum becomes a rival, if it is lower than one.
+  void keep(const FeaturePair& minimum, double at) noexcept {
+    if (known(minimum)) return;
+    if (height(upper_rival()) < height(lower_rival())) std::swap(lower_rival(), upper_rival());
+    if (at < height(lower_rival())) {
+      upper_rival() = lower_rival();
+      lower_rival() = minimum;
+    } else if (at < height(upper_rival())) {
+      upper_rival() = minimum;
+    }
+  }
+
+  /// A lower minimum, if it can be proved, becomes the tracked one, and that a rival.
+  void take(const MinkowskiWalk& walk) noexcept {
+    if (!answer(pair_, walk, 0).certified()) return;
+    const MinkowskiFacet last = current_.facet;
     current_ = walk;
-    return true;
+    forget(features(walk.facet));
+    keep(features(last), last.height);
   }
 
+  /// A rival walks on when it is due, or found to be lower than the tracked minimum.
+  void watch(FeaturePair& rival, bool due) noexcept {
+    if (rival.empty() || (!due && !(height(rival) < current_.facet.height))) return;
+    const MinkowskiWalk walk = go_on(rival);
+    rival = {};
+    if (lower(walk.facet)) {
+      take(walk);
+    } else if (!known(features(walk.facet))) {
+      rival = features(walk.facet);
+    }
+  }
+
+  /// A few moves toward the nearest foot; below the tracked minimum all the way to a better one.
   MinkowskiWalk go_on(const FeaturePair& from) noexcept {
-    const MinkowskiWalk walk = walk_to_foot(pair_, beside(from), kMoves);
+    MinkowskiWalk walk = walk_to_any_foot(pair_, beside(from), kMoves);
     steps_ += walk.steps;
+    if (lower(walk.facet)) {
+      walk = walk_to_foot(pair_, walk.facet);
+      steps_ += walk.steps;
+    }
     return walk;
   }
 
-  MinkowskiFacet beside(const FeaturePair& features) const noexcept {
+  MinkowskiFacet beside(const FeaturePair& of) const noexcept {
     MinkowskiFacet facet;
-    if (facet_again(pair_, features, facet)) return facet;
-    if (!valid_feature(pair_.A, features.a) || !valid_feature(pair_.B, features.b)) return current_.facet;
+    if (facet_again(pair_, of, facet)) return facet;
+    if (!valid_feature(pair_.A, of.a) || !valid_feature(pair_.B, of.b)) return current_.facet;
     // Edges that no longer cross: a face beside.
-    return facet_of_face(pair_, true, face_of(pair_.A, features.a), vertex_of(pair_.B, features.b));
+    return facet_of_face(pair_, true, face_of(pair_.A, of.a), vertex_of(pair_.B, of.b));
   }
 
-  /// In turn from the line of centres and from about the current normal: by the corners of an icosahedron,
-  /// nearly square to it or not, nearer and farther.
-  MinkowskiFacet seed() const noexcept {
-    const std::uint32_t round = cache_.turn / kRound;
-    if (round % 2 == 0) return facet_near(pair_, line_of_centers(pair_));
+  /// In turn from far and from near: the lower facet of two directions all around; about the current normal,
+  /// by the corners of an icosahedron, near, farther and far.
+  MinkowskiFacet seed() noexcept {
+    const std::uint32_t scouts = cache_.scouted++;
+    const std::uint32_t turn = scouts / 2;
+    return scouts % 2 == 0 ? lowest_around(turn) : seed_near(turn);
+  }
+
+  MinkowskiFacet lowest_around(std::uint32_t turn) const noexcept {
+    constexpr std::uint32_t kLookedAt = 2;
+    constexpr std::uint32_t kStride = 7;  // the next is another way
+    const std::uint32_t first =
+        turn * kLookedAt + turn * kLookedAt / kDirections;  // other pairs in every round
+    MinkowskiFacet lowest;
+    lowest.height = std::numeric_limits<double>::infinity();
+    for (std::uint32_t i = first; i < first + kLookedAt; ++i) {
+      const MinkowskiFacet facet =
+          facet_near(pair_, direction_around(static_cast<int>(i * kStride % kDirections)));
+      if (facet.height < lowest.height) lowest = facet;
+    }
+    return lowest;
+  }
+
+  MinkowskiFacet seed_near(std::uint32_t turn) const noexcept {
     constexpr double kShort = 0.5257311121191336;  // corners (0, +-short, +-long) and their rotations
     constexpr double kLong = 0.85065080835204;
-    const auto corner = static_cast<int>(round / 2 * 7 % 12);
+    constexpr std::uint32_t kCorners = 12;
+    const auto corner = static_cast<int>(turn * 7 % kCorners);
     Vec3 offset;
     offset[corner % 3] = 0.0;
     offset[(corner + 1) % 3] = (corner / 3) % 2 ? kShort : -kShort;
     offset[(corner + 2) % 3] = corner / 6 ? kLong : -kLong;
-    constexpr std::array<double, 3> kReach = {0.15, 0.6, 1.2};
-    const double reach = kReach[round / 2 % kReach.size()];
+    constexpr std::array<double, 3> kReach = {0.15, 0.3, 0.6};
+    const double reach = kReach[(turn + turn / kCorners) % kReach.size()];
     return facet_near(pair_, current_.facet.n + offset * reach, vertex_of(pair_.A, current_.facet.a),
                       vertex_of(pair_.B, current_.facet.b));
   }
