@@ -215,10 +215,12 @@ class TwoBodies {
         (other.found.p_a - nearest.found.p_a).norm() <= noise &&
         (other.found.p_b - nearest.found.p_b).norm() <= noise &&
         (other.found.normal - nearest.found.normal).norm() <= tolerances::kCoplanarMeshSine;
-    PairDistance mapped;
-    const bool same_features = map_features(nearest.found.a, nearest.found.b, nearest, other, mapped) &&
-                               mapped.a == other.found.a && mapped.b == other.found.b;
-    if (!same_place && !same_features) return;
+    const auto same_features = [&] {
+      PairDistance mapped;
+      return map_features(nearest.found.a, nearest.found.b, nearest, other, mapped) &&
+             mapped.a == other.found.a && mapped.b == other.found.b;
+    };
+    if (!same_place && !same_features()) return;
     other.settled = true;
     other.led_by = patch;
   }

@@ -23,23 +23,17 @@ constexpr int kMostCorners = 16;
 Vec3 interpolated(const ShadedFace& face, const ShadedCorner* corners, const Vec3& point) {
   const int n = face.count;
   double area[kMostCorners];
-  Vec3 from_point = corners[0].p - point;
-  const Vec3 first = from_point;
-  for (int i = 0; i < n; ++i) {
-    const Vec3 next = i + 1 < n ? Vec3(corners[i + 1].p - point) : first;
-    area[i] = std::max(0.0, face.normal.dot(from_point.cross(next)));
-    from_point = next;
-  }
+  for (int i = 0; i < n; ++i) area[i] = std::max(0.0, corners[i].inward.dot(point) - corners[i].offset);
   double behind[kMostCorners + 1];  // area[i] area[i + 1] ... area[n - 1]
   behind[n] = 1.0;
   for (int i = n; i-- > 0;) behind[i] = behind[i + 1] * area[i];
   // The last side meets the first corner: area[n - 1] is left out there.
   double without_last = 1.0;
   for (int i = 1; i + 1 < n; ++i) without_last *= area[i];
-  Vec3 sum = corners[0].area * without_last * corners[0].normal;
+  Vec3 sum = without_last * corners[0].normal;
   double before = 1.0;  // area[0] ... area[i - 2]
   for (int i = 1; i < n; ++i) {
-    sum += corners[i].area * before * behind[i + 1] * corners[i].normal;
+    sum += before * behind[i + 1] * corners[i].normal;
     before *= area[i - 1];
   }
   const double length = sum.norm();
@@ -148,7 +142,8 @@ std::vector<ShadedCorner> shaded(const Part& part, const std::vector<CornerName>
     const Vec3& p = place_of(part, names[i]);
     const Vec3& last = place_of(part, names[(i + names.size() - 1) % names.size()]);
     const Vec3& next = place_of(part, names[(i + 1) % names.size()]);
-    corners.push_back({p, own ? normal : mean, normal.dot((p - last).cross(next - p))});
+    const Vec3 inward = normal.cross(next - p);
+    corners.push_back({(own ? normal : mean) * inward.dot(last - p), inward, inward.dot(p)});
   }
   if (!curved) corners.clear();
   return corners;

@@ -18,11 +18,12 @@
 
 namespace tactum {
 
-/// A corner of a face: where, the normal of the surface there, and its part of the Wachspress weight.
+/// A corner of a face, as Wachspress coordinates need it.
 struct ShadedCorner {
-  Vec3 p = Vec3::Zero();       ///< part's frame [m]
-  Vec3 normal = Vec3::Zero();  ///< unit [-]
-  double area = 0.0;           ///< twice that of the triangle with its neighbours [m^2]
+  Vec3 normal = Vec3::Zero();  ///< of the surface there, times twice the triangle of its neighbours [m^2]
+  // Twice the area of the side to the next corner with a point p is  inward . p - offset.
+  Vec3 inward = Vec3::Zero();  ///< square to the side, in the face, as long as the side [m]
+  double offset = 0.0;         ///< part's frame [m^2]
 };
 
 /// A true face. No corners: nothing of it deviates.
