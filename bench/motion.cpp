@@ -22,7 +22,8 @@ Vec3 random_direction(Random& random) {
 /// B beside A somewhere, apart.
 Pose anywhere(const Shape& a, const Shape& b, Random& random) {
   Pose X;
-  X.R = exp_rotation(random.uniform(0.0, kPi) * random_direction(random));
+  const Vec3 axis = random_direction(random);
+  X.R = exp_rotation(random.uniform(0.0, kPi) * axis);
   const double reach = a.polytope.radius + b.polytope.radius;
   X.p = a.polytope.center + 1.1 * reach * random_direction(random) - X.R * b.polytope.center;
   return X;
