@@ -18,8 +18,8 @@ using Index = std::size_t;
 /// Faces with more corners are flat ends, not parts of curved surfaces.
 constexpr int kMostCorners = 16;
 
-/// The interpolated normal inside a convex polygon: w_i = A(i-1,i,i+1) prod_{j != i-1,i} A(j,j+1,p), the
-/// product as that of all before times that of all behind.
+/// The interpolated normal inside a convex polygon: w_i = A(i-1,i,i+1) prod_{j != i-1,i} A(j,j+1,p). The
+/// first area is in the corner's weighted normal; the product is that of all before times that of all behind.
 Vec3 interpolated(const ShadedFace& face, const ShadedCorner* corners, const Vec3& point) {
   const int n = face.count;
   double area[kMostCorners];
@@ -30,10 +30,10 @@ Vec3 interpolated(const ShadedFace& face, const ShadedCorner* corners, const Vec
   // The last side meets the first corner: area[n - 1] is left out there.
   double without_last = 1.0;
   for (int i = 1; i + 1 < n; ++i) without_last *= area[i];
-  Vec3 sum = without_last * corners[0].normal;
+  Vec3 sum = without_last * corners[0].weighted;
   double before = 1.0;  // area[0] ... area[i - 2]
   for (int i = 1; i < n; ++i) {
-    sum += before * behind[i + 1] * corners[i].normal;
+    sum += before * behind[i + 1] * corners[i].weighted;
     before *= area[i - 1];
   }
   const double length = sum.norm();

@@ -20,7 +20,7 @@ namespace tactum {
 
 /// A corner of a face, as Wachspress coordinates need it.
 struct ShadedCorner {
-  Vec3 normal = Vec3::Zero();  ///< of the surface there, times twice the triangle of its neighbours [m^2]
+  Vec3 weighted = Vec3::Zero();  ///< the surface's normal, times twice the triangle of its neighbours [m^2]
   // Twice the area of the side to the next corner with a point p is  inward . p - offset.
   Vec3 inward = Vec3::Zero();  ///< square to the side, in the face, as long as the side [m]
   double offset = 0.0;         ///< part's frame [m^2]
