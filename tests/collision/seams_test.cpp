@@ -91,21 +91,43 @@ TEST(Seams, ATrueCornerBetweenPiecesHasBothContacts) {
   EXPECT_NEAR(side, 1.0, 1e-12);
 }
 
+/// The turns that put axes on axes: after each a box's features are numbered another way.
+std::vector<Mat3> turns_of_a_box() {
+  std::vector<Mat3> turns;
+  for (int x = 0; x < 3; ++x)
+    for (int y = 0; y < 3; ++y)
+      for (int signs = 0; x != y && signs < 4; ++signs) {
+        Mat3 turn = Mat3::Zero();
+        turn(x, 0) = signs & 1 ? -1.0 : 1.0;
+        turn(y, 1) = signs & 2 ? -1.0 : 1.0;
+        turn.col(2) = turn.col(0).cross(turn.col(1));
+        turns.push_back(turn);
+      }
+  return turns;
+}
+
 TEST(Seams, InACornerThatIsEnteredBothWaysOutAreTold) {
   // The wall goes down beside the floor: the block's lowest corners are where the floor covers the wall.
-  const Part part = part_of({box_between({-0.05, -0.05, -0.02}, {0.03, 0.05, 0}),
-                             box_between({0.03, -0.05, -0.02}, {0.05, 0.05, 0.04})});
-  for (const double into_floor : {1e-4, 3e-4, 2e-3}) {
-    for (const double into_wall : {1e-4, 2e-4, 1e-3}) {
-      const Pose X{Mat3::Identity(), {0.02 + into_wall, 0, 0.005 - into_floor}};
-      double up = 1.0;
-      double side = 1.0;
-      for (const ContactPatch& patch : patches_on(part, X, 1e-4)) {
-        if (patch.manifold.normal.z() > 0.999) up = patch.distance;
-        if (patch.manifold.normal.x() < -0.999) side = patch.distance;
+  for (const Mat3& turn : turns_of_a_box()) {
+    const auto turned_box = [&](const Vec3& low, const Vec3& high) {
+      std::vector<Vec3> corners = box_between(low, high);
+      for (Vec3& corner : corners) corner = turn * corner;
+      return corners;
+    };
+    const Part part = part_of({turned_box({-0.05, -0.05, -0.02}, {0.03, 0.05, 0}),
+                               turned_box({0.03, -0.05, -0.02}, {0.05, 0.05, 0.04})});
+    for (const double into_floor : {1e-4, 3e-4, 2e-3}) {
+      for (const double into_wall : {1e-4, 2e-4, 1e-3}) {
+        const Pose X{turn, turn * Vec3(0.02 + into_wall, 0, 0.005 - into_floor)};
+        double up = 1.0;
+        double side = 1.0;
+        for (const ContactPatch& patch : patches_on(part, X, 1e-4)) {
+          if (patch.manifold.normal.z() > 0.999) up = patch.distance;
+          if (patch.manifold.normal.x() < -0.999) side = patch.distance;
+        }
+        EXPECT_NEAR(up, -into_floor, 1e-9) << into_wall << "\n" << turn;
+        EXPECT_NEAR(side, -into_wall, 1e-9) << into_floor << "\n" << turn;
       }
-      EXPECT_NEAR(up, -into_floor, 1e-9) << into_wall;
-      EXPECT_NEAR(side, -into_wall, 1e-9) << into_floor;
     }
   }
 }

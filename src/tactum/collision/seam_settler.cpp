@@ -29,7 +29,7 @@ class TwoBodies {
     for (SeamCandidate& candidate : candidates_)
       if (!candidate.settled && !answered(candidate)) tell_again(candidate);
     while (SeamCandidate* nearest = shallowest())
-      if (!answered(*nearest)) lead(*nearest);
+      if (!answered(*nearest) && tell_beside_leaders(*nearest)) lead(*nearest);
     for (SeamCandidate& candidate : candidates_)
       if (!candidate.settled) *candidate.shown = {};
   }
@@ -58,37 +58,57 @@ class TwoBodies {
 
   /// What is objected to, as what it is on the whole part. Where that is nothing it may still follow.
   void tell_again(SeamCandidate& candidate) noexcept {
-    std::optional<PairDistance> depth = on_true_surface(candidate, 0.0);
-    if (const double entered = deepest_leader(); depth && entered > 0.0) {
-      const double beside = candidate.reach + entered;
-      const double likely = kFarDeeper * (beside - std::min(candidate.found.distance, 0.0));
-      if (-depth->distance > likely) {
-        // In a corner its deepest point lies in the neighbour, as deep as that is entered: it is looked for
-        // beside the covered place. Where rounding leaves no true face or edge there that has it, it is what
-        // was found, rather than the way through the whole piece.
-        const std::optional<PairDistance> near = on_true_surface(candidate, beside);
-        if (near && -near->distance <= likely) {
-          depth = near;
-        } else if (candidate.found.distance < 0.0 && touches_beside(candidate, beside)) {
-          depth = candidate.found;
-        }
-      }
-    }
+    candidate.on_pieces = candidate.found;
+    const std::optional<PairDistance> depth = on_true_surface(candidate, 0.0);
     if (!depth || depth->distance >= candidate.reach) return;
-    if (candidate.found.distance >= 0.0 && depth->distance < 0.0) return;  // apart, and beside the face
     candidate.found = *depth;
     candidate.objected = false;
   }
 
+  /// In a corner the deepest point of a contact lies in the neighbour, as deep as that is entered: what was
+  /// told as the way through the whole piece is looked for beside the covered place. Where rounding leaves no
+  /// true face or edge there that has it, it is what was found. False when it is nothing.
+  bool tell_beside_leaders(SeamCandidate& candidate) noexcept {
+    const PairDistance& on_pieces = candidate.on_pieces;
+    const double entered = deepest_leader();
+    const double beside = candidate.reach + entered;
+    const double likely = kFarDeeper * (beside - std::min(on_pieces.distance, 0.0));
+    if (-candidate.found.distance > likely) {
+      std::optional<PairDistance> near;
+      if (entered > 0.0) near = on_true_surface(candidate, beside);
+      if (near && -near->distance <= likely) {
+        candidate.found = *near;
+      } else if (entered > 0.0 ? on_pieces.distance < 0.0 && touches_beside(candidate, beside)
+                               : touches_in_the_middle(candidate)) {
+        candidate.found = on_pieces;
+      }
+    }
+    // Apart, and beside the face.
+    candidate.objected = candidate.found.distance >= candidate.reach ||
+                         (on_pieces.distance >= 0.0 && candidate.found.distance < 0.0);
+    return !candidate.objected;
+  }
+
   std::optional<PairDistance> on_true_surface(const SeamCandidate& candidate, double beside) const noexcept {
     return depth_on_true_surface(*candidate.part_a, candidate.piece_a, *candidate.part_b, candidate.piece_b,
-                                 X_AB_, candidate.found, candidate.reach, beside);
+                                 X_AB_, candidate.on_pieces, candidate.reach, beside);
   }
 
   /// Whether what was found is a true contact, or would be no farther than `beside` away.
   bool touches_beside(const SeamCandidate& candidate, double beside) const noexcept {
     return is_true_contact(*candidate.part_a, candidate.piece_a, *candidate.part_b, candidate.piece_b, X_AB_,
-                           candidate.found, beside);
+                           candidate.on_pieces, beside);
+  }
+
+  /// Whether what is objected to for its closest points, which of a flat contact may be any, is a true
+  /// contact in the middle: in a corner that is entered both ways each wall is covered by the other at its
+  /// edge.
+  bool touches_in_the_middle(const SeamCandidate& candidate) const noexcept {
+    Manifold manifold;
+    contact_manifold(piece_a(candidate), piece_b(candidate), X_AB_, candidate.on_pieces, candidate.reach,
+                     manifold);
+    const bool flat = manifold.a.kind == FeatureKind::kFace && manifold.b.kind == FeatureKind::kFace;
+    return flat && is_true_stretch(candidate, manifold);
   }
 
   /// How deep the deepest leader is; none overlaps: 0.

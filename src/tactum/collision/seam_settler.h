@@ -30,6 +30,7 @@ struct SeamCandidate {
   SteadyContact* shown = nullptr;  ///< the pair's memory
   double reach = 0.0;              ///< tolerance of the pair [m]
   PairDistance found;
+  PairDistance on_pieces;  ///< of what was objected to and told again: what was found before
   bool objected = false;
   bool settled = false;
   int patch = -1;   ///< of a leader

@@ -24,12 +24,6 @@ Across across_edges(double size, double slack, const Vec3& c, const Vec3& d, dou
   return {direction, std::max(slack / size, tolerances::kVoronoiSlack) / sine, (d - direction * gap).norm()};
 }
 
-/// A segment's end, when the closest point is there; else the edge.
-Feature end_or_edge(const Polytope::Edge& e, double s, Feature whole) noexcept {
-  if (s > 0.0 && s < e.length) return whole;
-  return vertex(s > 0.0 ? e.head : e.tail);
-}
-
 }  // namespace
 
 Step edges_along(const PiecePair& pair, double slack, int a, int b, Place& at, PairDistance& x) noexcept {

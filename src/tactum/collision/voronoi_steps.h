@@ -112,6 +112,20 @@ void tell_points(const Sides<Swapped>& S, const Place& at, PairDistance& x) noex
   x.doubt = kInfinity;
 }
 
+/// Which of an edge, its ends and its faces a point outside the piece leads to from the edge.
+inline Feature beside_edge(const Polytope& Q, int index, const Vec3& p, double slack) noexcept {
+  const Polytope::Edge& g = Q.edges[index];
+  const double along = g.direction.dot(p - Q.vertices[g.tail]);
+  if (along < -slack) return vertex(g.tail);
+  if (along > g.length + slack) return vertex(g.head);
+  const Polytope::Side& left = Q.sides[g.left_slot];
+  const Polytope::Side& right = Q.sides[g.right_slot];
+  const double above_left = left.normal.dot(p) - left.offset;
+  const double above_right = right.normal.dot(p) - right.offset;
+  if (std::min(above_left, above_right) >= -slack) return edge(index);
+  return face(above_left < above_right ? g.left : g.right);
+}
+
 template <bool Swapped>
 Step vertex_vertex(const Sides<Swapped>& S, Feature fp, Feature fq, Place& at, PairDistance& x) noexcept {
   at.p = S.P.vertices[fp.index];
@@ -143,14 +157,10 @@ Step vertex_edge(const Sides<Swapped>& S, Feature fp, Feature fq, Place& at, Pai
   at.q = tail + g.direction * std::clamp(along, 0.0, g.length);
   const Vec3 d_Q = at.q - p_Q;
   at.gap = d_Q.norm();
-  if (along < -S.slack) return {Outcome::kMoved, fp, vertex(g.tail)};
-  if (along > g.length + S.slack) return {Outcome::kMoved, fp, vertex(g.head)};
+  if (const Feature next = beside_edge(S.Q, fq.index, p_Q, S.slack); next != fq)
+    return {Outcome::kMoved, fp, next};
   const Polytope::Side& left = S.Q.sides[g.left_slot];
   const Polytope::Side& right = S.Q.sides[g.right_slot];
-  const double above_left = left.normal.dot(p_Q) - left.offset;
-  const double above_right = right.normal.dot(p_Q) - right.offset;
-  if (std::min(above_left, above_right) < -S.slack)
-    return {Outcome::kMoved, fp, face(above_left < above_right ? g.left : g.right)};
   const Vec3 d_P = S.turned_to_P(d_Q);
   const Steepest at_p = steepest_edge(S.P, fp.index, d_P);
   if (at_p.slope > S.slack) return {Outcome::kMoved, edge(at_p.edge), fq};
@@ -186,7 +196,7 @@ Step vertex_face(const Sides<Swapped>& S, Feature fp, Feature fq, Place& at, Pai
   const Polytope::Face& f = S.Q.faces[fq.index];
   const Vec3 p_Q = S.in_Q(p);
   if (const int slot = slot_outside(S.Q, f, p_Q, S.slack); slot >= 0)
-    return {Outcome::kMoved, fp, edge(S.Q.face_edges[slot])};
+    return {Outcome::kMoved, fp, beside_edge(S.Q, S.Q.face_edges[slot], p_Q, S.slack)};
   const double height = f.normal.dot(p_Q) - f.offset;
   if (height < -S.slack) {
     if (!S.Q.flat) return {Outcome::kBehind, fp, fq};
@@ -223,6 +233,32 @@ inline Toward face_toward(const Polytope& P, const Polytope::Edge& e, const Vec3
 [[gnu::noinline]] Step edges_along(const PiecePair& pair, double slack, int a, int b, Place& at,
                                    PairDistance& x) noexcept;
 
+/// Of a place along an edge, the end it lies beyond; else the edge.
+inline Feature end_or_edge(const Polytope::Edge& e, double at, Feature whole) noexcept {
+  if (at > 0.0 && at < e.length) return whole;
+  return vertex(at > 0.0 ? e.head : e.tail);
+}
+
+/// Two lines along the unit vectors u and w, r from a point of the first to one of the second.
+struct Crossing {
+  double cosine, sine_sq;  ///< of their angle
+  double r_u, r_w;         ///< r . u, r . w [m]
+  double s, t;             ///< where along each they are nearest, times sine_sq [m]
+};
+
+/// Where the edges are nearest at an end of one: there, the place on the other is nearest to that end.
+inline Step past_an_end(const Polytope::Edge& e, const Polytope::Edge& g, Feature fp, Feature fq,
+                        const Crossing& x) noexcept {
+  const bool past_e = !(x.s > 0.0 && x.s < e.length * x.sine_sq);
+  double on_e = x.s > 0.0 ? e.length : 0.0;
+  double on_g = past_e ? on_e * x.cosine - x.r_w : (x.t > 0.0 ? g.length : 0.0);
+  if (!past_e || on_g < 0.0 || on_g > g.length) {
+    on_g = std::clamp(on_g, 0.0, g.length);
+    on_e = x.r_u + on_g * x.cosine;
+  }
+  return {Outcome::kMoved, end_or_edge(e, on_e, fp), end_or_edge(g, on_g, fq)};
+}
+
 /// Where a hand moves two parts half of all walks end at edges that cross at an angle and are nearest between
 /// their ends. Nothing there needs the points: the normal is the edges' cross product c, the gap r . c / |c|,
 /// and where along the edges it is, s and t times the sine squared, are dot products. What rounding leaves is
@@ -243,8 +279,9 @@ inline Step edge_edge(const PiecePair& pair, const Sides<false>& S, Feature fp, 
   const double s = r_e - r_g * cosine;
   const double t = r_e * cosine - r_g;
   const bool between = s > 0.0 && s < e.length * sine_sq && t > 0.0 && t < g.length * sine_sq;
-  if (!between || sine_sq < tolerances::kCrossingSine * tolerances::kCrossingSine)
-    return edges_along(pair, S.slack, fp.index, fq.index, at, x);
+  const bool crossing = sine_sq >= tolerances::kCrossingSine * tolerances::kCrossingSine;
+  if (!between && crossing) return past_an_end(e, g, fp, fq, {cosine, sine_sq, r_e, r_g, s, t});
+  if (!crossing) return edges_along(pair, S.slack, fp.index, fq.index, at, x);
 
   const double along = r.dot(c);
   const Vec3 outward = along < 0.0 ? Vec3(-c) : c;

@@ -14,6 +14,7 @@ extern "C" {
 #include <numeric>
 
 #include "tactum/base/tolerances.h"
+#include "tactum/geometry/bvh.h"
 
 namespace tactum {
 namespace {
@@ -171,6 +172,24 @@ std::vector<std::vector<int>> facet_loops(const std::vector<Triangle>& triangles
   return loops;
 }
 
+/// Facets that lie together side by side: a walk over features of a large hull then stays in a few lines and
+/// pages of memory. Vertices and edges are numbered by the facets, so they follow. Smaller hulls are in the
+/// cache anyway.
+std::vector<std::vector<int>> side_by_side(const std::vector<Vec3>& points,
+                                           std::vector<std::vector<int>> loops) {
+  constexpr Index kManyFacets = 1000;
+  if (loops.size() < kManyFacets) return loops;
+  std::vector<Aabb> boxes;
+  for (const auto& loop : loops) {
+    Aabb& box = boxes.emplace_back();
+    for (int v : loop) box.extend(points[Index(v)]);
+  }
+  std::vector<std::vector<int>> sorted;
+  const Bvh tree(boxes);
+  for (std::int32_t facet : tree.order()) sorted.push_back(loops[Index(facet)]);
+  return sorted;
+}
+
 /// Removes corners met by only two facets (the middle of a straight edge), then renumbers what is left.
 Polytope without_false_corners(const std::vector<Vec3>& points, std::vector<std::vector<int>> loops) {
   std::map<int, int> uses;
@@ -298,7 +317,7 @@ Result<Polytope> convex_hull(const std::vector<Vec3>& points) {
   if (!hull) return hull.error();
   auto loops = facet_loops(hull->triangles, facet_of_triangles(points, hull->triangles, height));
   if (loops.empty()) return Error{"the convex hull failed", "a facet whose outline is not one loop", "", ""};
-  Polytope P = without_false_corners(points, std::move(loops));
+  Polytope P = without_false_corners(points, side_by_side(points, std::move(loops)));
   if (P.vertices.size() > 65535)
     return Error{"the hull has too many vertices", fmt::format("{}", P.vertices.size()), "at most 65535", ""};
   const char* why = nullptr;
