@@ -121,7 +121,9 @@ TEST(Seams, InACornerThatIsEnteredBothWaysOutAreTold) {
         const Pose X{turn, turn * Vec3(0.02 + into_wall, 0, 0.005 - into_floor)};
         double up = 1.0;
         double side = 1.0;
-        for (const ContactPatch& patch : patches_on(part, X, 1e-4)) {
+        const std::vector<ContactPatch> patches = patches_on(part, X, 1e-4);
+        EXPECT_EQ(patches.size(), 2u);
+        for (const ContactPatch& patch : patches) {
           if (patch.manifold.normal.z() > 0.999) up = patch.distance;
           if (patch.manifold.normal.x() < -0.999) side = patch.distance;
         }

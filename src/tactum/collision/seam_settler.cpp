@@ -65,9 +65,10 @@ class TwoBodies {
     candidate.objected = false;
   }
 
-  /// In a corner the deepest point of a contact lies in the neighbour, as deep as that is entered: what was
-  /// told as the way through the whole piece is looked for beside the covered place. Where rounding leaves no
-  /// true face or edge there that has it, it is what was found. False when it is nothing.
+  /// What was told far deeper than it was found and than the leaders are, as the way through the whole piece,
+  /// is judged anew. In a corner the deepest point of a contact lies in the neighbour, as deep as that is
+  /// entered: it is looked for beside the covered place. Where rounding leaves no true face or edge there
+  /// that has it, or the contact is true in its middle, it is what was found. False when it is nothing.
   bool tell_beside_leaders(SeamCandidate& candidate) noexcept {
     const PairDistance& on_pieces = candidate.on_pieces;
     const double entered = deepest_leader();
@@ -78,8 +79,8 @@ class TwoBodies {
       if (entered > 0.0) near = on_true_surface(candidate, beside);
       if (near && -near->distance <= likely) {
         candidate.found = *near;
-      } else if (entered > 0.0 ? on_pieces.distance < 0.0 && touches_beside(candidate, beside)
-                               : touches_in_the_middle(candidate)) {
+      } else if (on_pieces.distance < 0.0 &&
+                 ((entered > 0.0 && touches_beside(candidate, beside)) || touches_in_the_middle(candidate))) {
         candidate.found = on_pieces;
       }
     }
@@ -156,7 +157,10 @@ class TwoBodies {
     shown.b =
         true_feature(*nearest.part_b, nearest.piece_b, shown.b, rotated_back(X_AB_.R, shown.p_b - X_AB_.p));
     ContactPatch* patch = new_patch(nearest);
-    if (patch == nullptr) return;
+    if (patch == nullptr) {
+      nearest.settled = true;
+      return;
+    }
     contact_manifold(piece_a(nearest), piece_b(nearest), X_AB_, shown, nearest.reach, patch->manifold);
     patch->distance = shown.distance;
     PairDistance led = shown;

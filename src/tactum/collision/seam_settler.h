@@ -6,7 +6,8 @@
 ///                                        true faces (or edges) follows: its stretch goes into the leader's
 ///                                        patch, which is then that of the uncut part (manifold.h).
 ///   then the objected:                   dropped when they are apart or a leader answers for them; else they
-///                                        lead by the least depth on the true surface.
+///                                        lead by the least depth on the true surface, or in a corner by that
+///                                        beside it, or as they were found.
 ///
 /// The memory of what was shown goes from the leader to all it answers for, so that a contact slides over a
 /// seam without forgetting. Cost: what the patches cost, and a look-up for each leader and pair.

@@ -9,6 +9,8 @@
 ///                            |                  |
 ///                         edge-edge   <->   edge-face  ->  overlap, when the edge goes through the face
 ///
+/// A point that leaves a face goes to the face across the edge, or to its end, without a stop at the edge.
+///
 /// Departs from Mirtich in edge-edge, where the place along both edges is computed, by dot products where
 /// they cross at an angle and by cross products where they run alike (his clipping against the four planes
 /// says the same and rounds worse near parallel edges), and in what happens when rounding makes the walk go

@@ -112,7 +112,7 @@ void tell_points(const Sides<Swapped>& S, const Place& at, PairDistance& x) noex
   x.doubt = kInfinity;
 }
 
-/// Which of an edge, its ends and its faces a point outside the piece leads to from the edge.
+/// Which of an edge, its ends and its faces a point leads to from the edge.
 inline Feature beside_edge(const Polytope& Q, int index, const Vec3& p, double slack) noexcept {
   const Polytope::Edge& g = Q.edges[index];
   const double along = g.direction.dot(p - Q.vertices[g.tail]);

@@ -186,7 +186,7 @@ std::vector<std::vector<int>> side_by_side(const std::vector<Vec3>& points,
   }
   std::vector<std::vector<int>> sorted;
   const Bvh tree(boxes);
-  for (std::int32_t facet : tree.order()) sorted.push_back(loops[Index(facet)]);
+  for (std::int32_t facet : tree.order()) sorted.push_back(std::move(loops[Index(facet)]));
   return sorted;
 }
 
