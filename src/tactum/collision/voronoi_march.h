@@ -9,7 +9,8 @@
 ///                            |                  |
 ///                         edge-edge   <->   edge-face  ->  overlap, when the edge goes through the face
 ///
-/// A point that leaves a face goes to the face across the edge, or to its end, without a stop at the edge.
+/// A vertex that leaves a face goes to the face across the edge or to an end of the edge, where it belongs to
+/// either, without a stop at the edge.
 ///
 /// Departs from Mirtich in edge-edge, where the place along both edges is computed, by dot products where
 /// they cross at an angle and by cross products where they run alike (his clipping against the four planes
