@@ -114,6 +114,14 @@ void add_peer_options(CLI::App& command, Job& job) {
       ->capture_default_str();
 }
 
+void add_regimes(CLI::App& command, Job& job, const std::vector<bench::Regime>& regimes) {
+  std::vector<std::string> names;
+  for (const bench::Regime& regime : regimes) names.push_back(regime.name);
+  command.add_option("--regimes", job.options.regimes, "with commas")
+      ->delimiter(',')
+      ->check(CLI::IsMember(names));
+}
+
 }  // namespace
 
 void add_bench_pairs(CLI::App& parent) {
@@ -122,20 +130,17 @@ void add_bench_pairs(CLI::App& parent) {
       add_command(parent, "pairs", "Distances of convex pieces, beside FCL, libccd, Bullet and ODE",
                   bench::distance_pairs(), job, run_pairs);
   add_peer_options(*command, *job);
-  std::vector<std::string> names;
-  for (const bench::Regime& regime : bench::regimes()) names.push_back(regime.name);
-  command->add_option("--regimes", job->options.regimes, "with commas")
-      ->delimiter(',')
-      ->check(CLI::IsMember(names));
+  add_regimes(*command, *job, bench::regimes());
   command->add_option("--svg", job->svg, "draw the cost against the number of vertices to this file");
 }
 
 void add_bench_penetration(CLI::App& parent) {
   auto job = std::make_shared<Job>();
-  add_peer_options(
-      *add_command(parent, "penetration", "Depths of deep overlaps, and how often they are the smallest",
-                   bench::depth_pairs(), job, run_penetration),
-      *job);
+  CLI::App* command =
+      add_command(parent, "penetration", "Depths of overlaps, and how often they are the smallest",
+                  bench::depth_pairs(), job, run_penetration);
+  add_peer_options(*command, *job);
+  add_regimes(*command, *job, bench::depth_regimes());
 }
 
 void add_bench_manifold(CLI::App& parent) {

@@ -11,6 +11,7 @@ using Progress = std::function<void(const std::string&)>;
 constexpr double kOurBudget_s = 20.0;
 constexpr double kEdgePairs_per_s = 1e8;
 constexpr int kQuickFrames = 200;
+constexpr const char* kDeep = "deep";
 constexpr std::uint64_t kSeed = 7;
 
 /// What the runs of both commands share: the meter and the report that grows.
@@ -100,6 +101,16 @@ std::span<const Pair> depth_pairs() {
   return list;
 }
 
+const std::vector<Regime>& depth_regimes() {
+  static const std::vector<Regime> list = [] {
+    std::vector<Regime> all = regimes();
+    std::erase_if(all, [](const Regime& regime) { return !regime.overlapping(); });
+    all.push_back({kDeep, -1.0, 0.0});
+    return all;
+  }();
+  return list;
+}
+
 std::vector<std::string> engine_names() {
   std::vector<std::string> names = {kOurs};
   for (const EngineEntry& peer : peers()) names.push_back(peer.name);
@@ -125,8 +136,14 @@ PairsReport bench_penetration(const PairsOptions& options, const Progress& progr
   for (const Pair& pair : depth_pairs()) {
     if (run.skips(pair)) continue;
     progress(pair.name());
-    const Recording recording = record_deep(shape(pair.a), shape(pair.b), run.frames(), kSeed);
-    run.measure_all(pair, {"deep", -1.0, 0.0, false}, recording, make_penetration);
+    for (const Regime& regime : depth_regimes()) {
+      if (!wanted(options.regimes, regime.name)) continue;
+      const Shape& a = shape(pair.a);
+      const Shape& b = shape(pair.b);
+      const Recording recording = regime.name == kDeep ? record_deep(a, b, run.frames(), kSeed)
+                                                       : record(a, b, regime, run.frames(), kSeed);
+      run.measure_all(pair, regime, recording, make_penetration);
+    }
   }
   return run.report;
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bench/measure.h"
+#include "bench/motion.h"
 
 namespace tactum::bench {
 
@@ -30,13 +31,15 @@ struct PairsReport {
 
 std::span<const Pair> distance_pairs();
 std::span<const Pair> depth_pairs();
+/// Those of motion.h that overlap, and deep: see record_deep.
+const std::vector<Regime>& depth_regimes();
 std::vector<std::string> engine_names();  ///< ours first
 
 /// `progress` is told each pair before it starts.
 PairsReport bench_pairs(const PairsOptions& options, const std::function<void(const std::string&)>& progress);
 
-/// The same for deep overlaps, with penetration_depth in place of closest_features; the referee looks for the
-/// global minimum on as many frames as it can. `regimes` is not looked at.
+/// The same for overlaps, with penetration_depth in place of closest_features; the referee looks for the
+/// global minimum on as many frames as it can.
 PairsReport bench_penetration(const PairsOptions& options,
                               const std::function<void(const std::string&)>& progress);
 

@@ -149,12 +149,12 @@ Table against_peers(const std::vector<Row>& rows) {
 
 Table depth_rows(const std::vector<Row>& rows) {
   Table table;
-  table.left = 2;
-  table.rows.push_back({"pair", "engine", "vertices", "frames", "median", "p99", "p99.9", "max", "missed",
-                        "depths checked", "not the smallest", "off by"});
+  table.left = 3;
+  table.rows.push_back({"pair", "regime", "engine", "vertices", "frames", "median", "p99", "p99.9", "max",
+                        "missed", "depths checked", "not the smallest", "off by"});
   for (const Group& group : groups(rows))
     for (const Row* row : group.rows)
-      table.rows.push_back({group.pair, row->engine, fmt::to_string(row->vertices),
+      table.rows.push_back({group.pair, group.regime, row->engine, fmt::to_string(row->vertices),
                             fmt::to_string(row->frames), time_text(row->median_ns), time_text(row->p99_ns),
                             time_text(row->p999_ns), time_text(row->max_ns), fmt::to_string(row->missed),
                             fmt::to_string(row->depths_checked), wrong_text(*row),
@@ -164,13 +164,15 @@ Table depth_rows(const std::vector<Row>& rows) {
 
 Table depths_against_peers(const std::vector<Row>& rows) {
   Table table;
-  table.rows.push_back({"pair", "vertices", "median", "p99", "p99.9", "missed", "depths checked",
+  table.left = 2;
+  table.rows.push_back({"pair", "regime", "vertices", "median", "p99", "p99.9", "missed", "depths checked",
                         "not the smallest", "off by", "best peer", "its median", "its p99", "missed",
                         "not the smallest"});
   for (const Group& group : groups(rows)) {
     const Row* ours = group.ours();
     if (!ours) continue;
     std::vector<std::string> cells = {group.pair,
+                                      group.regime,
                                       fmt::to_string(group.vertices),
                                       time_text(ours->median_ns),
                                       time_text(ours->p99_ns),

@@ -24,6 +24,13 @@ void expect_sound(const Polytope& P, double size) {
     for (int i = face.first; i < face.first + face.count; ++i)
       EXPECT_NEAR(face.normal.dot(P.vertices[std::size_t(P.face_vertices[std::size_t(i)])]), face.offset,
                   4 * tolerances::kCoplanar * size);
+  for (std::size_t f = 0; f < P.faces.size();
+       ++f)  // a face and that across its edge lie at the edge's two sides
+    for (int i = P.faces[f].first; i < P.faces[f].first + P.faces[f].count; ++i) {
+      const Polytope::Edge& edge = P.edges[std::size_t(P.face_edges[std::size_t(i)])];
+      const int across = P.across[std::size_t(i)];
+      EXPECT_TRUE(edge.left == int(f) ? edge.right == across : edge.right == int(f) && edge.left == across);
+    }
   for (std::size_t v = 0; v < P.vertices.size(); ++v) EXPECT_GE(P.rays_at(int(v)).size(), P.flat ? 2u : 3u);
 }
 

@@ -58,6 +58,7 @@ void expect_same(const Polytope& a, const Polytope& b) {
   expect_same_bits(a.face_vertices, b.face_vertices);
   expect_same_bits(a.face_edges, b.face_edges);
   expect_same_bits(a.sides, b.sides);
+  expect_same_bits(a.across, b.across);
   expect_same_bits(a.ray_first, b.ray_first);
   EXPECT_EQ(a.direction_table, b.direction_table);
   EXPECT_EQ(a.counts, b.counts);

@@ -44,6 +44,12 @@ class StaticVector {
     size_ = count < N ? count : N;
     std::uninitialized_copy_n(items, size_, begin());
   }
+  /// item(0), item(1), ...: `count` items, as many of them as fit.
+  template <class Item>
+  void fill(std::size_t count, const Item& item) noexcept {
+    size_ = count < N ? count : N;
+    for (std::size_t i = 0; i < size_; ++i) ::new (static_cast<void*>(room_ + i * sizeof(T))) T(item(i));
+  }
   std::size_t size() const noexcept { return size_; }
   bool empty() const noexcept { return size_ == 0; }
   bool full() const noexcept { return size_ == N; }

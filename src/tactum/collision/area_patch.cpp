@@ -20,6 +20,14 @@ struct GapRange {
   }
 };
 
+/// No gap of the polygon is larger: the largest of each coordinate's share.
+double bound_of(const Height& gap, const PatchPolygon& polygon) noexcept {
+  const Two slope = {gap.slope.x(), gap.slope.y()};
+  Two most = both(-std::numeric_limits<double>::infinity());
+  for (const Vec2& x : polygon) most = larger(most, slope * two(x));
+  return gap.at_origin + most[0] + most[1];
+}
+
 /// Where both faces are, one over the other: the polygon of the contact's own pieces, and those of the other
 /// stretches, which are made anew whenever they are asked for.
 class Overlap {
@@ -75,11 +83,6 @@ PatchMoments moments_of_all(const Overlap& overlap) noexcept {
   return sum;
 }
 
-/// One of four points: B's surface is under A's, along the normal.
-inline void add_quarter(const PatchWork& w, const Vec3& p_a, double gap) noexcept {
-  w.out.points.push_back({p_a, p_a - w.tangent.n * gap, gap, 0.25, 0});
-}
-
 /// The corners of the contact's own polygon that are farthest apart.
 void sliver_of(const PatchWork& w, const PatchPolygon& polygon, const Height& za, const Height& zb) noexcept {
   if (polygon.empty()) return point_contact(w);
@@ -101,12 +104,11 @@ void face_face_contact(const PatchWork& w) noexcept {
   const Height gap{za.at_origin - zb.at_origin, za.slope - zb.slope};
   const bool alone = w.others.empty();
   Overlap overlap(w, tangent_B);
-  GapRange before;
-  before.extend(gap, overlap.own());
+  const double bound = bound_of(gap, overlap.own());
   overlap.clip();
   if (overlap.own().empty() && alone) return point_contact(w);
   // Where the whole face is within the tolerance the gap cuts nothing.
-  if (before.most > w.tolerance || gap_share(w) < 1.0 || !alone) {
+  if (bound > w.tolerance || gap_share(w) < 1.0 || !alone) {
     GapRange range;
     overlap.visit([&](const PatchPolygon& polygon) { range.extend(gap, polygon); });
     if (range.least >= w.tolerance) return point_contact(w);
@@ -129,13 +131,16 @@ void face_face_contact(const PatchWork& w) noexcept {
   if (m.area <= tolerances::kPatchArea * size * size) return sliver_of(w, overlap.own(), za, zb);
   w.out.area = m.area;
   const PatchSpread arms = spread_of(m);
-  const Vec3 center = w.tangent.point(m.centroid, za(m.centroid));
+  const Vec3 center_a = w.tangent.point(m.centroid, za(m.centroid));
   const double center_gap = gap(m.centroid);
+  const Vec3 center_b = center_a - w.tangent.n * center_gap;
+  w.out.points.clear();
   for (const Vec2* arm : {&arms.u, &arms.v}) {
     const Vec3 to_a = w.tangent.e1 * arm->x() + w.tangent.e2 * arm->y() + w.tangent.n * za.slope.dot(*arm);
     const double opens = gap.slope.dot(*arm);
-    add_quarter(w, center + to_a, center_gap + opens);
-    add_quarter(w, center - to_a, center_gap - opens);
+    const Vec3 to_b = to_a - w.tangent.n * opens;
+    w.out.points.push_back({center_a + to_a, center_b + to_b, center_gap + opens, 0.25, 0});
+    w.out.points.push_back({center_a - to_a, center_b - to_b, center_gap - opens, 0.25, 0});
   }
 }
 

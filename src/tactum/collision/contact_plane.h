@@ -4,9 +4,11 @@
 
 #include <cmath>
 
+#include "tactum/base/tolerances.h"
 #include "tactum/collision/contact.h"
 #include "tactum/collision/planar_patch.h"
 #include "tactum/geometry/polytope.h"
+#include "tactum/math/two.h"
 
 namespace tactum {
 
@@ -29,19 +31,25 @@ struct Height {
   double operator()(const Vec2& x) const noexcept { return at_origin + slope.dot(x); }
 };
 
+/// 1 / sqrt(1 - lean), for `lean` in [0, 1). Where three terms of its series are exact they stand in for the
+/// root and the quotient, which all that follows would wait for.
+inline double grown_to_unit(double lean) noexcept {
+  return lean < tolerances::kThreeTerms ? 1.0 + lean * (0.5 + lean * 0.375) : 1.0 / std::sqrt(1.0 - lean);
+}
+
 /// The contact plane's first axis goes with A's feature, so that points keep their places while it stays.
 inline Tangent contact_plane(const Polytope& A, const Feature& a, const Vec3& origin,
                              const Vec3& n) noexcept {
-  Tangent tangent{origin, Vec3::Zero(), Vec3::Zero(), n};
+  Tangent tangent{origin, {}, {}, n};
   if (a.kind == FeatureKind::kVertex) {
     tangent.e1 = any_orthogonal(n);
   } else {
     const int edge = a.kind == FeatureKind::kEdge ? a.index : A.face_edges[A.faces[a.index].first];
     const Vec3& u = A.edges[edge].direction;
-    tangent.e1 = u - n * n.dot(u);
-    const double length_sq = tangent.e1.squaredNorm();
+    const double along = n.dot(u);
+    const double lean = along * along;
     // Nearly square to n already, in the answers of the queries.
-    tangent.e1 = length_sq > 0.25 ? Vec3(tangent.e1 * (1.0 / std::sqrt(length_sq))) : any_orthogonal(n);
+    tangent.e1 = lean < 0.75 ? Vec3((u - n * along) * grown_to_unit(lean)) : any_orthogonal(n);
   }
   tangent.e2 = n.cross(tangent.e1);
   return tangent;
@@ -53,14 +61,22 @@ inline void face_outline(const Tangent& plane, const Polytope& P, int face_index
                          PatchPolygon& loop) noexcept {
   const Polytope::Face& face = P.faces[face_index];
   const int stride = (face.count + kPatchCorners - 1) / kPatchCorners;
-  const int* const corners = P.face_vertices.data() + face.first;
+  const int step = on_a ? -stride : stride;
+  const int* corner = P.face_vertices.data() + face.first + (on_a ? face.count - 1 : 0);
   const Vec3* const vertices = P.vertices.data();
-  loop.clear();
-  if (on_a) {
-    for (int i = face.count - 1; i >= 0; i -= stride) loop.push_back(plane.flat(vertices[corners[i]]));
-  } else {
-    for (int i = 0; i < face.count; i += stride) loop.push_back(plane.flat(vertices[corners[i]]));
-  }
+  const Two ex = {plane.e1.x(), plane.e2.x()};
+  const Two ey = {plane.e1.y(), plane.e2.y()};
+  const Two ez = {plane.e1.z(), plane.e2.z()};
+  // Numbers of its own, which stay in registers while corners are stored.
+  const double ox = plane.origin.x();
+  const double oy = plane.origin.y();
+  const double oz = plane.origin.z();
+  const int count = stride == 1 ? face.count : (face.count + stride - 1) / stride;
+  loop.fill(static_cast<std::size_t>(count), [&](std::size_t) {
+    const Vec3& p = vertices[*corner];
+    corner += step;
+    return vec2(ex * both(p.x() - ox) + ey * both(p.y() - oy) + ez * both(p.z() - oz));
+  });
 }
 
 inline Height face_height(const Tangent& plane, const Polytope& P, int face_index) noexcept {

@@ -24,8 +24,8 @@ constexpr std::array<std::array<Handler, 3>, 3> kHandlers = {{
 /// features, so the places do.
 void name_points(Manifold& patch) noexcept {
   const std::size_t points = patch.points.size();
-  const std::uint64_t first = points == 4 ? 0 : points == 2 ? 4 : 6;
-  for (std::size_t i = 0; i < points; ++i) patch.points[i].id = point_id(patch.a, patch.b, first + i);
+  std::uint64_t id = point_id(patch.a, patch.b, points == 4 ? 0 : points == 2 ? 4 : 6);
+  for (ContactPoint& point : patch.points) point.id = id++;
 }
 
 void make_patch(const Polytope& A, const Polytope& B, const Pose& X_AB, const PairDistance& closest,
@@ -41,7 +41,8 @@ void make_patch(const Polytope& A, const Polytope& B, const Pose& X_AB, const Pa
   const PatchWork work(A, B, X_AB, closest, tolerance, angle, others, out);
   out.a = work.a.feature;
   out.b = work.b.feature;
-  kHandlers[static_cast<std::size_t>(out.a.kind)][static_cast<std::size_t>(out.b.kind)](work);
+  kHandlers[static_cast<std::size_t>(work.a.feature.kind)][static_cast<std::size_t>(work.b.feature.kind)](
+      work);
   name_points(out);
 }
 

@@ -186,10 +186,6 @@ Worst place(const PairView& pair, const MinkowskiFacet& facet, const Vec3& targe
   return worst;
 }
 
-int other_face(const Polytope::Edge& edge, int face) noexcept {
-  return edge.left == face ? edge.right : edge.left;
-}
-
 Passage across_face_border(const PairView& pair, const MinkowskiFacet& facet, int slot) noexcept {
   Passage passage;
   passage.on_a = facet.a.kind == Kind::kFace;
@@ -197,7 +193,7 @@ Passage across_face_border(const PairView& pair, const MinkowskiFacet& facet, in
   const int face = passage.on_a ? facet.a.index : facet.b.index;
   Arc& arc = passage.arc;
   arc.edge = P.face_edges[slot];
-  arc.end = other_face(P.edges[arc.edge], face);
+  arc.end = P.across[slot];
   arc.vertex = passage.on_a ? facet.b.index : facet.a.index;
   arc.m0 = P.faces[face].normal;
   arc.t0 = P.sides[slot].normal;

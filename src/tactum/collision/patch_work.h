@@ -45,9 +45,8 @@ struct PatchWork {
   Vec3 vertex_b(int v) const noexcept { return X_AB * B.vertices[v]; }
   /// The contact plane in B's frame.
   Tangent tangent_B() const noexcept {
-    Tangent plane{rotated_back(X_AB.R, tangent.origin - X_AB.p), rotated_back(X_AB.R, tangent.e1), {}, n_B};
-    plane.e2 = plane.n.cross(plane.e1);
-    return plane;
+    const Vec3 e1 = rotated_back(X_AB.R, tangent.e1);
+    return {rotated_back(X_AB.R, tangent.origin - X_AB.p), e1, n_B.cross(e1), n_B};
   }
 };
 

@@ -5,8 +5,10 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <utility>
 
 #include "tactum/base/tolerances.h"
+#include "tactum/math/two.h"
 
 namespace tactum {
 namespace {
@@ -168,6 +170,111 @@ Cut side_of(const PatchPolygon& window, std::size_t i) noexcept {
   return {corners[i], corners[i + 1 == window.size() ? 0 : i + 1]};
 }
 
+/// A polygon of few corners and the up to four sides of its window. Every corner carries its heights over all
+/// sides: each is taken once, and a side that no corner is beyond costs nothing more. Two sides are next to
+/// each other in memory that are opposite in the window and cut one after the other: what the first leaves
+/// of its edges, the second need not wait for.
+class FewSides {
+ public:
+  static constexpr std::size_t kMost = 4;
+  static constexpr std::size_t kMostCorners = 6;
+
+  FewSides(const PatchPolygon& polygon, const PatchPolygon& window) noexcept : count_(polygon.size()) {
+    const std::array<Sides, 2> sides = sides_of(window);
+    Two extent = both(0.0);
+    std::array<Two, 2> most = {both(0.0), both(0.0)};
+    const Vec2* points = polygon.begin();
+    for (std::size_t i = 0; i < count_; ++i) {
+      Corner& corner = corners_[i];
+      corner.x = two(points[i]);
+      extent = larger(extent, magnitude(corner.x));
+      for (std::size_t k = 0; k < 2; ++k) {
+        corner.heights[k] = sides[k].heights(corner.x);
+        most[k] = larger(most[k], corner.heights[k]);
+      }
+      from_[i] = &corner;
+    }
+    fresh_ = corners_.data() + count_;
+    const double snap = kSnap * (extent[0] + extent[1]);
+    for (std::size_t k = 0; k < 2; ++k) {
+      snap_[k] = sides[k].scale * both(snap);
+      most_[k] = most[k];
+    }
+  }
+
+  /// Cuts off what is beyond a side [Sutherland and Hodgman 1974]; after its predecessors.
+  template <std::size_t kPair, std::size_t kLane>
+  void cut() noexcept {
+    const double snap = snap_[kPair][kLane];
+    if (!(most_[kPair][kLane] > snap) || count_ == 0) return;
+    const Corner* last = from_[count_ - 1];
+    double last_height = last->heights[kPair][kLane];
+    const Corner** end = to_;
+    for (std::size_t i = 0; i < count_; ++i) {
+      const Corner* corner = from_[i];
+      const double height = corner->heights[kPair][kLane];
+      const bool inside = height <= snap;
+      if (inside ? last_height > snap && height < -snap : last_height < -snap) {
+        const Two s = both(last_height / (last_height - height));
+        fresh_->x = last->x + (corner->x - last->x) * s;
+        // Of sides that are yet to cut.
+        for (std::size_t k = kPair + kLane; k < 2; ++k)
+          fresh_->heights[k] = last->heights[k] + (corner->heights[k] - last->heights[k]) * s;
+        *end++ = fresh_++;
+      }
+      if (inside) *end++ = corner;
+      last = corner;
+      last_height = height;
+    }
+    count_ = static_cast<std::size_t>(end - to_);
+    std::swap(from_, to_);
+  }
+
+  void copy_to(PatchPolygon& polygon) const noexcept {
+    polygon.fill(count_, [&](std::size_t i) { return vec2(from_[i]->x); });
+  }
+
+ private:
+  struct Corner {
+    Two x;
+    std::array<Two, 2> heights;
+  };
+  /// Two opposite sides, each as a Cut.
+  struct Sides {
+    Two out_x, out_y, offset, scale;
+    Sides(Two from_x, Two from_y, Two to_x, Two to_y) noexcept
+        : out_x(to_y - from_y),
+          out_y(from_x - to_x),
+          offset(out_x * from_x + out_y * from_y),
+          scale(magnitude(out_x) + magnitude(out_y)) {}
+    Two heights(Two x) const noexcept { return out_x * both(x[0]) + out_y * both(x[1]) - offset; }
+  };
+  /// Of fewer than four corners the last one again: a side without length cuts nothing off.
+  static std::array<Sides, 2> sides_of(const PatchPolygon& window) noexcept {
+    const Vec2* corners = window.begin();
+    const std::size_t last = window.size() - 1;
+    const Two c0 = two(corners[0]);
+    const Two c1 = two(corners[std::min<std::size_t>(1, last)]);
+    const Two c2 = two(corners[std::min<std::size_t>(2, last)]);
+    const Two c3 = two(corners[last]);
+    const Two odd_x = {c3[0], c1[0]};
+    const Two odd_y = {c3[1], c1[1]};
+    const Two even_x = {c0[0], c2[0]};
+    const Two even_y = {c0[1], c2[1]};
+    return {Sides(odd_x, odd_y, even_x, even_y), Sides(even_x, even_y, swapped(odd_x), swapped(odd_y))};
+  }
+
+  // Every cut of a convex polygon adds one corner, or two by rounding.
+  static constexpr std::size_t kRoom = kMostCorners + 2 * kMost;
+  std::array<Corner, kRoom> corners_;
+  std::array<std::array<const Corner*, kRoom>, 2> rows_;
+  const Corner** from_ = rows_[0].data();
+  const Corner** to_ = rows_[1].data();
+  Corner* fresh_;
+  std::size_t count_;
+  std::array<Two, 2> most_, snap_;
+};
+
 }  // namespace
 
 void clip_polygon(PatchPolygon& polygon, const Vec2& normal, double offset) noexcept {
@@ -178,32 +285,19 @@ void clip_polygon(PatchPolygon& polygon, const Vec2& normal, double offset) noex
 }
 
 void clip_polygon(PatchPolygon& polygon, const PatchPolygon& window) noexcept {
-  constexpr std::size_t kFew = 6;  // corners of both up to which going around costs more than it saves
   if (polygon.empty() || window.empty()) return;
-  const std::size_t sides = window.size();
-  if (sides > kFew || polygon.size() > kFew) {
-    Ring ring(polygon, side_of(window, 0));
-    for (std::size_t i = 0; i < sides; ++i)
-      if (!ring.cut(side_of(window, i))) return polygon.clear();
-    return ring.copy_to(polygon);
+  if (window.size() <= FewSides::kMost && polygon.size() <= FewSides::kMostCorners) {
+    FewSides few(polygon, window);
+    few.cut<0, 0>();
+    few.cut<0, 1>();
+    few.cut<1, 0>();
+    few.cut<1, 1>();
+    return few.copy_to(polygon);
   }
-  double most = 0.0;
-  for (const Vec2& x : polygon) most = extent(most, x);
-  const double snap = kSnap * most;
-  // Every cut of a convex polygon adds one corner, or two by rounding.
-  std::array<std::array<Vec2, 3 * kFew + 2>, 2> rows;
-  const Vec2* from = polygon.begin();
-  std::size_t n = polygon.size();
-  const Vec2* tail = window.end() - 1;
-  for (const Vec2* head = window.begin(); head != window.end() && n > 0; tail = head++) {
-    const Cut cut(*tail, *head);
-    Vec2* to = rows[from == rows[0].data() ? 1 : 0].data();
-    n = cut_off(from, n, cut, snap * cut.scale, to);
-    from = to;
-  }
-  // One number at a time: wider loads would wait for the stores of the last cut.
-  polygon.clear();
-  for (std::size_t i = 0; i < n; ++i) polygon.push_back({from[i].x(), from[i].y()});
+  Ring ring(polygon, side_of(window, 0));
+  for (std::size_t i = 0; i < window.size(); ++i)
+    if (!ring.cut(side_of(window, i))) return polygon.clear();
+  ring.copy_to(polygon);
 }
 
 double twice_area(const PatchPolygon& polygon) noexcept {
@@ -217,45 +311,36 @@ PatchMoments moments_of(const PatchPolygon& polygon) noexcept {
   PatchMoments m;
   const std::size_t n = polygon.size();
   if (n < 3) return m;
-  // Sums over the triangles of a fan at corner 0, about corner 0.
+  // Sums over the triangles of a fan at corner 0, about corner 0; x and y side by side.
   const Vec2* corners = polygon.begin();
-  const double ox = corners[0].x();
-  const double oy = corners[0].y();
+  const Two origin = two(corners[0]);
   double twice = 0.0;
-  double fx = 0.0;
-  double fy = 0.0;
-  double xx = 0.0;
-  double xy = 0.0;
-  double yy = 0.0;
-  double ax = corners[1].x() - ox;
-  double ay = corners[1].y() - oy;
+  Two first = both(0.0);
+  Two second = both(0.0);
+  double mixed = 0.0;
+  Two a = two(corners[1]) - origin;
   for (std::size_t i = 2; i < n; ++i) {
-    const double bx = corners[i].x() - ox;
-    const double by = corners[i].y() - oy;
-    const double ax_by = ax * by;
-    const double ay_bx = ay * bx;
-    const double weight = ax_by - ay_bx;
-    const double sx = ax + bx;
-    const double sy = ay + by;
+    const Two b = two(corners[i]) - origin;
+    const Two crossed = a * swapped(b);  // ax by, ay bx
+    const double weight = crossed[0] - crossed[1];
+    const Two sum = a + b;
     twice += weight;
-    fx += weight * sx;
-    fy += weight * sy;
-    xx += weight * (sx * sx - ax * bx);
-    xy += weight * (2.0 * sx * sy - ax_by - ay_bx);
-    yy += weight * (sy * sy - ay * by);
-    ax = bx;
-    ay = by;
+    first += both(weight) * sum;
+    second += both(weight) * (sum * sum - a * b);
+    mixed += weight * (2.0 * sum[0] * sum[1] - crossed[0] - crossed[1]);
+    a = b;
   }
   m.area = 0.5 * twice;
   if (!(m.area > 0.0)) return m;
+  // Divided last, all at once: a quotient is waited for longer than all these products.
   const double share = 1.0 / twice;
-  const double third = share * (1.0 / 3.0);
-  const double sixth = share * (1.0 / 6.0);
-  const Vec2 c(fx * third, fy * third);
-  m.centroid = {ox + c.x(), oy + c.y()};
-  m.xx = std::max(0.0, xx * sixth - c.x() * c.x());
-  m.xy = xy * 0.5 * sixth - c.x() * c.y();
-  m.yy = std::max(0.0, yy * sixth - c.y() * c.y());
+  const double share_sq = share * share;
+  const Two c = first * both(1.0 / 3.0);
+  const Two spread = larger(second * both(twice * (1.0 / 6.0)) - c * c, both(0.0)) * both(share_sq);
+  m.centroid = vec2(origin + c * both(share));
+  m.xx = spread[0];
+  m.xy = (mixed * (twice * (1.0 / 12.0)) - c[0] * c[1]) * share_sq;
+  m.yy = spread[1];
   return m;
 }
 
@@ -273,14 +358,6 @@ PatchMoments together(const PatchMoments& a, const PatchMoments& b) noexcept {
   m.xy = of_a * a.xy + of_b * b.xy + both * apart.x() * apart.y();
   m.yy = of_a * a.yy + of_b * b.yy + both * apart.y() * apart.y();
   return m;
-}
-
-PatchSpread spread_of(const PatchMoments& m) noexcept {
-  const double root = std::sqrt(std::max(0.0, m.xx * m.yy - m.xy * m.xy));
-  const double trace = m.xx + m.yy + 2.0 * root;
-  if (!(trace > 0.0)) return {};
-  const double scale = std::sqrt(2.0 / trace);
-  return {{(m.xx + root) * scale, m.xy * scale}, {m.xy * scale, (m.yy + root) * scale}};
 }
 
 void PatchInterval::keep_below(double at0, double at1, double limit) noexcept {

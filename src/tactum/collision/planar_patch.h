@@ -1,6 +1,9 @@
 #pragma once
 /// Flat figures in the contact plane: convex polygons of bounded size, clipping, and their moments.
 
+#include <algorithm>
+#include <cmath>
+
 #include "tactum/base/static_vector.h"
 #include "tactum/math/types.h"
 
@@ -41,7 +44,13 @@ struct PatchSpread {
   Vec2 u = Vec2::Zero(), v = Vec2::Zero();  ///< [m]
 };
 
-PatchSpread spread_of(const PatchMoments& moments) noexcept;
+inline PatchSpread spread_of(const PatchMoments& m) noexcept {
+  const double root = std::sqrt(std::max(0.0, m.xx * m.yy - m.xy * m.xy));
+  const double trace = m.xx + m.yy + 2.0 * root;
+  if (!(trace > 0.0)) return {};
+  const double scale = std::sqrt(2.0 / trace);
+  return {{(m.xx + root) * scale, m.xy * scale}, {m.xy * scale, (m.yy + root) * scale}};
+}
 
 /// A straight piece x0 + (x1 - x0) s of the plane.
 struct PatchInterval {

@@ -82,12 +82,15 @@ void build_rays(Polytope& P) {
 
 void build_sides(Polytope& P) {
   P.sides.resize(P.face_vertices.size());
+  P.across.resize(P.face_vertices.size());
   for (const Polytope::Edge& edge : P.edges) {
     const Vec3& tail = P.vertices[Index(edge.tail)];
     const Vec3 left = edge.direction.cross(P.faces[Index(edge.left)].normal).normalized();
     const Vec3 right = -edge.direction.cross(P.faces[Index(edge.right)].normal).normalized();
     P.sides[Index(edge.left_slot)] = {left, left.dot(tail)};
     P.sides[Index(edge.right_slot)] = {right, right.dot(tail)};
+    P.across[Index(edge.left_slot)] = edge.right;
+    P.across[Index(edge.right_slot)] = edge.left;
   }
 }
 

@@ -57,6 +57,8 @@ struct Polytope {
   std::vector<int> face_vertices;
   std::vector<int> face_edges;
   std::vector<Side> sides;
+  std::vector<int> across;  ///< the face on the other side of the slot's edge: told here as well, so that a
+                            ///< walk that leaves over it need not wait for the edge
 
   // Edges around each vertex: rays[ray_first[v] .. ray_first[v + 1]).
   std::vector<int> ray_first;
