@@ -183,6 +183,55 @@ TEST(Manifold, ClippingByAWindowAgreesWithClippingSideBySide) {
   }
 }
 
+/// Windows of one and two corners, which enclose nothing, and corners told twice, which bound nothing.
+TEST(Manifold, ClippingByAWindowWithoutSidesKeepsWhatIsInside) {
+  const auto clipped = [](std::initializer_list<Vec2> window_corners) {
+    PatchPolygon polygon;
+    PatchPolygon window;
+    for (const Vec2& corner : {Vec2(-1, -1), Vec2(1, -1), Vec2(1, 1), Vec2(-1, 1)}) polygon.push_back(corner);
+    for (const Vec2& corner : window_corners) window.push_back(corner);
+    clip_polygon(polygon, window);
+    return 0.5 * twice_area(polygon);
+  };
+  EXPECT_EQ(clipped({{0, 0}}), 4.0);
+  EXPECT_EQ(clipped({{0, -2}, {0, 2}}), 0.0);
+  EXPECT_EQ(clipped({{0, -2}, {2, 0}, {2, 0}, {0, 2}}), clipped({{0, -2}, {2, 0}, {0, 2}}));
+  const double square = clipped({{-.2, -1.4}, {1.4, -.2}, {.2, 1.4}, {-1.4, .2}});
+  EXPECT_NEAR(clipped({{-.2, -1.4}, {1.4, -.2}, {.2, 1.4}, {-1.4, .2}, {-1.4, .2}}), square, 1e-14);
+}
+
+/// A damaged part may hold faces that are not convex: the patch then means little, but is within bounds.
+TEST(Manifold, ClippingWhatIsNotConvexStaysWithinBounds) {
+  const std::uint64_t seed = 36;
+  Random random(seed);
+  const auto star = [&](int corners) {
+    PatchPolygon polygon;
+    for (int i = 0; i < corners; ++i) {
+      const double angle = 2.0 * kPi * (i + 0.9 * random.uniform(0.0, 1.0)) / corners;
+      polygon.push_back(random.uniform(0.1, 3.0) * Vec2(std::cos(angle), std::sin(angle)));
+    }
+    return polygon;
+  };
+  for (int i = 0; i < cases::some_of(20000); ++i) {
+    PatchPolygon polygon = star(3 + random.index(4));
+    clip_polygon(polygon, star(1 + random.index(6)));
+    for (const Vec2& corner : polygon) ASSERT_LE(corner.norm(), 3.1) << "seed " << seed << " case " << i;
+  }
+}
+
+/// A pose that is none leaves the nearest points.
+TEST(Manifold, OfAPoseThatIsNotFiniteIsAPoint) {
+  const Pose level = above(0.001, 0.002, -0.02);
+  PairCache cache;
+  const PairDistance closest = closest_features(box(), box(), level, cache);
+  Pose broken = level;
+  broken.p.x() = std::nan("");
+  Manifold patch;
+  contact_manifold(box(), box(), broken, closest, 1e-2, patch);
+  ASSERT_EQ(patch.points.size(), 1u);
+  EXPECT_EQ(patch.points[0].p_a, closest.p_a);
+}
+
 /// Area, centroid and second moments by counting points of a fine grid.
 TEST(Manifold, MomentsAgreeWithCounting) {
   const std::uint64_t seed = 31;

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "tactum/base/tolerances.h"
@@ -20,7 +21,7 @@ struct GapRange {
   }
 };
 
-/// No gap of the polygon is larger: the largest of each coordinate's share.
+/// No gap of the polygon is larger, up to rounding: the largest of each coordinate's share.
 double bound_of(const Height& gap, const PatchPolygon& polygon) noexcept {
   const Two slope = {gap.slope.x(), gap.slope.y()};
   Two most = both(-std::numeric_limits<double>::infinity());
@@ -105,6 +106,7 @@ void face_face_contact(const PatchWork& w) noexcept {
   const bool alone = w.others.empty();
   Overlap overlap(w, tangent_B);
   const double bound = bound_of(gap, overlap.own());
+  if (!std::isfinite(bound)) return point_contact(w);  // nor is the pose
   overlap.clip();
   if (overlap.own().empty() && alone) return point_contact(w);
   // Where the whole face is within the tolerance the gap cuts nothing.
@@ -134,7 +136,7 @@ void face_face_contact(const PatchWork& w) noexcept {
   const Vec3 center_a = w.tangent.point(m.centroid, za(m.centroid));
   const double center_gap = gap(m.centroid);
   const Vec3 center_b = center_a - w.tangent.n * center_gap;
-  w.out.points.clear();
+  w.out.points.clear();  // they are none yet; said here, where each goes is known when this is compiled
   for (const Vec2* arm : {&arms.u, &arms.v}) {
     const Vec3 to_a = w.tangent.e1 * arm->x() + w.tangent.e2 * arm->y() + w.tangent.n * za.slope.dot(*arm);
     const double opens = gap.slope.dot(*arm);

@@ -31,7 +31,7 @@ struct Height {
   double operator()(const Vec2& x) const noexcept { return at_origin + slope.dot(x); }
 };
 
-/// 1 / sqrt(1 - lean), for `lean` in [0, 1). Where three terms of its series are exact they stand in for the
+/// 1 / sqrt(1 - lean), for `lean` in [0, 1). Where three terms of its series do they stand in for the
 /// root and the quotient, which all that follows would wait for.
 inline double grown_to_unit(double lean) noexcept {
   return lean < tolerances::kThreeTerms ? 1.0 + lean * (0.5 + lean * 0.375) : 1.0 / std::sqrt(1.0 - lean);
@@ -62,7 +62,8 @@ inline void face_outline(const Tangent& plane, const Polytope& P, int face_index
   const Polytope::Face& face = P.faces[face_index];
   const int stride = (face.count + kPatchCorners - 1) / kPatchCorners;
   const int step = on_a ? -stride : stride;
-  const int* corner = P.face_vertices.data() + face.first + (on_a ? face.count - 1 : 0);
+  const int first = face.first + (on_a ? face.count - 1 : 0);
+  const int* const corners = P.face_vertices.data();
   const Vec3* const vertices = P.vertices.data();
   const Two ex = {plane.e1.x(), plane.e2.x()};
   const Two ey = {plane.e1.y(), plane.e2.y()};
@@ -71,10 +72,9 @@ inline void face_outline(const Tangent& plane, const Polytope& P, int face_index
   const double ox = plane.origin.x();
   const double oy = plane.origin.y();
   const double oz = plane.origin.z();
-  const int count = stride == 1 ? face.count : (face.count + stride - 1) / stride;
-  loop.fill(static_cast<std::size_t>(count), [&](std::size_t) {
-    const Vec3& p = vertices[*corner];
-    corner += step;
+  const int count = (face.count + stride - 1) / stride;
+  loop.fill(static_cast<std::size_t>(count), [&](std::size_t i) {
+    const Vec3& p = vertices[corners[first + step * static_cast<int>(i)]];
     return vec2(ex * both(p.x() - ox) + ey * both(p.y() - oy) + ez * both(p.z() - oz));
   });
 }

@@ -41,8 +41,7 @@ void make_patch(const Polytope& A, const Polytope& B, const Pose& X_AB, const Pa
   const PatchWork work(A, B, X_AB, closest, tolerance, angle, others, out);
   out.a = work.a.feature;
   out.b = work.b.feature;
-  kHandlers[static_cast<std::size_t>(work.a.feature.kind)][static_cast<std::size_t>(work.b.feature.kind)](
-      work);
+  kHandlers[static_cast<std::size_t>(out.a.kind)][static_cast<std::size_t>(out.b.kind)](work);
   name_points(out);
 }
 

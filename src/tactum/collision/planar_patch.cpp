@@ -64,6 +64,7 @@ class Ring {
   /// Cuts off what is beyond; false when nothing is left. The farthest corner is looked for from the last one
   /// on, counter-clockwise, and every height is taken once.
   bool cut(const Cut& side) noexcept {
+    if (!(side.scale > 0.0)) return true;  // a corner told twice: no side
     const double snap = snap_ * side.scale;
     double top_height = side.height(at(top_));
     int ahead = next(top_);
@@ -172,8 +173,8 @@ Cut side_of(const PatchPolygon& window, std::size_t i) noexcept {
 
 /// A polygon of few corners and the up to four sides of its window. Every corner carries its heights over all
 /// sides: each is taken once, and a side that no corner is beyond costs nothing more. Two sides are next to
-/// each other in memory that are opposite in the window and cut one after the other: what the first leaves
-/// of its edges, the second need not wait for.
+/// each other in memory that are opposite in a window of four and cut one after the other: what the first
+/// leaves of its edges, the second need not wait for.
 class FewSides {
  public:
   static constexpr std::size_t kMost = 4;
@@ -202,11 +203,19 @@ class FewSides {
     }
   }
 
+  FewSides(const FewSides&) = delete;  // points into itself
+  FewSides& operator=(const FewSides&) = delete;
+
   /// Cuts off what is beyond a side [Sutherland and Hodgman 1974]; after its predecessors.
   template <std::size_t kPair, std::size_t kLane>
   void cut() noexcept {
     const double snap = snap_[kPair][kLane];
     if (!(most_[kPair][kLane] > snap) || count_ == 0) return;
+    // What is not convex may cross a side more than twice. Where there is no room for that it is given up.
+    if (static_cast<std::size_t>(corners_.data() + kRoom - fresh_) < count_) {
+      count_ = 0;
+      return;
+    }
     const Corner* last = from_[count_ - 1];
     double last_height = last->heights[kPair][kLane];
     const Corner** end = to_;
@@ -239,7 +248,7 @@ class FewSides {
     Two x;
     std::array<Two, 2> heights;
   };
-  /// Two opposite sides, each as a Cut.
+  /// Two sides, each as a Cut.
   struct Sides {
     Two out_x, out_y, offset, scale;
     Sides(Two from_x, Two from_y, Two to_x, Two to_y) noexcept
@@ -264,8 +273,9 @@ class FewSides {
     return {Sides(odd_x, odd_y, even_x, even_y), Sides(even_x, even_y, swapped(odd_x), swapped(odd_y))};
   }
 
-  // Every cut of a convex polygon adds one corner, or two by rounding.
-  static constexpr std::size_t kRoom = kMostCorners + 2 * kMost;
+  // Every cut of a convex polygon makes two corners, and leaves one more than there were. Room for as many
+  // new ones in the last cut as there are corners then.
+  static constexpr std::size_t kRoom = kMostCorners + 2 * (kMost - 1) + kMostCorners + (kMost - 1);
   std::array<Corner, kRoom> corners_;
   std::array<std::array<const Corner*, kRoom>, 2> rows_;
   const Corner** from_ = rows_[0].data();

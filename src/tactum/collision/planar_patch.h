@@ -48,7 +48,7 @@ inline PatchSpread spread_of(const PatchMoments& m) noexcept {
   const double root = std::sqrt(std::max(0.0, m.xx * m.yy - m.xy * m.xy));
   const double trace = m.xx + m.yy + 2.0 * root;
   if (!(trace > 0.0)) return {};
-  const double scale = std::sqrt(2.0 / trace);
+  const double scale = std::sqrt(2.0 * trace) * (1.0 / trace);  // root and quotient at the same time
   return {{(m.xx + root) * scale, m.xy * scale}, {m.xy * scale, (m.yy + root) * scale}};
 }
 

@@ -197,8 +197,7 @@ Step vertex_face(const Sides<Swapped>& S, Feature fp, Feature fq, Place& at, Pai
   const Vec3 p_Q = S.in_Q(p);
   if (const int slot = slot_outside(S.Q, f, p_Q, S.slack); slot >= 0) {
     Feature next = beside_edge(S.Q, S.Q.face_edges[slot], p_Q, S.slack);
-    // The same face, known sooner: the edge is foretold to lead there, and what is looked up for it comes
-    // after.
+    // The same face, known sooner: the branch is predicted, so what follows need not wait for the edge.
     if (next.kind == FeatureKind::kFace) next.index = S.Q.across[slot];
     return {Outcome::kMoved, fp, next};
   }

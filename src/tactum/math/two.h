@@ -1,6 +1,6 @@
 #pragma once
-/// Two numbers side by side, as every processor's vector registers hold them: plain IEEE arithmetic on each,
-/// the same bits as alone.
+/// Two numbers side by side, in one register where the processor has such: plain IEEE arithmetic on each, the
+/// same bits as alone.
 
 #include <bit>
 #include <cstdint>
