@@ -44,9 +44,9 @@ Step edges_along(const PiecePair& pair, double slack, int a, int b, Place& at, P
   const Feature end_q = end_or_edge(g, near.t, edge(b));
   if (end_p != edge(a) || end_q != edge(b)) return {Outcome::kMoved, end_p, end_q};
   const Across across = across_edges(S.P.size, slack, c, d, at.gap);
-  const Toward of_p = face_toward(S.P, e, across.direction);
+  const Toward of_p = face_toward(e, out_of_columns(S.P, e, 1.0, across.direction));
   if (of_p.slope > across.slack) return {Outcome::kMoved, face(of_p.face), edge(b)};
-  const Toward of_q = face_toward(S.Q, g, S.turned_to_Q(-across.direction));
+  const Toward of_q = face_toward(g, out_of_columns(S.Q, g, -1.0, S.turned_to_Q(across.direction)));
   if (of_q.slope > across.slack) return {Outcome::kMoved, edge(a), face(of_q.face)};
   const double doubt = reach_beyond(S.P, e, of_p.slope) + reach_beyond(S.Q, g, of_q.slope) +
                        std::abs(e.direction.dot(across.direction)) * S.P.size +

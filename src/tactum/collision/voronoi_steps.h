@@ -67,11 +67,18 @@ struct Steepest {
   double slope = -kInfinity;
 };
 
+/// By a pointer that is chosen, not jumped for: which of the edges it is is new at every vertex, and a jump
+/// guessed wrong costs as much as looking at all of them.
 inline Steepest steepest_edge(const Polytope& P, int v, const Vec3& d) noexcept {
-  Steepest best;
-  for (const Polytope::Ray& ray : P.rays_at(v))
-    if (const double slope = ray.direction.dot(d); slope > best.slope) best = {ray.edge, slope};
-  return best;
+  const std::span<const Polytope::Ray> rays = P.rays_at(v);
+  const Polytope::Ray* steepest = rays.data();
+  double most = -kInfinity;
+  for (const Polytope::Ray& ray : rays) {
+    const double slope = ray.direction.dot(d);
+    steepest = slope > most ? &ray : steepest;
+    most = std::max(most, slope);
+  }
+  return {steepest->edge, most};
 }
 
 enum class Outcome : std::uint8_t { kClosest, kMoved, kOverlap, kBehind };
@@ -219,17 +226,27 @@ Step vertex_face(const Sides<Swapped>& S, Feature fp, Feature fq, Place& at, Pai
   return {Outcome::kClosest, fp, fq};
 }
 
-/// The face at an edge toward whose column a direction from the edge leads most, and how much it leads there
-/// (sine; negative when it leads away from both).
+/// A direction from an edge, along the side planes' normals of its faces: how much it leads out of the column
+/// of each (sine; negative: into it).
+struct OutOfColumns {
+  double left, right;
+};
+
+/// Of `sign` (1 or -1) times `d`: the same bits, and the sign may be known later than the direction.
+inline OutOfColumns out_of_columns(const Polytope& P, const Polytope::Edge& e, double sign,
+                                   const Vec3& d) noexcept {
+  return {sign * P.sides[e.left_slot].normal.dot(d), sign * P.sides[e.right_slot].normal.dot(d)};
+}
+
+/// The face at an edge into whose column a direction leads most, and how much (sine; negative when it leads
+/// into neither).
 struct Toward {
   int face = -1;
   double slope = 0.0;
 };
 
-inline Toward face_toward(const Polytope& P, const Polytope::Edge& e, const Vec3& d) noexcept {
-  const double left = P.sides[e.left_slot].normal.dot(d);
-  const double right = P.sides[e.right_slot].normal.dot(d);
-  return left < right ? Toward{e.left, -left} : Toward{e.right, -right};
+inline Toward face_toward(const Polytope::Edge& e, const OutOfColumns& out) noexcept {
+  return out.left < out.right ? Toward{e.left, -out.left} : Toward{e.right, -out.right};
 }
 
 /// Edges of any kind: alike, nearest at an end, far off, level with a face. Out of line and from the start,
@@ -288,14 +305,16 @@ inline Step edge_edge(const PiecePair& pair, const Sides<false>& S, Feature fp, 
   if (!crossing) return edges_along(pair, S.slack, fp.index, fq.index, at, x);
 
   const double along = r.dot(c);
-  const Vec3 outward = along < 0.0 ? Vec3(-c) : c;
+  const double sign = std::copysign(1.0, along);  // of the outward direction, as told by c
   const double per_square = 1.0 / sine_sq;
   const double per_sine = std::sqrt(sine_sq) * per_square;
   const double gap = std::abs(along) * per_sine;
   const Vec3 p = e_tail + e.direction * (s * per_square);
-  const Toward of_p = face_toward(S.P, e, outward);
-  const Toward of_q = face_toward(S.Q, g, S.turned_to_Q(-outward));
-  if (of_p.slope > 0.0 || of_q.slope > 0.0) {
+  const OutOfColumns out_p = out_of_columns(S.P, e, sign, c);
+  const OutOfColumns out_q = out_of_columns(S.Q, g, -sign, S.turned_to_Q(c));
+  if (out_p.left < 0.0 || out_p.right < 0.0 || out_q.left < 0.0 || out_q.right < 0.0) {
+    const Toward of_p = face_toward(e, out_p);
+    const Toward of_q = face_toward(g, out_q);
     if (std::max(of_p.slope, of_q.slope) * S.P.size <= S.slack)
       return edges_along(pair, S.slack, fp.index, fq.index, at, x);
     at.gap = gap;
@@ -308,7 +327,7 @@ inline Step edge_edge(const PiecePair& pair, const Sides<false>& S, Feature fp, 
   const double doubt = (tolerances::kCrossingRounding * lengths + S.slack) * per_square;
   if (doubt > tolerances::kCertificate * pair.size)
     return edges_along(pair, S.slack, fp.index, fq.index, at, x);
-  tell(p, outward * -per_sine, gap, doubt, x);
+  tell(p, c * (-sign * per_sine), gap, doubt, x);
   return {Outcome::kClosest, fp, fq};
 }
 
@@ -318,7 +337,7 @@ inline Step edge_edge(const PiecePair& pair, const Sides<false>& S, Feature fp, 
                                  double slack, Feature fp, Feature fq) noexcept;
 
 /// Dispatch on the kinds, P owning the lower one. Tells `x` where the features are closest, and the place
-/// where it moved on.
+/// where it moved on. Two faces, from which only a caller starts, go on from a vertex of the second.
 template <bool Swapped>
 Step step(const PiecePair& pair, const Sides<Swapped>& S, Feature fp, Feature fq, Place& at,
           PairDistance& x) noexcept {
@@ -328,6 +347,7 @@ Step step(const PiecePair& pair, const Sides<Swapped>& S, Feature fp, Feature fq
   }
   if constexpr (!Swapped)
     if (fq.kind == FeatureKind::kEdge) return edge_edge(pair, S, fp, fq, at, x);
+  if (fp.kind == FeatureKind::kFace) return {Outcome::kMoved, fp, vertex(vertex_of(S.Q, fq))};
   const Polytope::Edge& e = S.P.edges[fp.index];
   return edge_face(S.Q, e, S.in_Q(S.P.vertices[e.tail]), S.turned_to_Q(e.direction), S.slack, fp, fq);
 }
@@ -350,8 +370,6 @@ inline Outcome step_on(const PiecePair& pair, double slack, FeaturePair& at, Pla
 
 /// voronoi_march, to be made part of its caller.
 inline March walk(const PiecePair& pair, FeaturePair at, double slack, PairDistance& x) noexcept {
-  if (at.a.kind == FeatureKind::kFace && at.b.kind == FeatureKind::kFace)
-    at.b = vertex(vertex_of(pair.B, at.b));
   double least = kInfinity;
   FeaturePair nearest = at;
   FeaturePair mark;  // a state to be met again, if the walk goes in circles [Brent 1980]

@@ -136,17 +136,20 @@ int table_vertex(const Polytope& polytope, const Vec3& direction) noexcept {
 }
 
 int uphill(const Polytope& P, const Vec3& direction, int vertex, double& height) noexcept {
-  int next = vertex;
-  double steepest = 0.0;
-  for (const Polytope::Ray& ray : P.rays_at(vertex))
-    if (const double slope = direction.dot(ray.direction); slope > steepest) {
-      steepest = slope;
-      next = ray.far;
-    }
-  const double higher = direction.dot(P.vertices[Index(next)]);
+  // Which ray is the steepest is chosen, not jumped for: at a new vertex every guess would be one.
+  const std::span<const Polytope::Ray> rays = P.rays_at(vertex);
+  const Polytope::Ray* steepest = rays.data();
+  double most = 0.0;
+  for (const Polytope::Ray& ray : rays) {
+    const double slope = direction.dot(ray.direction);
+    steepest = slope > most ? &ray : steepest;
+    most = std::max(most, slope);
+  }
+  if (!(most > 0.0)) return vertex;
+  const double higher = direction.dot(P.vertices[Index(steepest->far)]);
   if (!(higher > height)) return vertex;  // slopes may go round in rounding, heights cannot
   height = higher;
-  return next;
+  return steepest->far;
 }
 
 int support_vertex(const Polytope& P, const Vec3& direction, int start) noexcept {
