@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+
 #include "collision/cases.h"
 #include "oracles/exhaustive.h"
 #include "tactum/base/tolerances.h"
@@ -328,6 +331,34 @@ TEST(ClosestFeatures, TheDoubtOfCrossingEdgesHolds) {
   }
   std::printf("  %d pairs of crossing edges\n", crossing);
   EXPECT_GT(crossing, cases::some_of(200000) / 20);
+}
+
+/// A pose with a number that is none proves nothing, whatever was known before, stays within the pieces'
+/// arrays, and is forgotten with the next good pose.
+TEST(ClosestFeatures, OfAPoseThatIsNotFiniteNothingIsCertified) {
+  Random random(20271);
+  for (const cases::Shape& shape : cases::shapes(random, true)) {
+    const Polytope& P = shape.polytope;
+    SCOPED_TRACE(shape.name);
+    for (const double apart : {2.5, 0.3, 0.02})
+      for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()})
+        for (int entry = 0; entry < 12; ++entry) {
+          const Pose good{Mat3::Identity(), apart * P.size * Vec3(0.3, 0.8, 0.52)};
+          Pose broken = good;
+          (entry < 3 ? broken.p[entry] : broken.R(entry % 3, entry / 3 - 1)) = bad;
+          PairCache cold;
+          EXPECT_FALSE(closest_features(P, P, broken, cold).certified());
+          PairCache tracked;
+          closest_features(P, P, good, tracked);
+          for (int frame = 0; frame < 8; ++frame)
+            ASSERT_FALSE(closest_features(P, P, broken, tracked).certified()) << "entry " << entry;
+          PairCache inside = tracked;
+          for (int frame = 0; frame < 8; ++frame)
+            ASSERT_FALSE(penetration_depth(P, P, broken, inside).certified()) << "entry " << entry;
+          depth_along(P, P, broken, Vec3::UnitX());
+          EXPECT_TRUE(closest_features(P, P, good, tracked).certified()) << "entry " << entry;
+        }
+  }
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include "tactum/collision/closest_features.h"
 
+#include <cmath>
+
 #include "tactum/collision/doubtful_pair.h"
 #include "tactum/collision/voronoi_steps.h"
 
@@ -27,7 +29,7 @@ namespace {
   const bool tracked = valid_feature(A, cache.a) && valid_feature(B, cache.b);
   const FeaturePair seed = tracked ? FeaturePair{cache.a, cache.b} : first_seed(pair);
   const March march = march::walk(pair, seed, tolerances::kVoronoiSlack * pair.scale, x);
-  if (!(march.doubt <= certificate(pair))) {
+  if (!(march.doubt <= certificate(pair) && std::abs(x.distance) < march::kInfinity)) {
     x = settle_doubt(PairView(pair), cache, march, x);
     return x;
   }

@@ -100,7 +100,9 @@ Vec3 inside_cones(const PairView& pair, const Feature& fa, const Feature& fb, Ve
 /// The query while it climbs down its ladder.
 class Query {
  public:
-  Query(const PairView& pair, PairCache& cache) noexcept : pair_(pair), cache_(cache) {}
+  Query(const PairView& pair, PairCache& cache) noexcept : pair_(pair), cache_(cache) {
+    best_.answer.doubt = std::numeric_limits<double>::infinity();  // nothing is known yet
+  }
 
   /// From a first walk, which ended at `at` and did not prove itself.
   PairDistance run(const March& first, const PairDistance& at) noexcept {
@@ -137,7 +139,7 @@ class Query {
       least_gap_ = gap;
       best_ = last_;
     }
-    if (last_.answer.doubt > certificate(pair_)) return false;
+    if (!(last_.answer.doubt <= certificate(pair_))) return false;  // nor is what is no number
     done(last_.answer, stop);
     return true;
   }

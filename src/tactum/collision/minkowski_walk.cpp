@@ -336,14 +336,15 @@ MinkowskiWalk walk(const PairView& pair, const MinkowskiFacet& start, const Vec3
   return best;
 }
 
-/// The face at `vertex` whose normal is most along `d`, and how much.
+/// The face at `vertex` whose normal is most along `d`, and how much. One of them even where `d` is no
+/// number.
 int aligned_face(const Polytope& P, int vertex, const Vec3& d, double& along) noexcept {
   int best = -1;
   along = -std::numeric_limits<double>::infinity();
   for (const Polytope::Ray& ray : P.rays_at(vertex)) {
     const Polytope::Edge& edge = P.edges[ray.edge];
     const int face = edge.tail == vertex ? edge.left : edge.right;  // each face once
-    if (const double cosine = P.faces[face].normal.dot(d); cosine > along) {
+    if (const double cosine = P.faces[face].normal.dot(d); best < 0 || cosine > along) {
       along = cosine;
       best = face;
     }

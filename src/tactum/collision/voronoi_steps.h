@@ -68,7 +68,8 @@ struct Steepest {
 };
 
 /// By a pointer that is chosen, not jumped for: which of the edges it is is new at every vertex, and a jump
-/// guessed wrong costs as much as looking at all of them.
+/// guessed wrong costs as much as looking at all of them. Along what is no number the slope is none either,
+/// so that nothing is proved by it.
 inline Steepest steepest_edge(const Polytope& P, int v, const Vec3& d) noexcept {
   const std::span<const Polytope::Ray> rays = P.rays_at(v);
   const Polytope::Ray* steepest = rays.data();
@@ -76,7 +77,7 @@ inline Steepest steepest_edge(const Polytope& P, int v, const Vec3& d) noexcept 
   for (const Polytope::Ray& ray : rays) {
     const double slope = ray.direction.dot(d);
     steepest = slope > most ? &ray : steepest;
-    most = std::max(most, slope);
+    most = std::max(slope, most);
   }
   return {steepest->edge, most};
 }

@@ -112,8 +112,10 @@ int cell_of(const Vec3& direction) noexcept {
   if (a.z() > a[axis]) axis = 2;
   constexpr int n = Polytope::kTableSide;
   const double scale = 0.5 * n / a[axis];
-  const int column = std::clamp(static_cast<int>(direction[(axis + 1) % 3] * scale + 0.5 * n), 0, n - 1);
-  const int row = std::clamp(static_cast<int>(direction[(axis + 2) % 3] * scale + 0.5 * n), 0, n - 1);
+  // Clamped in this order what is no number is a cell as well.
+  const auto clamped = [](double at) { return static_cast<int>(std::min(n - 1.0, std::max(0.0, at))); };
+  const int column = clamped(direction[(axis + 1) % 3] * scale + 0.5 * n);
+  const int row = clamped(direction[(axis + 2) % 3] * scale + 0.5 * n);
   const int side = 2 * axis + (direction[axis] < 0.0 ? 1 : 0);
   return (side * n + row) * n + column;
 }
