@@ -58,7 +58,7 @@ struct PairCache {
 enum class Stop : std::uint8_t {
   kCertified,  ///< the answer's own support planes prove it
   kFallback,   ///< the walk did not end certified; a slower method answered, and its answer is certified
-  kBounded,    ///< out of steps: the value is usable but not proved
+  kBounded,    ///< out of steps: the value is usable but not proved; NaN for a pose that is not finite
 };
 
 /// Answer of the distance and penetration queries; see the picture above.

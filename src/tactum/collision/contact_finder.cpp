@@ -299,7 +299,7 @@ GapAnswer ContactFinder::distance_at(const ContactPatch& patch, std::span<const 
   if (tests_left_ <= keep_back) return GapAnswer::kUnknown;
   answer(pair, X_AB, pair.trial);
   const double found = pair.trial.found.distance;
-  distance = pair.trial.certified ? found : std::min(found, 0.0);
+  distance = pair.trial.certified ? found : std::min(0.0, found);  // 0 where it is no number
   return GapAnswer::kExact;
 }
 

@@ -15,7 +15,7 @@ using Kind = FeatureKind;
 
 /// Distance and normal as the features give them, with the doubt that the support planes leave.
 struct Judged {
-  PairDistance answer;
+  PairDistance answer = {};
   int support_a = 0, support_b = 0;
 };
 
@@ -68,7 +68,9 @@ Judged judge(const PairView& pair, const PairDistance& at, const Vec3& normal) n
   const double gap = pair.separation(normal, judged.support_a, judged.support_b);
   // The points' whole distance counts, and that they lie on one normal.
   const Vec3 d = at.p_a - at.p_b;
-  x.doubt = std::max(d.norm() - gap, (d - normal * x.distance).norm());
+  const double over = d.norm() - gap;
+  // Below the lower bound no points lie: these are not known, or the planes are lost in rounding.
+  if (over >= -certificate(pair)) x.doubt = std::max(over, (d - normal * x.distance).norm());
   return judged;
 }
 
@@ -100,9 +102,7 @@ Vec3 inside_cones(const PairView& pair, const Feature& fa, const Feature& fb, Ve
 /// The query while it climbs down its ladder.
 class Query {
  public:
-  Query(const PairView& pair, PairCache& cache) noexcept : pair_(pair), cache_(cache) {
-    best_.answer.doubt = std::numeric_limits<double>::infinity();  // nothing is known yet
-  }
+  Query(const PairView& pair, PairCache& cache) noexcept : pair_(pair), cache_(cache) {}
 
   /// From a first walk, which ended at `at` and did not prove itself.
   PairDistance run(const March& first, const PairDistance& at) noexcept {
@@ -139,7 +139,7 @@ class Query {
       least_gap_ = gap;
       best_ = last_;
     }
-    if (!(last_.answer.doubt <= certificate(pair_))) return false;  // nor is what is no number
+    if (last_.answer.doubt > certificate(pair_)) return false;
     done(last_.answer, stop);
     return true;
   }
@@ -203,7 +203,7 @@ class Query {
 
   const PairView& pair_;
   PairCache& cache_;
-  Judged last_, best_;
+  Judged last_, best_{of_no_pose()};
   double least_gap_ = std::numeric_limits<double>::infinity();
   PairDistance result_;
   int steps_ = 0;
@@ -213,6 +213,7 @@ class Query {
 
 PairDistance settle_doubt(const PairView& pair, PairCache& cache, const March& first,
                           const PairDistance& at) noexcept {
+  if (is_no_pose(pair.X_AB)) return of_no_pose();
   return Query(pair, cache).run(first, at);
 }
 

@@ -16,6 +16,8 @@
 /// the pseudo-internal Voronoi regions of [Ponamgi 1997]; the facets are found on the fly,
 /// not stored.) Cost: about 60 ns a facet.
 
+#include <cmath>
+
 #include "tactum/collision/pair_view.h"
 
 namespace tactum {
@@ -43,7 +45,8 @@ struct MinkowskiWalk {
 
   /// At a local minimum of the depth, proved: the facet is real and holds its foot.
   bool arrived(const PairView& pair) const noexcept {
-    return outside <= tolerances::kCertificate * pair.size && is_real(pair, facet);
+    return outside <= tolerances::kCertificate * pair.size && std::isfinite(facet.height) &&
+           is_real(pair, facet);
   }
 };
 

@@ -7,6 +7,8 @@
 ///                                             a rigorous lower bound on the signed distance, whatever n is.
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "tactum/base/tolerances.h"
 #include "tactum/collision/contact.h"
@@ -48,6 +50,20 @@ struct PairView : PiecePair {
     return n.dot(vertex_a(a) - vertex_b(b));
   }
 };
+
+/// A pose that nothing can be told of: not finite, or so far off that squares of lengths are not.
+inline bool is_no_pose(const Pose& X) noexcept {
+  return !X.R.allFinite() || !std::isfinite(X.p.squaredNorm());
+}
+
+/// What is told of it: a distance that is no number, and nothing proved.
+inline PairDistance of_no_pose() noexcept {
+  PairDistance x;
+  x.distance = std::numeric_limits<double>::quiet_NaN();
+  x.doubt = std::numeric_limits<double>::infinity();
+  x.a = x.b = {FeatureKind::kVertex, 0};
+  return x;
+}
 
 /// Some vertex of a feature.
 inline int vertex_of(const Polytope& P, const Feature& f) noexcept {

@@ -53,9 +53,9 @@ bool interior_shares(const std::array<const Corner*, 4>& c, int count,
 /// Keeps the corners that carry the nearest point and returns it.
 Vec3 reduce(Simplex& simplex) noexcept {
   double least = std::numeric_limits<double>::infinity();
-  int best = 0;
-  std::array<double, 4> best_share{};
-  Vec3 nearest = Vec3::Zero();
+  int best = 1;  // where no square is finite, the first corner
+  std::array<double, 4> best_share{1.0};
+  Vec3 nearest = simplex.corners[0].d;
   for (int mask = 1; mask < (1 << simplex.count); ++mask) {
     std::array<const Corner*, 4> chosen{};
     int count = 0;

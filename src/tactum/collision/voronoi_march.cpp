@@ -60,7 +60,7 @@ namespace {
 /// The edge of a face nearest to a segment that lies wholly outside the face's column.
 int nearest_edge(const Polytope& Q, const Polytope::Face& face, const Vec3& p0, const Vec3& u,
                  double length) noexcept {
-  int best = -1;
+  int best = Q.face_edges[face.first];
   double least = std::numeric_limits<double>::infinity();
   for (int slot = face.first; slot < face.first + face.count; ++slot) {
     const Polytope::Edge& g = Q.edges[Q.face_edges[slot]];
@@ -124,7 +124,14 @@ void tell_features(const PiecePair& pair, double slack, PairDistance& x) noexcep
   FeaturePair at = {x.a, x.b};
   Place place;
   step_on(pair, slack, at, place, x);
-  if (place.gap == kInfinity) return;
+  if (place.gap == kInfinity) {  // the step did not come to know them: a corner of each
+    const Sides<false> S(pair, slack);
+    place.p = pair.A.vertices[vertex_of(pair.A, x.a)];
+    place.q = pair.B.vertices[vertex_of(pair.B, x.b)];
+    place.gap = (S.in_Q(place.p) - place.q).norm();
+    tell_points(S, place, x);
+    return;
+  }
   if (x.a.kind > x.b.kind)
     tell_points(Sides<true>(pair, slack), place, x);
   else

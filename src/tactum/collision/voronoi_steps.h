@@ -63,13 +63,12 @@ inline double reach_beyond(const Polytope& P, const Polytope::Edge& e, double sl
 
 /// The edge at a vertex that rises most along a direction.
 struct Steepest {
-  int edge = -1;
-  double slope = -kInfinity;
+  int edge;
+  double slope;
 };
 
 /// By a pointer that is chosen, not jumped for: which of the edges it is is new at every vertex, and a jump
-/// guessed wrong costs as much as looking at all of them. Along what is no number the slope is none either,
-/// so that nothing is proved by it.
+/// guessed wrong costs as much as looking at all of them.
 inline Steepest steepest_edge(const Polytope& P, int v, const Vec3& d) noexcept {
   const std::span<const Polytope::Ray> rays = P.rays_at(v);
   const Polytope::Ray* steepest = rays.data();
@@ -77,7 +76,7 @@ inline Steepest steepest_edge(const Polytope& P, int v, const Vec3& d) noexcept 
   for (const Polytope::Ray& ray : rays) {
     const double slope = ray.direction.dot(d);
     steepest = slope > most ? &ray : steepest;
-    most = std::max(slope, most);
+    most = std::max(most, slope);
   }
   return {steepest->edge, most};
 }
@@ -228,22 +227,22 @@ Step vertex_face(const Sides<Swapped>& S, Feature fp, Feature fq, Place& at, Pai
 }
 
 /// A direction from an edge, along the side planes' normals of its faces: how much it leads out of the column
-/// of each (sine; negative: into it).
+/// of each (as long as the direction; negative: into it).
 struct OutOfColumns {
   double left, right;
 };
 
-/// Of `sign` (1 or -1) times `d`: the same bits, and the sign may be known later than the direction.
+/// Of `sign` (1 or -1) times `d`: the same numbers, and the sign may be known later than the direction.
 inline OutOfColumns out_of_columns(const Polytope& P, const Polytope::Edge& e, double sign,
                                    const Vec3& d) noexcept {
   return {sign * P.sides[e.left_slot].normal.dot(d), sign * P.sides[e.right_slot].normal.dot(d)};
 }
 
-/// The face at an edge into whose column a direction leads most, and how much (sine; negative when it leads
-/// into neither).
+/// The face at an edge into whose column a direction leads most, and how much (negative when it leads into
+/// neither).
 struct Toward {
-  int face = -1;
-  double slope = 0.0;
+  int face;
+  double slope;
 };
 
 inline Toward face_toward(const Polytope::Edge& e, const OutOfColumns& out) noexcept {
@@ -306,7 +305,7 @@ inline Step edge_edge(const PiecePair& pair, const Sides<false>& S, Feature fp, 
   if (!crossing) return edges_along(pair, S.slack, fp.index, fq.index, at, x);
 
   const double along = r.dot(c);
-  const double sign = std::copysign(1.0, along);  // of the outward direction, as told by c
+  const double sign = std::copysign(1.0, along + 0.0);  // of the outward direction as c tells it; -0 is +0
   const double per_square = 1.0 / sine_sq;
   const double per_sine = std::sqrt(sine_sq) * per_square;
   const double gap = std::abs(along) * per_sine;
@@ -346,9 +345,10 @@ Step step(const PiecePair& pair, const Sides<Swapped>& S, Feature fp, Feature fq
     if (fq.kind == FeatureKind::kFace) return vertex_face(S, fp, fq, at, x);
     return fq.kind == FeatureKind::kEdge ? vertex_edge(S, fp, fq, at, x) : vertex_vertex(S, fp, fq, at, x);
   }
-  if constexpr (!Swapped)
+  if constexpr (!Swapped) {
     if (fq.kind == FeatureKind::kEdge) return edge_edge(pair, S, fp, fq, at, x);
-  if (fp.kind == FeatureKind::kFace) return {Outcome::kMoved, fp, vertex(vertex_of(S.Q, fq))};
+    if (fp.kind == FeatureKind::kFace) return {Outcome::kMoved, fp, vertex(vertex_of(S.Q, fq))};
+  }
   const Polytope::Edge& e = S.P.edges[fp.index];
   return edge_face(S.Q, e, S.in_Q(S.P.vertices[e.tail]), S.turned_to_Q(e.direction), S.slack, fp, fq);
 }

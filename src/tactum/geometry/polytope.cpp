@@ -173,6 +173,8 @@ bool complete_polytope(Polytope& P, const char** why) {
   if (P.vertices.size() + P.faces.size() != P.edges.size() + 2)
     return *why = "the faces do not close up to a sphere (V - E + F is not 2)", false;
   build_rays(P);
+  for (Index v = 0; v < P.vertices.size(); ++v)
+    if (P.ray_first[v] == P.ray_first[v + 1]) return *why = "a vertex is no face's corner", false;
   build_sides(P);
   P.center.setZero();
   for (const Vec3& vertex : P.vertices) P.center += vertex;
