@@ -28,7 +28,7 @@ PairDistance penetration_exhaustive(const Polytope& A, const Polytope& B, const 
 
 /// The paper's depth: how far A must move along unit `direction` (A's frame) until it is clear of B, exactly;
 /// as a negative distance, with the normal of the features that touch then, p_a and p_b touching after the
-/// motion. Zero and `kBounded` when the motion never touches.
+/// motion. Zero and `kBounded` when the motion never touches, NaN when pose or direction is not finite.
 PairDistance depth_along(const Polytope& A, const Polytope& B, const Pose& X_AB,
                          const Vec3& direction) noexcept;
 
