@@ -2,15 +2,18 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "collision/cases.h"
 #include "oracles/exhaustive.h"
 #include "tactum/base/tolerances.h"
 #include "tactum/collision/penetration.h"
 #include "tactum/collision/time_of_impact.h"
+#include "tactum/geometry/hull.h"
 
 namespace tactum {
 namespace {
@@ -333,6 +336,46 @@ TEST(ClosestFeatures, TheDoubtOfCrossingEdgesHolds) {
   }
   std::printf("  %d pairs of crossing edges\n", crossing);
   EXPECT_GT(crossing, cases::some_of(200000) / 20);
+}
+
+/// Over the border of a flat or sharp piece: by its two faces' numbers a point there may be outside the
+/// column of one and inside that of the other, below it.
+TEST(ClosestFeatures, RoundingAtASharpEdgeLeadsNobodyInCircles) {
+  Random random(20281);
+  const Polytope tip = *convex_hull({{0, 0, 0}, {0.01, 0, 0.05}, {-0.01, 0.01, 0.05}, {0, -0.01, 0.05}});
+  const auto lowest =
+      std::find_if(tip.vertices.begin(), tip.vertices.end(), [](const Vec3& v) { return v.isZero(); });
+  const Feature point{FeatureKind::kVertex, int(lowest - tip.vertices.begin())};
+  for (int i = 0; i < cases::some_of(200000); ++i) {
+    const Mat3 turned = cases::random_rotation(random);  // of the triangle's frame
+    const std::array<Vec3, 3> flat = {Vec3(0, 0, 0), Vec3(random.uniform(0.02, 0.1), 0, 0),
+                                      Vec3(random.uniform(-0.05, 0.05), random.uniform(0.02, 0.1), 0)};
+    std::vector<Vec3> corners;
+    for (const Vec3& corner : flat) corners.push_back(turned * corner);
+    Result<Polytope> piece = flat_polygon(corners);
+    if (i % 2) {  // a wedge: the same triangle with little below it
+      corners.push_back(turned *
+                        Vec3((flat[0] + flat[1] + flat[2]) / 3.0 - Vec3(0, 0, random.uniform(1e-6, 1e-3))));
+      piece = convex_hull(corners);
+    }
+    ASSERT_TRUE(piece) << piece.error().message();
+    // Over the border from corner 0 to 1, whose outside is -y, as far out as is still held for the column.
+    Vec3 over(random.uniform(0.2, 0.8) * flat[1].x(), 0.0, random.uniform(1e-5, 1e-3));
+    over.y() = -random.uniform(0.9, 1.2) * tolerances::kVoronoiSlack *
+               (over.lpNorm<1>() + tip.magnitude + piece->magnitude);
+    Pose X_AB;  // the tip's axis up the triangle's normal, its point at `over`
+    X_AB.R = turned.transpose();
+    X_AB.p = -over;
+    PairCache cache;
+    cache.a = point;
+    cache.b = {FeatureKind::kFace, 0};
+    for (std::size_t f = 0; f < piece->faces.size(); ++f)
+      if (piece->faces[f].normal.dot(turned.col(2)) > 0.999999999) cache.b.index = int(f);
+    const PairDistance x = closest_features(tip, *piece, X_AB, cache);
+    ASSERT_EQ(x.stop, Stop::kCertified) << i;
+    ASSERT_LE(x.steps, 6) << i;
+    ASSERT_NEAR(x.distance, over.z(), 1e-12) << i;
+  }
 }
 
 /// B beside A, the pose `broken` by one of its twelve numbers: nothing may be proved of it, whatever is known

@@ -262,7 +262,7 @@ TEST(Manifold, MomentsAgreeWithCounting) {
     const Vec3 e2 = n.cross(e1);
     const auto over = [](const Polytope& P, const Polytope::Face& f, const Vec3& p, const Vec3& along) {
       for (int s = f.first; s < f.first + f.count; ++s) {  // the border's plane holds the common normal
-        const Vec3& u = P.edges[std::size_t(P.face_edges[std::size_t(s)])].direction;
+        const Vec3& u = P.edges[std::size_t(P.sides[std::size_t(s)].edge)].direction;
         Vec3 side = u.cross(along);
         if (side.dot(P.sides[std::size_t(s)].normal) < 0) side = -side;
         if (side.dot(p - P.vertices[std::size_t(P.face_vertices[std::size_t(s)])]) > 0) return false;

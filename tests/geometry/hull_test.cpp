@@ -27,9 +27,12 @@ void expect_sound(const Polytope& P, double size) {
   for (std::size_t f = 0; f < P.faces.size();
        ++f)  // a face and that across its edge lie at the edge's two sides
     for (int i = P.faces[f].first; i < P.faces[f].first + P.faces[f].count; ++i) {
-      const Polytope::Edge& edge = P.edges[std::size_t(P.face_edges[std::size_t(i)])];
-      const int across = P.across[std::size_t(i)];
+      const Polytope::Edge& edge = P.edges[std::size_t(P.sides[std::size_t(i)].edge)];
+      const Polytope::Side& side = P.sides[std::size_t(i)];
+      const int across = side.across;
       EXPECT_TRUE(edge.left == int(f) ? edge.right == across : edge.right == int(f) && edge.left == across);
+      EXPECT_EQ(side.first, P.faces[std::size_t(across)].first);
+      EXPECT_EQ(side.count, P.faces[std::size_t(across)].count);
     }
   for (std::size_t v = 0; v < P.vertices.size(); ++v) EXPECT_GE(P.rays_at(int(v)).size(), P.flat ? 2u : 3u);
 }

@@ -44,7 +44,7 @@ inline Tangent contact_plane(const Polytope& A, const Feature& a, const Vec3& or
   if (a.kind == FeatureKind::kVertex) {
     tangent.e1 = any_orthogonal(n);
   } else {
-    const int edge = a.kind == FeatureKind::kEdge ? a.index : A.face_edges[A.faces[a.index].first];
+    const int edge = a.kind == FeatureKind::kEdge ? a.index : A.sides[A.faces[a.index].first].edge;
     const Vec3& u = A.edges[edge].direction;
     const double along = n.dot(u);
     const double lean = along * along;

@@ -192,8 +192,8 @@ Passage across_face_border(const PairView& pair, const MinkowskiFacet& facet, in
   const Polytope& P = passage.on_a ? pair.A : pair.B;
   const int face = passage.on_a ? facet.a.index : facet.b.index;
   Arc& arc = passage.arc;
-  arc.edge = P.face_edges[slot];
-  arc.end = P.across[slot];
+  arc.edge = P.sides[slot].edge;
+  arc.end = P.sides[slot].across;
   arc.vertex = passage.on_a ? facet.b.index : facet.a.index;
   arc.m0 = P.faces[face].normal;
   arc.t0 = P.sides[slot].normal;

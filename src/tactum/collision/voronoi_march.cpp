@@ -60,17 +60,17 @@ namespace {
 /// The edge of a face nearest to a segment that lies wholly outside the face's column.
 int nearest_edge(const Polytope& Q, const Polytope::Face& face, const Vec3& p0, const Vec3& u,
                  double length) noexcept {
-  int best = Q.face_edges[face.first];
+  int best = Q.sides[face.first].edge;
   double least = std::numeric_limits<double>::infinity();
   for (int slot = face.first; slot < face.first + face.count; ++slot) {
-    const Polytope::Edge& g = Q.edges[Q.face_edges[slot]];
+    const Polytope::Edge& g = Q.edges[Q.sides[slot].edge];
     const Vec3& q0 = Q.vertices[g.tail];
     const SegmentPair at =
         nearest_on_segments(u, length, g.direction, g.length, q0 - p0, u.cross(g.direction));
     const double gap = (p0 + u * at.s - q0 - g.direction * at.t).squaredNorm();
     if (gap < least) {
       least = gap;
-      best = Q.face_edges[slot];
+      best = Q.sides[slot].edge;
     }
   }
   return best;
@@ -116,7 +116,7 @@ Step edge_face(const Polytope& Q, const Polytope::Edge& e, const Vec3& p0, const
   if (std::min(low, high) < -slack && std::max(low, high) > slack) return {Outcome::kOverlap, fp, fq};
   const bool take_low = std::abs(low) <= std::abs(high);
   const int slot = take_low ? clip.low_slot : clip.high_slot;
-  if (slot >= 0) return {Outcome::kMoved, fp, edge(Q.face_edges[slot])};
+  if (slot >= 0) return {Outcome::kMoved, fp, edge(Q.sides[slot].edge)};
   return {Outcome::kMoved, vertex(take_low ? e.tail : e.head), fq};
 }
 

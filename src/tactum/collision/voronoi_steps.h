@@ -83,13 +83,13 @@ inline Steepest steepest_edge(const Polytope& P, int v, const Vec3& d) noexcept 
 
 enum class Outcome : std::uint8_t { kClosest, kMoved, kOverlap, kBehind };
 
-/// How a step ended, and the features of P and Q to go on from.
+/// How a step ended, and the features of P and Q: to go on from, or where it ended.
 struct Step {
   Outcome outcome = Outcome::kMoved;
   Feature p, q;
 };
 
-/// Where a step stood: the closest points of its two features, each in its own piece's frame.
+/// Where a step began: the closest points of its two features, each in its own piece's frame.
 struct Place {
   double gap = kInfinity;  ///< the points' distance; infinite where the step does not know them [m]
   Vec3 p, q;               ///< known when the gap is [m]
@@ -184,10 +184,11 @@ Step vertex_edge(const Sides<Swapped>& S, Feature fp, Feature fq, Place& at, Pai
   return {Outcome::kClosest, fp, fq};
 }
 
-/// The slot of the side plane that `p` is farthest outside of, beyond `slack`; -1 inside the face's column.
-inline int slot_outside(const Polytope& Q, const Polytope::Face& face, const Vec3& p, double slack) noexcept {
+/// The slot of the side plane that `p` is farthest outside of, beyond `slack`; -1 inside the column of the
+/// face with this loop.
+inline int slot_outside(const Polytope& Q, int first, int count, const Vec3& p, double slack) noexcept {
   int best = -1;
-  for (int slot = face.first; slot < face.first + face.count; ++slot) {
+  for (int slot = first; slot < first + count; ++slot) {
     const double out = Q.sides[slot].normal.dot(p) - Q.sides[slot].offset;
     if (out > slack) {
       slack = out;
@@ -200,14 +201,20 @@ inline int slot_outside(const Polytope& Q, const Polytope::Face& face, const Vec
 template <bool Swapped>
 Step vertex_face(const Sides<Swapped>& S, Feature fp, Feature fq, Place& at, PairDistance& x) noexcept {
   const Vec3& p = S.P.vertices[fp.index];
-  const Polytope::Face& f = S.Q.faces[fq.index];
   const Vec3 p_Q = S.in_Q(p);
-  if (const int slot = slot_outside(S.Q, f, p_Q, S.slack); slot >= 0) {
-    Feature next = beside_edge(S.Q, S.Q.face_edges[slot], p_Q, S.slack);
-    // The same face, known sooner: the branch is predicted, so what follows need not wait for the edge.
-    if (next.kind == FeatureKind::kFace) next.index = S.Q.across[slot];
-    return {Outcome::kMoved, fp, next};
+  const int began_at = fq.index;
+  const Polytope::Face* at_face = &S.Q.faces[fq.index];
+  if (const int slot = slot_outside(S.Q, at_face->first, at_face->count, p_Q, S.slack); slot >= 0) {
+    // Mostly above the next face: one step to there, whose loop is told beside the side. Below it is no
+    // place to go on to: at a sharp edge rounding alone leads there, and from there back.
+    const Polytope::Side& side = S.Q.sides[slot];
+    at_face = &S.Q.faces[side.across];
+    if (slot_outside(S.Q, side.first, side.count, p_Q, S.slack) >= 0 ||
+        at_face->normal.dot(p_Q) - at_face->offset < -S.slack)
+      return {Outcome::kMoved, fp, beside_edge(S.Q, side.edge, p_Q, S.slack)};
+    fq.index = side.across;
   }
+  const Polytope::Face& f = *at_face;
   const double height = f.normal.dot(p_Q) - f.offset;
   if (height < -S.slack) {
     if (!S.Q.flat) return {Outcome::kBehind, fp, fq};
@@ -216,9 +223,11 @@ Step vertex_face(const Sides<Swapped>& S, Feature fp, Feature fq, Place& at, Pai
   const Vec3 outward_P = S.turned_to_P(-f.normal);
   const Steepest at_p = steepest_edge(S.P, fp.index, outward_P);
   if (at_p.slope > tolerances::kVoronoiSlack) {
-    at.gap = std::abs(height);
-    at.p = p;
-    at.q = p_Q - f.normal * height;
+    if (fq.index == began_at) {
+      at.gap = std::abs(height);
+      at.p = p;
+      at.q = p_Q - f.normal * height;
+    }
     return {Outcome::kMoved, edge(at_p.edge), fq};
   }
   tell(S.of_A(p, p_Q - f.normal * height), S.normal(outward_P, -f.normal), std::abs(height),
@@ -337,7 +346,8 @@ inline Step edge_edge(const PiecePair& pair, const Sides<false>& S, Feature fp, 
                                  double slack, Feature fp, Feature fq) noexcept;
 
 /// Dispatch on the kinds, P owning the lower one. Tells `x` where the features are closest, and the place
-/// where it moved on. Two faces, from which only a caller starts, go on from a vertex of the second.
+/// where it moved on, if it came to know it. Two faces, from which only a caller starts, go on from a vertex
+/// of the second.
 template <bool Swapped>
 Step step(const PiecePair& pair, const Sides<Swapped>& S, Feature fp, Feature fq, Place& at,
           PairDistance& x) noexcept {
@@ -353,7 +363,7 @@ Step step(const PiecePair& pair, const Sides<Swapped>& S, Feature fp, Feature fq
   return edge_face(S.Q, e, S.in_Q(S.P.vertices[e.tail]), S.turned_to_Q(e.direction), S.slack, fp, fq);
 }
 
-/// A step from the features `at` of A and B, which become those to go on from.
+/// A step from the features `at` of A and B, which become those of its end.
 inline Outcome step_on(const PiecePair& pair, double slack, FeaturePair& at, Place& place,
                        PairDistance& x) noexcept {
   if (at.a.kind > at.b.kind) {
@@ -383,8 +393,8 @@ inline March walk(const PiecePair& pair, FeaturePair at, double slack, PairDista
     const Outcome outcome = step_on(pair, slack, at, place, x);
     ++march.steps;
     if (outcome != Outcome::kMoved) {
-      x.a = was.a;
-      x.b = was.b;
+      x.a = at.a;
+      x.b = at.b;
       if (outcome == Outcome::kClosest) {
         x.doubt += slack;  // of the numbers that were added up
         return {x.doubt, MarchEnd::kClosest, march.steps};

@@ -51,8 +51,8 @@ class ArrayWriter {
   requires(!ArraysInside<T>) void operator()(std::string_view name, const T& value) {
     put(name, sizeof(T), 1, &value);
   }
-  template <PlainData T>
-  void operator()(std::string_view name, const std::vector<T>& values) {
+  template <PlainData T, class Memory>
+  void operator()(std::string_view name, const std::vector<T, Memory>& values) {
     put(name, sizeof(T), values.size(), values.data());
   }
   template <ArraysInside T>
@@ -88,8 +88,8 @@ class ArrayReader {
     }
     std::memcpy(static_cast<void*>(&value), data.data(), sizeof(T));
   }
-  template <PlainData T>
-  void operator()(std::string_view name, std::vector<T>& values) {
+  template <PlainData T, class Memory>
+  void operator()(std::string_view name, std::vector<T, Memory>& values) {
     const std::string_view data = take(name, sizeof(T));
     if (error_) return;
     values.resize(data.size() / sizeof(T));

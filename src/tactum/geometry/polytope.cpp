@@ -28,7 +28,6 @@ void set_plane(Polytope& P, Polytope::Face& face) {
 
 bool build_edges(Polytope& P, const char** why) {
   std::map<std::pair<int, int>, int> edge_of;  // (tail, head) -> edge
-  P.face_edges.assign(P.face_vertices.size(), -1);
   for (Index f = 0; f < P.faces.size(); ++f) {
     const Polytope::Face& face = P.faces[f];
     for (int i = 0; i < face.count; ++i) {
@@ -41,7 +40,6 @@ bool build_edges(Polytope& P, const char** why) {
         if (edge.right >= 0) return *why = "an edge has more than two faces", false;
         edge.right = static_cast<int>(f);
         edge.right_slot = slot;
-        P.face_edges[Index(slot)] = twin->second;
         continue;
       }
       Polytope::Edge edge;
@@ -53,7 +51,6 @@ bool build_edges(Polytope& P, const char** why) {
       const Vec3 along = P.vertices[Index(b)] - P.vertices[Index(a)];
       edge.length = along.norm();
       edge.direction = along / edge.length;
-      P.face_edges[Index(slot)] = static_cast<int>(P.edges.size());
       if (!edge_of.emplace(std::pair{a, b}, static_cast<int>(P.edges.size())).second)
         return *why = "two faces run along an edge in the same direction", false;
       P.edges.push_back(edge);
@@ -82,15 +79,17 @@ void build_rays(Polytope& P) {
 
 void build_sides(Polytope& P) {
   P.sides.resize(P.face_vertices.size());
-  P.across.resize(P.face_vertices.size());
-  for (const Polytope::Edge& edge : P.edges) {
+  for (Index e = 0; e < P.edges.size(); ++e) {
+    const Polytope::Edge& edge = P.edges[e];
     const Vec3& tail = P.vertices[Index(edge.tail)];
-    const Vec3 left = edge.direction.cross(P.faces[Index(edge.left)].normal).normalized();
-    const Vec3 right = -edge.direction.cross(P.faces[Index(edge.right)].normal).normalized();
-    P.sides[Index(edge.left_slot)] = {left, left.dot(tail)};
-    P.sides[Index(edge.right_slot)] = {right, right.dot(tail)};
-    P.across[Index(edge.left_slot)] = edge.right;
-    P.across[Index(edge.right_slot)] = edge.left;
+    const Polytope::Face& left = P.faces[Index(edge.left)];
+    const Polytope::Face& right = P.faces[Index(edge.right)];
+    const Vec3 from_left = edge.direction.cross(left.normal).normalized();
+    const Vec3 from_right = -edge.direction.cross(right.normal).normalized();
+    P.sides[Index(edge.left_slot)] = {from_left,  from_left.dot(tail), static_cast<int>(e),
+                                      edge.right, right.first,         right.count};
+    P.sides[Index(edge.right_slot)] = {from_right, from_right.dot(tail), static_cast<int>(e),
+                                       edge.left,  left.first,           left.count};
   }
 }
 

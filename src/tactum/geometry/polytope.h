@@ -17,6 +17,7 @@
 #include <span>
 #include <vector>
 
+#include "tactum/base/large_array.h"
 #include "tactum/geometry/triangle_mesh.h"
 
 namespace tactum {
@@ -26,7 +27,7 @@ struct Polytope {
   struct Edge {
     int tail = 0, head = 0;             ///< vertices
     int left = 0, right = 0;            ///< faces
-    int left_slot = 0, right_slot = 0;  ///< where the edge stands in face_vertices, face_edges, sides
+    int left_slot = 0, right_slot = 0;  ///< where the edge stands in face_vertices, sides
     double length = 0.0;                ///< [m]
     Vec3 direction = Vec3::Zero();      ///< unit, tail to head
   };
@@ -37,10 +38,14 @@ struct Polytope {
     int first = 0, count = 0;    ///< the loop: slots [first, first + count)
   };
 
-  /// A plane that bounds a face's column: normal . x <= offset inside.
+  /// A plane that bounds a face's column, normal . x <= offset inside, and what lies beyond it: told here as
+  /// well, so that a walk that leaves the face over it need not wait for the edge and the face.
   struct Side {
     Vec3 normal = Vec3::Zero();  ///< unit, in the face's plane, pointing away from the face across the edge
     double offset = 0.0;         ///< [m]
+    int edge = 0;                ///< that it goes through
+    int across = 0;              ///< the face beyond
+    int first = 0, count = 0;    ///< its loop
   };
   /// An edge as seen from one of its ends. All that a climb and a Voronoi test of a vertex read.
   struct Ray {
@@ -50,19 +55,16 @@ struct Polytope {
   };
 
   std::vector<Vec3> vertices;  ///< [m]
-  std::vector<Edge> edges;
-  std::vector<Face> faces;
+  LargeArray<Edge> edges;
+  LargeArray<Face> faces;
 
   // Loops of the faces, counter-clockwise seen from outside; slot i runs from its vertex to the next slot's.
   std::vector<int> face_vertices;
-  std::vector<int> face_edges;
-  std::vector<Side> sides;
-  std::vector<int> across;  ///< the face on the other side of the slot's edge: told here as well, so that a
-                            ///< walk that leaves over it need not wait for the edge
+  LargeArray<Side> sides;
 
   // Edges around each vertex: rays[ray_first[v] .. ray_first[v + 1]).
   std::vector<int> ray_first;
-  std::vector<Ray> rays;
+  LargeArray<Ray> rays;
 
   Vec3 center = Vec3::Zero();   ///< mean of the vertices: inside
   double radius = 0.0;          ///< largest distance of a vertex from center [m]

@@ -17,8 +17,8 @@ class SurfaceBoxes {
  public:
   SurfaceBoxes(const TriangleMesh& mesh, const SurfaceCones& cones, const Vec3& center);
 
-  std::vector<SurfaceTree::Node> nodes;
-  std::vector<SurfaceTree::Corners> leaves;
+  LargeArray<SurfaceTree::Node> nodes;
+  LargeArray<SurfaceTree::Corners> leaves;
   std::array<std::int32_t, 3> root{-1, -1, -1};  ///< SurfaceTree::root
 
  private:

@@ -30,6 +30,7 @@
 #include <span>
 #include <vector>
 
+#include "tactum/base/large_array.h"
 #include "tactum/geometry/triangle_mesh.h"
 
 namespace tactum {
@@ -80,10 +81,10 @@ class SurfaceTree {
     Corners child{};  ///< a node; ~n: the leaf n; 0: no box
   };
 
-  const std::vector<Node>& nodes() const noexcept { return nodes_; }
+  const LargeArray<Node>& nodes() const noexcept { return nodes_; }
   /// Leaves hold eight features of one kind as corners 3 t + k of the triangles that own them: a vertex is
   /// that corner, an edge starts there, a face is the triangle, k = 0. -1: none, behind all others.
-  const std::vector<Corners>& leaves() const noexcept { return leaves_; }
+  const LargeArray<Corners>& leaves() const noexcept { return leaves_; }
   /// The node whose first lane is the box around all vertices, edges or faces; -1: there are none. Nodes of a
   /// kind stand together, the root before the others.
   std::int32_t root(Kind kind) const noexcept { return scalars_.root[kind]; }
@@ -164,8 +165,8 @@ class SurfaceTree {
   std::vector<std::uint8_t> narrow_;
   std::vector<std::int32_t> first_around_;  // per vertex, and the end
   std::vector<std::int32_t> around_;
-  std::vector<Node> nodes_;
-  std::vector<Corners> leaves_;
+  LargeArray<Node> nodes_;
+  LargeArray<Corners> leaves_;
 };
 
 }  // namespace tactum

@@ -160,8 +160,8 @@ class Builder {
     const Polytope::Face& b = K.faces[other];
     for (int i = 0; i < a.count; ++i)
       for (int j = 0; j < b.count; ++j) {
-        const Polytope::Edge& e = P.edges[P.face_edges[a.first + i]];
-        const Polytope::Edge& o = K.edges[K.face_edges[b.first + j]];
+        const Polytope::Edge& e = P.edges[P.sides[a.first + i].edge];
+        const Polytope::Edge& o = K.edges[K.sides[b.first + j].edge];
         if (shared_length(P, e, K, o) > kLongerThanNoise * noise_) return true;
       }
     return false;
