@@ -108,7 +108,7 @@ void judge(const TimeOfImpact& found, Watch watch, ImpactRow& row) {
   row.early_s = std::max(row.early_s, *contact - found.time);
 }
 
-ImpactRow measure(const Meter& meter, const Pair& pair, int frames) {
+ImpactRow measure(Meter& meter, const Pair& pair, int frames) {
   const Shape& a = shape(pair.a);
   const Shape& b = shape(pair.b);
   Recording recording = record(a, b, {"approach", 0.05e-3, 0.8e-3}, frames, 12);
@@ -146,14 +146,14 @@ std::span<const Pair> impact_pairs() {
 
 ImpactReport bench_impact(const PairsOptions& options,
                           const std::function<void(const std::string&)>& progress) {
-  const Meter meter(options.replays);
+  Meter meter(options.replays);
   ImpactReport report;
-  report.how = meter.describe();
   for (const Pair& pair : impact_pairs()) {
     if (!wanted(options.shapes, pair.name())) continue;
     progress(pair.name());
     report.rows.push_back(measure(meter, pair, options.quick ? 100 : options.frames));
   }
+  report.how = meter.describe();
   return report;
 }
 

@@ -96,9 +96,8 @@ std::span<const Pair> patch_pairs() {
 
 ManifoldReport bench_manifold(const PairsOptions& options,
                               const std::function<void(const std::string&)>& progress) {
-  const Meter meter(options.replays);
+  Meter meter(options.replays);
   ManifoldReport report;
-  report.how = meter.describe();
   for (const Pair& pair : patch_pairs()) {
     if (!wanted(options.shapes, pair.name())) continue;
     progress(pair.name());
@@ -119,6 +118,7 @@ ManifoldReport bench_manifold(const PairsOptions& options,
       report.rows.push_back(row);
     }
   }
+  report.how = meter.describe();
   return report;
 }
 

@@ -1,7 +1,8 @@
 #pragma once
 /// One engine on one recording: what a query costs and how far off it is. Every pose is replayed several
-/// times and counts with its fastest (`Readings`), so that what the machine did meanwhile is left out; the
-/// cost of reading the clock, measured the same way on an engine that does nothing, is taken off.
+/// times while the core is ours alone and counts with its fastest (`Readings`), so that what the machine did
+/// meanwhile is left out; the cost of reading the clock, measured the same way on an engine that does
+/// nothing, is taken off.
 
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "bench/clock.h"
+#include "bench/core_width.h"
 #include "bench/engine.h"
 #include "bench/referee.h"
 
@@ -20,6 +22,7 @@ struct Row {
   std::string regime, engine;
   int frames = 0;  ///< queries; slow engines are asked fewer
   double median_ns = 0.0, p99_ns = 0.0, p999_ns = 0.0, max_ns = 0.0;  ///< [ns]
+  double shared_core = 0.0;  ///< of the queries, those never seen on a core that was ours alone [0..1]
   double batched_ns = 0.0;   ///< mean over the whole recording between two looks at the clock [ns]
   double max_error_m = 0.0;  ///< against the referee, of the queries answered [m]
   int missed = 0;            ///< not answered, not certified (ours), or contact and no contact mistaken
@@ -42,6 +45,7 @@ class Readings {
  public:
   explicit Readings(double step_ns) : step_ns_(step_ns) {}
   void add(double ns);
+  int count() const { return count_; }
   /// At least one reading has been added.
   double ns() const { return least_ns_ + step_ns_ * next_ / (least_ + next_); }
 
@@ -49,26 +53,37 @@ class Readings {
   double step_ns_;
   double least_ns_ = std::numeric_limits<double>::infinity();
   int least_ = 0, next_ = 0;  // readings of the least, and of a step more
+  int count_ = 0;
 };
 
 class Meter {
  public:
   explicit Meter(int replays);
+  Meter(const Meter&) = delete;  // core_ looks at clock_
+  Meter& operator=(const Meter&) = delete;
   /// The engine has been given the pair. `cold`: it forgets before each query. Engines are asked as many of
   /// the poses as fit into `budget_s`.
   Row measure(Engine& engine, const Recording& recording, const std::vector<Truth>& truth, bool cold,
-              double budget_s) const;
-  /// What the numbers are: "each the fastest of 5 replays ...".
+              double budget_s);
+  /// What the numbers are: "each the fastest of at least 5 replays ...", and how many of the queries measured
+  /// up to now were disturbed in all of them.
   std::string describe() const;
 
  private:
-  /// Of each pose, the clock's cost still in it [ns].
-  std::vector<double> undisturbed_ns(Engine& engine, const Recording& recording, std::size_t count,
-                                     bool cold) const;
+  // Replays go on until each pose has had its number on a core of ours: up to so many, or so long.
+  static constexpr int kPatience = 200;
+  static constexpr double kPatience_ns = 2e9;
+  struct Times {
+    std::vector<double> ns;  ///< of each pose, the clock's cost still in it [ns]
+    std::size_t shared = 0;  ///< poses never seen while the core was ours alone
+  };
+  Times undisturbed(Engine& engine, const Recording& recording, std::size_t count, bool cold);
   double batched_ns(Engine& engine, const Recording& recording, std::size_t count, bool cold) const;
 
   FineClock clock_;
+  CoreWidth core_{clock_};
   int replays_;
+  std::size_t measured_ = 0, shared_ = 0;  // queries; of them those never seen on a core that was ours alone
   double overhead_ns_ = 0.0;
 };
 

@@ -17,9 +17,7 @@ constexpr std::uint64_t kSeed = 7;
 /// What the runs of both commands share: the meter and the report that grows.
 class Run {
  public:
-  explicit Run(const PairsOptions& options) : options_(options), meter_(options.replays) {
-    report.how = meter_.describe();
-  }
+  explicit Run(const PairsOptions& options) : options_(options), meter_(options.replays) {}
 
   bool skips(const Pair& pair) const {
     const bool is_quick = pair.name() == "box/box" || pair.name() == "sphere162/sphere162";
@@ -59,6 +57,7 @@ class Run {
       if (answers && peer->hold(a, b))
         measure(*peer, entry.name, options_.quick ? 0.01 : options_.peer_budget_s);
     }
+    report.how = meter_.describe();
   }
 
   PairsReport report;

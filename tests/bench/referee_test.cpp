@@ -144,7 +144,7 @@ TEST(Readings, OfAFineClockAreTheFastest) {
 TEST(Meter, CountsWhatIsMissedAndHowFarOffTheRestIs) {
   const Recording recording = two_boxes(0.001);
   const std::vector<Truth> truth = truths(shape("box"), shape("box"), recording);
-  const Meter meter(1);
+  Meter meter(1);
   const auto row = [&](Answer answer) {
     Parrot parrot(answer);
     return meter.measure(parrot, recording, truth, false, 0.01);

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "tactum/geometry/hull.h"
 #include "tactum/geometry/primitives.h"
 
 namespace tactum {
@@ -71,8 +73,9 @@ TEST(Shading, WallsBetweenPiecesBendNothing) {
   }
 }
 
-TEST(Shading, ContinuousAcrossTheEdgesOfASphere) {
-  const Part part = part_of(make_icosphere(2, 0.02));
+/// From face to face the normal is the same on the edge between them, and nearly that of the ball.
+void expect_continuous(const Polytope& ball, double nearly) {
+  const Part part = part_of(ball);
   const ShadingNormals shading(part, 0.6);
   const Polytope& P = part.pieces[0];
   for (const Polytope::Edge& edge : P.edges) {
@@ -83,9 +86,30 @@ TEST(Shading, ContinuousAcrossTheEdgesOfASphere) {
       const Vec3 right =
           P.faces[std::size_t(edge.right)].normal + shading.deviation(0, {FeatureKind::kFace, edge.right}, p);
       ASSERT_LT((left - right).norm(), 1e-9);
-      ASSERT_LT((left - p.normalized()).norm(), 0.02);
+      ASSERT_LT((left - p.normalized()).norm(), nearly);
     }
   }
+}
+
+TEST(Shading, ContinuousAcrossTheEdgesOfTriangles) { expect_continuous(make_icosphere(2, 0.02), 0.02); }
+
+/// Between parallels and meridians, where all four corners have other normals.
+TEST(Shading, ContinuousAcrossTheEdgesOfQuadrilaterals) {
+  constexpr int kParallels = 13, kMeridians = 24;
+  std::vector<Vec3> cloud = {{0, 0, 0.02}, {0, 0, -0.02}};
+  for (int i = 1; i < kParallels; ++i)
+    for (int k = 0; k < kMeridians; ++k) {
+      const double north = kPi * i / kParallels;
+      const double east = 2 * kPi * k / kMeridians;
+      cloud.push_back(
+          0.02 * Vec3(std::sin(north) * std::cos(east), std::sin(north) * std::sin(east), std::cos(north)));
+    }
+  const Result<Polytope> globe = convex_hull(cloud);
+  ASSERT_TRUE(globe);
+  EXPECT_EQ(std::count_if(globe->faces.begin(), globe->faces.end(),
+                          [](const Polytope::Face& f) { return f.count == 4; }),
+            (kParallels - 2) * kMeridians);
+  expect_continuous(*globe, 0.03);
 }
 
 }  // namespace

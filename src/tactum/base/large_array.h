@@ -18,7 +18,7 @@ namespace tactum {
 /// For std::vector; as the standard one, with the alignment above.
 template <class T>
 struct LargeArrayAllocator {
-  using value_type = T;
+  using value_type = T;  // NOLINT(readability-identifier-naming): so std::allocator_traits calls it
 
   LargeArrayAllocator() noexcept = default;
   template <class U>

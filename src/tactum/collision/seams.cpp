@@ -204,9 +204,11 @@ Feature same_feature(const Part& part, int of_piece, const Feature& feature, int
   if (group < 0) return {feature.kind, -1};
   const int first = number_of(part, piece, {feature.kind, 0});
   const int count = part.pieces[Index(piece)].counts[Index(feature.kind)];
-  for (int i = 0; i < count; ++i)
-    if (part.true_surface.group[Index(first + i)] == group) return {feature.kind, i};
-  return {feature.kind, -1};
+  // Which of the few features it is, or that it is none, cannot be foretold: all are looked at.
+  const int* groups = part.true_surface.group.data() + first;
+  int same = -1;
+  for (int i = count; i-- > 0;) same = groups[i] == group ? i : same;
+  return {feature.kind, same};
 }
 
 std::optional<PairDistance> depth_on_true_surface(const Part& part_a, int piece_a, const Part& part_b,

@@ -103,7 +103,10 @@ class MotionProblem {
     for (int round = 1; round <= kMostRounds; ++round) {
       newton_step();
       Index wrong = 0;
-      for (Index i = 0; i < n_; ++i) wrong += is_wrong(rows_[i]) ? 1 : 0;
+      for (Index i = 0; i < n_; ++i) {
+        rows_[i].slack = slack(rows_[i]);
+        wrong += is_wrong(rows_[i]) ? 1 : 0;
+      }
       if (wrong == 0) return round;
       if (wrong < fewest) {
         fewest = wrong;
@@ -121,7 +124,7 @@ class MotionProblem {
   }
 
   double impulse(Index i) const {
-    return rows_[i].active ? std::max(0.0, slack(rows_[i])) * rows_[i].stiffness : 0.0;
+    return rows_[i].active ? std::max(0.0, rows_[i].slack) * rows_[i].stiffness : 0.0;
   }
 
   void add_motion(std::span<Twist> V) const {
@@ -149,6 +152,7 @@ class MotionProblem {
     double g_a[6], g_b[6];
     double stiffness;  // 1 / c
     double wanted;     // b
+    double slack;      // b - g z, since the last step
     bool active;
   };
 
@@ -247,7 +251,7 @@ class MotionProblem {
   }
   bool is_wrong(const Row& row) const {
     const double tolerance = tolerances::kContactVelocity * scale_;
-    return row.active ? !(slack(row) >= -tolerance) : !(slack(row) <= tolerance);  // NaN is wrong
+    return row.active ? !(row.slack >= -tolerance) : !(row.slack <= tolerance);  // NaN is wrong
   }
 
   Index n_ = 0, movers_ = 0, columns_ = 0;

@@ -18,12 +18,22 @@ using Index = std::size_t;
 /// Faces with more corners are flat ends, not parts of curved surfaces.
 constexpr int kMostCorners = 16;
 
-/// The interpolated normal inside a convex polygon: w_i = A(i-1,i,i+1) prod_{j != i-1,i} A(j,j+1,p). The
+/// The weighted normals' sum inside a convex polygon: w_i = A(i-1,i,i+1) prod_{j != i-1,i} A(j,j+1,p). The
 /// first area is in the corner's weighted normal; the product is that of all before times that of all behind.
-Vec3 interpolated(const ShadedFace& face, const ShadedCorner* corners, const Vec3& point) {
-  const int n = face.count;
+Vec3 weighted_sum(const ShadedCorner* corners, int n, const Vec3& point) {
+  const auto area_beside = [&](int i) {
+    return std::max(0.0, corners[i].inward.dot(point) - corners[i].offset);
+  };
+  if (n == 4) {  // most are: the same products, written out
+    const double a0 = area_beside(0);
+    const double a1 = area_beside(1);
+    const double a2 = area_beside(2);
+    const double a3 = area_beside(3);
+    return a1 * a2 * corners[0].weighted + a2 * a3 * corners[1].weighted + a0 * a3 * corners[2].weighted +
+           a0 * a1 * corners[3].weighted;
+  }
   double area[kMostCorners];
-  for (int i = 0; i < n; ++i) area[i] = std::max(0.0, corners[i].inward.dot(point) - corners[i].offset);
+  for (int i = 0; i < n; ++i) area[i] = area_beside(i);
   double behind[kMostCorners + 1];  // area[i] area[i + 1] ... area[n - 1]
   behind[n] = 1.0;
   for (int i = n; i-- > 0;) behind[i] = behind[i + 1] * area[i];
@@ -36,6 +46,12 @@ Vec3 interpolated(const ShadedFace& face, const ShadedCorner* corners, const Vec
     sum += before * behind[i + 1] * corners[i].weighted;
     before *= area[i - 1];
   }
+  return sum;
+}
+
+/// The interpolated normal of a face with corners.
+Vec3 interpolated(const ShadedFace& face, const ShadedCorner* corners, const Vec3& point) {
+  const Vec3 sum = weighted_sum(corners, face.count, point);
   const double length = sum.norm();
   return length > 0.0 ? Vec3(sum / length) : face.normal;
 }
