@@ -10,16 +10,17 @@ namespace tactum::bench {
 class CoreWidth {
  public:
   /// Looks for a second how fast the core can be.
-  explicit CoreWidth(const FineClock& clock);
-  /// Whether as many instructions that need not wait for each other get through as ever did, to 7 %. Takes
-  /// 2 us and touches no memory. On processors other than x86-64 always true.
+  CoreWidth();
+  /// Whether as many instructions that need not wait for each other get through as ever did, to 7 %: nobody
+  /// else's are in between. Who waits for memory meanwhile, or fills caches, is not noticed. Takes 2 us and
+  /// touches no memory. On processors other than x86-64 always true.
   bool is_ours() noexcept;
 
  private:
   double probe_ns() const noexcept;
 
-  const FineClock& clock_;
-  double least_ns_;
+  FineClock clock_;
+  double alone_ns_ = 0.0;  ///< what the probe takes on a core of our own [ns]
 };
 
 }  // namespace tactum::bench

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
+
+#include "bench/core_width.h"
 
 namespace tactum::bench {
 namespace {
@@ -79,7 +82,10 @@ nlohmann::ordered_json to_json(const Row& row) {
   return json;
 }
 
-Meter::Meter(int replays) : replays_(replays) {
+Meter::Meter(int replays) : Meter(replays, [core = CoreWidth()]() mutable { return core.is_ours(); }) {}
+
+Meter::Meter(int replays, std::function<bool()> core_is_ours)
+    : replays_(replays), core_is_ours_(std::move(core_is_ours)) {
   constexpr std::size_t kCalls = 10000;
   Nothing nothing;
   std::vector<double> empty = undisturbed(nothing, {}, kCalls, false).ns;
@@ -89,9 +95,10 @@ Meter::Meter(int replays) : replays_(replays) {
 
 std::string Meter::describe() const {
   return fmt::format(
-      "Each query is the fastest of at least {} replays of its pose by {}; {:.1f} ns that reading it costs "
-      "are taken off. Replays count while the core is ours alone; {:.2g} % of the queries were never seen "
-      "so.",
+      "Each query is the fastest of {} replays of its pose by {}; {:.1f} ns that reading it costs are taken "
+      "off. Replays count while the core is ours alone; {:.3g} % of the queries had too few of those, and "
+      "all "
+      "of theirs count.",
       replays_, clock_.describe(), overhead_ns_,
       measured_ == 0 ? 0.0 : 100.0 * static_cast<double>(shared_) / static_cast<double>(measured_));
 }
@@ -103,7 +110,7 @@ Meter::Times Meter::undisturbed(Engine& engine, const Recording& recording, std:
   std::vector<Readings> ours(count, Readings(clock_.step_ns()));
   std::vector<Readings> all = ours;
   const auto seen_enough = [&] {
-    return std::all_of(ours.begin(), ours.end(), [&](const Readings& r) { return r.count() >= replays_; });
+    return std::all_of(ours.begin(), ours.end(), [&](const Readings& r) { return r.count() == replays_; });
   };
   const std::uint64_t begin = clock_.start();
   const auto has_patience = [&](int replay) {
@@ -113,24 +120,27 @@ Meter::Times Meter::undisturbed(Engine& engine, const Recording& recording, std:
     engine.forget();
     engine.place(recording, 0);
     engine.query();  // the start from nothing is not one of the tracked queries
-    bool was_ours = core_.is_ours();
-    for (std::size_t first = 0; first < count;) {
+    bool was_ours = core_is_ours_();
+    // A look disturbs the query after it a little: in every replay others come after one.
+    std::size_t most = 1 + static_cast<std::size_t>(replay) * 7 % kMostPoses;
+    for (std::size_t first = 0; first < count; most = kMostPoses) {
       double ns[kMostPoses];
-      double spent_ns = 0.0;
+      const std::uint64_t block = clock_.start();
+      std::uint64_t stop = block;
       std::size_t i = first;
-      for (; i < count && i - first < kMostPoses && spent_ns < kMost_ns; ++i) {
+      for (; i < count && i - first < most && clock_.ns(stop - block) < kMost_ns; ++i) {
         if (cold) engine.forget();
         engine.place(recording, i);
         const std::uint64_t start = clock_.start();
         engine.query();
-        const std::uint64_t stop = clock_.stop();
+        stop = clock_.stop();
         ns[i - first] = clock_.ns(stop - start);
-        spent_ns += ns[i - first];
       }
-      const bool is_ours = core_.is_ours();
+      const bool is_ours = core_is_ours_();
       for (std::size_t k = first; k < i; ++k) {
         all[k].add(ns[k - first]);
-        if (was_ours && is_ours) ours[k].add(ns[k - first]);
+        // The least of more would be less: no pose has more than the others, and no engine's.
+        if (was_ours && is_ours && ours[k].count() < replays_) ours[k].add(ns[k - first]);
       }
       was_ours = is_ours;
       first = i;
@@ -139,9 +149,9 @@ Meter::Times Meter::undisturbed(Engine& engine, const Recording& recording, std:
   Times times;
   times.ns.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
-    const bool undisturbed = ours[i].count() > 0;
-    times.ns.push_back(undisturbed ? ours[i].ns() : all[i].ns());
-    if (!undisturbed) ++times.shared;
+    const bool shared = ours[i].count() < replays_;
+    times.ns.push_back(shared ? all[i].ns() : ours[i].ns());
+    if (shared) ++times.shared;
   }
   return times;
 }
@@ -170,8 +180,8 @@ double Meter::batched_ns(Engine& engine, const Recording& recording, std::size_t
 Row Meter::measure(Engine& engine, const Recording& recording, const std::vector<Truth>& truth, bool cold,
                    double budget_s) {
   Row row;
-  // Answers first, as many as half the budget allows: the replays of the batch and of each pose share the
-  // rest.
+  // Answers first, as many as half the budget allows: the replays of the batch and of each pose, when none
+  // is disturbed, share the rest.
   const double share_ns = budget_s * 1e9 / (2 * replays_ + 1);
   std::size_t count = 0;
   double spent_ns = 0.0;

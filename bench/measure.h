@@ -4,13 +4,13 @@
 /// meanwhile is left out; the cost of reading the clock, measured the same way on an engine that does
 /// nothing, is taken off.
 
+#include <functional>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "bench/clock.h"
-#include "bench/core_width.h"
 #include "bench/engine.h"
 #include "bench/referee.h"
 
@@ -22,7 +22,7 @@ struct Row {
   std::string regime, engine;
   int frames = 0;  ///< queries; slow engines are asked fewer
   double median_ns = 0.0, p99_ns = 0.0, p999_ns = 0.0, max_ns = 0.0;  ///< [ns]
-  double shared_core = 0.0;  ///< of the queries, those never seen on a core that was ours alone [0..1]
+  double shared_core = 0.0;  ///< of the queries, those that had too few replays on a core of our own [0..1]
   double batched_ns = 0.0;   ///< mean over the whole recording between two looks at the clock [ns]
   double max_error_m = 0.0;  ///< against the referee, of the queries answered [m]
   int missed = 0;            ///< not answered, not certified (ours), or contact and no contact mistaken
@@ -59,31 +59,32 @@ class Readings {
 class Meter {
  public:
   explicit Meter(int replays);
-  Meter(const Meter&) = delete;  // core_ looks at clock_
-  Meter& operator=(const Meter&) = delete;
+  /// With another's word for whether the core is ours alone, which is asked before and after some queries.
+  Meter(int replays, std::function<bool()> core_is_ours);
   /// The engine has been given the pair. `cold`: it forgets before each query. Engines are asked as many of
-  /// the poses as fit into `budget_s`.
+  /// the poses as fit into `budget_s`; on a core that others use it takes up to kPatience_ns longer.
   Row measure(Engine& engine, const Recording& recording, const std::vector<Truth>& truth, bool cold,
               double budget_s);
-  /// What the numbers are: "each the fastest of at least 5 replays ...", and how many of the queries measured
-  /// up to now were disturbed in all of them.
+  /// What the numbers are: "each the fastest of 5 replays ...", and how many of the queries measured up to
+  /// now did not have as many on a core that was ours alone.
   std::string describe() const;
 
- private:
-  // Replays go on until each pose has had its number on a core of ours: up to so many, or so long.
+  /// Replays go on until each pose has had its number on a core of ours: up to so many in all, or so long.
   static constexpr int kPatience = 200;
   static constexpr double kPatience_ns = 2e9;
+
+ private:
   struct Times {
     std::vector<double> ns;  ///< of each pose, the clock's cost still in it [ns]
-    std::size_t shared = 0;  ///< poses never seen while the core was ours alone
+    std::size_t shared = 0;  ///< poses that had fewer replays on a core of ours: the fastest of all counts
   };
   Times undisturbed(Engine& engine, const Recording& recording, std::size_t count, bool cold);
   double batched_ns(Engine& engine, const Recording& recording, std::size_t count, bool cold) const;
 
   FineClock clock_;
-  CoreWidth core_{clock_};
   int replays_;
-  std::size_t measured_ = 0, shared_ = 0;  // queries; of them those never seen on a core that was ours alone
+  std::function<bool()> core_is_ours_;
+  std::size_t measured_ = 0, shared_ = 0;  // queries
   double overhead_ns_ = 0.0;
 };
 

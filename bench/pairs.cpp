@@ -1,6 +1,7 @@
 #include "bench/pairs.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace tactum::bench {
 namespace {
@@ -33,8 +34,8 @@ class Run {
     const Shape& b = shape(pair.b);
     const double referee_s = options_.quick ? 0.1 : options_.referee_s;
     const std::vector<Truth> truth = truths(a, b, recording, referee_s * kEdgePairs_per_s);
-    report.recorded += static_cast<long>(truth.size());
-    report.proved += std::count_if(truth.begin(), truth.end(), [](const Truth& one) { return one.proved; });
+    report_.recorded += static_cast<long>(truth.size());
+    report_.proved += std::count_if(truth.begin(), truth.end(), [](const Truth& one) { return one.proved; });
 
     const auto measure = [&](Engine& engine, const std::string& name, double budget_s) {
       Row row = meter_.measure(engine, recording, truth, regime.cold, budget_s);
@@ -43,7 +44,7 @@ class Run {
       row.vertices = std::max(a.vertices(), b.vertices());
       row.regime = regime.name;
       row.engine = name;
-      report.rows.push_back(row);
+      report_.rows.push_back(row);
     };
     if (wanted(options_.engines, kOurs)) {
       const std::unique_ptr<Engine> ours = make_ours();
@@ -57,14 +58,17 @@ class Run {
       if (answers && peer->hold(a, b))
         measure(*peer, entry.name, options_.quick ? 0.01 : options_.peer_budget_s);
     }
-    report.how = meter_.describe();
   }
 
-  PairsReport report;
+  PairsReport finish() {
+    report_.how = meter_.describe();
+    return std::move(report_);
+  }
 
  private:
   const PairsOptions& options_;
   Meter meter_;
+  PairsReport report_;
 };
 
 }  // namespace
@@ -127,7 +131,7 @@ PairsReport bench_pairs(const PairsOptions& options, const Progress& progress) {
       run.measure_all(pair, regime, recording, make_closest_features);
     }
   }
-  return run.report;
+  return run.finish();
 }
 
 PairsReport bench_penetration(const PairsOptions& options, const Progress& progress) {
@@ -144,7 +148,7 @@ PairsReport bench_penetration(const PairsOptions& options, const Progress& progr
       run.measure_all(pair, regime, recording, make_penetration);
     }
   }
-  return run.report;
+  return run.finish();
 }
 
 }  // namespace tactum::bench

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Measures the contact queries anew and puts tables and picture into docs/benchmarks.md:  tools/measure.sh
-# Takes about ten minutes; leave the machine alone meanwhile. Rows go to out/bench-*.json.
+# Takes a quarter of an hour, longer on a busy machine; leave it alone meanwhile. Rows go to out/bench-*.json.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 

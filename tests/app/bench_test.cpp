@@ -20,20 +20,18 @@ Json quick_rows(const std::string& arguments) {
   const ProgramRun run =
       run_tactum("bench " + arguments + " --quick --replays 1 --json " + (folder / "rows.json"));
   EXPECT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_NE(run.out.find("fastest of at least 1 replays"), std::string::npos);
-  EXPECT_NE(run.out.find("% of the queries were never seen so"), std::string::npos);
+  EXPECT_NE(run.out.find("fastest of 1 replays"), std::string::npos);
+  EXPECT_NE(run.out.find("% of the queries had too few of those"), std::string::npos);
   const Json rows = Json::parse(testing::content(folder / "rows.json"));
   EXPECT_GT(rows.size(), 0u);
   for (const Json& row : rows) {
     for (const char* key : {"shape_a", "shape_b", "regime", "engine"}) EXPECT_TRUE(row.at(key).is_string());
     for (const char* key : {"vertices", "missed", "frames"}) EXPECT_TRUE(row.at(key).is_number_integer());
-    for (const char* key : {"median_ns", "p99_ns", "p999_ns", "max_ns", "max_error_m"})
+    for (const char* key : {"median_ns", "p99_ns", "p999_ns", "max_ns", "shared_core", "max_error_m"})
       EXPECT_TRUE(row.at(key).is_number());
     EXPECT_LE(row["median_ns"], row["p99_ns"]);
     EXPECT_LE(row["p99_ns"], row["p999_ns"]);
     EXPECT_LE(row["p999_ns"], row["max_ns"]);
-    EXPECT_GE(row.at("shared_core").get<double>(), 0.0);
-    EXPECT_LE(row["shared_core"].get<double>(), 1.0);
   }
   return rows;
 }

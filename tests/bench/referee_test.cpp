@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
+#include <vector>
 
 #include "bench/measure.h"
 #include "oracles/exhaustive.h"
@@ -144,7 +147,7 @@ TEST(Readings, OfAFineClockAreTheFastest) {
 TEST(Meter, CountsWhatIsMissedAndHowFarOffTheRestIs) {
   const Recording recording = two_boxes(0.001);
   const std::vector<Truth> truth = truths(shape("box"), shape("box"), recording);
-  Meter meter(1);
+  Meter meter(1, [] { return true; });
   const auto row = [&](Answer answer) {
     Parrot parrot(answer);
     return meter.measure(parrot, recording, truth, false, 0.01);
@@ -156,6 +159,50 @@ TEST(Meter, CountsWhatIsMissedAndHowFarOffTheRestIs) {
   EXPECT_EQ(row({false, 0.001, 0}).missed, 1);
   EXPECT_EQ(row({true, -0.001, 0}).missed, 1);  // contact where there is none
   EXPECT_EQ(row({true, std::nan(""), 0}).missed, 1);
+}
+
+/// Counts how often each pose is asked about.
+class Counter final : public Engine {
+ public:
+  bool hold(const Shape&, const Shape&) override { return true; }
+  void forget() override {}
+  void place(const Recording& recording, std::size_t pose) override {
+    asked.resize(recording.poses.size());
+    pose_ = pose;
+  }
+  void query() override { ++asked[pose_]; }
+  Answer answer() const override { return {true, 0.001, 0}; }
+  std::vector<int> asked;
+
+ private:
+  std::size_t pose_ = 0;
+};
+
+TEST(Meter, ReplaysUntilEveryPoseHasHadACoreOfItsOwn) {
+  constexpr int kReplays = 3;
+  constexpr int kBesides = 1 + kReplays;  // for the answer, and in batches
+  Recording recording = two_boxes(0.001);
+  recording.poses.resize(70, recording.poses.front());
+  const std::vector<Truth> truth(recording.poses.size(), Truth{0.001, 0.001, true});
+  const auto asked = [&](const std::function<bool()>& core_is_ours, Row& row) {
+    Meter meter(kReplays, core_is_ours);
+    Counter counter;
+    row = meter.measure(counter, recording, truth, false, 10.0);
+    EXPECT_TRUE(std::isfinite(row.max_ns));
+    // The first is also the start from nothing of every replay.
+    EXPECT_EQ(std::count(counter.asked.begin() + 1, counter.asked.end(), counter.asked[1]), 69);
+    return counter.asked[1];
+  };
+  Row row;
+  EXPECT_EQ(asked([] { return true; }, row), kReplays + kBesides);
+  EXPECT_EQ(row.shared_core, 0.0);
+  EXPECT_EQ(asked([] { return false; }, row), Meter::kPatience + kBesides);
+  EXPECT_EQ(row.shared_core, 1.0);
+  int looks = 0;
+  const int now_and_then = asked([&] { return ++looks % 5 != 0; }, row);
+  EXPECT_GT(now_and_then, kReplays + kBesides);
+  EXPECT_LT(now_and_then, Meter::kPatience / 4);
+  EXPECT_EQ(row.shared_core, 0.0);
 }
 
 }  // namespace

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "tactum/geometry/hull.h"
+#include "tactum/geometry/polygon_clip.h"
 #include "tactum/geometry/primitives.h"
 
 namespace tactum {
@@ -73,6 +75,32 @@ TEST(Shading, WallsBetweenPiecesBendNothing) {
   }
 }
 
+Vec3 shaded_at(const ShadingNormals& shading, const Polytope& P, int face, const Vec3& p) {
+  return P.faces[std::size_t(face)].normal + shading.deviation(0, {FeatureKind::kFace, face}, p);
+}
+
+/// Inside every face the normal is that of its corners, weighed by Wachspress' quotients of areas.
+void expect_weighed(const ShadingNormals& shading, const Polytope& P) {
+  for (int f = 0; f < P.counts[2]; ++f) {
+    const std::vector<Vec3> corners = face_corners(P, f);
+    const std::size_t n = corners.size();
+    const Vec3& normal = P.faces[std::size_t(f)].normal;
+    const auto area = [&](const Vec3& a, const Vec3& b, const Vec3& c) {
+      return normal.dot((b - a).cross(c - a));
+    };
+    Vec3 p = Vec3::Zero();  // inside, not in the middle
+    for (std::size_t i = 0; i < n; ++i) p += corners[i] * (double(i + 1) / (0.5 * double(n * (n + 1))));
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t i = 0; i < n; ++i) {
+      const Vec3& last = corners[(i + n - 1) % n];
+      const Vec3& next = corners[(i + 1) % n];
+      sum += area(last, corners[i], next) / (area(last, corners[i], p) * area(corners[i], next, p)) *
+             shaded_at(shading, P, f, corners[i]);
+    }
+    ASSERT_LT((sum.normalized() - shaded_at(shading, P, f, p)).norm(), 1e-9) << f;
+  }
+}
+
 /// From face to face the normal is the same on the edge between them, and nearly that of the ball.
 void expect_continuous(const Polytope& ball, double nearly) {
   const Part part = part_of(ball);
@@ -81,14 +109,13 @@ void expect_continuous(const Polytope& ball, double nearly) {
   for (const Polytope::Edge& edge : P.edges) {
     for (double t : {0.0, 0.3, 0.5, 1.0}) {
       const Vec3 p = (1 - t) * P.vertices[std::size_t(edge.tail)] + t * P.vertices[std::size_t(edge.head)];
-      const Vec3 left =
-          P.faces[std::size_t(edge.left)].normal + shading.deviation(0, {FeatureKind::kFace, edge.left}, p);
-      const Vec3 right =
-          P.faces[std::size_t(edge.right)].normal + shading.deviation(0, {FeatureKind::kFace, edge.right}, p);
+      const Vec3 left = shaded_at(shading, P, edge.left, p);
+      const Vec3 right = shaded_at(shading, P, edge.right, p);
       ASSERT_LT((left - right).norm(), 1e-9);
       ASSERT_LT((left - p.normalized()).norm(), nearly);
     }
   }
+  expect_weighed(shading, P);
 }
 
 TEST(Shading, ContinuousAcrossTheEdgesOfTriangles) { expect_continuous(make_icosphere(2, 0.02), 0.02); }

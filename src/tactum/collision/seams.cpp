@@ -204,7 +204,7 @@ Feature same_feature(const Part& part, int of_piece, const Feature& feature, int
   if (group < 0) return {feature.kind, -1};
   const int first = number_of(part, piece, {feature.kind, 0});
   const int count = part.pieces[Index(piece)].counts[Index(feature.kind)];
-  // Which of the few features it is, or that it is none, cannot be foretold: all are looked at.
+  // Which of them it is, or that it is none, cannot be foretold: to look at all is faster than to jump.
   const int* groups = part.true_surface.group.data() + first;
   int same = -1;
   for (int i = count; i-- > 0;) same = groups[i] == group ? i : same;

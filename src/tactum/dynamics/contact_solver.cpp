@@ -58,7 +58,7 @@ class MotionProblem {
   static constexpr Index kMostRows = 128;
   static constexpr Index kMostColumns = 24;  // four free bodies
 
-  // Not filled: set() writes what is read.
+  // Not filled: set() and solve() write what is read.
   // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init,modernize-use-equals-default)
   MotionProblem() noexcept {}
 

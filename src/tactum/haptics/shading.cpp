@@ -24,7 +24,7 @@ Vec3 weighted_sum(const ShadedCorner* corners, int n, const Vec3& point) {
   const auto area_beside = [&](int i) {
     return std::max(0.0, corners[i].inward.dot(point) - corners[i].offset);
   };
-  if (n == 4) {  // most are: the same products, written out
+  if (n == 4) {  // of what is turned or swept most are: the same products, written out
     const double a0 = area_beside(0);
     const double a1 = area_beside(1);
     const double a2 = area_beside(2);
