@@ -97,8 +97,7 @@ std::string Meter::describe() const {
   return fmt::format(
       "Each query is the fastest of {} replays of its pose by {}; {:.1f} ns that reading it costs are taken "
       "off. Replays count while the core is ours alone; {:.3g} % of the queries had too few of those, and "
-      "all "
-      "of theirs count.",
+      "all of theirs count.",
       replays_, clock_.describe(), overhead_ns_,
       measured_ == 0 ? 0.0 : 100.0 * static_cast<double>(shared_) / static_cast<double>(measured_));
 }
@@ -114,7 +113,7 @@ Meter::Times Meter::undisturbed(Engine& engine, const Recording& recording, std:
   };
   const std::uint64_t begin = clock_.start();
   const auto has_patience = [&](int replay) {
-    return replay < kPatience && clock_.ns(clock_.stop() - begin) < kPatience_ns;
+    return replay < kPatience * replays_ && clock_.ns(clock_.stop() - begin) < kPatience_ns;
   };
   for (int replay = 0; replay < replays_ || (has_patience(replay) && !seen_enough()); ++replay) {
     engine.forget();

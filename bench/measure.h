@@ -69,8 +69,9 @@ class Meter {
   /// now did not have as many on a core that was ours alone.
   std::string describe() const;
 
-  /// Replays go on until each pose has had its number on a core of ours: up to so many in all, or so long.
-  static constexpr int kPatience = 200;
+  /// Replays go on until each pose has had its number on a core of ours: up to so many times that number in
+  /// all, or so long.
+  static constexpr int kPatience = 40;
   static constexpr double kPatience_ns = 2e9;
 
  private:

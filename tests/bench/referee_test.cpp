@@ -196,12 +196,12 @@ TEST(Meter, ReplaysUntilEveryPoseHasHadACoreOfItsOwn) {
   Row row;
   EXPECT_EQ(asked([] { return true; }, row), kReplays + kBesides);
   EXPECT_EQ(row.shared_core, 0.0);
-  EXPECT_EQ(asked([] { return false; }, row), Meter::kPatience + kBesides);
+  EXPECT_EQ(asked([] { return false; }, row), Meter::kPatience * kReplays + kBesides);
   EXPECT_EQ(row.shared_core, 1.0);
   int looks = 0;
   const int now_and_then = asked([&] { return ++looks % 5 != 0; }, row);
   EXPECT_GT(now_and_then, kReplays + kBesides);
-  EXPECT_LT(now_and_then, Meter::kPatience / 4);
+  EXPECT_LT(now_and_then, Meter::kPatience * kReplays / 2);
   EXPECT_EQ(row.shared_core, 0.0);
 }
 
