@@ -81,9 +81,15 @@ TEST(FeelCommand, TheResponseCanBeChosen) {
 }
 
 TEST(FeelCommand, InterruptedItEndsCleanlyWithItsSummary) {
-  const ProgramRun run =
-      run_tactum("feel gears --duration 600 & tactum=$!; sleep 1; kill -INT $tactum; wait $tactum");
+  const ScratchFolder folder;
+  const std::string said = folder / "said";
+  const std::string json = folder / "summary.json";
+  const ProgramRun run = run_tactum("feel gears --duration 600 --json " + json + " >" + said +
+                                    " & tactum=$!; while kill -0 $tactum && ! [ -s " + said +
+                                    " ]; do sleep 0.1; done; sleep 0.5; kill -INT $tactum; wait $tactum");
   EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_LT(Json::parse(testing::content(json))["frames"], 300'000);
+  EXPECT_NE(testing::content(said).find("driven turned by"), std::string::npos);
 }
 
 TEST(FeelCommand, WhatIsNotThereIsNamedWithWhatThereIs) {
