@@ -205,6 +205,9 @@ class Tracker {
     current_ = walk_to_foot(pair_, start);
     steps_ = current_.steps;
     forget(features(current_.facet));
+    // Left for a lower minimum behind its border, it may soon be the lower one again.
+    const bool moved = !same(features(start), features(current_.facet));
+    if (moved && stand_on(pair_, start).arrived(pair_)) keep(features(start), start.height);
     const std::uint32_t frame = cache_.turn++;
     const bool looks = frame % kLook == 0;
     const bool rivals_are_due = looks && frame / kLook % kDue == kDue - 1;
@@ -231,10 +234,13 @@ class Tracker {
     return facet.height < current_.facet.height - tolerances::kCoplanar * pair_.scale;
   }
 
-  /// The scout sets out, or walks on and arrives, or waits for its next turn.
+  /// The scout sets out, or walks on and arrives, or waits for its next turn. Not from where it would walk
+  /// for long: a lower minimum lies where both pieces' planes pass within the depth of a common point.
   void scout() noexcept {
+    constexpr double kFar = 8.0;  // depths
     if (cache_.scout.empty()) {
       const MinkowskiFacet start = seed();
+      if (start.height > kFar * current_.facet.height) return;
       cache_.scout = features(start);
       if (!lower(start)) return;
     }
@@ -314,12 +320,13 @@ class Tracker {
     return facet_of_face(pair_, true, face_of(pair_.A, of.a), vertex_of(pair_.B, of.b));
   }
 
-  /// In turn from far and from near: the lower facet of two directions all around; about the current normal,
-  /// by the corners of an icosahedron, near, farther and far.
+  /// In turn from the lower facet of two directions all around; from a direction about the current normal, by
+  /// the corners of an icosahedron, near, farther and far; and, every other time, from a face beside the
+  /// features that touch.
   MinkowskiFacet seed() noexcept {
-    const std::uint32_t scouts = cache_.scouted++;
-    const std::uint32_t turn = scouts / 2;
-    return scouts % 2 == 0 ? lowest_around(turn) : seed_near(turn);
+    const std::uint32_t turn = cache_.scouted++;
+    if (turn % 2 == 1) return seed_beside(turn / 2);
+    return turn % 4 == 0 ? lowest_around(turn / 4) : seed_near(turn / 4);
   }
 
   MinkowskiFacet lowest_around(std::uint32_t turn) const noexcept {
@@ -350,6 +357,22 @@ class Tracker {
     const double reach = kReach[(turn + turn / kCorners) % kReach.size()];
     return facet_near(pair_, current_.facet.n + offset * reach, vertex_of(pair_.A, current_.facet.a),
                       vertex_of(pair_.B, current_.facet.b));
+  }
+
+  /// The faces at the vertices that touch, of one piece and the other; where a face touches, the other's
+  /// only.
+  MinkowskiFacet seed_beside(std::uint32_t turn) const noexcept {
+    const Feature& a = current_.facet.a;
+    const Feature& b = current_.facet.b;
+    const bool on_a = b.kind == Kind::kFace || (a.kind != Kind::kFace && turn % 2 == 0);
+    const Polytope& P = on_a ? pair_.A : pair_.B;
+    const Feature& touching = on_a ? a : b;
+    const bool at_head = touching.kind == Kind::kEdge && turn / 2 % 2 == 0;
+    const int vertex = at_head ? P.edges[touching.index].head : vertex_of(P, touching);
+    const auto rays = P.rays_at(vertex);
+    const Polytope::Edge& edge = P.edges[rays[turn / 4 % rays.size()].edge];
+    const int face = edge.tail == vertex ? edge.left : edge.right;
+    return facet_of_face(pair_, on_a, face, on_a ? vertex_of(pair_.B, b) : vertex_of(pair_.A, a));
   }
 
   const PairView& pair_;
