@@ -255,16 +255,14 @@ struct Measure {
 };
 
 /// Across the worst border, or where rounding has bent the facets the next worst, whose plane is not farther.
-bool moved_outside(const PairView& pair, const Measure& measure, Crossing crossing, double limit,
-                   double slack, MinkowskiWalk& here) noexcept {
-  const Vec3 target = measure.target(here.facet);
+bool leads_outward(const PairView& pair, const Measure& measure, Crossing crossing, double limit,
+                   double slack, const MinkowskiFacet& from, MinkowskiFacet& next) noexcept {
+  const Vec3 target = measure.target(from);
+  MinkowskiWalk again;
   while (crossing.outside > slack) {
-    const MinkowskiFacet next = facet_behind(pair, across(pair, here.facet, crossing));
-    if (measure(next) <= limit) {
-      here.facet = next;
-      return true;
-    }
-    crossing = place(pair, here.facet, target, crossing.outside, here).first;
+    next = facet_behind(pair, across(pair, from, crossing));
+    if (measure(next) <= limit) return true;
+    crossing = place(pair, from, target, crossing.outside, again).first;
   }
   return false;
 }
@@ -272,21 +270,20 @@ bool moved_outside(const PairView& pair, const Measure& measure, Crossing crossi
 /// The foot is inside; the nearest borders may still have a lower facet behind them: two local minima side by
 /// side, of which the walk takes the better. Seen along the common ridge, a foot at depth d and `inside` from
 /// a ridge where the planes turn by alpha is at depth  d cos alpha + inside sin alpha  under the other.
-bool moved_inside(const PairView& pair, const Worst& nearest, double limit, MinkowskiWalk& here) noexcept {
-  const double d = here.facet.height;
+bool leads_past_ridge(const PairView& pair, const Worst& nearest, double limit, const MinkowskiFacet& from,
+                      MinkowskiFacet& next) noexcept {
+  const double d = from.height;
   for (const Crossing* border : {&nearest.first, &nearest.second}) {
     if (!(-border->outside < d)) return false;
-    const Passage passage = across(pair, here.facet, *border);
-    const double inside = square_to_border(pair, here.facet, -border->outside);
+    const Passage passage = across(pair, from, *border);
+    const double inside = square_to_border(pair, from, -border->outside);
     const Vec3& end_normal = (passage.on_a ? pair.A : pair.B).faces[passage.arc.end].normal;
     const double farthest = passage.arc.m0.dot(end_normal);  // no arc turns more: alpha at most
     if (inside * inside * (1.0 + farthest) >= d * d * (1.0 - farthest)) continue;
     const ArcEnd end = end_of(pair, passage);
     if (d * end.cosine + inside * end.sine >= limit) continue;
-    const MinkowskiFacet next = facet_at(pair, passage, end);
-    if (next.height >= limit) continue;
-    here.facet = next;
-    return true;
+    next = facet_at(pair, passage, end);
+    if (next.height < limit) return true;
   }
   return false;
 }
@@ -295,40 +292,51 @@ bool moved_inside(const PairView& pair, const Worst& nearest, double limit, Mink
 constexpr int kAllMoves = std::numeric_limits<int>::max();
 
 /// `ray`: where it leaves N; null: to a foot. `past_ridges`: goes on from a foot to one that is lower behind
-/// a border.
+/// a border. Most walks end where they begin, and have copied nothing.
 MinkowskiWalk walk(const PairView& pair, const MinkowskiFacet& start, const Vec3* ray, bool past_ridges,
                    int most_moves) noexcept {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   constexpr int kLevelSteps = 16;  // between facets of one plane, while nothing gets better
   const Measure measure{ray};
   const double slack = tolerances::kVoronoiSlack * pair.scale;
   const double level = tolerances::kCoplanar * pair.scale;  // facets of one plane, by rounding this far apart
   const int bound = 32 + static_cast<int>(pair.A.edges.size() + pair.B.edges.size()) / 2;
+  const auto stand = [&](MinkowskiWalk& on) {
+    on.outside = 0.0;
+    const Worst worst =
+        place(pair, on.facet, measure.target(on.facet), std::numeric_limits<double>::infinity(), on);
+    on.outside = std::max(on.outside, worst.first.outside);
+    return worst;
+  };
   MinkowskiWalk best;
   best.facet = start;
-  best.outside = kInfinity;
-  MinkowskiWalk here = best;
-  int improved = 0;
+  Worst worst = stand(best);
+  MinkowskiWalk here;
+  const MinkowskiWalk* on = &best;
+  MinkowskiFacet next;
+  int improved = 1;
   for (int step = 1; step <= bound && step - improved <= kLevelSteps; ++step) {
-    here.outside = 0.0;
-    const double length = measure(here.facet);
-    const Worst worst = place(pair, here.facet, measure.target(here.facet), kInfinity, here);
-    here.outside = std::max(here.outside, worst.first.outside);
-    const double best_length = measure(best.facet);
-    if (length < best_length - level || (length < best_length + level && here.outside < best.outside)) {
-      best = here;
-      improved = step;
+    if (step > 1) {
+      here.facet = next;
+      worst = stand(here);
+      on = &here;
+      const double longer = measure(here.facet) - measure(best.facet);
+      if (longer < -level || (longer < level && here.outside < best.outside)) {
+        best = here;
+        improved = step;
+      }
     }
     best.steps = step;
     if (step > most_moves) {  // the next walk goes on from here, not above the best
-      here.steps = step;
-      return here;
+      best = here;
+      best.steps = step;
+      break;
     }
-    const bool inside = here.outside <= slack;
-    const bool moved =
-        inside ? past_ridges && moved_inside(pair, worst, length - level, here)
-               : moved_outside(pair, measure, worst.first, measure(best.facet) + level, slack, here);
-    if (!moved) {
+    const bool inside = on->outside <= slack;
+    const bool leads_on =
+        inside
+            ? past_ridges && leads_past_ridge(pair, worst, measure(on->facet) - level, on->facet, next)
+            : leads_outward(pair, measure, worst.first, measure(best.facet) + level, slack, on->facet, next);
+    if (!leads_on) {
       best.settled = true;
       break;
     }

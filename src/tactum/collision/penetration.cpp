@@ -197,17 +197,12 @@ void remember(const PairDistance& result, PairCache& cache) noexcept {
 /// its way from one of many directions.
 class Tracker {
  public:
-  Tracker(const PairView& pair, PairCache& cache) noexcept : pair_(pair), cache_(cache) {}
+  Tracker(const PairView& pair, PairCache& cache) noexcept
+      : pair_(pair), cache_(cache), current_(walk_to_foot(pair, last_facet())), steps_(current_.steps) {}
 
   PairDistance run() noexcept {
-    MinkowskiFacet start;
-    if (!facet_again(pair_, {cache_.a, cache_.b}, start)) start = facet_near(pair_, cache_.normal_A);
-    current_ = walk_to_foot(pair_, start);
-    steps_ = current_.steps;
     forget(features(current_.facet));
-    // Left for a lower minimum behind its border, it may soon be the lower one again.
-    const bool moved = !same(features(start), features(current_.facet));
-    if (moved && stand_on(pair_, start).arrived(pair_)) keep(features(start), start.height);
+    if (!same({cache_.a, cache_.b}, features(current_.facet))) keep_last();
     const std::uint32_t frame = cache_.turn++;
     const bool looks = frame % kLook == 0;
     const bool rivals_are_due = looks && frame / kLook % kDue == kDue - 1;
@@ -232,6 +227,19 @@ class Tracker {
   }
   bool lower(const MinkowskiFacet& facet) const noexcept {
     return facet.height < current_.facet.height - tolerances::kCoplanar * pair_.scale;
+  }
+
+  /// What was tracked in the last frame.
+  MinkowskiFacet last_facet() const noexcept {
+    MinkowskiFacet facet;
+    if (!facet_again(pair_, {cache_.a, cache_.b}, facet)) facet = facet_near(pair_, cache_.normal_A);
+    return facet;
+  }
+
+  /// Still a minimum, and left for a lower one behind its border: it may soon be the lower one again.
+  void keep_last() noexcept {
+    const MinkowskiFacet last = last_facet();
+    if (stand_on(pair_, last).arrived(pair_)) keep(features(last), last.height);
   }
 
   /// The scout sets out, or walks on and arrives, or waits for its next turn. Not from where it would walk
@@ -378,7 +386,7 @@ class Tracker {
   const PairView& pair_;
   PairCache& cache_;
   MinkowskiWalk current_;
-  int steps_ = 0;
+  int steps_;
 };
 
 }  // namespace
