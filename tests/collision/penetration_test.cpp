@@ -151,6 +151,17 @@ TEST(Penetration, AlongADirectionThatMissesIsZero) {
   EXPECT_FALSE(past.certified());
 }
 
+TEST(Penetration, NothingIsProvedAlongAPlaneThatHoldsBothPieces) {
+  const Polytope square =
+      *flat_polygon({{-0.01, -0.01, 0}, {0.01, -0.01, 0}, {0.01, 0.01, 0}, {-0.01, 0.01, 0}});
+  Pose crossed{Mat3::Identity(), {0.003, 0.001, 0.002}};
+  crossed.R.col(1) = Vec3::UnitZ();
+  crossed.R.col(2) = -Vec3::UnitY();
+  for (const Pose& X :
+       {Pose{Mat3::Identity(), {0.3, 0.1, 0.0}}, Pose{Mat3::Identity(), {0.003, 0.001, 0.0}}, crossed})
+    EXPECT_FALSE(depth_along(square, square, X, Vec3::UnitX()).certified()) << cases::describe(X);
+}
+
 /// Warm and cold must agree on where a piece pushed slowly into another is held.
 TEST(Penetration, WarmTrackingStaysCertified) {
   const std::uint64_t seed = 46;

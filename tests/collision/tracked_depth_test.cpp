@@ -107,6 +107,80 @@ TEST(TrackedDepth, MissesFewGlobalMinimaUnderAHandsMotion) {
   EXPECT_LE(compact.missed, 0.003 * compact.frames) << "seed " << seed;
 }
 
+/// Held 1 um deep for 300 frames, as a stiff contact is, then pushed on by 0.1 mm a frame up to `most` [m]:
+/// the search beside the tracked minimum must have looked far beyond a depth that was nearly nothing.
+Count push_on(const Polytope& A, const Polytope& B, std::uint64_t seed, int rounds, double most) {
+  constexpr double kGraze = 1e-6;
+  constexpr double kPush = 1e-4;
+  constexpr int kHeld = 300;
+  constexpr int kPushed = 60;
+  Random random(seed);
+  Count count;
+  for (int round = 0; round < rounds; ++round) {
+    Pose X{cases::random_rotation(random), Vec3::Zero()};
+    X.p = A.center - X.R * B.center + cases::random_unit(random) * 0.3 * std::min(A.radius, B.radius);
+    PairCache cache;
+    const auto without_a_trace = [&] {
+      PairCache same = cache;
+      return penetration_depth(A, B, X, same);
+    };
+    const PairDistance inside = penetration_exhaustive(A, B, X);
+    X.p += inside.normal * (inside.distance + kGraze);
+    Vec3 v = Vec3::Zero();
+    Vec3 w = Vec3::Zero();
+    for (int i = 0; i < kHeld + kPushed; ++i) {
+      if (i % 60 == 0) {
+        v = cases::random_unit(random) * random.uniform(1e-4, 5e-4);
+        w = cases::random_unit(random) * random.uniform(1e-3, 3e-3);
+      }
+      const Vec3 center = X * B.center + v;
+      X.R = renormalized({exp_rotation(w) * X.R, Vec3::Zero()}).R;
+      X.p = center - X.R * B.center;
+      const bool held = i < kHeld;
+      for (int again = 0; held && again < 4; ++again) {
+        const PairDistance now = without_a_trace();
+        X.p += now.normal * (now.distance + kGraze);
+      }
+      if (const PairDistance now = without_a_trace(); !held && -now.distance < most)
+        X.p += now.normal * kPush;
+      const PairDistance tracked = penetration_depth(A, B, X, cache);
+      if (held || tracked.distance > 0.0) continue;
+      const double least = penetration_exhaustive(A, B, X).distance;
+      if (least >= 0.0) continue;
+      ++count.frames;
+      count.missed += tracked.distance < least - 1e-9 * std::max(A.size, B.size);
+      count.worst = std::max(count.worst, least - tracked.distance);
+    }
+  }
+  return count;
+}
+
+TEST(TrackedDepth, AGrazeDoesNotNarrowTheSearch) {
+  const Polytope box = make_box({0.04, 0.05, 0.06});
+  const Polytope bar = make_box({0.005, 0.005, 0.05});
+  const Polytope needle = make_box({0.001, 0.001, 0.05});
+  const Polytope plate = make_box({0.05, 0.05, 0.0005});
+  struct Pair {
+    const char* name;
+    const Polytope *a, *b;
+    double most;  ///< [m]
+    double may_miss;
+  };
+  const std::uint64_t seed = 63;
+  for (const Pair& pair :
+       {Pair{"boxes", &box, &box, 5e-3, 0.003}, Pair{"bars 10:1", &bar, &bar, 8e-4, 0.01},
+        Pair{"plates", &plate, &plate, 8e-4, 0.004}, Pair{"needle, plate", &needle, &plate, 8e-4, 0.012},
+        Pair{"needles", &needle, &needle, 8e-4, 0.04}}) {
+    const int rounds = cases::full() ? 4000 : std::max(60, cases::some_of(400));
+    const Count count = push_on(*pair.a, *pair.b, seed, rounds, pair.most);
+    std::printf("  %-14s %6d frames compared, %4d missed (%.3f %%), by %.3g um at most\n", pair.name,
+                count.frames, count.missed, 100.0 * count.missed / std::max(1, count.frames),
+                count.worst * 1e6);
+    EXPECT_GT(count.frames, 20 * rounds) << pair.name;
+    EXPECT_LE(count.missed, pair.may_miss * count.frames) << pair.name << ", seed " << seed;
+  }
+}
+
 /// Cold, where small pieces give the global minimum: 2e-9 of the size, and 1e-12 m a kilometre away.
 TEST(TrackedDepth, NamesOrderPlaceAndScaleDoNotMatter) {
   const std::uint64_t seed = 62;

@@ -50,8 +50,9 @@ struct PairCache {
   // Of an overlapping pair: the next best ways out, and the walk that looks for others (penetration.h).
   std::array<FeaturePair, 2> rivals{};
   FeaturePair scout;
-  std::uint32_t turn = 0;     ///< frames tracked inside
-  std::uint32_t scouted = 0;  ///< scouts that have set out
+  std::uint32_t turn = 0;         ///< frames tracked inside
+  std::uint32_t scouted = 0;      ///< starts looked at for a scout
+  std::uint32_t scout_turns = 0;  ///< that the scout has walked
 };
 
 /// Why a query stopped.

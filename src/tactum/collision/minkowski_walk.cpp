@@ -270,9 +270,10 @@ bool leads_outward(const PairView& pair, const Measure& measure, Crossing crossi
 /// The foot is inside; the nearest borders may still have a lower facet behind them: two local minima side by
 /// side, of which the walk takes the better. Seen along the common ridge, a foot at depth d and `inside` from
 /// a ridge where the planes turn by alpha is at depth  d cos alpha + inside sin alpha  under the other.
-bool leads_past_ridge(const PairView& pair, const Worst& nearest, double limit, const MinkowskiFacet& from,
+bool leads_past_ridge(const PairView& pair, const Worst& nearest, double level, const MinkowskiFacet& from,
                       MinkowskiFacet& next) noexcept {
   const double d = from.height;
+  const double limit = d - level;
   for (const Crossing* border : {&nearest.first, &nearest.second}) {
     if (!(-border->outside < d)) return false;
     const Passage passage = across(pair, from, *border);
@@ -292,7 +293,7 @@ bool leads_past_ridge(const PairView& pair, const Worst& nearest, double limit, 
 constexpr int kAllMoves = std::numeric_limits<int>::max();
 
 /// `ray`: where it leaves N; null: to a foot. `past_ridges`: goes on from a foot to one that is lower behind
-/// a border. Most walks end where they begin, and have copied nothing.
+/// a border. Most walks end where they begin, and have copied no feet.
 MinkowskiWalk walk(const PairView& pair, const MinkowskiFacet& start, const Vec3* ray, bool past_ridges,
                    int most_moves) noexcept {
   constexpr int kLevelSteps = 16;  // between facets of one plane, while nothing gets better
@@ -300,24 +301,24 @@ MinkowskiWalk walk(const PairView& pair, const MinkowskiFacet& start, const Vec3
   const double slack = tolerances::kVoronoiSlack * pair.scale;
   const double level = tolerances::kCoplanar * pair.scale;  // facets of one plane, by rounding this far apart
   const int bound = 32 + static_cast<int>(pair.A.edges.size() + pair.B.edges.size()) / 2;
-  const auto stand = [&](MinkowskiWalk& on) {
-    on.outside = 0.0;
+  const auto place_feet = [&](MinkowskiWalk& at) {
+    at.outside = 0.0;
     const Worst worst =
-        place(pair, on.facet, measure.target(on.facet), std::numeric_limits<double>::infinity(), on);
-    on.outside = std::max(on.outside, worst.first.outside);
+        place(pair, at.facet, measure.target(at.facet), std::numeric_limits<double>::infinity(), at);
+    at.outside = std::max(at.outside, worst.first.outside);
     return worst;
   };
   MinkowskiWalk best;
   best.facet = start;
-  Worst worst = stand(best);
-  MinkowskiWalk here;
-  const MinkowskiWalk* on = &best;
+  Worst worst = place_feet(best);
+  MinkowskiWalk here;               // from the first move on
+  const MinkowskiWalk* on = &best;  // where the walk stands: the start, then `here`
   MinkowskiFacet next;
   int improved = 1;
   for (int step = 1; step <= bound && step - improved <= kLevelSteps; ++step) {
     if (step > 1) {
       here.facet = next;
-      worst = stand(here);
+      worst = place_feet(here);
       on = &here;
       const double longer = measure(here.facet) - measure(best.facet);
       if (longer < -level || (longer < level && here.outside < best.outside)) {
@@ -326,16 +327,15 @@ MinkowskiWalk walk(const PairView& pair, const MinkowskiFacet& start, const Vec3
       }
     }
     best.steps = step;
-    if (step > most_moves) {  // the next walk goes on from here, not above the best
-      best = here;
+    if (step > most_moves) {  // the next walk goes on from there, not above the best
+      best = *on;
       best.steps = step;
       break;
     }
     const bool inside = on->outside <= slack;
-    const bool leads_on =
-        inside
-            ? past_ridges && leads_past_ridge(pair, worst, measure(on->facet) - level, on->facet, next)
-            : leads_outward(pair, measure, worst.first, measure(best.facet) + level, slack, on->facet, next);
+    const bool leads_on = inside ? past_ridges && leads_past_ridge(pair, worst, level, on->facet, next)
+                                 : leads_outward(pair, measure, worst.first, measure(best.facet) + level,
+                                                 slack, on->facet, next);
     if (!leads_on) {
       best.settled = true;
       break;

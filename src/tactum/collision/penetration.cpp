@@ -229,38 +229,56 @@ class Tracker {
     return facet.height < current_.facet.height - tolerances::kCoplanar * pair_.scale;
   }
 
-  /// What was tracked in the last frame.
+  /// What was tracked in the last frame; of features that make no facet any more, one near its normal.
   MinkowskiFacet last_facet() const noexcept {
     MinkowskiFacet facet;
     if (!facet_again(pair_, {cache_.a, cache_.b}, facet)) facet = facet_near(pair_, cache_.normal_A);
     return facet;
   }
 
-  /// Still a minimum, and left for a lower one behind its border: it may soon be the lower one again.
+  /// The last frame's minimum, where it is one still: left for a lower one behind its border, it may soon be
+  /// the lower one again.
   void keep_last() noexcept {
     const MinkowskiFacet last = last_facet();
-    if (stand_on(pair_, last).arrived(pair_)) keep(features(last), last.height);
+    if (current_.facet.height < last.height && stand_on(pair_, last).arrived(pair_))
+      keep(features(last), last.height);
   }
 
-  /// The scout sets out, or walks on and arrives, or waits for its next turn. Not from where it would walk
-  /// for long: a lower minimum lies where both pieces' planes pass within the depth of a common point.
-  void scout() noexcept {
+  /// So far from the origin that a walk from there to a lower minimum would be long.
+  bool far(const MinkowskiFacet& facet) const noexcept {
     constexpr double kFar = 8.0;  // depths
-    if (cache_.scout.empty()) {
-      const MinkowskiFacet start = seed();
-      if (start.height > kFar * current_.facet.height) return;
-      cache_.scout = features(start);
-      if (!lower(start)) return;
-    }
+    return facet.height > kFar * current_.facet.height;
+  }
+
+  /// The scout sets out, or walks on and arrives, or waits for its next turn. While it is far it holds up
+  /// those that might set out from nearer, so not for long.
+  void scout() noexcept {
+    constexpr std::uint32_t kPatience = 4;  // turns
+    if (cache_.scout.empty() && !set_out()) return;
     const MinkowskiWalk walk = go_on(cache_.scout);
-    const bool on_its_way = !walk.settled && !lower(walk.facet);
-    cache_.scout = on_its_way ? features(walk.facet) : FeaturePair{};
-    if (on_its_way) return;
+    cache_.scout = {};
     if (lower(walk.facet)) {
       take(walk);
-    } else {
+    } else if (walk.settled) {
       keep(features(walk.facet), walk.facet.height);
+    } else if (++cache_.scout_turns <= kPatience || !far(walk.facet)) {
+      cache_.scout = features(walk.facet);
     }
+  }
+
+  /// A start for the scout, in turn from all around; from near; and, every other time, from beside. Needles
+  /// and plates have nearly all of theirs far away, and some lead to the lowest minimum: only those from near
+  /// and beside must not be far. True when it is lower than the tracked minimum: to be followed at once.
+  bool set_out() noexcept {
+    const std::uint32_t turn = cache_.scouted++;
+    const bool around = turn % 4 == 0;
+    const MinkowskiFacet start = around          ? lowest_around(turn / 4)
+                                 : turn % 2 == 0 ? one_near(turn / 4)
+                                                 : one_beside(turn / 2);
+    if (!around && far(start)) return false;
+    cache_.scout = features(start);
+    cache_.scout_turns = 0;
+    return lower(start);
   }
 
   FeaturePair& lower_rival() noexcept { return cache_.rivals[0]; }
@@ -328,15 +346,7 @@ class Tracker {
     return facet_of_face(pair_, true, face_of(pair_.A, of.a), vertex_of(pair_.B, of.b));
   }
 
-  /// In turn from the lower facet of two directions all around; from a direction about the current normal, by
-  /// the corners of an icosahedron, near, farther and far; and, every other time, from a face beside the
-  /// features that touch.
-  MinkowskiFacet seed() noexcept {
-    const std::uint32_t turn = cache_.scouted++;
-    if (turn % 2 == 1) return seed_beside(turn / 2);
-    return turn % 4 == 0 ? lowest_around(turn / 4) : seed_near(turn / 4);
-  }
-
+  /// The lower of two of the directions all around.
   MinkowskiFacet lowest_around(std::uint32_t turn) const noexcept {
     constexpr std::uint32_t kLookedAt = 2;
     constexpr std::uint32_t kStride = 7;  // the next is another way
@@ -352,7 +362,8 @@ class Tracker {
     return lowest;
   }
 
-  MinkowskiFacet seed_near(std::uint32_t turn) const noexcept {
+  /// In a direction about the current normal, by the corners of an icosahedron, near, farther and far.
+  MinkowskiFacet one_near(std::uint32_t turn) const noexcept {
     constexpr double kShort = 0.5257311121191336;  // corners (0, +-short, +-long) and their rotations
     constexpr double kLong = 0.85065080835204;
     constexpr std::uint32_t kCorners = 12;
@@ -367,18 +378,19 @@ class Tracker {
                       vertex_of(pair_.B, current_.facet.b));
   }
 
-  /// The faces at the vertices that touch, of one piece and the other; where a face touches, the other's
-  /// only.
-  MinkowskiFacet seed_beside(std::uint32_t turn) const noexcept {
+  /// Of a face at a vertex that touches or at an end of an edge that does: of two edges, of one piece and the
+  /// other; where a face touches, the other piece's.
+  MinkowskiFacet one_beside(std::uint32_t turn) const noexcept {
     const Feature& a = current_.facet.a;
     const Feature& b = current_.facet.b;
-    const bool on_a = b.kind == Kind::kFace || (a.kind != Kind::kFace && turn % 2 == 0);
+    const bool edges = a.kind == Kind::kEdge && b.kind == Kind::kEdge;
+    const bool on_a = edges ? turn % 2 == 0 : b.kind == Kind::kFace;
     const Polytope& P = on_a ? pair_.A : pair_.B;
     const Feature& touching = on_a ? a : b;
-    const bool at_head = touching.kind == Kind::kEdge && turn / 2 % 2 == 0;
+    const bool at_head = edges && turn / 2 % 2 == 0;
     const int vertex = at_head ? P.edges[touching.index].head : vertex_of(P, touching);
     const auto rays = P.rays_at(vertex);
-    const Polytope::Edge& edge = P.edges[rays[turn / 4 % rays.size()].edge];
+    const Polytope::Edge& edge = P.edges[rays[(edges ? turn / 4 : turn) % rays.size()].edge];
     const int face = edge.tail == vertex ? edge.left : edge.right;
     return facet_of_face(pair_, on_a, face, on_a ? vertex_of(pair_.B, b) : vertex_of(pair_.A, a));
   }
@@ -435,8 +447,8 @@ PairDistance depth_along(const Polytope& A, const Polytope& B, const Pose& X_AB,
   PairDistance result = answer(pair, walk, walk.steps);
   const double across = walk.facet.n.dot(direction);
   const double length = across > 0.0 ? walk.facet.height / across : 0.0;
+  if (!(across > 0.0)) result.stop = Stop::kBounded;  // a ray in the plane of pieces that are flat
   if (!result.certified() || length <= 0.0) {
-    result.stop = result.certified() ? Stop::kCertified : Stop::kBounded;
     result.distance = 0.0;
     return result;
   }
