@@ -202,11 +202,15 @@ class Tracker {
 
   PairDistance run() noexcept {
     forget(features(current_.facet));
-    if (!same({cache_.a, cache_.b}, features(current_.facet))) keep_last();
+    const bool moved_on = !same({cache_.a, cache_.b}, features(current_.facet));
     const std::uint32_t frame = cache_.turn++;
     const bool looks = frame % kLook == 0;
     const bool rivals_are_due = looks && frame / kLook % kDue == kDue - 1;
-    if (looks && !rivals_are_due) scout();
+    if (moved_on) {  // a long frame already: it remembers what it left and does not send out the scout
+      keep_last();
+    } else if (looks && !rivals_are_due) {
+      scout();
+    }
     watch(lower_rival(), rivals_are_due);
     if (looks) watch(upper_rival(), rivals_are_due);
     if (lower_rival().empty() || (rivals_are_due && height(upper_rival()) < height(lower_rival())))
