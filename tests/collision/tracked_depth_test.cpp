@@ -16,30 +16,46 @@ struct Count {
   double worst = 0.0;  ///< [m]
 };
 
-/// 1 kHz, 0.1-0.5 mm and 1-3 mrad a frame, another way every 60 frames, from first touch; the depth is kept
-/// within `most` [m]. Every `stride`-th frame is held against every facet of the Minkowski difference.
-Count track(const Polytope& A, const Polytope& B, std::uint64_t seed, int frames, int stride, double most) {
-  Random random(seed);
-  Count count;
-  Pose X{cases::random_rotation(random), Vec3::Zero()};
-  Vec3 v = Vec3::Zero();
-  Vec3 w = Vec3::Zero();
-  PairCache cache;
-  for (int i = 0; i < frames; ++i) {
-    if (i % 500 == 0) {  // a new touch
-      X.R = cases::random_rotation(random);
-      X.p = A.center - X.R * B.center + cases::random_unit(random) * 0.3 * std::min(A.radius, B.radius);
-      const PairDistance inside = penetration_exhaustive(A, B, X);
-      X.p -= inside.normal * (-inside.distance - 1e-3 * most);
-      cache = {};
-    }
-    if (i % 60 == 0) {
+/// A hand at 1 kHz: 0.1-0.5 mm and 1-3 mrad a frame, another way every 60 frames.
+struct Hand {
+  Random& random;
+  Vec3 v = Vec3::Zero();  ///< of the piece's center [m a frame]
+  Vec3 w = Vec3::Zero();  ///< [rad a frame]
+
+  void move(const Polytope& B, int frame, Pose& X) {
+    if (frame % 60 == 0) {
       v = cases::random_unit(random) * random.uniform(1e-4, 5e-4);
       w = cases::random_unit(random) * random.uniform(1e-3, 3e-3);
     }
     const Vec3 center = X * B.center + v;
     X.R = renormalized({exp_rotation(w) * X.R, Vec3::Zero()}).R;
     X.p = center - X.R * B.center;
+  }
+};
+
+/// B turned at random, its center beside A's by 0.3 radii; then drawn back until it is `depth` deep [m].
+Pose touch(const Polytope& A, const Polytope& B, Random& random, double depth) {
+  Pose X{cases::random_rotation(random), Vec3::Zero()};
+  X.p = A.center - X.R * B.center + cases::random_unit(random) * 0.3 * std::min(A.radius, B.radius);
+  const PairDistance inside = penetration_exhaustive(A, B, X);
+  X.p += inside.normal * (inside.distance + depth);
+  return X;
+}
+
+/// From first touch; the depth is kept within `most` [m]. Every `stride`-th frame is held against every facet
+/// of the Minkowski difference.
+Count track(const Polytope& A, const Polytope& B, std::uint64_t seed, int frames, int stride, double most) {
+  Random random(seed);
+  Count count;
+  Pose X{cases::random_rotation(random), Vec3::Zero()};
+  Hand hand{random};
+  PairCache cache;
+  for (int i = 0; i < frames; ++i) {
+    if (i % 500 == 0) {
+      X = touch(A, B, random, 1e-3 * most);
+      cache = {};
+    }
+    hand.move(B, i, X);
     const PairDistance tracked = penetration_depth(A, B, X, cache);
     if (-tracked.distance > most)
       X.p -= tracked.normal * (-tracked.distance - 0.95 * most);
@@ -117,25 +133,15 @@ Count push_on(const Polytope& A, const Polytope& B, std::uint64_t seed, int roun
   Random random(seed);
   Count count;
   for (int round = 0; round < rounds; ++round) {
-    Pose X{cases::random_rotation(random), Vec3::Zero()};
-    X.p = A.center - X.R * B.center + cases::random_unit(random) * 0.3 * std::min(A.radius, B.radius);
+    Pose X = touch(A, B, random, kGraze);
+    Hand hand{random};
     PairCache cache;
     const auto without_a_trace = [&] {
       PairCache same = cache;
       return penetration_depth(A, B, X, same);
     };
-    const PairDistance inside = penetration_exhaustive(A, B, X);
-    X.p += inside.normal * (inside.distance + kGraze);
-    Vec3 v = Vec3::Zero();
-    Vec3 w = Vec3::Zero();
     for (int i = 0; i < kHeld + kPushed; ++i) {
-      if (i % 60 == 0) {
-        v = cases::random_unit(random) * random.uniform(1e-4, 5e-4);
-        w = cases::random_unit(random) * random.uniform(1e-3, 3e-3);
-      }
-      const Vec3 center = X * B.center + v;
-      X.R = renormalized({exp_rotation(w) * X.R, Vec3::Zero()}).R;
-      X.p = center - X.R * B.center;
+      hand.move(B, i, X);
       const bool held = i < kHeld;
       for (int again = 0; held && again < 4; ++again) {
         const PairDistance now = without_a_trace();
