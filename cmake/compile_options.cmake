@@ -7,7 +7,7 @@ set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release)
 endif()
-set(CMAKE_CXX_FLAGS_RELEASE "-O2")  # and -O3 for the layers of the frame: see layers.cmake
+set(CMAKE_CXX_FLAGS_RELEASE "-O2 -DNDEBUG")  # and -O3 for the layers of the frame: see layers.cmake
 add_compile_options(-ffp-contract=off)
 add_compile_definitions(EIGEN_DONT_VECTORIZE EIGEN_MPL2_ONLY)
 

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tactum/base/random.h"
 
 namespace tactum {
@@ -14,12 +16,29 @@ Vec3 random_vector(Random& random, double size) {
   return {x, y, z};
 }
 
+/// Of every size: series stand in for functions below a few degrees.
+constexpr double kTurns[] = {1e-7, 1e-3, 0.01, 0.02, 0.035, 0.05, 1.5};
+
 TEST(Screw, LogUndoesExp) {
   Random random(1);
-  for (int i = 0; i < 10000; ++i) {
-    const Vec3 w = random_vector(random, i % 2 ? 1.5 : 1e-7);
-    EXPECT_LT((log_rotation(exp_rotation(w)) - w).norm(), 1e-14) << w.transpose();
-  }
+  for (int i = 0; i < 10000; ++i)
+    for (const double turn : kTurns) {
+      const Vec3 w = random_vector(random, turn);
+      EXPECT_LT((log_rotation(exp_rotation(w)) - w).norm(), 1e-14 * std::min(1.0, 100.0 * turn))
+          << w.transpose();
+    }
+}
+
+TEST(Screw, ExpIsTheTurnAboutItsAxis) {
+  Random random(5);
+  for (int i = 0; i < 10000; ++i)
+    for (const double turn : kTurns) {
+      const Vec3 w = random_vector(random, turn);
+      using Long = Eigen::Matrix<long double, 3, 1>;
+      const Long axis = w.cast<long double>();
+      const Eigen::AngleAxis<long double> about(axis.norm(), axis.normalized());
+      EXPECT_LT((exp_rotation(w) - about.toRotationMatrix().cast<double>()).norm(), 1e-15) << w.transpose();
+    }
 }
 
 TEST(Screw, TwistBetweenReachesTheOtherPose) {

@@ -2,11 +2,12 @@
 /// Errors of set-up work (files, devices, settings): a value or a sentence that says what is wrong.
 /// The haptic frame never uses these; it degrades with flags (haptics/frame_report.h).
 
-#include <cassert>
 #include <optional>
 #include <string>
 #include <utility>
 #include <variant>
+
+#include "tactum/base/assert.h"
 
 namespace tactum {
 
@@ -28,7 +29,7 @@ struct Error {
   }
 };
 
-/// A T or an Error. Ask `if (!result)` before `*result`.
+/// A T or an Error. Ask `if (!result)` before `*result`: held in every build.
 template <class T>
 class [[nodiscard]] Result {
  public:
@@ -42,13 +43,13 @@ class [[nodiscard]] Result {
   T* operator->() { return &checked(); }
   const T* operator->() const { return &const_cast<Result*>(this)->checked(); }
   const Error& error() const {
-    assert(!*this);
+    TACTUM_DEMAND(!*this);
     return std::get<1>(state_);
   }
 
  private:
   T& checked() {
-    assert(*this);
+    TACTUM_DEMAND(*this);
     return std::get<0>(state_);
   }
   std::variant<T, Error> state_;
@@ -63,7 +64,7 @@ class [[nodiscard]] Result<void> {
 
   explicit operator bool() const { return !error_.has_value(); }
   const Error& error() const {
-    assert(error_);
+    TACTUM_DEMAND(error_);
     return *error_;
   }
 

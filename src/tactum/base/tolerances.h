@@ -163,11 +163,11 @@ inline constexpr double kSingle = 1e-6;
 
 /// Squared angle [rad^2] below which sin(a)/a and its kin are taken from their series: exact to the last bit
 /// there.
-inline constexpr double kSmallAngleSquared = 1e-6;
+inline constexpr double kSmallAngleSquared = 1e-3;
 
-/// Sine of a half angle below which a rotation vector is twice the quaternion's vector part, exact to
-/// rounding.
-inline constexpr double kSmallHalfAngleSine = 1e-9;
+/// Squared sine of a half angle below which five terms of a series are the arc of the sine, to rounding: a
+/// turn of 3.6 degrees, more than any frame's.
+inline constexpr double kSmallHalfAngleSineSquared = 1e-3;
 
 /// A matrix read from a file is a rotation when every entry of R R^T - I is below this: sixteen decimals.
 inline constexpr double kRotationExact = 1e-9;

@@ -101,7 +101,8 @@ struct Manifold {
   Vec3 normal = Vec3::Zero();  ///< n_BA_A, unit [-]
   Feature a, b;                ///< features the patch lies on
   double area = 0.0;           ///< of the clipped polygon, zero for points and segments [m^2]
-  StaticVector<ContactPoint, 4> points;
+  static constexpr std::size_t kMostPoints = 4;
+  StaticVector<ContactPoint, kMostPoints> points;
 };
 
 }  // namespace tactum

@@ -80,7 +80,9 @@ void ContactFinder::find_patches(std::span<const Pose> X_WB, int budget, PatchPo
     }
   }
   for (const int number : objected_) settle_objected(patches_[Index(number)], X_WB);
-  if (!candidates_.empty()) work_.rooms_full |= !settle_seams(candidates_, X_WB, patches_);
+  candidate_order_.clear();
+  for (SeamCandidate& candidate : candidates_) candidate_order_.push_back(&candidate);
+  work_.rooms_full |= !settle_seams(candidate_order_, X_WB, patches_);
   for (const bool held : {true, false})
     for (const SweepAndPrune::Pair& near : sweep_.pairs())
       if (meet_by_surfaces(near.a, near.b) && of_held(near.a, near.b) == held)

@@ -31,6 +31,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "tactum/collision/contact.h"
@@ -166,7 +167,7 @@ class ContactFinder {
   bool list_holds(const BodyPair& list, int a, int b) const noexcept;
   void renew_lists(std::span<const Pose> X_WB) noexcept;
   bool collect(int a, int b, const Pose& X_AB, double reach) noexcept;
-  void inherit(const BodyPair& old, std::size_t first) noexcept;
+  void append_pairs(int a, int b, const BodyPair& old) noexcept;
   double bound_at(const Pair& pair, const Answer& answer, const Pose& X_AB) const noexcept;
   void answer(Pair& pair, const Pose& X_AB, Answer& into) noexcept;
   int leave_known(std::span<const Pose> X_WB) noexcept;
@@ -206,6 +207,7 @@ class ContactFinder {
   SweepAndPrune sweep_;
   std::vector<BodyPair> lists_;
   std::vector<Pair> pairs_, renewed_;
+  std::vector<std::pair<std::int32_t, std::int32_t>> near_pieces_;  // of the two bodies in work
   std::vector<DuePair> due_;
   std::vector<std::int32_t> handed_on_;  // pairs with an answer, or that had one
   std::vector<char> blocked_;            // by body
@@ -215,6 +217,7 @@ class ContactFinder {
   std::vector<ContactPatch> patches_;
   std::vector<int> objected_;  // patches of pieces that are apart, of points that are no contact of the parts
   std::vector<SeamCandidate> candidates_;
+  std::vector<SeamCandidate*> candidate_order_;
   std::vector<SurfaceMinimum> minima_;
   std::vector<ReductionScratch> reduction_scratch_;
   std::size_t kept_minima_ = 0;

@@ -14,7 +14,7 @@ using Index = std::size_t;
 
 /// Boxes and lists of near pairs are grown by this share of the smaller body's radius beyond the tolerance:
 /// more means they are renewed less often but hold more pairs.
-constexpr double kSlack = 0.02;
+constexpr double kSlack = 0.04;
 
 /// The axis-aligned box around a turned box.
 Aabb turned(const Aabb& box, const Pose& X, double grown) {
@@ -51,11 +51,13 @@ ContactFinder::ContactFinder(std::vector<CollisionBody> bodies, std::span<const 
   lists_.resize(bodies_.size() * bodies_.size());
   pairs_.reserve(rooms.pairs);
   renewed_.reserve(rooms.pairs);
+  near_pieces_.reserve(rooms.pairs);
   due_.reserve(rooms.pairs);
   handed_on_.reserve(rooms.pairs);
   blocked_.assign(bodies_.size(), 0);
   patches_.reserve(rooms.patches);
   candidates_.reserve(rooms.patches);
+  candidate_order_.reserve(rooms.patches);
   objected_.reserve(rooms.patches);
   minima_.reserve(rooms.minima);
   reduction_scratch_.reserve(rooms.minima);
@@ -120,7 +122,7 @@ void ContactFinder::renew_lists(std::span<const Pose> X_WB) noexcept {
       list.reach = tolerance(near.a, near.b) + std::min(slack_[Index(near.a)], slack_[Index(near.b)]);
       list.cut_short =
           !collect(near.a, near.b, relative_pose(X_WB[Index(near.a)], X_WB[Index(near.b)]), list.reach);
-      if (old.renewal == renewal_) inherit(old, first);
+      append_pairs(near.a, near.b, old);
     }
     list.first = static_cast<std::int32_t>(first);
     list.count = static_cast<std::int32_t>(renewed_.size() - first);
@@ -130,42 +132,41 @@ void ContactFinder::renew_lists(std::span<const Pose> X_WB) noexcept {
   pairs_.swap(renewed_);
 }
 
-/// False when the room did not suffice.
+/// The near pieces of two bodies, sorted. False when the room did not suffice.
 bool ContactFinder::collect(int a, int b, const Pose& X_AB, double reach) noexcept {
+  near_pieces_.clear();
   if (meet_by_surfaces(a, b)) return true;
-  const Index first = renewed_.size();
+  const Index room = renewed_.capacity() - renewed_.size();
   const bool complete =
       for_each_pair_within(bodies_[Index(a)].part->hierarchy, bodies_[Index(b)].part->hierarchy, X_AB, reach,
                            [&](int piece_a, int piece_b) {
-                             if (renewed_.size() == renewed_.capacity()) return false;
-                             Pair pair;
-                             pair.body_a = a;
-                             pair.body_b = b;
-                             pair.piece_a = piece_a;
-                             pair.piece_b = piece_b;
-                             renewed_.push_back(pair);
+                             if (near_pieces_.size() == room) return false;
+                             near_pieces_.emplace_back(piece_a, piece_b);
                              return true;
                            });
-  std::sort(renewed_.begin() + static_cast<std::ptrdiff_t>(first), renewed_.end(),
-            [](const Pair& p, const Pair& q) {
-              return p.piece_a != q.piece_a ? p.piece_a < q.piece_a : p.piece_b < q.piece_b;
-            });
+  std::sort(near_pieces_.begin(), near_pieces_.end());
   return complete;
 }
 
-/// Hands the caches of the old list on: both are sorted, so one walk along both suffices. What was not on it
-/// was beyond its reach.
-void ContactFinder::inherit(const BodyPair& old, std::size_t first) noexcept {
-  Index from = Index(old.first);
-  const Index end = from + Index(old.count);
-  for (Index to = first; to < renewed_.size(); ++to) {
-    const auto key = std::pair(renewed_[to].piece_a, renewed_[to].piece_b);
-    while (from < end && std::pair(pairs_[from].piece_a, pairs_[from].piece_b) < key) ++from;
-    if (from < end && std::pair(pairs_[from].piece_a, pairs_[from].piece_b) == key) {
-      renewed_[to] = pairs_[from];
-    } else if (!old.cut_short) {
-      renewed_[to].free_until = old.odometers + old.reach;
+/// Makes pairs of the near pieces. Those of the old list stay what they are: both are sorted, so one walk
+/// along both suffices. What was not on it was beyond its reach.
+void ContactFinder::append_pairs(int a, int b, const BodyPair& old) noexcept {
+  const bool known = old.renewal == renewal_;
+  Index from = known ? Index(old.first) : 0;
+  const Index end = known ? from + Index(old.count) : 0;
+  const auto pieces_of = [](const Pair& pair) { return std::pair(pair.piece_a, pair.piece_b); };
+  for (const auto& pieces : near_pieces_) {
+    while (from < end && pieces_of(pairs_[from]) < pieces) ++from;
+    if (from < end && pieces_of(pairs_[from]) == pieces) {
+      renewed_.push_back(pairs_[from]);
+      continue;
     }
+    Pair& pair = renewed_.emplace_back();
+    pair.body_a = a;
+    pair.body_b = b;
+    pair.piece_a = pieces.first;
+    pair.piece_b = pieces.second;
+    if (known && !old.cut_short) pair.free_until = old.odometers + old.reach;
   }
 }
 

@@ -19,19 +19,19 @@ constexpr double kFarDeeper = 2.0;
 /// The candidates of two bodies.
 class TwoBodies {
  public:
-  TwoBodies(std::span<SeamCandidate> candidates, const Pose& X_AB,
+  TwoBodies(std::span<SeamCandidate*> candidates, const Pose& X_AB,
             std::vector<ContactPatch>& patches) noexcept
       : candidates_(candidates), X_AB_(X_AB), patches_(patches) {}
 
   void settle() noexcept {
-    for (SeamCandidate& candidate : candidates_)
-      if (!candidate.settled && !candidate.objected) lead(candidate);
-    for (SeamCandidate& candidate : candidates_)
-      if (!candidate.settled && !answered(candidate)) tell_again(candidate);
+    for (SeamCandidate* candidate : candidates_)
+      if (!candidate->settled && !candidate->objected) lead(*candidate);
+    for (SeamCandidate* candidate : candidates_)
+      if (!candidate->settled && !answered(*candidate)) tell_again(*candidate);
     while (SeamCandidate* nearest = shallowest())
       if (!answered(*nearest) && tell_beside_leaders(*nearest)) lead(*nearest);
-    for (SeamCandidate& candidate : candidates_)
-      if (!candidate.settled) *candidate.shown = {};
+    for (SeamCandidate* candidate : candidates_)
+      if (!candidate->settled) *candidate->shown = {};
   }
   bool full() const noexcept { return full_; }
 
@@ -46,11 +46,11 @@ class TwoBodies {
   /// Whether a leader answers for the candidate, which is then settled.
   bool answered(SeamCandidate& candidate) noexcept {
     const PairView pair(piece_a(candidate), piece_b(candidate), X_AB_);
-    for (const SeamCandidate& other : candidates_) {
-      if (other.patch < 0) continue;
-      const ContactPatch& patch = patches_[Index(other.patch)];
+    for (const SeamCandidate* other : candidates_) {
+      if (other->patch < 0) continue;
+      const ContactPatch& patch = patches_[Index(other->patch)];
       if (!answered_by(pair, candidate.found, patch.manifold.normal, patch.distance)) continue;
-      settle_as(candidate, other);
+      settle_as(candidate, *other);
       return true;
     }
     return false;
@@ -115,17 +115,17 @@ class TwoBodies {
   /// How deep the deepest leader is; none overlaps: 0.
   double deepest_leader() const noexcept {
     double deepest = 0.0;
-    for (const SeamCandidate& other : candidates_)
-      if (other.patch >= 0) deepest = std::max(deepest, -patches_[Index(other.patch)].distance);
+    for (const SeamCandidate* other : candidates_)
+      if (other->patch >= 0) deepest = std::max(deepest, -patches_[Index(other->patch)].distance);
     return deepest;
   }
 
   SeamCandidate* shallowest() noexcept {
     SeamCandidate* best = nullptr;
-    for (SeamCandidate& candidate : candidates_)
-      if (!candidate.settled && !candidate.objected &&
-          (best == nullptr || candidate.found.distance > best->found.distance))
-        best = &candidate;
+    for (SeamCandidate* candidate : candidates_)
+      if (!candidate->settled && !candidate->objected &&
+          (best == nullptr || candidate->found.distance > best->found.distance))
+        best = candidate;
     return best;
   }
 
@@ -174,14 +174,14 @@ class TwoBodies {
       own->led_by = leader.patch;
     }
     stretches_.clear();
-    for (SeamCandidate& other : candidates_)
-      if (!other.settled && !follow(other, leader, shown, *patch)) share(other, nearest, leader.patch);
+    for (SeamCandidate* other : candidates_)
+      if (!other->settled && !follow(*other, leader, shown, *patch)) share(*other, nearest, leader.patch);
     if (!stretches_.empty())
       contact_manifold_over(piece_a(leader), piece_b(leader), X_AB_, led, leader.reach,
                             {stretches_.begin(), stretches_.size()}, patch->manifold);
     steady_centroid(X_AB_, patch->manifold, *leader.shown);
-    for (SeamCandidate& other : candidates_)
-      if (&other != &leader && other.led_by == leader.patch) remember(other, leader, shown);
+    for (SeamCandidate* other : candidates_)
+      if (other != &leader && other->led_by == leader.patch) remember(*other, leader, shown);
   }
 
   /// The leader's memory is that of whom it leads, unless what was shown would be the way through another
@@ -204,30 +204,37 @@ class TwoBodies {
     };
     SeamCandidate* best = &nearest;
     if (shown.a.kind != FeatureKind::kEdge && shown.b.kind != FeatureKind::kEdge) return *best;
-    for (SeamCandidate& other : candidates_) {
-      if (other.settled || &other == &nearest) continue;
-      PairDistance mapped = shown;
-      if (!map_features(shown.a, shown.b, nearest, other, mapped)) continue;
+    for (SeamCandidate* other : candidates_) {
+      FeaturePair same;
+      if (other->settled || other == &nearest || !same_features(shown.a, shown.b, nearest, *other, same))
+        continue;
+      const PairDistance mapped = on_features(shown, same);
       Manifold manifold;
-      contact_manifold(piece_a(other), piece_b(other), X_AB_, mapped, other.reach, manifold);
-      if (size_of(manifold) <= size_of(patch.manifold) || !is_true_stretch(other, manifold)) continue;
+      contact_manifold(piece_a(*other), piece_b(*other), X_AB_, mapped, other->reach, manifold);
+      if (size_of(manifold) <= size_of(patch.manifold) || !is_true_stretch(*other, manifold)) continue;
       patch.manifold = manifold;
-      patch.piece_a = other.piece_a;
-      patch.piece_b = other.piece_b;
-      patch.pair = other.pair;
+      patch.piece_a = other->piece_a;
+      patch.piece_b = other->piece_b;
+      patch.pair = other->pair;
       led = mapped;
-      best = &other;
+      best = other;
     }
     return *best;
   }
 
   /// The stretches that `other` has of features of `of`; false when it has none.
-  static bool map_features(const Feature& a, const Feature& b, const SeamCandidate& of,
-                           const SeamCandidate& other, PairDistance& out) noexcept {
+  static bool same_features(const Feature& a, const Feature& b, const SeamCandidate& of,
+                            const SeamCandidate& other, FeaturePair& out) noexcept {
     out.a = same_feature(*other.part_a, of.piece_a, a, other.piece_a);
     if (out.a.index < 0) return false;
     out.b = same_feature(*other.part_b, of.piece_b, b, other.piece_b);
     return out.b.index >= 0;
+  }
+  static PairDistance on_features(const PairDistance& contact, const FeaturePair& features) noexcept {
+    PairDistance out = contact;
+    out.a = features.a;
+    out.b = features.b;
+    return out;
   }
 
   /// Settles `other` when it touches where the nearest does, with nothing to add: on the same features, or at
@@ -239,12 +246,12 @@ class TwoBodies {
         (other.found.p_a - nearest.found.p_a).norm() <= noise &&
         (other.found.p_b - nearest.found.p_b).norm() <= noise &&
         (other.found.normal - nearest.found.normal).norm() <= tolerances::kCoplanarMeshSine;
-    const auto same_features = [&] {
-      PairDistance mapped;
-      return map_features(nearest.found.a, nearest.found.b, nearest, other, mapped) &&
-             mapped.a == other.found.a && mapped.b == other.found.b;
+    const auto on_same_features = [&] {
+      FeaturePair same;
+      return same_features(nearest.found.a, nearest.found.b, nearest, other, same) &&
+             same.a == other.found.a && same.b == other.found.b;
     };
-    if (!same_place && !same_features()) return;
+    if (!same_place && !on_same_features()) return;
     other.settled = true;
     other.led_by = patch;
   }
@@ -252,10 +259,11 @@ class TwoBodies {
   /// Takes the stretch that `other` has of the leader's contact into it; false when it has none.
   bool follow(SeamCandidate& other, const SeamCandidate& leader, const PairDistance& shown,
               const ContactPatch& patch) noexcept {
-    PairDistance mapped = shown;
-    if (!map_features(patch.manifold.a, patch.manifold.b, leader, other, mapped)) return false;
+    FeaturePair same;
+    if (!same_features(patch.manifold.a, patch.manifold.b, leader, other, same)) return false;
     other.settled = true;
     other.led_by = leader.patch;
+    const PairDistance mapped = on_features(shown, same);
     Manifold own;
     contact_manifold(piece_a(other), piece_b(other), X_AB_, mapped, other.reach, own);
     if (own.points.size() > 1 && is_true_stretch(other, own) &&
@@ -278,7 +286,7 @@ class TwoBodies {
                            middle);
   }
 
-  std::span<SeamCandidate> candidates_;
+  std::span<SeamCandidate*> candidates_;
   const Pose& X_AB_;
   std::vector<ContactPatch>& patches_;
   StaticVector<Stretch, 512> stretches_;  // of the patch in work
@@ -287,18 +295,19 @@ class TwoBodies {
 
 }  // namespace
 
-bool settle_seams(std::span<SeamCandidate> candidates, std::span<const Pose> X_WB,
+bool settle_seams(std::span<SeamCandidate*> candidates, std::span<const Pose> X_WB,
                   std::vector<ContactPatch>& patches) noexcept {
-  std::sort(candidates.begin(), candidates.end(), [](const SeamCandidate& p, const SeamCandidate& q) {
-    return std::tie(p.body_a, p.body_b, p.objected, p.found.distance, p.piece_a, p.piece_b) <
-           std::tie(q.body_a, q.body_b, q.objected, q.found.distance, q.piece_a, q.piece_b);
+  std::sort(candidates.begin(), candidates.end(), [](const SeamCandidate* p, const SeamCandidate* q) {
+    return std::tie(p->body_a, p->body_b, p->objected, p->found.distance, p->piece_a, p->piece_b) <
+           std::tie(q->body_a, q->body_b, q->objected, q->found.distance, q->piece_a, q->piece_b);
   });
   bool complete = true;
   for (auto first = candidates.begin(); first != candidates.end();) {
-    const auto last = std::find_if(first, candidates.end(), [&](const SeamCandidate& c) {
-      return c.body_a != first->body_a || c.body_b != first->body_b;
-    });
-    const Pose X_AB = relative_pose(X_WB[Index(first->body_a)], X_WB[Index(first->body_b)]);
+    const int a = (*first)->body_a;
+    const int b = (*first)->body_b;
+    const auto last = std::find_if(first, candidates.end(),
+                                   [&](const SeamCandidate* c) { return c->body_a != a || c->body_b != b; });
+    const Pose X_AB = relative_pose(X_WB[Index(a)], X_WB[Index(b)]);
     TwoBodies bodies({first, last}, X_AB, patches);
     bodies.settle();
     complete = complete && !bodies.full();

@@ -38,8 +38,9 @@ struct SeamCandidate {
   int led_by = -1;  ///< a leader's patch
 };
 
-/// Appends the patches of `candidates`; reorders and settles them. False when `patches` is full.
-bool settle_seams(std::span<SeamCandidate> candidates, std::span<const Pose> X_WB,
+/// Appends the patches of `candidates`, which are settled and their order changed. False when `patches` is
+/// full.
+bool settle_seams(std::span<SeamCandidate*> candidates, std::span<const Pose> X_WB,
                   std::vector<ContactPatch>& patches) noexcept;
 
 }  // namespace tactum

@@ -202,13 +202,9 @@ Feature same_feature(const Part& part, int of_piece, const Feature& feature, int
   if (part.true_surface.alone() || feature.kind == FeatureKind::kVertex) return {feature.kind, -1};
   const int group = part.true_surface.group[Index(number_of(part, of_piece, feature))];
   if (group < 0) return {feature.kind, -1};
-  const int first = number_of(part, piece, {feature.kind, 0});
-  const int count = part.pieces[Index(piece)].counts[Index(feature.kind)];
-  // Which of them it is, or that it is none, cannot be foretold: to look at all is faster than to jump.
-  const int* groups = part.true_surface.group.data() + first;
-  int same = -1;
-  for (int i = count; i-- > 0;) same = groups[i] == group ? i : same;
-  return {feature.kind, same};
+  for (const TrueSurface::Member& member : part.true_surface.members_of(group))
+    if (member.piece == piece) return {feature.kind, member.index};
+  return {feature.kind, -1};
 }
 
 std::optional<PairDistance> depth_on_true_surface(const Part& part_a, int piece_a, const Part& part_b,

@@ -10,12 +10,6 @@ namespace {
 
 using Index = std::size_t;
 
-Vec6 jacobian(const Vec3& n, const Vec3& r) {
-  Vec6 J;
-  J << n, r.cross(n);
-  return J;
-}
-
 /// Projected Gauss-Seidel from first row to last, until a sweep changes next to nothing.
 SolverResult sweep(std::span<ContactRow> rows, std::span<const PushRow> pushes, double h, int max_sweeps,
                    std::span<Twist> V) {
@@ -66,22 +60,24 @@ class MotionProblem {
   bool set(std::span<const ContactRow> rows, std::span<const Pose> X_WB, std::span<const Mobility> W,
            double h, std::span<const Twist> V) {
     if (rows.size() > kMostRows) return false;
+    const double per_h = 1.0 / h;
     for (const ContactRow& row : rows) {
       const int a = mover(row.body_a, W);
       const int b = mover(row.body_b, W);
       if (a < 0 || b < 0) return false;
       Row& r = rows_[n_];
-      const Vec3 arm_a = row.p_W - X_WB[Index(row.body_a)].p;
-      const Vec3 arm_b = row.p_W - X_WB[Index(row.body_b)].p;
+      const Vec3& n = row.n_BA_W;
+      const Vec3 turn_a = (row.p_W - X_WB[Index(row.body_a)].p).cross(n);
+      const Vec3 turn_b = (row.p_W - X_WB[Index(row.body_b)].p).cross(n);
       r.body_a = a;
       r.body_b = b;
-      project(a, jacobian(row.n_BA_W, arm_a), 1.0, r.g_a);
-      project(b, jacobian(row.n_BA_W, arm_b), -1.0, r.g_b);
+      project(mover_[Index(a)], n, turn_a, r.g_a);
+      project(mover_[Index(b)], -n, -turn_b, r.g_b);
       r.stiffness = row.stiffness * h * h;
       const Twist& V_a = V[Index(row.body_a)];
       const Twist& V_b = V[Index(row.body_b)];
-      const double approach = row.n_BA_W.dot(V_a.v + V_a.w.cross(arm_a) - V_b.v - V_b.w.cross(arm_b));
-      r.wanted = (row.tolerance - row.distance) / h - approach;
+      const double approach = n.dot(V_a.v - V_b.v) + turn_a.dot(V_a.w) - turn_b.dot(V_b.w);
+      r.wanted = (row.tolerance - row.distance) * per_h - approach;
       r.active = false;
       scale_ = std::max(scale_, std::abs(r.wanted));
       ++n_;
@@ -189,32 +185,48 @@ class MotionProblem {
     return 6;
   }
 
-  void project(int m, const Vec6& J, double sign, double (&g)[6]) const {
-    const Mover& mover = mover_[Index(m)];
-    for (Index k = 0; k < mover.rank; ++k) g[k] = sign * mover.B[k].dot(J);
+  /// What a push along `n`, with its turning part, is in a mover's columns.
+  static void project(const Mover& mover, const Vec3& n, const Vec3& turn, double (&g)[6]) {
+    for (Index k = 0; k < mover.rank; ++k)
+      g[k] = mover.B[k].head<3>().dot(n) + mover.B[k].tail<3>().dot(turn);
   }
 
   /// Puts a row among those that push, or takes it out.
   void turn(Row& row) {
     row.active = !row.active;
     const double weight = row.active ? row.stiffness : -row.stiffness;
-    double g[12];
-    Index column[12];
-    Index count = 0;
-    // Columns in rising order: H is kept below its diagonal.
-    const bool a_first = mover_[Index(row.body_a)].first <= mover_[Index(row.body_b)].first;
-    for (const bool of_a : {a_first, !a_first}) {
-      const Mover& mover = mover_[Index(of_a ? row.body_a : row.body_b)];
-      for (Index k = 0; k < mover.rank; ++k) {
-        column[count] = mover.first + k;
-        g[count++] = of_a ? row.g_a[k] : row.g_b[k];
-      }
-    }
-    for (Index i = 0; i < count; ++i) {
+    const Mover& a = mover_[Index(row.body_a)];
+    const Mover& b = mover_[Index(row.body_b)];
+    add_square(a, row.g_a, weight, row.wanted);
+    add_square(b, row.g_b, weight, row.wanted);
+    // H is kept below its diagonal.
+    if (a.first > b.first)
+      add_beside(a, row.g_a, b, row.g_b, weight);
+    else
+      add_beside(b, row.g_b, a, row.g_a, weight);
+  }
+  void add_square(const Mover& mover, const double (&g)[6], double weight, double wanted) {
+    for (Index i = 0; i < mover.rank; ++i) {
       const double scaled = weight * g[i];
-      right_[column[i]] += scaled * row.wanted;
-      for (Index j = 0; j <= i; ++j) H_[column[i]][column[j]] += scaled * g[j];
+      right_[mover.first + i] += scaled * wanted;
+      double* const H = &H_[mover.first + i][mover.first];
+      each_of(i + 1, [&](Index j) { H[j] += scaled * g[j]; });
     }
+  }
+  void add_beside(const Mover& below, const double (&g)[6], const Mover& left, const double (&q)[6],
+                  double weight) {
+    for (Index i = 0; i < below.rank; ++i) {
+      const double scaled = weight * g[i];
+      double* const H = &H_[below.first + i][left.first];
+      each_of(left.rank, [&](Index j) { H[j] += scaled * q[j]; });
+    }
+  }
+  /// do(0), do(1), ... of up to six. One is so frequent, of what turns on a hinge, that it has no loop:
+  /// compilers make them for many.
+  template <class Do>
+  static void each_of(Index count, const Do& act) {
+    if (count == 1) return act(0);
+    for (Index i = 0; i < count; ++i) act(i);
   }
 
   /// z = H^-1 right.
@@ -245,8 +257,8 @@ class MotionProblem {
     double sum = row.wanted;
     const Mover& a = mover_[Index(row.body_a)];
     const Mover& b = mover_[Index(row.body_b)];
-    for (Index k = 0; k < a.rank; ++k) sum -= row.g_a[k] * z_[a.first + k];
-    for (Index k = 0; k < b.rank; ++k) sum -= row.g_b[k] * z_[b.first + k];
+    each_of(a.rank, [&](Index k) { sum -= row.g_a[k] * z_[a.first + k]; });
+    each_of(b.rank, [&](Index k) { sum -= row.g_b[k] * z_[b.first + k]; });
     return sum;
   }
   bool is_wrong(const Row& row) const {

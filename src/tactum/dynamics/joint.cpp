@@ -13,6 +13,20 @@ namespace {
 /// One or three unknowns, without allocation.
 using SmallMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 3, 3>;
 
+/// The one motion that a hinge or slider leaves free.
+Vec6 single_motion(const Joint& joint, const Pose& X_WB) noexcept {
+  Vec6 s;
+  if (joint.kind == JointKind::kHinge)
+    s << joint.axis_W.cross(X_WB.p - joint.anchor_W), joint.axis_W;
+  else
+    s << joint.axis_W, Vec3::Zero();
+  return s;
+}
+
+bool has_single_motion(const Joint& joint) noexcept {
+  return joint.kind == JointKind::kHinge || joint.kind == JointKind::kSlider;
+}
+
 /// The turn by hinge_angle() about the hinge's axis, from the cosine and sine of half of it, as the
 /// quaternion has them: without the angle.
 Mat3 hinge_turn(const Body& body, const Pose& X_WB) noexcept {
@@ -37,7 +51,6 @@ Resistance inertial_resistance(const Body& body, const Pose& X_WB) noexcept {
 }
 
 JointMotions joint_motions(const Joint& joint, const Pose& X_WB) noexcept {
-  const Vec3 arm = X_WB.p - joint.anchor_W;
   JointMotions S;
   switch (joint.kind) {
     case JointKind::kFree:
@@ -45,16 +58,12 @@ JointMotions joint_motions(const Joint& joint, const Pose& X_WB) noexcept {
       S.resize(6, 0);
       break;
     case JointKind::kHinge:
-      S.resize(6, 1);
-      S << joint.axis_W.cross(arm), joint.axis_W;
-      break;
     case JointKind::kSlider:
-      S.resize(6, 1);
-      S << joint.axis_W, Vec3::Zero();
+      S = single_motion(joint, X_WB);
       break;
     case JointKind::kBall:
       S.resize(6, 3);
-      S << -skew(arm), Mat3::Identity();
+      S << -skew(X_WB.p - joint.anchor_W), Mat3::Identity();
       break;
   }
   return S;
@@ -85,11 +94,11 @@ Vec6 joint_rate(const Body& body, const Pose& X_WB) noexcept {
 Mobility mobility(const Joint& joint, const Pose& X_WB, const Resistance& M) noexcept {
   if (joint.kind == JointKind::kFixed) return Mobility::Zero();
   if (joint.kind == JointKind::kFree) return M.llt().solve(Mat6::Identity());
-  const JointMotions S = joint_motions(joint, X_WB);
-  if (S.cols() == 1) {  // a hinge or slider: a number stands for the small matrix
-    const Vec6 s = S;
+  if (has_single_motion(joint)) {  // a number stands for the small matrix
+    const Vec6 s = single_motion(joint, X_WB);
     return s * (s / s.dot(M * s)).transpose();
   }
+  const JointMotions S = joint_motions(joint, X_WB);
   return S * SmallMatrix(S.transpose() * M * S).llt().solve(S.transpose());
 }
 
@@ -105,12 +114,12 @@ Twist constrained_velocity(const Joint& joint, const Pose& X_WB, const Resistanc
                            const Twist& V) noexcept {
   if (joint.kind == JointKind::kFixed) return {};
   if (joint.kind == JointKind::kFree) return V;
-  const JointMotions S = joint_motions(joint, X_WB);
-  if (S.cols() == 1) {
-    const Vec6 s = S;
+  if (has_single_motion(joint)) {
+    const Vec6 s = single_motion(joint, X_WB);
     const Vec6 Ms = M * s;
     return to_twist(s * (Ms.dot(to_vector(V)) / s.dot(Ms)));
   }
+  const JointMotions S = joint_motions(joint, X_WB);
   const JointMotions MS = M * S;
   return to_twist(S * SmallMatrix(MS.transpose() * S).llt().solve(MS.transpose() * to_vector(V)));
 }
@@ -118,6 +127,9 @@ Twist constrained_velocity(const Joint& joint, const Pose& X_WB, const Resistanc
 Twist after_joint(const Body& body, const Pose& X_WB, const Mobility& W, double h, const Twist& V) noexcept {
   const Joint& joint = body.joint;
   if (joint.kind == JointKind::kFree || joint.kind == JointKind::kFixed) return V;
+  // An angle takes as long as all the rest: told only where a spring or a limit asks for it.
+  const bool bound = joint.stiffness > 0.0 || joint.limited();
+  if (!bound && joint.damping == 0.0 && joint.friction == 0.0) return V;
   Vec6 after = to_vector(V);
   double damping = joint.damping;
   if (joint.kind == JointKind::kBall) {  // about every axis, not only that of its position
@@ -130,7 +142,7 @@ Twist after_joint(const Body& body, const Pose& X_WB, const Mobility& W, double 
   const double mobile = along.dot(W * along);
   if (!(mobile > 0.0)) return to_twist(after);
   const double before = along.dot(after);
-  const double position = joint_position(body, X_WB);
+  const double position = bound ? joint_position(body, X_WB) : 0.0;
   // Spring and damper at the end of the step: stable however stiff.
   double rate = (before - mobile * h * joint.stiffness * (position - joint.rest)) /
                 (1.0 + mobile * h * (damping + h * joint.stiffness));

@@ -5,6 +5,7 @@
 /// A body's frame B has its origin at the centre of mass and the axes of its part's file, so that a twist at
 /// the origin is a twist at the centre of mass. V_WB is told in world axes.
 
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <string>
@@ -38,6 +39,8 @@ struct Joint {
   double rest = 0.0;             ///< the position its spring pulls to [rad or m]
   double lower = -std::numeric_limits<double>::infinity();  ///< least position of a hinge or slider [rad, m]
   double upper = std::numeric_limits<double>::infinity();   ///< largest position [rad or m]
+
+  bool limited() const { return std::isfinite(lower) || std::isfinite(upper); }
 };
 
 /// A rigid body; its part's pieces are told in B.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "tactum/base/tolerances.h"
@@ -74,10 +75,26 @@ class Builder {
         if (open > 0.0) out.group[face(piece, f)] = sets_.find(face(piece, f));
       }
     }
+    list_members(out);
     return out;
   }
 
  private:
+  /// A set's number is that of one of its features, so there are no more groups than features.
+  void list_members(TrueSurface& out) const {
+    out.members_first.assign(out.group.size() + 1, 0);
+    for (const int group : out.group)
+      if (group >= 0) ++out.members_first[group + 1];
+    std::partial_sum(out.members_first.begin(), out.members_first.end(), out.members_first.begin());
+    out.members.resize(static_cast<std::size_t>(out.members_first.back()));
+    std::vector<int> next = out.members_first;
+    for (std::size_t i = 0; i < pieces_.size(); ++i)
+      for (std::size_t kind = 1; kind < 3; ++kind)
+        for (int index = 0; index < pieces_[i].counts[kind]; ++index)
+          if (const int group = out.group[first_[i][kind] + index]; group >= 0)
+            out.members[next[group]++] = {static_cast<int>(i), index};
+  }
+
   int number_features() {
     for (const Polytope& piece : pieces_) {
       std::array<int, 3>& first = first_.emplace_back();

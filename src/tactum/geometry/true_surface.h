@@ -32,6 +32,12 @@ struct TrueSurface {
   /// Per feature: of faces in one plane that meet, and of edges in one line that meet, the same number; -1
   /// for faces that are covered wholly, and for vertices.
   std::vector<int> group;
+  /// Per group: its features are members[members_first[g] .. members_first[g + 1]), rising.
+  std::vector<int> members_first;
+  struct Member {
+    int piece = -1, index = -1;  ///< the edge or face of that piece
+  };
+  std::vector<Member> members;
   double exposed_area = 0.0;  ///< of all faces, without what is covered [m^2]
 
   /// No two pieces touch: every feature is true as it is.
@@ -43,6 +49,12 @@ struct TrueSurface {
   /// Of a face, -1 when nothing of it can be touched; of an edge.
   int group_of(int piece, int kind, int index) const noexcept {
     return group[static_cast<std::size_t>(number(piece, kind, index))];
+  }
+  /// The edges, or faces, that are one.
+  std::span<const Member> members_of(int of_group) const noexcept {
+    const int begin = members_first[static_cast<std::size_t>(of_group)];
+    const int end = members_first[static_cast<std::size_t>(of_group) + 1];
+    return {members.data() + begin, static_cast<std::size_t>(end - begin)};
   }
   std::span<const int> neighbours(int feature) const noexcept {
     const int begin = touching_first[static_cast<std::size_t>(feature)];

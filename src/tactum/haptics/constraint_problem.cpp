@@ -113,7 +113,8 @@ void ConstraintProblem::set_motions(Mover& mover, const Body& what, const Pose& 
   for (Eigen::Index i = 0; i < S.cols(); ++i) M(i, i) += spring + damping;
   if (spring > 0.0) pull[0] -= spring * (joint_position(what, X_WB) - what.joint.rest);
   const Eigen::LLT<Reduced> factor(M);
-  mover.wanted = S * factor.solve(pull);
+  factor.solveInPlace(pull);
+  mover.wanted = S * pull;
   mover.motions = factor.matrixL().solve(S.transpose()).transpose();  // M^-1 = L^-T L^-1
 }
 
@@ -123,6 +124,7 @@ void ConstraintProblem::add_joint(const Mover& mover, const Body& what, const Po
   const Push along{mover.centre, rate.head<3>(), rate.tail<3>()};
   if (joint.friction > 0.0 && mover.rank == 1 && unknowns_ < kMostUnknowns)
     brakes_.push_back({&mover, joint.friction, work(along, mover.centre, mover.motions.col(0)), unknowns_++});
+  if (!joint.limited()) return;
   const double position = joint_position(what, X_WB);
   if (std::isfinite(joint.lower))
     limits_.push_back({mover.body, along, std::max(0.0, position - joint.lower)});

@@ -1,6 +1,7 @@
 #include "tactum/haptics/contact_force.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <tuple>
 
@@ -37,14 +38,17 @@ void gather_points(const Source& from, std::span<const Facet> facet, std::vector
   for (const Facet& f : facet) {
     const ContactPatch& patch = from.patches[Index(f.patch)];
     const double share = stiffness_claim(patch.manifold) / claims;
-    for (const ContactPoint& point : patch.manifold.points) {
-      Vec3 normal_A = patch.manifold.normal;
-      if (!from.shading.empty()) {
-        normal_A = shaded_normal(from.shading[Index(patch.body_a)], from.shading[Index(patch.body_b)], X_AB,
-                                 X_BA, patch, point);
-      }
-      points.push_back(
-          {X_WA * (0.5 * (point.p_a + point.p_b)), X_WA.R * normal_A, point.distance, share * point.weight});
+    std::array<Vec3, Manifold::kMostPoints> normals_A;
+    const Index count = patch.manifold.points.size();
+    if (from.shading.empty())
+      std::fill_n(normals_A.begin(), count, patch.manifold.normal);
+    else
+      shaded_normals(from.shading[Index(patch.body_a)], from.shading[Index(patch.body_b)], X_AB, X_BA, patch,
+                     {normals_A.data(), count});
+    for (Index i = 0; i < count; ++i) {
+      const ContactPoint& point = patch.manifold.points[i];
+      points.push_back({X_WA * (0.5 * (point.p_a + point.p_b)), rotated(X_WA.R, normals_A[i]), point.distance,
+                        share * point.weight});
     }
   }
 }

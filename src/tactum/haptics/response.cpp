@@ -92,11 +92,12 @@ void respond_by_penalty(const World& world, const FrameSettings& settings, doubl
                     state.contacts);
   const double impact = smallest_time_of_impact(rows, X_WB, V_WB, dt_s);
   const double rest = dt_s - impact;
-  // The held part has no mass to be slowed before the impact: its friction acts where it is pulled.
-  slow_joints(world, impact, rest > 0.0 ? state.tool.body : -1, state);
-  advance_distances(rows, X_WB, V_WB, impact);
-  advance_bodies(world, V_WB, impact, X_WB);
-
+  if (impact > 0.0) {
+    // The held part has no mass to be slowed before the impact: its friction acts where it is pulled.
+    slow_joints(world, impact, rest > 0.0 ? state.tool.body : -1, state);
+    advance_distances(rows, X_WB, V_WB, impact);
+    advance_bodies(world, V_WB, impact, X_WB);
+  }
   if (rest > 0.0) {
     pull_held(world, settings, rest, state);
     const SolverResult solved = solve_contacts(

@@ -20,11 +20,13 @@ constexpr int kMostCorners = 16;
 
 /// The weighted normals' sum inside a convex polygon: w_i = A(i-1,i,i+1) prod_{j != i-1,i} A(j,j+1,p). The
 /// first area is in the corner's weighted normal; the product is that of all before times that of all behind.
-Vec3 weighted_sum(const ShadedCorner* corners, int n, const Vec3& point) {
+inline Vec3 weighted_sum(const ShadedCorner* corners, int n, const Vec3& point) {
   const auto area_beside = [&](int i) {
     return std::max(0.0, corners[i].inward.dot(point) - corners[i].offset);
   };
-  if (n == 4) {  // of what is turned or swept most are: the same products, written out
+  // A ruled face, as what is swept has: see ruled().
+  if (n == 2) return area_beside(0) * corners[0].weighted + area_beside(1) * corners[1].weighted;
+  if (n == 4) {  // of what is turned most are: the same products, written out
     const double a0 = area_beside(0);
     const double a1 = area_beside(1);
     const double a2 = area_beside(2);
@@ -50,10 +52,10 @@ Vec3 weighted_sum(const ShadedCorner* corners, int n, const Vec3& point) {
 }
 
 /// The interpolated normal of a face with corners.
-Vec3 interpolated(const ShadedFace& face, const ShadedCorner* corners, const Vec3& point) {
+inline Vec3 interpolated(const ShadedFace& face, const ShadedCorner* corners, const Vec3& point) {
   const Vec3 sum = weighted_sum(corners, face.count, point);
-  const double length = sum.norm();
-  return length > 0.0 ? Vec3(sum / length) : face.normal;
+  const double length_sq = sum.squaredNorm();
+  return length_sq > 0.0 ? Vec3(sum * (1.0 / std::sqrt(length_sq))) : face.normal;
 }
 
 /// A corner by its name on one of the pieces that have it.
@@ -142,6 +144,24 @@ std::vector<CornerName> corners_as_one(const Part& part, const std::vector<std::
   return corners;
 }
 
+/// Of a parallelogram whose opposite sides i and i + 2 have one normal each the areas beside the other two
+/// sides add up to the same everywhere: what is left of the sum is linear, a2 n0 + a0 n2. Two corners say it.
+void ruled(const Part& part, const std::vector<CornerName>& names, std::vector<ShadedCorner>& corners) {
+  if (corners.size() != 4) return;
+  const auto p = [&](Index i) -> const Vec3& { return place_of(part, names[i % 4]); };
+  if ((p(0) - p(1) + p(2) - p(3)).norm() > tolerances::kCoplanar * part.size) return;
+  const auto normal = [&](Index i) { return corners[i % 4].weighted.normalized(); };
+  for (Index i = 0; i < 2; ++i) {
+    if ((normal(i) - normal(i + 1)).norm() >= tolerances::kSameNormal ||
+        (normal(i + 2) - normal(i + 3)).norm() >= tolerances::kSameNormal)
+      continue;
+    const ShadedCorner& low = corners[i];
+    const ShadedCorner& high = corners[i + 2];
+    corners = {{normal(i), high.inward, high.offset}, {normal(i + 2), low.inward, low.offset}};
+    return;
+  }
+}
+
 /// The corners' share of the shading; none when all have the face's own normal, or the face is a flat end.
 std::vector<ShadedCorner> shaded(const Part& part, const std::vector<CornerName>& names, const Vec3& normal,
                                  double cosine, NormalsAround& around) {
@@ -161,7 +181,8 @@ std::vector<ShadedCorner> shaded(const Part& part, const std::vector<CornerName>
     const Vec3 inward = normal.cross(next - p);
     corners.push_back({(own ? normal : mean) * inward.dot(last - p), inward, inward.dot(p)});
   }
-  if (!curved) corners.clear();
+  if (!curved) return {};
+  ruled(part, names, corners);
   return corners;
 }
 
@@ -228,9 +249,17 @@ void ShadingNormals::shade_surface(double cosine) {
   if (!curved) triangle_normals_.clear();
 }
 
+inline const ShadedFace& ShadingNormals::face_at(int piece, const Feature& feature) const noexcept {
+  return faces_[Index(face_of_[Index(first_face_[Index(piece)] + feature.index)])];
+}
+
+bool ShadingNormals::bends(int piece, const Feature& feature) const noexcept {
+  return feature.kind == FeatureKind::kFace && face_at(piece, feature).count > 0;
+}
+
 Vec3 ShadingNormals::deviation(int piece, const Feature& feature, const Vec3& point) const noexcept {
   if (feature.kind != FeatureKind::kFace) return Vec3::Zero();
-  const ShadedFace& face = faces_[Index(face_of_[Index(first_face_[Index(piece)] + feature.index)])];
+  const ShadedFace& face = face_at(piece, feature);
   if (face.count == 0) return Vec3::Zero();
   return interpolated(face, &corners_[Index(face.first)], point) - face.normal;
 }
@@ -251,15 +280,25 @@ Vec3 ShadingNormals::deviation_on_surface(const Feature& feature, const Vec3& po
   return length > 0.0 ? Vec3(sum / length - own) : Vec3::Zero();
 }
 
-Vec3 shaded_normal(const ShadingNormals& a, const ShadingNormals& b, const Pose& X_AB, const Pose& X_BA,
-                   const ContactPatch& patch, const ContactPoint& point) noexcept {
+void shaded_normals(const ShadingNormals& a, const ShadingNormals& b, const Pose& X_AB, const Pose& X_BA,
+                    const ContactPatch& patch, std::span<Vec3> normals) noexcept {
   const Manifold& manifold = patch.manifold;
-  const Vec3 p_b = X_BA * point.p_b;
-  const Vec3 from_a = patch.of_surfaces ? a.deviation_on_surface(manifold.a, point.p_a)
-                                        : a.deviation(patch.piece_a, manifold.a, point.p_a);
-  const Vec3 from_b = patch.of_surfaces ? b.deviation_on_surface(manifold.b, p_b)
-                                        : b.deviation(patch.piece_b, manifold.b, p_b);
-  return (manifold.normal + rotated(X_AB.R, from_b) - from_a).normalized();
+  const bool on_pieces = !patch.of_surfaces;
+  const bool flat_a = on_pieces && !a.bends(patch.piece_a, manifold.a);
+  const bool flat_b = on_pieces && !b.bends(patch.piece_b, manifold.b);
+  for (Index i = 0; i < normals.size(); ++i) {
+    const ContactPoint& point = manifold.points[i];
+    Vec3 normal = manifold.normal;
+    if (!flat_b) {
+      const Vec3 p_b = X_BA * point.p_b;
+      normal += rotated(X_AB.R, on_pieces ? b.deviation(patch.piece_b, manifold.b, p_b)
+                                          : b.deviation_on_surface(manifold.b, p_b));
+    }
+    if (!flat_a)
+      normal -= on_pieces ? a.deviation(patch.piece_a, manifold.a, point.p_a)
+                          : a.deviation_on_surface(manifold.a, point.p_a);
+    normals[i] = normal * (1.0 / normal.norm());
+  }
 }
 
 }  // namespace tactum

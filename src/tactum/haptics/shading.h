@@ -10,6 +10,7 @@
 /// unless it is not convex as one; then stretch by stretch.
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "tactum/collision/contact_finder.h"
@@ -18,7 +19,8 @@
 
 namespace tactum {
 
-/// A corner of a face, as Wachspress coordinates need it.
+/// A corner of a face, as Wachspress coordinates need it; of two, one of the sides that a ruled face is
+/// between: its normal, and the side across.
 struct ShadedCorner {
   Vec3 weighted = Vec3::Zero();  ///< the surface's normal, times twice the triangle of its neighbours [m^2]
   // Twice the area of the side to the next corner with a point p is  inward . p - offset.
@@ -29,7 +31,7 @@ struct ShadedCorner {
 /// A true face. No corners: nothing of it deviates.
 struct ShadedFace {
   Vec3 normal = Vec3::Zero();  ///< unit [-]
-  int first = 0, count = 0;    ///< of its corners, counter-clockwise
+  int first = 0, count = 0;    ///< of its corners, counter-clockwise; two of a ruled face
 };
 
 class ShadingNormals {
@@ -39,6 +41,8 @@ class ShadingNormals {
 
   /// Whether any normal of the part deviates.
   bool bends() const noexcept { return !corners_.empty() || !triangle_normals_.empty(); }
+  /// ... or on a feature of a piece.
+  bool bends(int piece, const Feature& feature) const noexcept;
   /// How much the interpolated normal at `point` (part's frame) differs from the face's own; zero for
   /// features that are no faces, and on faces whose edges are all sharp.
   Vec3 deviation(int piece, const Feature& feature, const Vec3& point) const noexcept;
@@ -46,6 +50,7 @@ class ShadingNormals {
   Vec3 deviation_on_surface(const Feature& feature, const Vec3& point) const noexcept;
 
  private:
+  const ShadedFace& face_at(int piece, const Feature& feature) const noexcept;
   void shade_pieces(double cosine);
   void shade_surface(double cosine);
 
@@ -58,9 +63,10 @@ class ShadingNormals {
       triangle_normals_;  // at the corners of the surface's triangles; empty: flat
 };
 
-/// The patch's normal, turned by the deviations of the faces it lies on; told in A's frame. X_AB is the pose
-/// of body B in A and X_BA its inverse.
-Vec3 shaded_normal(const ShadingNormals& a, const ShadingNormals& b, const Pose& X_AB, const Pose& X_BA,
-                   const ContactPatch& patch, const ContactPoint& point) noexcept;
+/// At the first of the patch's points, as many as there is room for: the patch's normal, turned by the
+/// deviations of the faces it lies on; told in A's frame. X_AB is the pose of body B in A and X_BA its
+/// inverse.
+void shaded_normals(const ShadingNormals& a, const ShadingNormals& b, const Pose& X_AB, const Pose& X_BA,
+                    const ContactPatch& patch, std::span<Vec3> normals) noexcept;
 
 }  // namespace tactum

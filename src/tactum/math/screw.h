@@ -14,8 +14,8 @@ inline Mat3 exp_rotation(const Vec3& w) {
   double s = 0.0;  // sin(a)/a
   double c = 0.0;  // (1-cos(a))/a^2
   if (angle_sq < tolerances::kSmallAngleSquared) {
-    s = 1.0 - angle_sq / 6.0 * (1.0 - angle_sq / 20.0);
-    c = 0.5 - angle_sq / 24.0 * (1.0 - angle_sq / 30.0);
+    s = 1.0 - angle_sq * (1.0 / 6.0) * (1.0 - angle_sq * (1.0 / 20.0) * (1.0 - angle_sq * (1.0 / 42.0)));
+    c = 0.5 - angle_sq * (1.0 / 24.0) * (1.0 - angle_sq * (1.0 / 30.0) * (1.0 - angle_sq * (1.0 / 56.0)));
   } else {
     const double angle = std::sqrt(angle_sq);
     s = std::sin(angle) / angle;
@@ -29,8 +29,14 @@ inline Mat3 exp_rotation(const Vec3& w) {
 inline Vec3 log_rotation(const Mat3& R) {
   Quat q(R);
   if (q.w() < 0.0) q.coeffs() = -q.coeffs();
-  const double sine = q.vec().norm();
-  if (sine < tolerances::kSmallHalfAngleSine) return 2.0 * q.vec();
+  const double sine_sq = q.vec().squaredNorm();
+  if (sine_sq < tolerances::kSmallHalfAngleSineSquared) {
+    const double arc =
+        1.0 + sine_sq * (1.0 / 6.0 +
+                         sine_sq * (3.0 / 40.0 + sine_sq * (15.0 / 336.0 + sine_sq * (105.0 / 3456.0))));
+    return 2.0 * arc * q.vec();
+  }
+  const double sine = std::sqrt(sine_sq);
   return 2.0 * std::atan2(sine, q.w()) / sine * q.vec();
 }
 
