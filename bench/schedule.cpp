@@ -163,7 +163,7 @@ ScheduleRow run_with(const Scene& scene, double share, int pairs, int frames, in
   HeapRun run(scene, row.budget);
   const HeapReferee referee(scene.world);
   std::vector<double> times;
-  Hash hash;
+  FrameHash hash;
   int compared = 0;
   for (int i = 0; i < frames; ++i) {
     const bool look = (i + 1) * looks / frames != i * looks / frames;

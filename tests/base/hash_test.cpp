@@ -19,23 +19,40 @@ TEST(Hash, MatchesThePublishedTestVectorsOfFnv1a) {
   EXPECT_EQ(hash_of("foobar"), 0x85944171f73967e8ull);
 }
 
+template <class AnyHash>
 std::uint64_t hash_of_numbers(double first, double second) {
-  Hash hash;
+  AnyHash hash;
   hash.add(first);
   hash.add(second);
   return hash.value();
 }
 
-TEST(Hash, NumbersCountByTheirBitsAndTheirOrder) {
-  EXPECT_EQ(hash_of_numbers(1.0, 2.0), hash_of_numbers(1.0, 2.0));
-  EXPECT_NE(hash_of_numbers(1.0, 2.0), hash_of_numbers(2.0, 1.0));
-  EXPECT_NE(hash_of_numbers(0.0, 1.0), hash_of_numbers(-0.0, 1.0));
+template <class AnyHash>
+class NumberHash : public testing::Test {};
+using NumberHashes = testing::Types<Hash, FrameHash>;
+TYPED_TEST_SUITE(NumberHash, NumberHashes);
+
+TYPED_TEST(NumberHash, NumbersCountByTheirBitsAndTheirOrder) {
+  EXPECT_EQ(hash_of_numbers<TypeParam>(1.0, 2.0), hash_of_numbers<TypeParam>(1.0, 2.0));
+  EXPECT_NE(hash_of_numbers<TypeParam>(1.0, 2.0), hash_of_numbers<TypeParam>(2.0, 1.0));
+  EXPECT_NE(hash_of_numbers<TypeParam>(0.0, 1.0), hash_of_numbers<TypeParam>(-0.0, 1.0));
 }
 
-TEST(Hash, EveryBitOfANumberIsInEveryHalfOfTheHash) {
+/// Of as many numbers as there are chains and more, each two change places.
+TEST(FrameHash, EveryPlaceCounts) {
+  const auto hash_of_ten = [](int one, int other) {
+    FrameHash hash;
+    for (int i = 0; i < 10; ++i) hash.add(i == one ? other : i == other ? one : i);
+    return hash.value();
+  };
+  for (int one = 0; one < 10; ++one)
+    for (int other = 0; other < one; ++other) EXPECT_NE(hash_of_ten(one, other), hash_of_ten(0, 0));
+}
+
+TYPED_TEST(NumberHash, EveryBitOfANumberIsInEveryHalfOfTheHash) {
   for (int bit = 0; bit < 64; ++bit) {
-    Hash one;
-    Hash other;
+    TypeParam one;
+    TypeParam other;
     one.add(std::uint64_t{0x0123456789abcdef});
     other.add(std::uint64_t{0x0123456789abcdef} ^ std::uint64_t{1} << bit);
     one.add(7);  // one more number spreads what the highest bits of the last one changed

@@ -3,23 +3,23 @@
 namespace tactum {
 namespace {
 
-void add(Hash& hash, const Vec3& v) {
+void add(FrameHash& hash, const Vec3& v) {
   for (int i = 0; i < 3; ++i) hash.add(v[i] + 0.0);  // one zero, whatever its sign
 }
 
-void add(Hash& hash, const Wrench& F) {
+void add(FrameHash& hash, const Wrench& F) {
   add(hash, F.f);
   add(hash, F.t);
 }
 
-void add(Hash& hash, const Pose& X) {
+void add(FrameHash& hash, const Pose& X) {
   add(hash, X.p);
   for (int i = 0; i < 3; ++i) add(hash, Vec3(X.R.col(i)));
 }
 
 }  // namespace
 
-void add_to(Hash& hash, const FrameReport& report) noexcept {
+void add_to(FrameHash& hash, const FrameReport& report) noexcept {
   hash.add(report.index);
   hash.add(report.flags);
   hash.add(report.safety);
@@ -63,7 +63,7 @@ void add_to(Hash& hash, const FrameReport& report) noexcept {
   hash.add(report.work.uncertified);
 }
 
-void add_to(Hash& hash, const WorldState& state) noexcept {
+void add_to(FrameHash& hash, const WorldState& state) noexcept {
   for (const Pose& X_WB : state.X_WB) add(hash, X_WB);
   for (const Twist& V_WB : state.V_WB) {
     add(hash, V_WB.v);

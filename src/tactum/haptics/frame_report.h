@@ -76,8 +76,8 @@ struct FrameReport {
 
 /// Adds everything that was computed and counted to the hash (a negative zero as zero): equal hashes mean
 /// equal frames.
-void add_to(Hash& hash, const FrameReport& report) noexcept;
+void add_to(FrameHash& hash, const FrameReport& report) noexcept;
 /// The same for where the bodies are and how they move.
-void add_to(Hash& hash, const WorldState& state) noexcept;
+void add_to(FrameHash& hash, const WorldState& state) noexcept;
 
 }  // namespace tactum

@@ -56,7 +56,7 @@ class RunRecord {
 
  private:
   Wrench last_shown_;
-  Hash hash_;
+  FrameHash hash_;
 };
 
 /// Takes the times of the stages of frames. It reads the clock between stages, so that the frame need not.
