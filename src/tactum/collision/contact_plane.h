@@ -60,7 +60,8 @@ inline Tangent contact_plane(const Polytope& A, const Feature& a, const Vec3& or
 inline void face_outline(const Tangent& plane, const Polytope& P, int face_index, bool on_a,
                          PatchPolygon& loop) noexcept {
   const Polytope::Face& face = P.faces[face_index];
-  const int stride = (face.count + kPatchCorners - 1) / kPatchCorners;
+  const bool all = face.count <= kPatchCorners;
+  const int stride = all ? 1 : (face.count + kPatchCorners - 1) / kPatchCorners;
   const int step = on_a ? -stride : stride;
   const int first = face.first + (on_a ? face.count - 1 : 0);
   const int* const corners = P.face_vertices.data();
@@ -72,7 +73,7 @@ inline void face_outline(const Tangent& plane, const Polytope& P, int face_index
   const double ox = plane.origin.x();
   const double oy = plane.origin.y();
   const double oz = plane.origin.z();
-  const int count = (face.count + stride - 1) / stride;
+  const int count = all ? face.count : (face.count + stride - 1) / stride;
   loop.fill(static_cast<std::size_t>(count), [&](std::size_t i) {
     const Vec3& p = vertices[corners[first + step * static_cast<int>(i)]];
     return vec2(ex * both(p.x() - ox) + ey * both(p.y() - oy) + ez * both(p.z() - oz));
