@@ -27,5 +27,14 @@ TEST(Result, HoldsTheValueOrTheError) {
   EXPECT_FALSE(Result<void>(Error{"no", "", "", ""}));
 }
 
+/// In every build: who takes a value that is not there has not asked.
+TEST(Result, WhatIsNotThereCannotBeTaken) {
+  const Result<int> bad(Error{"no", "", "", ""});
+  const Result<int> good(5);
+  EXPECT_DEATH(static_cast<void>(*bad), "assertion failed");
+  EXPECT_DEATH(static_cast<void>(good.error()), "assertion failed");
+  EXPECT_DEATH(static_cast<void>(Result<void>().error()), "assertion failed");
+}
+
 }  // namespace
 }  // namespace tactum

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <array>
+#include <utility>
 
 #include "tactum/base/random.h"
 #include "tactum/dynamics/step.h"
@@ -70,6 +72,59 @@ TEST(ContactSolver, SolvesTheComplementarityProblem) {
     }
     EXPECT_LT((to_vector(p.V[1]) - to_vector(before[1]) - p.W[1] * impulse).norm(), 1e-9);  // momentum
     EXPECT_EQ(p.V[0].v.norm() + p.V[0].w.norm(), 0.0);
+  }
+}
+
+/// Bodies that are free, turn on a hinge, about a point, or not at all, named in any order. The law at the
+/// end of the step and the momentum of every body have one solution.
+TEST(ContactSolver, SolvesForBodiesOfAnyFreedomInAnyOrder) {
+  constexpr std::size_t kBodies = 5;
+  for (std::uint64_t seed = 1; seed <= 300; ++seed) {
+    Random random(seed);
+    std::vector<Pose> X(kBodies);
+    std::vector<Mobility> W(kBodies, Mobility::Zero());
+    std::vector<Twist> V(kBodies);
+    for (std::size_t b = 0; b < kBodies; ++b) {
+      X[b].p = random_vector(random, 0.02);
+      const int freedom = std::array{0, 1, 1, 3, 6}[(b + seed) % kBodies];
+      for (int k = 0; k < freedom; ++k) {  // light enough for the contacts, about the centre and beside it
+        Vec6 s;
+        s << random_vector(random, 1.5), random_vector(random, 100.0);
+        W[b] += s * s.transpose();
+      }
+      V[b] = to_twist(W[b] * Vec6::Constant(0.01 * random.uniform(-1, 1)));
+    }
+    std::vector<ContactRow> rows(1 + seed % 19);
+    for (ContactRow& row : rows) {
+      row.body_a = static_cast<int>(random.uniform(0, kBodies));
+      row.body_b = (row.body_a + 1 + static_cast<int>(random.uniform(0, kBodies - 1))) % int(kBodies);
+      row.n_BA_W = random_vector(random, 1).normalized();
+      row.p_W = random_vector(random, 0.03);
+      row.distance = random.uniform(-1e-4, 4e-4);
+      row.tolerance = 3e-4;
+      row.stiffness = random.uniform(100, 5000);
+    }
+    std::vector<PushRow> pushes;
+    pushes.reserve(rows.size());
+    const std::vector<Twist> before = V;
+    const double h = 0.001;
+    ASSERT_TRUE(solve_contacts(rows, X, W, h, 20000, pushes, V).converged) << "seed " << seed;
+    std::vector<Vec6> impulse(kBodies, Vec6::Zero());
+    for (const ContactRow& row : rows) {
+      double vn = 0.0;
+      for (const auto& [body, sign] : {std::pair(row.body_a, 1.0), std::pair(row.body_b, -1.0)}) {
+        const std::size_t b = static_cast<std::size_t>(body);
+        const Vec3 r = row.p_W - X[b].p;
+        vn += sign * row.n_BA_W.dot(velocity_at(V[b], r));
+        Vec6 J;
+        J << row.n_BA_W, r.cross(row.n_BA_W);
+        impulse[b] += sign * row.impulse * J;
+      }
+      const double pushed = row.stiffness * (row.tolerance - row.distance - h * vn);
+      EXPECT_NEAR(row.impulse / h, std::max(0.0, pushed), 1e-3) << "seed " << seed;
+    }
+    for (std::size_t b = 0; b < kBodies; ++b)
+      EXPECT_LT((to_vector(V[b]) - to_vector(before[b]) - W[b] * impulse[b]).norm(), 1e-8) << "seed " << seed;
   }
 }
 

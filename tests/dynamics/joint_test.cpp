@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <string>
 
 #include "tactum/base/random.h"
 #include "tactum/math/screw.h"
@@ -121,6 +122,80 @@ TEST(Joint, APoseThatIsNoNumberStaysNone) {
     const double none = std::numeric_limits<double>::quiet_NaN();
     EXPECT_FALSE(constrained_pose(body, {Mat3::Constant(none), Vec3::Constant(none)}).finite());
   }
+}
+
+/// A hinge or slider of unit mobility, 0.02 from its start, after a millisecond.
+class AfterJoint : public testing::TestWithParam<JointKind> {
+ protected:
+  AfterJoint() {
+    body_.mass_kg = 1.0;
+    body_.inertia_B = Mat3::Identity();
+    body_.joint.kind = GetParam();
+  }
+  Twist along(double rate) const {
+    Twist V;
+    (GetParam() == JointKind::kHinge ? V.w : V.v).z() = rate;
+    return V;
+  }
+  Twist after(const Twist& V) const {
+    const Pose X_WB = advanced(body_.X_WB, along(0.02), 1.0);
+    return after_joint(body_, X_WB, mobility(body_.joint, X_WB, inertial_resistance(body_, X_WB)), 0.001, V);
+  }
+  double rate_after(double rate) const {
+    const Twist V = after(along(rate));
+    return GetParam() == JointKind::kHinge ? V.w.z() : V.v.z();
+  }
+  Body body_;
+};
+
+TEST_P(AfterJoint, NothingChangesWhereNothingActs) {
+  Random random(8);
+  const Twist V{random_vector(random, 1), random_vector(random, 1)};
+  const Twist same = after(V);
+  EXPECT_EQ(same.v, V.v);
+  EXPECT_EQ(same.w, V.w);
+}
+
+TEST_P(AfterJoint, EachLimitAloneIsNotOverrun) {
+  body_.joint.upper = 0.0201;
+  EXPECT_NEAR(rate_after(1.0), 0.1, 1e-9);
+  EXPECT_EQ(rate_after(-1.0), -1.0);
+  body_.joint.upper = 0.01;  // overrun: not farther, nor thrown back
+  EXPECT_EQ(rate_after(1.0), 0.0);
+  body_.joint.upper = std::numeric_limits<double>::infinity();
+  body_.joint.lower = 0.0199;
+  EXPECT_NEAR(rate_after(-1.0), -0.1, 1e-9);
+  EXPECT_EQ(rate_after(1.0), 1.0);
+}
+
+TEST_P(AfterJoint, SpringAndDamperActAtTheEndOfTheStep) {
+  body_.joint.stiffness = 50.0;
+  body_.joint.rest = 0.01;
+  const double rate = rate_after(0.3);
+  EXPECT_NEAR(rate, 0.3 - 0.001 * 50.0 * (0.02 + 0.001 * rate - 0.01), 1e-12);
+  body_.joint.stiffness = 0.0;
+  body_.joint.damping = 2.0;
+  EXPECT_NEAR(rate_after(0.3), 0.3 / (1.0 + 0.001 * 2.0), 1e-12);
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, AfterJoint, testing::Values(JointKind::kHinge, JointKind::kSlider),
+                         [](const auto& kind) {
+                           return std::string(kind.param == JointKind::kHinge ? "Hinge" : "Slider");
+                         });
+
+TEST(Joint, ABallIsDampedAboutEveryAxisAndHeldByItsLimit) {
+  Body body;
+  body.mass_kg = 1.0;
+  body.inertia_B = Mat3::Identity();
+  body.joint.kind = JointKind::kBall;
+  const Pose X_WB = advanced(body.X_WB, {Vec3::Zero(), Vec3(0, 0, 0.02)}, 1.0);
+  const Mobility W = mobility(body.joint, X_WB, inertial_resistance(body, X_WB));
+  const Twist V{Vec3::Zero(), Vec3(0.1, 0.2, 0.3)};
+  body.joint.damping = 2.0;
+  EXPECT_LT((after_joint(body, X_WB, W, 0.001, V).w - V.w / 1.002).norm(), 1e-12);
+  body.joint.damping = 0.0;
+  body.joint.upper = 0.0201;
+  EXPECT_LT((after_joint(body, X_WB, W, 0.001, V).w - Vec3(0.1, 0.2, 0.1)).norm(), 1e-9);
 }
 
 TEST(Joint, FixedBodiesStay) {

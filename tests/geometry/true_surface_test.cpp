@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
 #include <set>
+#include <utility>
+#include <vector>
 
 #include "support/real_data.h"
 #include "support/sample_meshes.h"
@@ -49,6 +52,25 @@ int true_groups(const Part& part) {
   return static_cast<int>(groups.size());
 }
 
+/// The lists of members say what the groups of the features say.
+void expect_listed(const Part& part) {
+  const TrueSurface& surface = part.true_surface;
+  std::map<int, std::vector<std::pair<int, int>>> groups;
+  for (std::size_t i = 0; i < part.pieces.size(); ++i)
+    for (int kind : {1, 2})
+      for (int index = 0; index < part.pieces[i].counts[std::size_t(kind)]; ++index)
+        if (const int group = surface.group_of(int(i), kind, index); group >= 0)
+          groups[group].emplace_back(int(i), index);
+  std::size_t listed = 0;
+  for (const auto& [group, features] : groups) {
+    std::vector<std::pair<int, int>> members;
+    for (const TrueSurface::Member& m : surface.members_of(group)) members.emplace_back(m.piece, m.index);
+    EXPECT_EQ(members, features) << "group " << group;
+    listed += members.size();
+  }
+  EXPECT_EQ(listed, surface.members.size());
+}
+
 TEST(TrueSurface, OfTwoBoxesWithACommonWall) {
   const Part part = part_of({box_corners({0, 0, 0}, {1, 1, 1}), box_corners({1, 0, 0}, {3, 1, 1})});
   EXPECT_NEAR(part.true_surface.exposed_area, 14.0, 1e-12);
@@ -56,6 +78,16 @@ TEST(TrueSurface, OfTwoBoxesWithACommonWall) {
   EXPECT_EQ(group_along(part, 1, -Vec3::UnitX()), -1);
   EXPECT_EQ(group_along(part, 0, Vec3::UnitZ()), group_along(part, 1, Vec3::UnitZ()));
   EXPECT_EQ(true_groups(part), 6);
+  expect_listed(part);
+}
+
+TEST(TrueSurface, GroupsOfManyPiecesAreListed) {
+  std::vector<std::vector<Vec3>> clouds;
+  for (int x = 0; x < 5; ++x)
+    for (int y = 0; y < 4; ++y) clouds.push_back(box_corners(Vec3(x, y, 0), Vec3(x + 1, y + 1, 1)));
+  const Part part = part_of(clouds);
+  EXPECT_EQ(true_groups(part), 6);
+  expect_listed(part);
 }
 
 TEST(TrueSurface, AWallMayBeCoveredInPart) {

@@ -118,6 +118,24 @@ void expect_continuous(const Polytope& ball, double nearly) {
   expect_weighed(shading, P);
 }
 
+/// Facets of a cylinder are parallelograms, with one normal along each straight side; those of a cone are
+/// not.
+TEST(Shading, RuledFacesAreWeighedAsAnyOther) {
+  for (const double top : {0.01, 0.006}) {
+    constexpr int kSides = 24;
+    std::vector<Vec3> cloud;
+    for (int k = 0; k < kSides; ++k) {
+      const double east = 2 * kPi * k / kSides;
+      cloud.emplace_back(0.01 * std::cos(east), 0.01 * std::sin(east), 0.0);
+      cloud.emplace_back(top * std::cos(east), top * std::sin(east), 0.03);
+    }
+    const Part part = part_of(*convex_hull(cloud));
+    const ShadingNormals shading(part, 0.6);
+    ASSERT_TRUE(shading.bends());
+    expect_weighed(shading, part.pieces[0]);
+  }
+}
+
 TEST(Shading, ContinuousAcrossTheEdgesOfTriangles) { expect_continuous(make_icosphere(2, 0.02), 0.02); }
 
 /// Between parallels and meridians, where all four corners have other normals.

@@ -202,9 +202,10 @@ Feature same_feature(const Part& part, int of_piece, const Feature& feature, int
   if (part.true_surface.alone() || feature.kind == FeatureKind::kVertex) return {feature.kind, -1};
   const int group = part.true_surface.group[Index(number_of(part, of_piece, feature))];
   if (group < 0) return {feature.kind, -1};
-  for (const TrueSurface::Member& member : part.true_surface.members_of(group))
-    if (member.piece == piece) return {feature.kind, member.index};
-  return {feature.kind, -1};
+  const auto members = part.true_surface.members_of(group);
+  const auto same = std::lower_bound(members.begin(), members.end(), piece,
+                                     [](const TrueSurface::Member& m, int p) { return m.piece < p; });
+  return {feature.kind, same != members.end() && same->piece == piece ? same->index : -1};
 }
 
 std::optional<PairDistance> depth_on_true_surface(const Part& part_a, int piece_a, const Part& part_b,

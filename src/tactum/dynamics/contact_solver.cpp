@@ -221,10 +221,10 @@ class MotionProblem {
       each_of(left.rank, [&](Index j) { H[j] += scaled * q[j]; });
     }
   }
-  /// do(0), do(1), ... of up to six. One is so frequent, of what turns on a hinge, that it has no loop:
+  /// act(0), act(1), ... of up to six. One is so frequent, of what turns on a hinge, that it has no loop:
   /// compilers make them for many.
-  template <class Do>
-  static void each_of(Index count, const Do& act) {
+  template <class Act>
+  static void each_of(Index count, const Act& act) {
     if (count == 1) return act(0);
     for (Index i = 0; i < count; ++i) act(i);
   }

@@ -127,8 +127,8 @@ Twist constrained_velocity(const Joint& joint, const Pose& X_WB, const Resistanc
 Twist after_joint(const Body& body, const Pose& X_WB, const Mobility& W, double h, const Twist& V) noexcept {
   const Joint& joint = body.joint;
   if (joint.kind == JointKind::kFree || joint.kind == JointKind::kFixed) return V;
-  // An angle takes as long as all the rest: told only where a spring or a limit asks for it.
-  const bool bound = joint.stiffness > 0.0 || joint.limited();
+  // An angle takes as long as all the rest: a hinge's is told only where a spring or a limit asks for it.
+  const bool bound = joint.stiffness != 0.0 || joint.limited();
   if (!bound && joint.damping == 0.0 && joint.friction == 0.0) return V;
   Vec6 after = to_vector(V);
   double damping = joint.damping;

@@ -92,7 +92,7 @@ void respond_by_penalty(const World& world, const FrameSettings& settings, doubl
                     state.contacts);
   const double impact = smallest_time_of_impact(rows, X_WB, V_WB, dt_s);
   const double rest = dt_s - impact;
-  if (impact > 0.0) {
+  if (impact > 0.0) {  // in no time nothing moves, and no joint slows anything
     // The held part has no mass to be slowed before the impact: its friction acts where it is pulled.
     slow_joints(world, impact, rest > 0.0 ? state.tool.body : -1, state);
     advance_distances(rows, X_WB, V_WB, impact);

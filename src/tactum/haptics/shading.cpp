@@ -249,7 +249,7 @@ void ShadingNormals::shade_surface(double cosine) {
   if (!curved) triangle_normals_.clear();
 }
 
-inline const ShadedFace& ShadingNormals::face_at(int piece, const Feature& feature) const noexcept {
+const ShadedFace& ShadingNormals::face_at(int piece, const Feature& feature) const noexcept {
   return faces_[Index(face_of_[Index(first_face_[Index(piece)] + feature.index)])];
 }
 
@@ -286,7 +286,7 @@ void shaded_normals(const ShadingNormals& a, const ShadingNormals& b, const Pose
   const bool on_pieces = !patch.of_surfaces;
   const bool flat_a = on_pieces && !a.bends(patch.piece_a, manifold.a);
   const bool flat_b = on_pieces && !b.bends(patch.piece_b, manifold.b);
-  for (Index i = 0; i < normals.size(); ++i) {
+  for (Index i = 0; i < std::min(normals.size(), manifold.points.size()); ++i) {
     const ContactPoint& point = manifold.points[i];
     Vec3 normal = manifold.normal;
     if (!flat_b) {
@@ -297,7 +297,8 @@ void shaded_normals(const ShadingNormals& a, const ShadingNormals& b, const Pose
     if (!flat_a)
       normal -= on_pieces ? a.deviation(patch.piece_a, manifold.a, point.p_a)
                           : a.deviation_on_surface(manifold.a, point.p_a);
-    normals[i] = normal * (1.0 / normal.norm());
+    const double length_sq = normal.squaredNorm();
+    normals[i] = length_sq > 0.0 ? Vec3(normal * (1.0 / std::sqrt(length_sq))) : manifold.normal;
   }
 }
 
