@@ -8,7 +8,6 @@
 #include "collision/cases.h"
 #include "tactum/base/tolerances.h"
 #include "tactum/collision/closest_features.h"
-#include "tactum/collision/planar_patch.h"
 
 namespace tactum {
 namespace {
@@ -20,11 +19,30 @@ struct Contact {
   Manifold patch;
 };
 
+/// How far the patch's points are from the plane of the face they are on, of either piece that takes part
+/// with one.
+double off_the_faces(const Polytope& A, const Polytope& B, const Pose& X_AB, const Manifold& patch) {
+  double off = 0.0;
+  for (const ContactPoint& p : patch.points) {
+    const Vec3 in_b = X_AB.inverse() * p.p_b;
+    if (patch.a.kind == Kind::kFace) {
+      const Polytope::Face& face = A.faces[std::size_t(patch.a.index)];
+      off = std::max(off, std::abs(face.normal.dot(p.p_a) - face.offset));
+    }
+    if (patch.b.kind == Kind::kFace) {
+      const Polytope::Face& face = B.faces[std::size_t(patch.b.index)];
+      off = std::max(off, std::abs(face.normal.dot(in_b) - face.offset));
+    }
+  }
+  return off;
+}
+
 Contact contact(const Polytope& A, const Polytope& B, const Pose& X_AB, double tolerance) {
   Contact c;
   PairCache cache;
   c.closest = closest_features(A, B, X_AB, cache);
   contact_manifold(A, B, X_AB, c.closest, tolerance, c.patch);
+  EXPECT_LT(off_the_faces(A, B, X_AB, c.patch), 1e-13 * (1.0 + X_AB.p.norm() + A.magnitude + B.magnitude));
   return c;
 }
 
@@ -147,78 +165,6 @@ TEST(Manifold, ManyCorneredFacesFit) {
   EXPECT_LT(c.patch.area, lens);  // never more than there is
 }
 
-/// A convex polygon of so many random corners on an ellipse, some of them often shared with another's.
-PatchPolygon random_polygon(Random& random, int corners) {
-  std::vector<double> angles;
-  for (int i = 0; i < corners; ++i)
-    angles.push_back(random.index(2) ? 0.1 * random.index(62) : random.uniform(0.0, 2.0 * kPi));
-  std::sort(angles.begin(), angles.end());
-  angles.erase(std::unique(angles.begin(), angles.end()), angles.end());
-  const Vec2 middle(0.1 * random.index(3), random.index(2) ? 0.0 : random.unit());
-  const double wide = random.index(2) ? 1.0 : random.uniform(0.01, 1.0);
-  PatchPolygon polygon;
-  for (double angle : angles) polygon.push_back(middle + Vec2(wide * std::cos(angle), std::sin(angle)));
-  return polygon;
-}
-
-/// All sides of the window at once, however many, against cutting by one side after the other.
-TEST(Manifold, ClippingByAWindowAgreesWithClippingSideBySide) {
-  const std::uint64_t seed = 35;
-  Random random(seed);
-  for (int i = 0; i < cases::some_of(20000); ++i) {
-    const int most = i % 2 ? 6 : kPatchCorners;
-    const PatchPolygon polygon = random_polygon(random, 3 + random.index(most - 2));
-    const PatchPolygon window =
-        i % 40 == 1 ? polygon : random_polygon(random, 3 + random.index(i % 4 == 1 ? 2 : most - 2));
-    if (polygon.size() < 3 || window.size() < 3) continue;
-    PatchPolygon at_once = polygon;
-    clip_polygon(at_once, window);
-    PatchPolygon by_sides = polygon;
-    for (std::size_t k = 0; k < window.size(); ++k) {
-      const Vec2 side = window[(k + 1) % window.size()] - window[k];
-      const Vec2 outward = Vec2(side.y(), -side.x()).normalized();
-      clip_polygon(by_sides, outward, outward.dot(window[k]));
-    }
-    ASSERT_NEAR(twice_area(at_once), twice_area(by_sides), 1e-9) << "seed " << seed << " case " << i;
-  }
-}
-
-/// Windows of one and two corners, which enclose nothing, and corners told twice, which bound nothing.
-TEST(Manifold, ClippingByAWindowWithoutSidesKeepsWhatIsInside) {
-  const auto clipped = [](std::initializer_list<Vec2> window_corners) {
-    PatchPolygon polygon;
-    PatchPolygon window;
-    for (const Vec2& corner : {Vec2(-1, -1), Vec2(1, -1), Vec2(1, 1), Vec2(-1, 1)}) polygon.push_back(corner);
-    for (const Vec2& corner : window_corners) window.push_back(corner);
-    clip_polygon(polygon, window);
-    return 0.5 * twice_area(polygon);
-  };
-  EXPECT_EQ(clipped({{0, 0}}), 4.0);
-  EXPECT_EQ(clipped({{0, -2}, {0, 2}}), 0.0);
-  EXPECT_EQ(clipped({{0, -2}, {2, 0}, {2, 0}, {0, 2}}), clipped({{0, -2}, {2, 0}, {0, 2}}));
-  const double square = clipped({{-.2, -1.4}, {1.4, -.2}, {.2, 1.4}, {-1.4, .2}});
-  EXPECT_NEAR(clipped({{-.2, -1.4}, {1.4, -.2}, {.2, 1.4}, {-1.4, .2}, {-1.4, .2}}), square, 1e-14);
-}
-
-/// A damaged part may hold faces that are not convex: the patch then means little, but is within bounds.
-TEST(Manifold, ClippingWhatIsNotConvexStaysWithinBounds) {
-  const std::uint64_t seed = 36;
-  Random random(seed);
-  const auto star = [&](int corners) {
-    PatchPolygon polygon;
-    for (int i = 0; i < corners; ++i) {
-      const double angle = 2.0 * kPi * (i + 0.9 * random.uniform(0.0, 1.0)) / corners;
-      polygon.push_back(random.uniform(0.1, 3.0) * Vec2(std::cos(angle), std::sin(angle)));
-    }
-    return polygon;
-  };
-  for (int i = 0; i < cases::some_of(20000); ++i) {
-    PatchPolygon polygon = star(3 + random.index(4));
-    clip_polygon(polygon, star(1 + random.index(6)));
-    for (const Vec2& corner : polygon) ASSERT_LE(corner.norm(), 3.1) << "seed " << seed << " case " << i;
-  }
-}
-
 /// A pose that is none leaves the nearest points.
 TEST(Manifold, OfAPoseThatIsNotFiniteIsAPoint) {
   const Pose level = above(0.001, 0.002, -0.02);
@@ -297,6 +243,41 @@ TEST(Manifold, MomentsAgreeWithCounting) {
     EXPECT_NEAR(second_moment(c.patch, e1, e2), central(0, 1), 0.02 * central.trace());
     EXPECT_NEAR(second_moment(c.patch, e2, e2), central(1, 1), 0.02 * central.trace());
   }
+}
+
+/// A rectangle is clipped by its own coordinates, any other face side by side: B with a corner that is a hair
+/// off square has the same patch.
+TEST(Manifold, OfARectangleIsThatOfAFaceThatNearlyIsOne) {
+  const std::uint64_t seed = 39;
+  Random random(seed);
+  int patches = 0;
+  for (int i = 0; i < cases::some_of(5000); ++i) {
+    SCOPED_TRACE("seed " + std::to_string(seed) + ", case " + std::to_string(i));
+    const Polytope A = make_prism(3 + random.index(7), 0.02, 0.02);
+    const Vec3 half(random.uniform(0.002, 0.03), random.uniform(0.002, 0.03), 0.01);
+    constexpr double kHair = 1e-10;
+    const auto brick = [&](double off) {
+      std::vector<Vec3> corners;
+      for (const double z : {-half.z(), half.z()})
+        for (const Vec2& at : {Vec2(-1, -1), Vec2(1, -1), Vec2(1, 1 + off), Vec2(-1, 1)})
+          corners.push_back({half.x() * at.x(), half.y() * at.y(), z});
+      return *convex_hull(corners);
+    };
+    const Pose X{
+        exp_rotation(cases::random_vector(random, 0.02)) * exp_rotation(Vec3(0, 0, random.uniform(-3, 3))),
+        {random.uniform(-0.02, 0.02), random.uniform(-0.02, 0.02), -0.0202}};
+    const Contact square = contact(A, brick(0.0), X, 5e-4);
+    if (square.patch.points.size() != 4) continue;
+    const Contact nearly = contact(A, brick(kHair), X, 5e-4);
+    ASSERT_EQ(nearly.patch.points.size(), 4u);
+    ++patches;
+    expect_sound(square, 5e-4, 1e-12);
+    EXPECT_NEAR(nearly.patch.area, square.patch.area, 1e-10);
+    EXPECT_LT((centroid(nearly.patch) - centroid(square.patch)).norm(), 1e-8);
+    const Vec3 u = any_orthogonal(square.patch.normal);
+    EXPECT_NEAR(second_moment(nearly.patch, u, u), second_moment(square.patch, u, u), 1e-11);
+  }
+  EXPECT_GT(patches, cases::some_of(1000));
 }
 
 TEST(Manifold, SwappingAAndBTurnsTheNormalAndKeepsThePatch) {

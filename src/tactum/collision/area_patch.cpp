@@ -1,12 +1,134 @@
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
+#include <utility>
 
 #include "tactum/base/tolerances.h"
 #include "tactum/collision/patch_work.h"
 
 namespace tactum::detail {
 namespace {
+
+/// B's face as the plane a patch of two faces is told on: x along its first side, y from there inward, from
+/// the corner where that side ends. A is looked at along the contact normal. So B's points are the part's
+/// own, and where the face is a rectangle its sides are values of a coordinate.
+class ReferenceFace {
+ public:
+  explicit ReferenceFace(const PatchWork& w) noexcept
+      : w_(w),
+        face_(w.B.faces[w.b.feature.index]),
+        sides_(&w.B.sides[face_.first]),
+        rectangle_(has_square_corners()),
+        along_(rectangle_ ? sides_[1].normal : Vec3(face_.normal.cross(sides_[0].normal))),
+        origin_(w.X_AB * corner(1)) {
+    if (rectangle_) {
+      box_.low.x() = along_.dot(corner(0) - corner(1));
+      box_.high.y() = -sides_[0].normal.dot(corner(2) - corner(1));
+    }
+    const Mat3& R = w.X_AB.R;
+    const Projection b = of_b();
+    x_ = b.x * both(R(0, 0)) + b.y * both(R(0, 1)) + b.z * both(R(0, 2));
+    y_ = b.x * both(R(1, 0)) + b.y * both(R(1, 1)) + b.z * both(R(1, 2));
+    z_ = b.x * both(R(2, 0)) + b.y * both(R(2, 1)) + b.z * both(R(2, 2));
+  }
+
+  bool rectangle() const noexcept { return rectangle_; }
+  /// All of the face, if it is a rectangle.
+  const PatchBox& box() const noexcept { return box_; }
+  /// No gap over it is larger, if it is a rectangle: a bound of the overlap's that costs next to nothing.
+  double largest(const Height& gap) const noexcept {
+    return gap.at_origin + std::max(gap.slope.x() * box_.low.x(), 0.0) +
+           std::max(gap.slope.y() * box_.high.y(), 0.0);
+  }
+  /// The coordinates of points in B's frame.
+  Projection of_b() const noexcept {
+    const Vec3& out = sides_[0].normal;
+    return {corner(1), Two{along_.x(), -out.x()}, Two{along_.y(), -out.y()}, Two{along_.z(), -out.z()}};
+  }
+  /// Those of points in A's frame, the same for all on a line along the normal: by the axes' cross products
+  /// with it.
+  Projection along_normal() const noexcept {
+    const Vec3& n = w_.closest.normal;
+    const Two u = {x_[1], -x_[0]};
+    const Two v = {y_[1], -y_[0]};
+    const Two t = {z_[1], -z_[0]};
+    return {origin_, v * both(n.z()) - t * both(n.y()), t * both(n.x()) - u * both(n.z()),
+            u * both(n.y()) - v * both(n.x()), both(1.0 / cosine())};
+  }
+  /// Between the face's normal and the contact's.
+  double cosine() const noexcept { return face_.normal.dot(w_.n_B); }
+  /// How the face rises along the normal.
+  Vec2 slope() const noexcept { return vec2(dots(w_.closest.normal)); }
+  /// The direction of B's own x, or y where that is steep, in the face: the same for all faces in one plane,
+  /// so that the points are those of a part in one piece. [-]
+  Vec2 axis() const noexcept {
+    constexpr double kSteep = 0.55;  // no normal of a simple ratio
+    const int own = std::abs(face_.normal.x()) < kSteep ? 0 : 1;
+    return Vec2(along_[own], -sides_[0].normal[own]).normalized();
+  }
+  /// Up to A's face along the normal.
+  Height gap() const noexcept {
+    const Polytope::Face& over = w_.A.faces[w_.a.feature.index];
+    const double per_gap = -1.0 / over.normal.dot(w_.closest.normal);
+    return {(over.normal.dot(origin_) - over.offset) * per_gap, vec2(dots(over.normal) * both(per_gap))};
+  }
+  const Vec3& origin() const noexcept { return origin_; }
+  Vec3 ex() const noexcept { return {x_[0], y_[0], z_[0]}; }
+  Vec3 ey() const noexcept { return {x_[1], y_[1], z_[1]}; }
+
+ private:
+  /// Of four corners three: how far normals of sides are from square, their product tells.
+  bool has_square_corners() const noexcept {
+    return face_.count == 4 && std::abs(sides_[0].normal.dot(sides_[1].normal)) < tolerances::kCoplanar &&
+           std::abs(sides_[1].normal.dot(sides_[2].normal)) < tolerances::kCoplanar &&
+           std::abs(sides_[2].normal.dot(sides_[3].normal)) < tolerances::kCoplanar;
+  }
+  const Vec3& corner(int i) const noexcept { return w_.B.vertices[w_.B.face_vertices[face_.first + i]]; }
+  /// Of a vector with both axes.
+  Two dots(const Vec3& v) const noexcept { return x_ * both(v.x()) + y_ * both(v.y()) + z_ * both(v.z()); }
+
+  const PatchWork& w_;
+  const Polytope::Face& face_;
+  const Polytope::Side* sides_;
+  bool rectangle_;
+  PatchBox box_;
+  Vec3 along_;     // x, B's frame
+  Vec3 origin_;    // A's frame
+  Two x_, y_, z_;  // the components of both axes, A's frame
+};
+
+/// A place on B with the gap over it, as it is linear in the face's coordinates.
+struct OnB {
+  Two xy, z_gap;
+
+  OnB operator+(const OnB& x) const noexcept { return {xy + x.xy, z_gap + x.z_gap}; }
+  OnB operator*(double by) const noexcept { return {xy * both(by), z_gap * both(by)}; }
+};
+
+/// ... and with the place on A over it: what a contact point is told by.
+struct OnBoth {
+  Two a_xy;
+  double a_z;
+  Two b_xy, b_z_gap;
+
+  static OnBoth over(const OnB& b, const Vec3& n) noexcept {
+    return {b.xy + Two{n.x(), n.y()} * both(b.z_gap[1]), b.z_gap[0] + n.z() * b.z_gap[1], b.xy, b.z_gap};
+  }
+  OnBoth operator+(const OnBoth& x) const noexcept {
+    return {a_xy + x.a_xy, a_z + x.a_z, b_xy + x.b_xy, b_z_gap + x.b_z_gap};
+  }
+  OnBoth operator-(const OnBoth& x) const noexcept {
+    return {a_xy - x.a_xy, a_z - x.a_z, b_xy - x.b_xy, b_z_gap - x.b_z_gap};
+  }
+  void store(ContactPoint& point) const noexcept {
+    std::memcpy(point.p_a.data(), &a_xy, sizeof a_xy);
+    point.p_a.z() = a_z;
+    std::memcpy(point.p_b.data(), &b_xy, sizeof b_xy);
+    point.p_b.z() = b_z_gap[0];
+    point.distance = b_z_gap[1];
+  }
+};
 
 struct GapRange {
   double least = std::numeric_limits<double>::infinity();
@@ -21,26 +143,20 @@ struct GapRange {
   }
 };
 
-/// No gap of the polygon is larger, up to rounding: the largest of each coordinate's share.
-double bound_of(const Height& gap, const PatchPolygon& polygon) noexcept {
-  const Two slope = {gap.slope.x(), gap.slope.y()};
-  Two most = both(-std::numeric_limits<double>::infinity());
-  for (const Vec2& x : polygon) most = larger(most, slope * two(x));
-  return gap.at_origin + most[0] + most[1];
-}
-
 /// Where both faces are, one over the other: the polygon of the contact's own pieces, and those of the other
 /// stretches, which are made anew whenever they are asked for.
 class Overlap {
  public:
-  Overlap(const PatchWork& w, const Tangent& tangent_B) noexcept : w_(w), tangent_B_(tangent_B) {
-    face_outline(w.tangent, w.A, w.a.feature.index, true, own_);
+  Overlap(const PatchWork& w, const ReferenceFace& reference) noexcept
+      : w_(w), reference_(reference), along_normal_(reference.along_normal()) {
+    face_outline(along_normal_, w.A, w.a.feature.index, true, own_);
   }
   const PatchPolygon& own() const noexcept { return own_; }
   /// Clips A's face by B's.
   void clip() noexcept {
+    if (reference_.rectangle()) return clip_polygon(own_, reference_.box(), w_.A.size + w_.B.size);
     PatchPolygon window;
-    face_outline(tangent_B_, w_.B, w_.b.feature.index, false, window);
+    face_outline(reference_.of_b(), w_.B, w_.b.feature.index, false, window);
     clip_polygon(own_, window);
   }
   /// Keeps where slope . x <= offset.
@@ -55,8 +171,8 @@ class Overlap {
     for (const Stretch& other : w_.others) {
       PatchPolygon polygon;
       PatchPolygon window;
-      face_outline(w_.tangent, *other.A, other.a.index, true, polygon);
-      face_outline(tangent_B_, *other.B, other.b.index, false, window);
+      face_outline(along_normal_, *other.A, other.a.index, true, polygon);
+      face_outline(reference_.of_b(), *other.B, other.b.index, false, window);
       clip_polygon(polygon, window);
       for (const Cut& cut : cuts_) clip_polygon(polygon, cut.slope, cut.offset);
       if (!polygon.empty()) visit_one(polygon);
@@ -69,7 +185,8 @@ class Overlap {
     double offset;
   };
   const PatchWork& w_;
-  const Tangent& tangent_B_;
+  const ReferenceFace& reference_;
+  const Projection along_normal_;
   PatchPolygon own_;
   StaticVector<Cut, 3> cuts_;  // one by the gap, one for each face that leans
 };
@@ -77,15 +194,13 @@ class Overlap {
 /// The moments of all polygons as those of one figure.
 PatchMoments moments_of_all(const Overlap& overlap) noexcept {
   PatchMoments sum;
-  overlap.visit([&](const PatchPolygon& polygon) {
-    const PatchMoments m = moments_of(polygon);
-    if (m.area > 0.0) sum = together(sum, m);
-  });
+  overlap.visit([&](const PatchPolygon& polygon) { sum = together(sum, moments_of(polygon)); });
   return sum;
 }
 
-/// The corners of the contact's own polygon that are farthest apart.
-void sliver_of(const PatchWork& w, const PatchPolygon& polygon, const Height& za, const Height& zb) noexcept {
+/// The interval between the corners of the contact's own polygon that are farthest apart.
+void sliver_contact(const PatchWork& w, const ReferenceFace& reference, const Height& gap,
+                    const PatchPolygon& polygon) noexcept {
   if (polygon.empty()) return point_contact(w);
   Vec2 x0 = polygon[0];
   Vec2 x1 = polygon[0];
@@ -93,24 +208,30 @@ void sliver_of(const PatchWork& w, const PatchPolygon& polygon, const Height& za
     if ((x - x0).squaredNorm() > (x1 - x0).squaredNorm()) x1 = x;
   for (const Vec2& x : polygon)
     if ((x - x1).squaredNorm() > (x0 - x1).squaredNorm()) x0 = x;
-  sliver_contact(w, x0, x1, za, zb);
+  // Along the coordinate in which they differ more, so that the ends keep their places.
+  const int axis = std::abs(x1.x() - x0.x()) > std::abs(x1.y() - x0.y()) ? 0 : 1;
+  if (x1[axis] < x0[axis]) std::swap(x0, x1);
+  const auto on_b = [&](const Vec2& x) -> Vec3 {
+    return reference.origin() + reference.ex() * x.x() + reference.ey() * x.y();
+  };
+  const Vec3& n = w.closest.normal;
+  strip_contact(w, {on_b(x0) + n * gap(x0), on_b(x1) + n * gap(x1), on_b(x0), on_b(x1)});
 }
 
 }  // namespace
 
 void face_face_contact(const PatchWork& w) noexcept {
-  const Tangent tangent_B = w.tangent_B();
-  const Height za = face_height(w.tangent, w.A, w.a.feature.index);
-  const Height zb = face_height(tangent_B, w.B, w.b.feature.index);
-  const Height gap{za.at_origin - zb.at_origin, za.slope - zb.slope};
-  const bool alone = w.others.empty();
-  Overlap overlap(w, tangent_B);
-  const double bound = bound_of(gap, overlap.own());
-  if (!std::isfinite(bound)) return point_contact(w);  // nor is the pose
+  const ReferenceFace reference(w);
+  if (!std::isfinite(reference.origin().sum())) return point_contact(w);  // nor is the pose
+  Overlap overlap(w, reference);
   overlap.clip();
+  const Height gap = reference.gap();
+  const bool alone = w.others.empty();
   if (overlap.own().empty() && alone) return point_contact(w);
-  // Where the whole face is within the tolerance the gap cuts nothing.
-  if (bound > w.tolerance || gap_share(w) < 1.0 || !alone) {
+  // Where B's whole face is within the tolerance the gap cuts nothing.
+  const bool whole =
+      alone && gap_share(w) >= 1.0 && reference.rectangle() && reference.largest(gap) <= w.tolerance;
+  if (!whole) {
     GapRange range;
     overlap.visit([&](const PatchPolygon& polygon) { range.extend(gap, polygon); });
     if (range.least >= w.tolerance) return point_contact(w);
@@ -125,25 +246,35 @@ void face_face_contact(const PatchWork& w) noexcept {
     overlap.cut(rise.slope, rise.offset + highest * share);
   };
   if (w.a.face_share < 1.0)
-    cut_toward_edge(rise_from_edge(w.tangent, w.A, w.a.edge, {}, za.slope), w.a.face_share);
+    cut_toward_edge(
+        rise_from_edge(reference.along_normal(), w.A, w.a.edge, {}, reference.slope() + gap.slope),
+        w.a.face_share);
   if (w.b.face_share < 1.0)
-    cut_toward_edge(rise_from_edge(w.tangent, w.B, w.b.edge, w.X_AB, -zb.slope), w.b.face_share);
+    cut_toward_edge(rise_from_edge(reference.of_b(), w.B, w.b.edge, {}, -reference.slope()), w.b.face_share);
   const PatchMoments m = alone ? moments_of(overlap.own()) : moments_of_all(overlap);
   const double size = std::max(w.A.size, w.B.size);
-  if (m.area <= tolerances::kPatchArea * size * size) return sliver_of(w, overlap.own(), za, zb);
-  w.out.area = m.area;
-  const PatchSpread arms = spread_of(m);
-  const Vec3 center_a = w.tangent.point(m.centroid, za(m.centroid));
-  const double center_gap = gap(m.centroid);
-  const Vec3 center_b = center_a - w.tangent.n * center_gap;
-  w.out.points.clear();  // they are none yet; said here, where each goes is known when this is compiled
-  for (const Vec2* arm : {&arms.u, &arms.v}) {
-    const Vec3 to_a = w.tangent.e1 * arm->x() + w.tangent.e2 * arm->y() + w.tangent.n * za.slope.dot(*arm);
-    const double opens = gap.slope.dot(*arm);
-    const Vec3 to_b = to_a - w.tangent.n * opens;
-    w.out.points.push_back({center_a + to_a, center_b + to_b, center_gap + opens, 0.25, 0});
-    w.out.points.push_back({center_a - to_a, center_b - to_b, center_gap - opens, 0.25, 0});
-  }
+  if (m.area <= tolerances::kPatchArea * size * size) return sliver_contact(w, reference, gap, overlap.own());
+  const PatchSpread arms = spread_of(m, reference.axis());
+  w.out.area = m.area * reference.cosine();
+  const Vec3& n = w.closest.normal;
+  const Vec3& o = reference.origin();
+  const Vec3 ex = reference.ex();
+  const Vec3 ey = reference.ey();
+  const OnB origin{Two{o.x(), o.y()}, Two{o.z(), gap.at_origin}};
+  const OnB per_x{Two{ex.x(), ex.y()}, Two{ex.z(), gap.slope.x()}};
+  const OnB per_y{Two{ey.x(), ey.y()}, Two{ey.z(), gap.slope.y()}};
+  const OnBoth center = OnBoth::over(origin + per_x * m.centroid.x() + per_y * m.centroid.y(), n);
+  const OnBoth u = OnBoth::over(per_x * arms.u.x() + per_y * arms.u.y(), n);
+  const OnBoth v = OnBoth::over(per_x * arms.v.x() + per_y * arms.v.y(), n);
+  auto& points = w.out.points;
+  points.clear();
+  const std::uint64_t name = w.name(0);
+  for (std::uint64_t place = 0; place < 4; ++place)
+    points.push_back({Vec3::Zero(), Vec3::Zero(), 0.0, 0.25, name + place});
+  (center + u).store(points[0]);
+  (center - u).store(points[1]);
+  (center + v).store(points[2]);
+  (center - v).store(points[3]);
 }
 
 }  // namespace tactum::detail

@@ -1,6 +1,7 @@
 #include "tactum/collision/facing_feature.h"
 
 #include <cmath>
+#include <limits>
 
 #include "tactum/collision/pair_view.h"
 
@@ -9,19 +10,45 @@ namespace {
 
 using Kind = FeatureKind;
 
-/// Calls visit(face) for the faces that hold feature `f`.
-template <class Visit>
-void for_faces_at(const Polytope& P, const Feature& f, const Visit& visit) noexcept {
-  if (f.kind == Kind::kFace) return visit(f.index);
-  if (f.kind == Kind::kEdge) {
-    visit(P.edges[f.index].left);
-    visit(P.edges[f.index].right);
-    return;
+/// The face most square to a direction, of those looked at.
+struct MostSquare {
+  int face = -1;
+  double lean = std::numeric_limits<double>::infinity();  ///< its angle's chord, squared
+  double next = std::numeric_limits<double>::infinity();  ///< that of the second
+
+  void look_at(const Polytope& P, int candidate, const Vec3& outward) noexcept {
+    // The chord has all its digits where a cosine has none.
+    const double off = (P.faces[candidate].normal - outward).squaredNorm();
+    if (off < lean) {
+      next = lean;
+      lean = off;
+      face = candidate;
+    } else {
+      next = std::min(next, off);
+    }
   }
-  for (const Polytope::Ray& ray : P.rays_at(f.index)) {
+};
+
+[[gnu::noinline]] MostSquare most_square_at_vertex(const Polytope& P, int vertex,
+                                                   const Vec3& outward) noexcept {
+  MostSquare found;
+  for (const Polytope::Ray& ray : P.rays_at(vertex)) {
     const Polytope::Edge& edge = P.edges[ray.edge];
-    visit(edge.tail == f.index ? edge.left : edge.right);
+    found.look_at(P, edge.tail == vertex ? edge.left : edge.right, outward);
   }
+  return found;
+}
+
+MostSquare most_square(const Polytope& P, const Feature& f, const Vec3& outward) noexcept {
+  if (f.kind == Kind::kVertex) return most_square_at_vertex(P, f.index, outward);
+  MostSquare found;
+  if (f.kind == Kind::kFace) {
+    found.look_at(P, f.index, outward);
+  } else {
+    found.look_at(P, P.edges[f.index].left, outward);
+    found.look_at(P, P.edges[f.index].right, outward);
+  }
+  return found;
 }
 
 /// Of the edges at feature `f`, that bound `face`, the one most square to `outward`; its slope in `slope`.
@@ -42,37 +69,11 @@ int level_edge(const Polytope& P, const Feature& f, int face, const Vec3& outwar
   return best;
 }
 
-}  // namespace
-
-Facing facing_feature(const Polytope& P, const Feature& f, const Vec3& outward, double angle) noexcept {
-  constexpr double kSmall = 0.01;  // a squared sine below which the cosine has lost too many of its digits
-  int face = -1;
-  double lean = 9.0;  // squared sines
-  double next = 9.0;
-  for_faces_at(P, f, [&](int candidate) {
-    const Vec3& normal = P.faces[candidate].normal;
-    const double cosine = normal.dot(outward);
-    double sine_sq = cosine > 0.0 ? 1.0 - cosine * cosine : 4.0;
-    if (sine_sq < kSmall) sine_sq = normal.cross(outward).squaredNorm();
-    if (sine_sq < lean) {
-      next = lean;
-      lean = sine_sq;
-      face = candidate;
-    } else {
-      next = std::min(next, sine_sq);
-    }
-  });
+/// Of a face that leans by `lean` from square, or has a neighbour that leans by little more, `next`.
+[[gnu::noinline]] Facing shrunk(const Polytope& P, const Feature& f, int face, double lean, double next,
+                                const Vec3& outward, double angle) noexcept {
   Facing facing;
   facing.feature = {Kind::kFace, face};
-  if (f.kind == Kind::kFace) {
-    // Square to the normal; where it is not (an answer that is none of the queries'), a point.
-    if (lean >= angle * angle) facing.feature = {Kind::kVertex, vertex_of(P, f)};
-    return facing;
-  }
-  // Nearly level and alone: both shares of the face are one, whatever its edges do.
-  if (lean <= 0.25 * angle * angle && next >= 9.0 * lean) return facing;
-  lean = std::sqrt(lean);
-  next = std::sqrt(next);
   double slope = 0.0;
   facing.edge = level_edge(P, f, face, outward, slope);
   // An edge shrinks at a quarter of the angle: where two edges of a leaning face slope alike, both are points
@@ -83,6 +84,20 @@ Facing facing_feature(const Polytope& P, const Feature& f, const Vec3& outward, 
   if (facing.face_share > 0.0) return facing;
   facing.feature = facing.along_share > 0.0 ? Feature{Kind::kEdge, facing.edge} : f;
   return facing;
+}
+
+}  // namespace
+
+Facing facing_feature(const Polytope& P, const Feature& f, const Vec3& outward, double angle) noexcept {
+  const auto [face, lean, next] = most_square(P, f, outward);
+  if (f.kind == Kind::kFace) {
+    // Square to the normal; where it is not (an answer that is none of the queries'), a point.
+    const bool square = lean < angle * angle;
+    return {square ? f : Feature{Kind::kVertex, vertex_of(P, f)}};
+  }
+  // Nearly level and alone: both shares of the face are one, whatever its edges do.
+  if (lean <= 0.25 * angle * angle && next >= 9.0 * lean) return {{Kind::kFace, face}};
+  return shrunk(P, f, face, std::sqrt(lean), std::sqrt(next), outward, angle);
 }
 
 }  // namespace tactum

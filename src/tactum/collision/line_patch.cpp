@@ -49,11 +49,6 @@ class Intervals {
   StaticVector<PatchInterval, 8> intervals_;
 };
 
-/// Points of A and of B over each other at both ends of a segment; linear between.
-struct Strip {
-  Vec3 a0, a1, b0, b1;
-};
-
 /// The cut that a leaning face makes: only this share of its rise is kept. Told by the rise at a strip's
 /// ends.
 struct StripCut {
@@ -91,8 +86,9 @@ std::pair<double, double> quadrature(const Intervals& kept) noexcept {
 /// Two points on the kept part of a strip.
 void interval_contact(const PatchWork& w, const Strip& strip, Intervals kept,
                       const StripCut& cut = {}) noexcept {
-  const double gap0 = w.tangent.n.dot(strip.a0 - strip.b0);
-  const double gap1 = w.tangent.n.dot(strip.a1 - strip.b1);
+  const Vec3& n = w.closest.normal;
+  const double gap0 = n.dot(strip.a0 - strip.b0);
+  const double gap1 = n.dot(strip.a1 - strip.b1);
   if (kept.empty()) return point_contact(w);
   const double least = least_of(kept, gap0, gap1);
   if (least >= w.tolerance) return point_contact(w);
@@ -104,9 +100,10 @@ void interval_contact(const PatchWork& w, const Strip& strip, Intervals kept,
     if (kept.empty()) return point_contact(w);
   }
   const auto [first, second] = quadrature(kept);
+  std::uint64_t name = w.name(4);
   for (double s : {first, second})
     w.out.points.push_back({strip.a0 + (strip.a1 - strip.a0) * s, strip.b0 + (strip.b1 - strip.b0) * s,
-                            gap0 + (gap1 - gap0) * s, 0.5, 0});
+                            gap0 + (gap1 - gap0) * s, 0.5, name++});
 }
 
 /// A segment's ends in the contact plane.
@@ -116,9 +113,50 @@ struct Segment {
   double place(const Vec2& x) const noexcept { return (x - x0).dot(x1 - x0) / (x1 - x0).squaredNorm(); }
 };
 
-Segment flat_edge(const PatchWork& w, const Polytope& P, int edge, const Pose& X) noexcept {
-  return {w.tangent.flat(X * P.vertices[P.edges[edge].tail]),
-          w.tangent.flat(X * P.vertices[P.edges[edge].head])};
+Segment flat_edge(const Projection& plane, const Polytope& P, int edge, const Pose& X) noexcept {
+  return {plane.flat(X * P.vertices[P.edges[edge].tail]), plane.flat(X * P.vertices[P.edges[edge].head])};
+}
+
+/// The contact plane, told in the frame of either piece: coordinates x along e1, e2 and height along n, from
+/// a point near the contact.
+struct Tangent {
+  Vec3 origin, e1, e2, n;
+
+  Projection projection() const noexcept {
+    return {origin, Two{e1.x(), e2.x()}, Two{e1.y(), e2.y()}, Two{e1.z(), e2.z()}};
+  }
+  Vec3 point(const Vec2& x, double z) const noexcept { return origin + e1 * x.x() + e2 * x.y() + n * z; }
+};
+
+/// 1 / sqrt(1 - lean), for `lean` in [0, 1). Where three terms of its series do they stand in for the
+/// root and the quotient, which all that follows would wait for.
+double grown_to_unit(double lean) noexcept {
+  return lean < tolerances::kThreeTerms ? 1.0 + lean * (0.5 + lean * 0.375) : 1.0 / std::sqrt(1.0 - lean);
+}
+
+/// Along A's edge, or a side of its face: nearly square to the normal already in the answers of the queries.
+Tangent contact_plane(const PatchWork& w) noexcept {
+  const Feature& a = w.a.feature;
+  const int edge = a.kind == FeatureKind::kEdge ? a.index : w.A.sides[w.A.faces[a.index].first].edge;
+  const Vec3& u = w.A.edges[edge].direction;
+  const Vec3& n = w.closest.normal;
+  const double along = n.dot(u);
+  const double lean = along * along;
+  const Vec3 e1 = lean < 0.75 ? Vec3((u - n * along) * grown_to_unit(lean)) : any_orthogonal(n);
+  return {w.closest.p_b, e1, n.cross(e1), n};
+}
+
+/// ... in B's frame.
+Tangent in_b(const PatchWork& w, const Tangent& plane) noexcept {
+  const Vec3 e1 = rotated_back(w.X_AB.R, plane.e1);
+  return {rotated_back(w.X_AB.R, plane.origin - w.X_AB.p), e1, w.n_B.cross(e1), w.n_B};
+}
+
+Height face_height(const Tangent& plane, const Polytope& P, int face_index) noexcept {
+  const Polytope::Face& face = P.faces[face_index];
+  const double per_up = 1.0 / face.normal.dot(plane.n);
+  return {(face.offset - face.normal.dot(plane.origin)) * per_up,
+          {-face.normal.dot(plane.e1) * per_up, -face.normal.dot(plane.e2) * per_up}};
 }
 
 /// Keeps the part of a segment inside a convex, counter-clockwise window.
@@ -155,7 +193,7 @@ struct EdgeAndFace {
   double up;
 };
 
-PatchInterval clipped(const Tangent& plane, const EdgeAndFace& pair, const Segment& segment) noexcept {
+PatchInterval clipped(const Projection& plane, const EdgeAndFace& pair, const Segment& segment) noexcept {
   PatchPolygon window;
   face_outline(plane, pair.F, pair.face, pair.up > 0.0, window);
   return clip_segment(segment, window);
@@ -165,24 +203,26 @@ PatchInterval clipped(const Tangent& plane, const EdgeAndFace& pair, const Segme
 void edge_over_face(const PatchWork& w, const EdgeAndFace& pair, const Facing& facing,
                     const Pose& X_F) noexcept {
   const bool face_is_a = pair.up > 0.0;
-  const Segment segment = flat_edge(w, pair.E, pair.edge, pair.X_E);
-  const Tangent plane = face_is_a ? w.tangent : w.tangent_B();
-  const Height height = face_height(plane, pair.F, pair.face);
+  const Tangent in_a = contact_plane(w);
+  const Projection of_a = in_a.projection();
+  const Segment segment = flat_edge(of_a, pair.E, pair.edge, pair.X_E);
+  const Tangent of_face = face_is_a ? in_a : in_b(w, in_a);
+  const Height height = face_height(of_face, pair.F, pair.face);
   const Vec3 edge0 = pair.X_E * pair.E.vertices[pair.E.edges[pair.edge].tail];
   const Vec3 edge1 = pair.X_E * pair.E.vertices[pair.E.edges[pair.edge].head];
-  const Vec3 face0 = w.tangent.point(segment.x0, height(segment.x0));
-  const Vec3 face1 = w.tangent.point(segment.x1, height(segment.x1));
-  Intervals kept(clipped(plane, pair, segment));
+  const Vec3 face0 = in_a.point(segment.x0, height(segment.x0));
+  const Vec3 face1 = in_a.point(segment.x1, height(segment.x1));
+  Intervals kept(clipped(of_face.projection(), pair, segment));
   for (const Stretch& other : w.others) {
     const EdgeAndFace next =
         face_is_a ? EdgeAndFace{*other.B, other.b.index, pair.X_E, *other.A, other.a.index, 1.0}
                   : EdgeAndFace{*other.A, other.a.index, pair.X_E, *other.B, other.b.index, -1.0};
-    const Segment stretch = flat_edge(w, next.E, next.edge, next.X_E);
-    kept.add(along(segment, stretch, clipped(plane, next, stretch)));
+    const Segment stretch = flat_edge(of_a, next.E, next.edge, next.X_E);
+    kept.add(along(segment, stretch, clipped(of_face.projection(), next, stretch)));
   }
   StripCut cut;
   if (facing.face_share < 1.0) {
-    const Rise rise = rise_from_edge(w.tangent, pair.F, facing.edge, X_F, pair.up * height.slope);
+    const Rise rise = rise_from_edge(of_a, pair.F, facing.edge, X_F, pair.up * height.slope);
     cut = {rise(segment.x0), rise(segment.x1), facing.face_share};
   }
   if (face_is_a)
@@ -206,8 +246,9 @@ void face_a_edge_b(const PatchWork& w) noexcept {
 /// where they are no farther apart sideways than the tolerance; the larger the angle, the less, down to the
 /// crossing.
 void edge_edge_contact(const PatchWork& w) noexcept {
-  const Segment line = flat_edge(w, w.A, w.a.feature.index, {});
-  const Segment over = flat_edge(w, w.B, w.b.feature.index, w.X_AB);
+  const Projection plane = contact_plane(w).projection();
+  const Segment line = flat_edge(plane, w.A, w.a.feature.index, {});
+  const Segment over = flat_edge(plane, w.B, w.b.feature.index, w.X_AB);
   // B's ends, in parts of A's length along A and across it.
   const Vec2 along_a = line.x1 - line.x0;
   const double length_sq = along_a.squaredNorm();
@@ -234,8 +275,8 @@ void edge_edge_contact(const PatchWork& w) noexcept {
   };
   Intervals kept(common({}, s0, s1));
   for (const Stretch& other : w.others) {
-    const Segment of_a = flat_edge(w, *other.A, other.a.index, {});
-    const Segment of_b = flat_edge(w, *other.B, other.b.index, w.X_AB);
+    const Segment of_a = flat_edge(plane, *other.A, other.a.index, {});
+    const Segment of_b = flat_edge(plane, *other.B, other.b.index, w.X_AB);
     kept.add(common(along(line, of_a, {}), line.place(of_b.x0), line.place(of_b.x1)));
   }
   const Vec3& a0 = w.A.vertices[w.A.edges[w.a.feature.index].tail];
@@ -247,12 +288,8 @@ void edge_edge_contact(const PatchWork& w) noexcept {
   interval_contact(w, {a0, a1, b0, b0 + b_per_part}, kept);
 }
 
-void sliver_contact(const PatchWork& w, Vec2 x0, Vec2 x1, const Height& za, const Height& zb) noexcept {
-  if (x1.x() < x0.x()) std::swap(x0, x1);  // along A's feature, so that the ends keep their places
-  interval_contact(w,
-                   {w.tangent.point(x0, za(x0)), w.tangent.point(x1, za(x1)), w.tangent.point(x0, zb(x0)),
-                    w.tangent.point(x1, zb(x1))},
-                   Intervals(PatchInterval()));
+void strip_contact(const PatchWork& w, const Strip& strip) noexcept {
+  interval_contact(w, strip, Intervals(PatchInterval()));
 }
 
 }  // namespace tactum::detail

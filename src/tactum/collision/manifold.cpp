@@ -20,14 +20,6 @@ constexpr std::array<std::array<Handler, 3>, 3> kHandlers = {{
     {detail::point_contact, detail::face_a_edge_b, detail::face_face_contact},  // A: face
 }};
 
-/// The places: among the four points of an area, two of a line, or the one. Arms and ends go with the
-/// features, so the places do.
-void name_points(Manifold& patch) noexcept {
-  const std::size_t points = patch.points.size();
-  std::uint64_t id = point_id(patch.a, patch.b, points == 4 ? 0 : points == 2 ? 4 : 6);
-  for (ContactPoint& point : patch.points) point.id = id++;
-}
-
 void make_patch(const Polytope& A, const Polytope& B, const Pose& X_AB, const PairDistance& closest,
                 double tolerance, double angle, std::span<const Stretch> others, Manifold& out) noexcept {
   out.points.clear();
@@ -42,7 +34,6 @@ void make_patch(const Polytope& A, const Polytope& B, const Pose& X_AB, const Pa
   out.a = work.a.feature;
   out.b = work.b.feature;
   kHandlers[static_cast<std::size_t>(out.a.kind)][static_cast<std::size_t>(out.b.kind)](work);
-  name_points(out);
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 ///
 ///   1. On each side take the largest feature at the closest point that is square to the normal within 2
 ///   degrees.
-///   2. Look along the normal: both are flat figures in one plane, the gap between them is linear.
+///   2. Look along the normal: both are flat figures in one plane (of two faces, B's), the gap is linear.
 ///
 ///          A \ B      vertex     edge                     face
 ///          vertex     point      point                    point

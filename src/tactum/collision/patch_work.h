@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <span>
 
-#include "tactum/collision/contact_plane.h"
+#include "tactum/collision/face_projection.h"
 #include "tactum/collision/facing_feature.h"
 #include "tactum/collision/manifold.h"
 #include "tactum/collision/pair_view.h"
@@ -23,7 +23,6 @@ struct PatchWork {
   double angle;
   Vec3 n_B;  ///< the normal in B's frame
   Facing a, b;
-  Tangent tangent;
   std::span<const Stretch> others;  ///< of the same kinds as a and b
   Manifold& out;
 
@@ -38,16 +37,18 @@ struct PatchWork {
         n_B(rotated_back(X.R, at.normal)),
         a(facing_feature(A, at.a, -at.normal, angle)),
         b(facing_feature(B, at.b, n_B, angle)),
-        tangent(contact_plane(A, a.feature, at.p_b, at.normal)),
         others(stretches),
         out(patch) {}
 
+  /// Of a point by its place: 0 to 3 of an area, 4 and 5 of a line, 6 of a point. Arms and ends go with the
+  /// features, so the places do.
+  std::uint64_t name(std::uint64_t place) const noexcept { return point_id(a.feature, b.feature, place); }
   Vec3 vertex_b(int v) const noexcept { return X_AB * B.vertices[v]; }
-  /// The contact plane in B's frame.
-  Tangent tangent_B() const noexcept {
-    const Vec3 e1 = rotated_back(X_AB.R, tangent.e1);
-    return {rotated_back(X_AB.R, tangent.origin - X_AB.p), e1, n_B.cross(e1), n_B};
-  }
+};
+
+/// Points of A and of B over each other at both ends of a segment; linear between.
+struct Strip {
+  Vec3 a0, a1, b0, b1;
 };
 
 /// How much of the gap's range is kept as the features lean.
@@ -69,7 +70,7 @@ inline double cut_level(const PatchWork& w, double least_gap) noexcept {
 inline void point_contact(const PatchWork& w) noexcept {
   w.out.points.clear();
   w.out.area = 0.0;
-  w.out.points.push_back({w.closest.p_a, w.closest.p_b, w.closest.distance, 1.0, 0});
+  w.out.points.push_back({w.closest.p_a, w.closest.p_b, w.closest.distance, 1.0, w.name(6)});
 }
 
 /// The patch of A's and B's edge, or of an edge of one over a face of the other: two points.
@@ -80,7 +81,7 @@ void face_a_edge_b(const PatchWork& w) noexcept;
 /// The patch of two faces: four points; fewer where they have no common area.
 void face_face_contact(const PatchWork& w) noexcept;
 
-/// A polygon without area: the interval between these corners of it.
-void sliver_contact(const PatchWork& w, Vec2 x0, Vec2 x1, const Height& za, const Height& zb) noexcept;
+/// Two points on a strip: what is left of two faces without a common area.
+void strip_contact(const PatchWork& w, const Strip& strip) noexcept;
 
 }  // namespace tactum::detail

@@ -166,6 +166,45 @@ inline std::size_t cut_off(const Vec2* from, std::size_t n, const Cut& cut, doub
   return static_cast<std::size_t>(end - to);
 }
 
+/// Where the line through `a` and `b` has this value of coordinate kAxis.
+template <int kAxis>
+Vec2 point_at(const Vec2& a, const Vec2& b, double value) noexcept {
+  constexpr int kOther = 1 - kAxis;
+  const double other = a[kOther] + (b[kOther] - a[kOther]) * ((value - a[kAxis]) / (b[kAxis] - a[kAxis]));
+  return vec2(kAxis == 0 ? Two{value, other} : Two{other, value});
+}
+
+/// Corners of what is left of a convex polygon of `n` between `low` and `high` of coordinate kAxis: their
+/// end. Room for n + 2 is the caller's; of what is not convex, for 2 n.
+template <int kAxis>
+Vec2* cut_between(const Vec2* from, std::size_t n, double low, double high, double snap, Vec2* to) noexcept {
+  const double below = low - snap;
+  const double above = high + snap;
+  const Vec2* last = from + n - 1;
+  int last_side = (*last)[kAxis] < below ? -1 : (*last)[kAxis] > above ? 1 : 0;
+  for (const Vec2* corner = from; corner != from + n; last = corner++) {
+    const double x = (*corner)[kAxis];
+    const auto cross_at = [&](double value) { *to++ = point_at<kAxis>(*last, *corner, value); };
+    if (x < below) {
+      if (last_side < 0) continue;
+      if (last_side > 0) cross_at(high);
+      if ((*last)[kAxis] > low + snap) cross_at(low);
+      last_side = -1;
+    } else if (x > above) {
+      if (last_side > 0) continue;
+      if (last_side < 0) cross_at(low);
+      if ((*last)[kAxis] < high - snap) cross_at(high);
+      last_side = 1;
+    } else {
+      if (last_side < 0 && x > low + snap) cross_at(low);
+      if (last_side > 0 && x < high - snap) cross_at(high);
+      last_side = 0;
+      *to++ = vec2(two(*corner));
+    }
+  }
+  return to;
+}
+
 Cut side_of(const PatchPolygon& window, std::size_t i) noexcept {
   const Vec2* corners = window.begin();
   return {corners[i], corners[i + 1 == window.size() ? 0 : i + 1]};
@@ -310,6 +349,21 @@ void clip_polygon(PatchPolygon& polygon, const PatchPolygon& window) noexcept {
   ring.copy_to(polygon);
 }
 
+void clip_polygon(PatchPolygon& polygon, const PatchBox& box, double size) noexcept {
+  const double snap = kSnap * size;
+  if (polygon.empty()) return;
+  std::array<Vec2, 2 * PatchPolygon::capacity()> between;
+  std::array<Vec2, 4 * PatchPolygon::capacity()> inside;
+  const Vec2* end =
+      cut_between<0>(polygon.begin(), polygon.size(), box.low.x(), box.high.x(), snap, between.data());
+  std::size_t n = static_cast<std::size_t>(end - between.data());
+  if (n > 0) {
+    end = cut_between<1>(between.data(), n, box.low.y(), box.high.y(), snap, inside.data());
+    n = static_cast<std::size_t>(end - inside.data());
+  }
+  polygon.fill(n, [&](std::size_t i) { return vec2(two(inside[i])); });
+}
+
 double twice_area(const PatchPolygon& polygon) noexcept {
   double sum = 0.0;
   for (std::size_t i = 2; i < polygon.size(); ++i)
@@ -342,31 +396,29 @@ PatchMoments moments_of(const PatchPolygon& polygon) noexcept {
   }
   m.area = 0.5 * twice;
   if (!(m.area > 0.0)) return m;
-  // Divided last, all at once: a quotient is waited for longer than all these products.
-  const double share = 1.0 / twice;
-  const double share_sq = share * share;
   const Two c = first * both(1.0 / 3.0);
-  const Two spread = larger(second * both(twice * (1.0 / 6.0)) - c * c, both(0.0)) * both(share_sq);
-  m.centroid = vec2(origin + c * both(share));
+  const Two spread = larger(second * both(twice * (1.0 / 6.0)) - c * c, both(0.0));
+  m.centroid = vec2(origin + c * both(1.0 / twice));
   m.xx = spread[0];
-  m.xy = (mixed * (twice * (1.0 / 12.0)) - c[0] * c[1]) * share_sq;
+  m.xy = mixed * (twice * (1.0 / 12.0)) - c[0] * c[1];
   m.yy = spread[1];
   return m;
 }
 
 PatchMoments together(const PatchMoments& a, const PatchMoments& b) noexcept {
+  if (!(a.area > 0.0)) return b;
+  if (!(b.area > 0.0)) return a;
   PatchMoments m;
   m.area = a.area + b.area;
-  if (!(m.area > 0.0)) return m;
-  const double of_a = a.area / m.area;
-  const double of_b = b.area / m.area;
-  m.centroid = of_a * a.centroid + of_b * b.centroid;
+  m.centroid = (a.area * a.centroid + b.area * b.centroid) / m.area;
   // Steiner: the distance of the two centroids adds what it weighs.
   const Vec2 apart = b.centroid - a.centroid;
-  const double both = of_a * of_b;
-  m.xx = of_a * a.xx + of_b * b.xx + both * apart.x() * apart.x();
-  m.xy = of_a * a.xy + of_b * b.xy + both * apart.x() * apart.y();
-  m.yy = of_a * a.yy + of_b * b.yy + both * apart.y() * apart.y();
+  const double of_a = m.area / a.area;
+  const double of_b = m.area / b.area;
+  const double steiner = 4.0 * a.area * b.area;
+  m.xx = of_a * a.xx + of_b * b.xx + steiner * apart.x() * apart.x();
+  m.xy = of_a * a.xy + of_b * b.xy + steiner * apart.x() * apart.y();
+  m.yy = of_a * a.yy + of_b * b.yy + steiner * apart.y() * apart.y();
   return m;
 }
 

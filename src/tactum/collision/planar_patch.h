@@ -1,8 +1,9 @@
 #pragma once
-/// Flat figures in the contact plane: convex polygons of bounded size, clipping, and their moments.
+/// Flat figures in a plane: convex polygons of bounded size, clipping, and their moments.
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "tactum/base/static_vector.h"
 #include "tactum/math/types.h"
@@ -24,32 +25,48 @@ void clip_polygon(PatchPolygon& polygon, const Vec2& normal, double offset) noex
 /// sides together cost as much as going around both once.
 void clip_polygon(PatchPolygon& polygon, const PatchPolygon& window) noexcept;
 
+/// A rectangle along the axes.
+struct PatchBox {
+  Vec2 low = Vec2::Zero(), high = Vec2::Zero();
+};
+
+/// `polygon` clipped by a box, both sides across an axis in one pass; `size`: of the pieces [m].
+void clip_polygon(PatchPolygon& polygon, const PatchBox& box, double size) noexcept;
+
 /// Twice the signed area: positive when counter-clockwise.
 double twice_area(const PatchPolygon& polygon) noexcept;
 
+/// Quotients are waited for: the second moments are left for spread_of to divide, when its roots are drawn.
 struct PatchMoments {
   double area = 0.0;                    ///< [m^2]
   Vec2 centroid = Vec2::Zero();         ///< [m]
-  double xx = 0.0, xy = 0.0, yy = 0.0;  ///< second moments about the centroid over the area [m^2]
+  double xx = 0.0, xy = 0.0, yy = 0.0;  ///< second moments about the centroid, times 4 area^2 [m^6]
 };
 
 PatchMoments moments_of(const PatchPolygon& polygon) noexcept;
 /// Of two figures that do not overlap, as one.
 PatchMoments together(const PatchMoments& a, const PatchMoments& b) noexcept;
 
-/// Two arms u, v with u u' + v v' = 2 [xx xy; xy yy]: points at centroid +- u and +- v, a quarter of the
-/// weight each, have the polygon's moments. The symmetric root of the matrix: unlike its axes it is
-/// continuous, also where the patch is as long as it is wide.
+/// Two arms u, v with u u' + v v' = 2 [xx xy; xy yy] of the patch: points at centroid +- u and +- v, a
+/// quarter of the weight each, have the polygon's moments.
 struct PatchSpread {
   Vec2 u = Vec2::Zero(), v = Vec2::Zero();  ///< [m]
 };
 
-inline PatchSpread spread_of(const PatchMoments& m) noexcept {
+/// The symmetric root of the matrix, along unit `axis` and across it. Unlike its own axes it is continuous,
+/// also where the patch is as long as it is wide.
+inline PatchSpread spread_of(const PatchMoments& m, const Vec2& axis) noexcept {
   const double root = std::sqrt(std::max(0.0, m.xx * m.yy - m.xy * m.xy));
   const double trace = m.xx + m.yy + 2.0 * root;
   if (!(trace > 0.0)) return {};
-  const double scale = std::sqrt(2.0 * trace) * (1.0 / trace);  // root and quotient at the same time
-  return {{(m.xx + root) * scale, m.xy * scale}, {m.xy * scale, (m.yy + root) * scale}};
+  const double scale =
+      std::sqrt(trace) * (0.5 * std::numbers::sqrt2 / (trace * m.area));  // both at the same time
+  const double xx = m.xx + root;
+  const double yy = m.yy + root;
+  const double c = axis.x();
+  const double s = axis.y();
+  return {{(xx * c + m.xy * s) * scale, (m.xy * c + yy * s) * scale},
+          {(m.xy * c - xx * s) * scale, (yy * c - m.xy * s) * scale}};
 }
 
 /// A straight piece x0 + (x1 - x0) s of the plane.

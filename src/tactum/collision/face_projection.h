@@ -1,0 +1,67 @@
+#pragma once
+/// Points and faces of a piece in the two coordinates of a plane that a contact patch is told in.
+
+#include "tactum/collision/contact.h"
+#include "tactum/collision/planar_patch.h"
+#include "tactum/geometry/polytope.h"
+#include "tactum/math/two.h"
+
+namespace tactum {
+
+/// Two coordinates of the points of a piece's frame: (r1, r2) . (p - origin) scale, side by side. The scale
+/// by itself: what it follows from can be waited for meanwhile. All its numbers apart: in a copy of a vector
+/// just written the processor would wait for them.
+struct Projection {
+  double origin_x, origin_y, origin_z;
+  Two x, y, z;  ///< the components of r1 and r2
+  Two scale;
+
+  Projection(const Vec3& from, Two ex, Two ey, Two ez, Two by = both(1.0)) noexcept
+      : origin_x(from.x()), origin_y(from.y()), origin_z(from.z()), x(ex), y(ey), z(ez), scale(by) {}
+
+  Vec2 flat(const Vec3& p) const noexcept {
+    return vec2((x * both(p.x() - origin_x) + y * both(p.y() - origin_y) + z * both(p.z() - origin_z)) *
+                scale);
+  }
+};
+
+/// A height over the plane, linear along it.
+struct Height {
+  double at_origin = 0.0;
+  Vec2 slope = Vec2::Zero();
+  double operator()(const Vec2& x) const noexcept { return at_origin + slope.dot(x); }
+};
+
+/// The outline of a face, counter-clockwise in the plane: B's faces look along n, A's against it.
+/// `plane` is of P's frame.
+inline void face_outline(const Projection& plane, const Polytope& P, int face_index, bool on_a,
+                         PatchPolygon& loop) noexcept {
+  const Polytope::Face& face = P.faces[face_index];
+  const bool all = face.count <= kPatchCorners;
+  const int stride = all ? 1 : (face.count + kPatchCorners - 1) / kPatchCorners;
+  const int step = on_a ? -stride : stride;
+  const int first = face.first + (on_a ? face.count - 1 : 0);
+  const int* const corners = P.face_vertices.data();
+  const Vec3* const vertices = P.vertices.data();
+  const Projection flat = plane;  // of its own: stays in registers while corners are stored
+  const int count = all ? face.count : (face.count + stride - 1) / stride;
+  loop.fill(static_cast<std::size_t>(count),
+            [&](std::size_t i) { return flat.flat(vertices[corners[first + step * static_cast<int>(i)]]); });
+}
+
+/// How far a leaning face has risen from the line of its edge: linear, zero on the line.
+struct Rise {
+  Vec2 slope = Vec2::Zero();
+  double offset = 0.0;
+  double operator()(const Vec2& x) const noexcept { return slope.dot(x) - offset; }
+};
+
+inline Rise rise_from_edge(const Projection& plane, const Polytope& P, int edge, const Pose& X,
+                           const Vec2& face_slope) noexcept {
+  const Vec2 on_line = plane.flat(X * P.vertices[P.edges[edge].tail]);
+  const Vec2 along = (plane.flat(X * P.vertices[P.edges[edge].head]) - on_line).normalized();
+  const Vec2 across = face_slope - along * along.dot(face_slope);
+  return {across, across.dot(on_line)};
+}
+
+}  // namespace tactum
