@@ -8,6 +8,7 @@
 #include "collision/cases.h"
 #include "tactum/base/tolerances.h"
 #include "tactum/collision/closest_features.h"
+#include "tactum/collision/planar_patch.h"
 
 namespace tactum {
 namespace {
@@ -118,6 +119,81 @@ TEST(Manifold, EdgeOnFaceIsTheClippedInterval) {
   EXPECT_NEAR(centroid(c.patch).y(), 0.0075, 1e-12);  // y from -0.015 to 0.03
   EXPECT_NEAR(second_moment(c.patch, Vec3::UnitY(), Vec3::UnitY()), 0.045 * 0.045 / 12, 1e-14);
   for (const ContactPoint& p : c.patch.points) EXPECT_NEAR(p.distance, 0.0002, 1e-12);
+}
+
+/// The part of an edge of Q that is over or under a face of P, nearer than the tolerance: by steps along the
+/// edge, each moved along `n` (P's frame) onto the face and asked of the sides between its corners.
+PatchInterval interval_by_steps(const Polytope& P, int face_index, const Polytope& Q, int edge,
+                                const Pose& X_PQ, const Vec3& n, double tolerance, int steps) {
+  const Polytope::Face& face = P.faces[std::size_t(face_index)];
+  const Vec3 tail = X_PQ * Q.vertices[std::size_t(Q.edges[std::size_t(edge)].tail)];
+  const Vec3 head = X_PQ * Q.vertices[std::size_t(Q.edges[std::size_t(edge)].head)];
+  PatchInterval kept{2.0, -1.0};
+  for (int k = 0; k <= steps; ++k) {
+    const double s = static_cast<double>(k) / steps;
+    const Vec3 on_edge = tail + (head - tail) * s;
+    const double up = (face.offset - face.normal.dot(on_edge)) / face.normal.dot(n);
+    const Vec3 on_face = on_edge + n * up;
+    bool inside = std::abs(up) <= tolerance;
+    for (int i = 0; i < face.count && inside; ++i) {
+      const auto corner = [&](int c) {
+        return P.vertices[std::size_t(P.face_vertices[std::size_t(face.first + c % face.count)])];
+      };
+      inside = (corner(i + 1) - corner(i)).cross(on_face - corner(i)).dot(face.normal) >= 0.0;
+    }
+    if (!inside) continue;
+    kept.low = std::min(kept.low, s);
+    kept.high = std::max(kept.high, s);
+  }
+  return kept;
+}
+
+/// Faces of four, five and two hundred corners (more than an area takes of one), of A and of B, over an edge
+/// that is turned, shifted and out of level, partly beyond the face and partly beyond the tolerance.
+TEST(Manifold, EdgeOverAFaceAgreesWithCounting) {
+  constexpr double kTolerance = 3e-4;
+  constexpr int kSteps = 2000;
+  const Polytope edge_down = make_box({0.02, 0.03, 0.01});
+  const Mat3 on_edge = exp_rotation(Vec3(0, 0.25 * kPi, 0));  // about y: an edge along y points up
+  const double height = std::sqrt(0.02 * 0.02 + 0.01 * 0.01) * std::sin(std::atan2(0.01, 0.02) + 0.25 * kPi);
+  int compared = 0;
+  int cut = 0;
+  for (const Polytope& P : {box(), make_prism(5, 0.02, 0.02), make_prism(200, 0.02, 0.02)}) {
+    Random random(std::uint64_t(P.faces.size()));
+    for (int i = 0; i < 100; ++i) {
+      const Mat3 R = exp_rotation(Vec3(0, 0, random.uniform(-kPi, kPi))) *
+                     exp_rotation(Vec3(random.uniform(-4e-3, 4e-3), 0, 0)) * on_edge;
+      const Pose X_PQ(R, {random.uniform(-0.02, 0.02), random.uniform(-0.02, 0.02), -0.0102 - height});
+      for (bool face_of_a : {true, false}) {
+        const Contact c = face_of_a ? contact(P, edge_down, X_PQ, kTolerance)
+                                    : contact(edge_down, P, X_PQ.inverse(), kTolerance);
+        const Feature& face = face_of_a ? c.patch.a : c.patch.b;
+        const Feature& edge = face_of_a ? c.patch.b : c.patch.a;
+        if (face.kind != Kind::kFace || edge.kind != Kind::kEdge || c.patch.points.size() != 2) continue;
+        const Vec3 n = face_of_a ? c.patch.normal : Vec3(R * c.patch.normal);
+        const PatchInterval expected =
+            interval_by_steps(P, face.index, edge_down, edge.index, X_PQ, n, kTolerance, kSteps);
+        const Polytope::Edge& line = edge_down.edges[std::size_t(edge.index)];
+        const auto place = [&](const ContactPoint& p) {
+          const Vec3 on_edge_frame = face_of_a ? Vec3(X_PQ.inverse() * p.p_b) : p.p_a;
+          return line.direction.dot(on_edge_frame - edge_down.vertices[std::size_t(line.tail)]) / line.length;
+        };
+        const double first = place(c.patch.points[0]);
+        const double second = place(c.patch.points[1]);
+        const double reach = 0.5 * std::sqrt(3.0) * (second - first);  // of Gauss points, to the ends
+        if (expected.empty()) {                                        // between two steps
+          EXPECT_LT(2.0 * reach, 1.0 / kSteps) << i;
+          continue;
+        }
+        EXPECT_NEAR(0.5 * (first + second) - reach, expected.low, 1.0 / kSteps) << i;
+        EXPECT_NEAR(0.5 * (first + second) + reach, expected.high, 1.0 / kSteps) << i;
+        ++compared;
+        cut += expected.high - expected.low < 0.99 ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GT(compared, 200);
+  EXPECT_GT(cut, 100);
 }
 
 TEST(Manifold, ParallelEdgesShareAnInterval) {

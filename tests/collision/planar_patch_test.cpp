@@ -103,7 +103,7 @@ TEST(PlanarPatch, ClippingWhatIsNotConvexByABoxStaysWithinIt) {
       ASSERT_LE((corner - box.high).maxCoeff(), 1e-11) << "seed " << seed << " case " << i;
     }
   }
-  EXPECT_GT(most, std::size_t{kPatchCorners});
+  EXPECT_GT(most, std::size_t{kPatchCorners / 2});  // of more the polygon may be given up
 }
 
 /// Both sides across an axis at once against one side after the other; corners on the sides, and boxes of no

@@ -50,6 +50,12 @@ class StaticVector {
     size_ = count < N ? count : N;
     for (std::size_t i = 0; i < size_; ++i) ::new (static_cast<void*>(room_ + i * sizeof(T))) T(item(i));
   }
+  /// What `write(begin)` writes there, up to the end it returns; that there is room is the writer's to know.
+  template <class Write>
+  void overwrite(const Write& write) noexcept {
+    size_ = static_cast<std::size_t>(write(begin()) - begin());
+    TACTUM_ASSERT(size_ <= N);
+  }
   std::size_t size() const noexcept { return size_; }
   bool empty() const noexcept { return size_ == 0; }
   bool full() const noexcept { return size_ == N; }

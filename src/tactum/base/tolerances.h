@@ -48,9 +48,6 @@ inline constexpr double kSameArc = 1e-12;
 /// sharp edge feels blunt.
 inline constexpr double kPatchAngle = 0.035;
 
-/// 1 / sqrt(1 - x) is three terms of its series, to two roundings, for x below this: its cube is 1e-15.
-inline constexpr double kThreeTerms = 1e-5;
-
 /// Planes of one supporting plane of a Minkowski facet, by rounding this angle [rad] apart.
 inline constexpr double kSamePlane = 1e-8;
 

@@ -19,12 +19,11 @@ class ReferenceFace {
       : w_(w),
         face_(w.B.faces[w.b.feature.index]),
         sides_(&w.B.sides[face_.first]),
-        rectangle_(has_square_corners()),
-        along_(rectangle_ ? sides_[1].normal : Vec3(face_.normal.cross(sides_[0].normal))),
+        along_(face_.rectangle ? sides_[1].normal : Vec3(face_.normal.cross(sides_[0].normal))),
         origin_(w.X_AB * corner(1)) {
-    if (rectangle_) {
-      box_.low.x() = along_.dot(corner(0) - corner(1));
-      box_.high.y() = -sides_[0].normal.dot(corner(2) - corner(1));
+    if (face_.rectangle) {
+      box_.low.x() = -w.B.edges[sides_[0].edge].length;
+      box_.high.y() = w.B.edges[sides_[1].edge].length;
     }
     const Mat3& R = w.X_AB.R;
     const Projection b = of_b();
@@ -33,7 +32,7 @@ class ReferenceFace {
     z_ = b.x * both(R(2, 0)) + b.y * both(R(2, 1)) + b.z * both(R(2, 2));
   }
 
-  bool rectangle() const noexcept { return rectangle_; }
+  bool rectangle() const noexcept { return face_.rectangle; }
   /// All of the face, if it is a rectangle.
   const PatchBox& box() const noexcept { return box_; }
   /// No gap over it is larger, if it is a rectangle: a bound of the overlap's that costs next to nothing.
@@ -78,12 +77,6 @@ class ReferenceFace {
   Vec3 ey() const noexcept { return {x_[1], y_[1], z_[1]}; }
 
  private:
-  /// Of four corners three: how far normals of sides are from square, their product tells.
-  bool has_square_corners() const noexcept {
-    return face_.count == 4 && std::abs(sides_[0].normal.dot(sides_[1].normal)) < tolerances::kCoplanar &&
-           std::abs(sides_[1].normal.dot(sides_[2].normal)) < tolerances::kCoplanar &&
-           std::abs(sides_[2].normal.dot(sides_[3].normal)) < tolerances::kCoplanar;
-  }
   const Vec3& corner(int i) const noexcept { return w_.B.vertices[w_.B.face_vertices[face_.first + i]]; }
   /// Of a vector with both axes.
   Two dots(const Vec3& v) const noexcept { return x_ * both(v.x()) + y_ * both(v.y()) + z_ * both(v.z()); }
@@ -91,7 +84,6 @@ class ReferenceFace {
   const PatchWork& w_;
   const Polytope::Face& face_;
   const Polytope::Side* sides_;
-  bool rectangle_;
   PatchBox box_;
   Vec3 along_;     // x, B's frame
   Vec3 origin_;    // A's frame
@@ -152,6 +144,7 @@ class Overlap {
     face_outline(along_normal_, w.A, w.a.feature.index, true, own_);
   }
   const PatchPolygon& own() const noexcept { return own_; }
+  const Projection& along_normal() const noexcept { return along_normal_; }
   /// Clips A's face by B's.
   void clip() noexcept {
     if (reference_.rectangle()) return clip_polygon(own_, reference_.box(), w_.A.size + w_.B.size);
@@ -246,9 +239,8 @@ void face_face_contact(const PatchWork& w) noexcept {
     overlap.cut(rise.slope, rise.offset + highest * share);
   };
   if (w.a.face_share < 1.0)
-    cut_toward_edge(
-        rise_from_edge(reference.along_normal(), w.A, w.a.edge, {}, reference.slope() + gap.slope),
-        w.a.face_share);
+    cut_toward_edge(rise_from_edge(overlap.along_normal(), w.A, w.a.edge, {}, reference.slope() + gap.slope),
+                    w.a.face_share);
   if (w.b.face_share < 1.0)
     cut_toward_edge(rise_from_edge(reference.of_b(), w.B, w.b.edge, {}, -reference.slope()), w.b.face_share);
   const PatchMoments m = alone ? moments_of(overlap.own()) : moments_of_all(overlap);

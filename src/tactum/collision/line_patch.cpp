@@ -55,6 +55,9 @@ struct StripCut {
   double at0 = 0.0, at1 = 0.0, share = 1.0;
 };
 
+/// The part of `v` square to unit `n`.
+Vec3 across(const Vec3& v, const Vec3& n) noexcept { return v - n * n.dot(v); }
+
 /// Of a linear function over `kept` the least value, or with a negative sign the largest.
 double least_of(const Intervals& kept, double at0, double at1, double sign = 1.0) noexcept {
   double least = std::numeric_limits<double>::infinity();
@@ -106,158 +109,147 @@ void interval_contact(const PatchWork& w, const Strip& strip, Intervals kept,
                             gap0 + (gap1 - gap0) * s, 0.5, name++});
 }
 
-/// A segment's ends in the contact plane.
-struct Segment {
-  Vec2 x0, x1;
-  /// Where `x` is along it, in parts of its length.
-  double place(const Vec2& x) const noexcept { return (x - x0).dot(x1 - x0) / (x1 - x0).squaredNorm(); }
+/// An edge looked at along the normal `n`: where points are along it and beside it, in parts of its length.
+class EdgeView {
+ public:
+  EdgeView(const Vec3& tail, const Vec3& head, const Vec3& n) noexcept
+      : tail_(tail), flat_(across(head - tail, n)), per_length_sq_(1.0 / flat_.squaredNorm()) {}
+  double along(const Vec3& p) const noexcept { return flat_.dot(p - tail_) * per_length_sq_; }
+  double beside(const Vec3& p, const Vec3& n) const noexcept {
+    return n.dot(flat_.cross(p - tail_)) * per_length_sq_;
+  }
+  double length() const noexcept { return flat_.norm(); }
+
+ private:
+  Vec3 tail_, flat_;
+  double per_length_sq_;
 };
 
-Segment flat_edge(const Projection& plane, const Polytope& P, int edge, const Pose& X) noexcept {
-  return {plane.flat(X * P.vertices[P.edges[edge].tail]), plane.flat(X * P.vertices[P.edges[edge].head])};
-}
-
-/// The contact plane, told in the frame of either piece: coordinates x along e1, e2 and height along n, from
-/// a point near the contact.
-struct Tangent {
-  Vec3 origin, e1, e2, n;
-
-  Projection projection() const noexcept {
-    return {origin, Two{e1.x(), e2.x()}, Two{e1.y(), e2.y()}, Two{e1.z(), e2.z()}};
-  }
-  Vec3 point(const Vec2& x, double z) const noexcept { return origin + e1 * x.x() + e2 * x.y() + n * z; }
+/// Both ends of an edge, in A's frame.
+struct EdgeEnds {
+  Vec3 tail, head;
 };
 
-/// 1 / sqrt(1 - lean), for `lean` in [0, 1). Where three terms of its series do they stand in for the
-/// root and the quotient, which all that follows would wait for.
-double grown_to_unit(double lean) noexcept {
-  return lean < tolerances::kThreeTerms ? 1.0 + lean * (0.5 + lean * 0.375) : 1.0 / std::sqrt(1.0 - lean);
+EdgeEnds ends_of_a(const Polytope& A, int edge) noexcept {
+  return {A.vertices[A.edges[edge].tail], A.vertices[A.edges[edge].head]};
 }
-
-/// Along A's edge, or a side of its face: nearly square to the normal already in the answers of the queries.
-Tangent contact_plane(const PatchWork& w) noexcept {
-  const Feature& a = w.a.feature;
-  const int edge = a.kind == FeatureKind::kEdge ? a.index : w.A.sides[w.A.faces[a.index].first].edge;
-  const Vec3& u = w.A.edges[edge].direction;
-  const Vec3& n = w.closest.normal;
-  const double along = n.dot(u);
-  const double lean = along * along;
-  const Vec3 e1 = lean < 0.75 ? Vec3((u - n * along) * grown_to_unit(lean)) : any_orthogonal(n);
-  return {w.closest.p_b, e1, n.cross(e1), n};
-}
-
-/// ... in B's frame.
-Tangent in_b(const PatchWork& w, const Tangent& plane) noexcept {
-  const Vec3 e1 = rotated_back(w.X_AB.R, plane.e1);
-  return {rotated_back(w.X_AB.R, plane.origin - w.X_AB.p), e1, w.n_B.cross(e1), w.n_B};
-}
-
-Height face_height(const Tangent& plane, const Polytope& P, int face_index) noexcept {
-  const Polytope::Face& face = P.faces[face_index];
-  const double per_up = 1.0 / face.normal.dot(plane.n);
-  return {(face.offset - face.normal.dot(plane.origin)) * per_up,
-          {-face.normal.dot(plane.e1) * per_up, -face.normal.dot(plane.e2) * per_up}};
-}
-
-/// Keeps the part of a segment inside a convex, counter-clockwise window.
-PatchInterval clip_segment(const Segment& segment, const PatchPolygon& window) noexcept {
-  PatchInterval kept;
-  const std::size_t n = window.size();
-  for (std::size_t i = 0; i < n; ++i) {
-    const Vec2& corner = window[i];
-    const Vec2 side = window[i + 1 == n ? 0 : i + 1] - corner;
-    const Vec2 outward(side.y(), -side.x());
-    kept.keep_below(outward.dot(segment.x0 - corner), outward.dot(segment.x1 - corner), 0.0);
-  }
-  return kept;
+EdgeEnds ends_of_b(const PatchWork& w, const Polytope& B, int edge) noexcept {
+  return {w.X_AB * B.vertices[B.edges[edge].tail], w.X_AB * B.vertices[B.edges[edge].head]};
 }
 
 /// The part of a stretch, along the line of the contact's edge.
-PatchInterval along(const Segment& line, const Segment& stretch, const PatchInterval& kept) noexcept {
+PatchInterval on_line(const EdgeView& line, const EdgeEnds& stretch, const PatchInterval& kept) noexcept {
   if (kept.empty()) return kept;
-  const double from = line.place(stretch.x0);
-  const double per_part = line.place(stretch.x1) - from;
+  const double from = line.along(stretch.tail);
+  const double per_part = line.along(stretch.head) - from;
   const double low = from + per_part * kept.low;
   const double high = from + per_part * kept.high;
   return {std::min(low, high), std::max(low, high)};
 }
 
-/// An edge and the face over or under it. `up` is +1 when the face is A's, which rises over the contact
-/// plane, -1 when it is B's.
-struct EdgeAndFace {
-  const Polytope& E;
-  int edge;
-  const Pose& X_E;
+/// A face of piece F, of A or of B, looked at along the normal `n`, in F's frame.
+struct FaceView {
   const Polytope& F;
-  int face;
-  double up;
+  const Polytope::Face& face;
+  const Vec3& n;
+  double per_up;
+
+  FaceView(const Polytope& piece, int index, const Vec3& normal) noexcept
+      : F(piece), face(piece.faces[index]), n(normal), per_up(1.0 / face.normal.dot(normal)) {}
+  /// From a point along the normal to the face's plane [m].
+  double up(const Vec3& p) const noexcept { return (face.offset - face.normal.dot(p)) * per_up; }
+  /// Of a segment in the face's plane the part that is inside the face.
+  PatchInterval inside(const Vec3& q0, const Vec3& q1) const noexcept {
+    PatchInterval kept;
+    for (int slot = face.first; slot < face.first + face.count; ++slot) {
+      const Polytope::Side& side = F.sides[slot];
+      kept.keep_below(side.normal.dot(q0) - side.offset, side.normal.dot(q1) - side.offset, 0.0);
+    }
+    return kept;
+  }
+  /// How far the plane rises along the normal from the line of one of the face's edges, for each metre.
+  Vec3 rise_from(const Vec3& tail, const Vec3& head) const noexcept {
+    const Vec3 along = across(head - tail, n).normalized();
+    const Vec3 slope = across(face.normal, n) * -per_up;
+    return slope - along * along.dot(slope);
+  }
 };
 
-PatchInterval clipped(const Projection& plane, const EdgeAndFace& pair, const Segment& segment) noexcept {
-  PatchPolygon window;
-  face_outline(plane, pair.F, pair.face, pair.up > 0.0, window);
-  return clip_segment(segment, window);
-}
+/// An edge and the face over or under it: the two points of the edge's ends, on the face and on the edge.
+struct EdgeAndFace {
+  EdgeEnds edge, face;  // A's frame
+  Vec3 face_0, face_1;  // on the face, in its piece's frame
+  PatchInterval inside;
+
+  /// `to_face`: from A's frame to the face's.
+  template <class ToFace>
+  EdgeAndFace(const EdgeEnds& ends, const FaceView& view, const Vec3& n_A, const ToFace& to_face) noexcept
+      : edge(ends) {
+    const Vec3 p0 = to_face(ends.tail);
+    const Vec3 p1 = to_face(ends.head);
+    const double up0 = view.up(p0);
+    const double up1 = view.up(p1);
+    face_0 = p0 + view.n * up0;
+    face_1 = p1 + view.n * up1;
+    face = {ends.tail + n_A * up0, ends.head + n_A * up1};
+    inside = view.inside(face_0, face_1);
+  }
+};
 
 /// The strip of an edge and the face over or under it, clipped by the face.
-void edge_over_face(const PatchWork& w, const EdgeAndFace& pair, const Facing& facing,
-                    const Pose& X_F) noexcept {
-  const bool face_is_a = pair.up > 0.0;
-  const Tangent in_a = contact_plane(w);
-  const Projection of_a = in_a.projection();
-  const Segment segment = flat_edge(of_a, pair.E, pair.edge, pair.X_E);
-  const Tangent of_face = face_is_a ? in_a : in_b(w, in_a);
-  const Height height = face_height(of_face, pair.F, pair.face);
-  const Vec3 edge0 = pair.X_E * pair.E.vertices[pair.E.edges[pair.edge].tail];
-  const Vec3 edge1 = pair.X_E * pair.E.vertices[pair.E.edges[pair.edge].head];
-  const Vec3 face0 = in_a.point(segment.x0, height(segment.x0));
-  const Vec3 face1 = in_a.point(segment.x1, height(segment.x1));
-  Intervals kept(clipped(of_face.projection(), pair, segment));
-  for (const Stretch& other : w.others) {
-    const EdgeAndFace next =
-        face_is_a ? EdgeAndFace{*other.B, other.b.index, pair.X_E, *other.A, other.a.index, 1.0}
-                  : EdgeAndFace{*other.A, other.a.index, pair.X_E, *other.B, other.b.index, -1.0};
-    const Segment stretch = flat_edge(of_a, next.E, next.edge, next.X_E);
-    kept.add(along(segment, stretch, clipped(of_face.projection(), next, stretch)));
+template <bool kFaceIsA>
+void edge_over_face(const PatchWork& w) noexcept {
+  const Vec3& n = w.closest.normal;
+  const Facing& facing = kFaceIsA ? w.a : w.b;
+  const int edge = (kFaceIsA ? w.b : w.a).feature.index;
+  const auto ends_of = [&](const Polytope& A, const Polytope& B, int e) {
+    return kFaceIsA ? ends_of_b(w, B, e) : ends_of_a(A, e);
+  };
+  const auto to_face = [&](const Vec3& p) -> Vec3 {
+    return kFaceIsA ? p : rotated_back(w.X_AB.R, p - w.X_AB.p);
+  };
+  const FaceView view(kFaceIsA ? w.A : w.B, facing.feature.index, kFaceIsA ? n : w.n_B);
+  const EdgeAndFace own(ends_of(w.A, w.B, edge), view, n, to_face);
+  Intervals kept(own.inside);
+  if (!w.others.empty()) {
+    const EdgeView line(own.edge.tail, own.edge.head, n);
+    for (const Stretch& other : w.others) {
+      const FaceView beside(kFaceIsA ? *other.A : *other.B, (kFaceIsA ? other.a : other.b).index, view.n);
+      const EdgeEnds ends = ends_of(*other.A, *other.B, (kFaceIsA ? other.b : other.a).index);
+      kept.add(on_line(line, ends, EdgeAndFace(ends, beside, n, to_face).inside));
+    }
   }
   StripCut cut;
   if (facing.face_share < 1.0) {
-    const Rise rise = rise_from_edge(of_a, pair.F, facing.edge, X_F, pair.up * height.slope);
-    cut = {rise(segment.x0), rise(segment.x1), facing.face_share};
+    const Polytope::Edge& from = view.F.edges[facing.edge];
+    const Vec3& tail = view.F.vertices[from.tail];
+    // A's face rises away from the contact along the normal, B's against it.
+    const Vec3 rise = view.rise_from(tail, view.F.vertices[from.head]) * (kFaceIsA ? 1.0 : -1.0);
+    cut = {rise.dot(own.face_0 - tail), rise.dot(own.face_1 - tail), facing.face_share};
   }
-  if (face_is_a)
-    interval_contact(w, {face0, face1, edge0, edge1}, kept, cut);
-  else
-    interval_contact(w, {edge0, edge1, face0, face1}, kept, cut);
+  const EdgeEnds& a = kFaceIsA ? own.face : own.edge;
+  const EdgeEnds& b = kFaceIsA ? own.edge : own.face;
+  interval_contact(w, {a.tail, a.head, b.tail, b.head}, kept, cut);
 }
 
 }  // namespace
 
-void edge_a_face_b(const PatchWork& w) noexcept {
-  const Pose in_a;
-  edge_over_face(w, {w.A, w.a.feature.index, in_a, w.B, w.b.feature.index, -1.0}, w.b, w.X_AB);
-}
-
-void face_a_edge_b(const PatchWork& w) noexcept {
-  edge_over_face(w, {w.B, w.b.feature.index, w.X_AB, w.A, w.a.feature.index, 1.0}, w.a, {});
-}
+void edge_a_face_b(const PatchWork& w) noexcept { edge_over_face<false>(w); }
+void face_a_edge_b(const PatchWork& w) noexcept { edge_over_face<true>(w); }
 
 /// Parallel edges share an interval. Edges that cross at a small angle share the part about the crossing
 /// where they are no farther apart sideways than the tolerance; the larger the angle, the less, down to the
 /// crossing.
 void edge_edge_contact(const PatchWork& w) noexcept {
-  const Projection plane = contact_plane(w).projection();
-  const Segment line = flat_edge(plane, w.A, w.a.feature.index, {});
-  const Segment over = flat_edge(plane, w.B, w.b.feature.index, w.X_AB);
+  const Vec3& n = w.closest.normal;
+  const EdgeEnds a = ends_of_a(w.A, w.a.feature.index);
+  const EdgeEnds b = ends_of_b(w, w.B, w.b.feature.index);
+  const EdgeView line(a.tail, a.head, n);
   // B's ends, in parts of A's length along A and across it.
-  const Vec2 along_a = line.x1 - line.x0;
-  const double length_sq = along_a.squaredNorm();
-  const Vec2 tail = over.x0 - line.x0;
-  const Vec2 head = over.x1 - line.x0;
-  const double s0 = along_a.dot(tail) / length_sq;
-  const double s1 = along_a.dot(head) / length_sq;
-  const double side0 = (along_a.x() * tail.y() - along_a.y() * tail.x()) / length_sq;
-  const double side1 = (along_a.x() * head.y() - along_a.y() * head.x()) / length_sq;
+  const double s0 = line.along(b.tail);
+  const double s1 = line.along(b.head);
+  const double side0 = line.beside(b.tail, n);
+  const double side1 = line.beside(b.head, n);
   const double rate = (side1 - side0) / (s1 - s0);  // tangent of the angle between them
   if (!(std::abs(rate) < w.angle)) return point_contact(w);
   PatchInterval about;  // the crossing
@@ -265,8 +257,7 @@ void edge_edge_contact(const PatchWork& w) noexcept {
   about.high = std::numeric_limits<double>::infinity();
   if (std::abs(rate) > tolerances::kSamePlane) {
     const double crossing = s0 - side0 / rate;
-    const double apart =
-        std::max(w.tolerance, 0.0) / std::sqrt(length_sq) * share_kept(std::abs(rate), w.angle);
+    const double apart = std::max(w.tolerance, 0.0) / line.length() * share_kept(std::abs(rate), w.angle);
     about = {crossing - apart / std::abs(rate), crossing + apart / std::abs(rate)};
   }
   const auto common = [&](const PatchInterval& of_a, double b0, double b1) -> PatchInterval {
@@ -275,17 +266,13 @@ void edge_edge_contact(const PatchWork& w) noexcept {
   };
   Intervals kept(common({}, s0, s1));
   for (const Stretch& other : w.others) {
-    const Segment of_a = flat_edge(plane, *other.A, other.a.index, {});
-    const Segment of_b = flat_edge(plane, *other.B, other.b.index, w.X_AB);
-    kept.add(common(along(line, of_a, {}), line.place(of_b.x0), line.place(of_b.x1)));
+    const EdgeEnds of_b = ends_of_b(w, *other.B, other.b.index);
+    kept.add(common(on_line(line, ends_of_a(*other.A, other.a.index), {}), line.along(of_b.tail),
+                    line.along(of_b.head)));
   }
-  const Vec3& a0 = w.A.vertices[w.A.edges[w.a.feature.index].tail];
-  const Vec3& a1 = w.A.vertices[w.A.edges[w.a.feature.index].head];
-  const Vec3 b_tail = w.vertex_b(w.B.edges[w.b.feature.index].tail);
-  const Vec3 b_head = w.vertex_b(w.B.edges[w.b.feature.index].head);
-  const Vec3 b_per_part = (b_head - b_tail) / (s1 - s0);
-  const Vec3 b0 = b_tail - b_per_part * s0;
-  interval_contact(w, {a0, a1, b0, b0 + b_per_part}, kept);
+  const Vec3 b_per_part = (b.head - b.tail) / (s1 - s0);
+  const Vec3 b0 = b.tail - b_per_part * s0;
+  interval_contact(w, {a.tail, a.head, b0, b0 + b_per_part}, kept);
 }
 
 void strip_contact(const PatchWork& w, const Strip& strip) noexcept {

@@ -35,7 +35,7 @@ namespace tactum {
 void contact_manifold(const Polytope& A, const Polytope& B, const Pose& X_AB, const PairDistance& closest,
                       double tolerance, Manifold& out) noexcept;
 
-/// The same with another angle [rad] for "square to the normal".
+/// The same with another angle, well below a right one [rad], for "square to the normal".
 void contact_manifold_within(const Polytope& A, const Polytope& B, const Pose& X_AB,
                              const PairDistance& closest, double tolerance, double angle,
                              Manifold& out) noexcept;

@@ -360,6 +360,15 @@ int aligned_face(const Polytope& P, int vertex, const Vec3& d, double& along) no
   return best;
 }
 
+/// Of the best aligned faces at vertices `a` and `b`, the better.
+MinkowskiFacet aligned_facet(const PairView& pair, const Vec3& n, int a, int b) noexcept {
+  double along_a = 0.0;
+  double along_b = 0.0;
+  const int face_a = aligned_face(pair.A, a, -n, along_a);
+  const int face_b = aligned_face(pair.B, b, rotated(pair.X_BA.R, n), along_b);
+  return along_a >= along_b ? facet_of_face(pair, true, face_a, b) : facet_of_face(pair, false, face_b, a);
+}
+
 }  // namespace
 
 MinkowskiFacet facet_of_face(const PairView& pair, bool on_a, int face, int vertex) noexcept {
@@ -400,18 +409,16 @@ bool facet_of_edges(const PairView& pair, int edge_a, int edge_b, MinkowskiFacet
 }
 
 MinkowskiFacet facet_near(const PairView& pair, const Vec3& n, int from_a, int from_b) noexcept {
-  const Vec3 n_B = rotated(pair.X_BA.R, n);
-  const int a = support_vertex(pair.A, -n, from_a);
-  const int b = support_vertex(pair.B, n_B, from_b);
-  double along_a = 0.0;
-  double along_b = 0.0;
-  const int face_a = aligned_face(pair.A, a, -n, along_a);
-  const int face_b = aligned_face(pair.B, b, n_B, along_b);
-  return along_a >= along_b ? facet_of_face(pair, true, face_a, b) : facet_of_face(pair, false, face_b, a);
+  return aligned_facet(pair, n, support_vertex(pair.A, -n, from_a),
+                       support_vertex(pair.B, rotated(pair.X_BA.R, n), from_b));
 }
 
 MinkowskiFacet facet_near(const PairView& pair, const Vec3& n) noexcept {
   return facet_near(pair, n, table_vertex(pair.A, -n), table_vertex(pair.B, rotated(pair.X_BA.R, n)));
+}
+
+MinkowskiFacet facet_toward(const PairView& pair, const Vec3& n) noexcept {
+  return aligned_facet(pair, n, table_vertex(pair.A, -n), table_vertex(pair.B, rotated(pair.X_BA.R, n)));
 }
 
 bool is_real(const PairView& pair, const MinkowskiFacet& facet) noexcept {

@@ -14,7 +14,7 @@ using Index = std::size_t;
 
 /// Boxes and lists of near pairs are grown by this share of the smaller body's radius beyond the tolerance:
 /// more means they are renewed less often but hold more pairs.
-constexpr double kSlack = 0.03;
+constexpr double kSlack = 0.05;
 
 /// The axis-aligned box around a turned box.
 Aabb turned(const Aabb& box, const Pose& X, double grown) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "tactum/base/tolerances.h"
+#include "tactum/collision/face_projection.h"
 #include "tactum/collision/pair_view.h"
 
 namespace tactum {
@@ -11,12 +12,6 @@ namespace {
 /// A face that leans by more than this cosine says (84 degrees) is an edge, seen along the normal.
 constexpr double kSteep = 0.1;
 
-/// A plane of one piece over the contact plane: height = at_origin + slope . x.
-struct Slope {
-  double at_origin = 0.0;
-  Vec2 slope = Vec2::Zero();
-};
-
 /// The contact plane, in A's frame.
 struct ContactPlane {
   Vec3 origin, e1, e2, n;
@@ -24,7 +19,7 @@ struct ContactPlane {
   ContactPlane(const Vec3& from, const Vec3& normal) noexcept
       : origin(from), e1(any_orthogonal(normal)), e2(normal.cross(e1)), n(normal) {}
   Vec2 flat(const Vec3& p) const noexcept { return {e1.dot(p - origin), e2.dot(p - origin)}; }
-  Slope height_of(const Vec3& normal, const Vec3& on_plane) const noexcept {
+  Height height_of(const Vec3& normal, const Vec3& on_plane) const noexcept {
     const double per_up = 1.0 / normal.dot(n);
     return {normal.dot(on_plane - origin) * per_up, Vec2(-normal.dot(e1), -normal.dot(e2)) * per_up};
   }
@@ -55,8 +50,8 @@ void corners_of_faces(const Polytope& A, int face_a, const Polytope& B, int face
   const Polytope::Face& on_b = B.faces[face_b];
   const Vec3 origin = A.vertices[corner_of(A, on_a, 0)];
   const ContactPlane plane(origin, patch.normal);
-  const Slope za = plane.height_of(on_a.normal, origin);
-  const Slope zb = plane.height_of(rotated(X_AB.R, on_b.normal), X_AB * B.vertices[corner_of(B, on_b, 0)]);
+  const Height za = plane.height_of(on_a.normal, origin);
+  const Height zb = plane.height_of(rotated(X_AB.R, on_b.normal), X_AB * B.vertices[corner_of(B, on_b, 0)]);
   PatchPolygon polygon;
   if (!overlap_of_faces(A, on_a, B, on_b, X_AB, plane, polygon)) return;
   const Vec2 opening = za.slope - zb.slope;

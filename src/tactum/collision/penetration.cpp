@@ -198,7 +198,11 @@ void remember(const PairDistance& result, PairCache& cache) noexcept {
 class Tracker {
  public:
   Tracker(const PairView& pair, PairCache& cache) noexcept
-      : pair_(pair), cache_(cache), current_(walk_to_foot(pair, last_facet())), steps_(current_.steps) {}
+      : pair_(pair),
+        cache_(cache),
+        last_(last_facet()),
+        current_(walk_to_foot(pair, last_)),
+        steps_(current_.steps) {}
 
   PairDistance run() noexcept {
     forget(features(current_.facet));
@@ -243,9 +247,8 @@ class Tracker {
   /// The last frame's minimum, where it is one still: left for a lower one behind its border, it may soon be
   /// the lower one again.
   void keep_last() noexcept {
-    const MinkowskiFacet last = last_facet();
-    if (current_.facet.height < last.height && stand_on(pair_, last).arrived(pair_))
-      keep(features(last), last.height);
+    if (current_.facet.height < last_.height && stand_on(pair_, last_).arrived(pair_))
+      keep(features(last_), last_.height);
   }
 
   /// So far from the origin that a walk from there to a lower minimum would be long.
@@ -360,7 +363,7 @@ class Tracker {
     lowest.height = std::numeric_limits<double>::infinity();
     for (std::uint32_t i = first; i < first + kLookedAt; ++i) {
       const MinkowskiFacet facet =
-          facet_near(pair_, direction_around(static_cast<int>(i * kStride % kDirections)));
+          facet_toward(pair_, direction_around(static_cast<int>(i * kStride % kDirections)));
       if (facet.height < lowest.height) lowest = facet;
     }
     return lowest;
@@ -401,6 +404,7 @@ class Tracker {
 
   const PairView& pair_;
   PairCache& cache_;
+  const MinkowskiFacet last_;  ///< the last frame's features, as they are now
   MinkowskiWalk current_;
   int steps_;
 };

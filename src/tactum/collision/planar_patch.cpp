@@ -353,15 +353,13 @@ void clip_polygon(PatchPolygon& polygon, const PatchBox& box, double size) noexc
   const double snap = kSnap * size;
   if (polygon.empty()) return;
   std::array<Vec2, 2 * PatchPolygon::capacity()> between;
-  std::array<Vec2, 4 * PatchPolygon::capacity()> inside;
   const Vec2* end =
       cut_between<0>(polygon.begin(), polygon.size(), box.low.x(), box.high.x(), snap, between.data());
-  std::size_t n = static_cast<std::size_t>(end - between.data());
-  if (n > 0) {
-    end = cut_between<1>(between.data(), n, box.low.y(), box.high.y(), snap, inside.data());
-    n = static_cast<std::size_t>(end - inside.data());
-  }
-  polygon.fill(n, [&](std::size_t i) { return vec2(two(inside[i])); });
+  const std::size_t n = static_cast<std::size_t>(end - between.data());
+  // What is not convex may have twice as many corners then. Where there is no room for that it is given up.
+  if (n == 0 || 2 * n > PatchPolygon::capacity()) return polygon.clear();
+  polygon.overwrite(
+      [&](Vec2* to) { return cut_between<1>(between.data(), n, box.low.y(), box.high.y(), snap, to); });
 }
 
 double twice_area(const PatchPolygon& polygon) noexcept {
@@ -420,18 +418,6 @@ PatchMoments together(const PatchMoments& a, const PatchMoments& b) noexcept {
   m.xy = of_a * a.xy + of_b * b.xy + steiner * apart.x() * apart.y();
   m.yy = of_a * a.yy + of_b * b.yy + steiner * apart.y() * apart.y();
   return m;
-}
-
-void PatchInterval::keep_below(double at0, double at1, double limit) noexcept {
-  const double slope = at1 - at0;
-  const double room = limit - at0;  // slope s <= room
-  if (slope == 0.0) {
-    if (room < 0.0) high = low - 1.0;
-  } else if (slope > 0.0) {
-    high = std::min(high, room / slope);
-  } else {
-    low = std::max(low, room / slope);
-  }
 }
 
 }  // namespace tactum

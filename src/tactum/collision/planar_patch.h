@@ -74,7 +74,17 @@ struct PatchInterval {
   double low = 0.0, high = 1.0;  ///< of s
   bool empty() const noexcept { return low > high; }
   /// Keeps where at0 + (at1 - at0) s <= limit.
-  void keep_below(double at0, double at1, double limit) noexcept;
+  void keep_below(double at0, double at1, double limit) noexcept {
+    const double slope = at1 - at0;
+    const double room = limit - at0;  // slope s <= room
+    if (slope == 0.0) {
+      if (room < 0.0) high = low - 1.0;
+    } else if (slope > 0.0) {
+      high = std::min(high, room / slope);
+    } else {
+      low = std::max(low, room / slope);
+    }
+  }
 };
 
 }  // namespace tactum

@@ -1,7 +1,9 @@
 #include "tactum/dynamics/contact_solver.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 
 #include "tactum/base/tolerances.h"
 
@@ -61,6 +63,7 @@ class MotionProblem {
            double h, std::span<const Twist> V) {
     if (rows.size() > kMostRows) return false;
     const double per_h = 1.0 / h;
+    double most_wanted = 0.0;
     for (const ContactRow& row : rows) {
       const int a = mover(row.body_a, W);
       const int b = mover(row.body_b, W);
@@ -69,19 +72,25 @@ class MotionProblem {
       const Vec3& n = row.n_BA_W;
       const Vec3 turn_a = (row.p_W - X_WB[Index(row.body_a)].p).cross(n);
       const Vec3 turn_b = (row.p_W - X_WB[Index(row.body_b)].p).cross(n);
-      r.body_a = a;
-      r.body_b = b;
-      project(mover_[Index(a)], n, turn_a, r.g_a);
-      project(mover_[Index(b)], -n, -turn_b, r.g_b);
+      r.size = 0;
+      // In the order of the columns, for H is kept below its diagonal.
+      if (mover_[Index(a)].first < mover_[Index(b)].first) {
+        project(mover_[Index(a)], n, turn_a, r);
+        project(mover_[Index(b)], -n, -turn_b, r);
+      } else {
+        project(mover_[Index(b)], -n, -turn_b, r);
+        project(mover_[Index(a)], n, turn_a, r);
+      }
       r.stiffness = row.stiffness * h * h;
       const Twist& V_a = V[Index(row.body_a)];
       const Twist& V_b = V[Index(row.body_b)];
       const double approach = n.dot(V_a.v - V_b.v) + turn_a.dot(V_a.w) - turn_b.dot(V_b.w);
       r.wanted = (row.tolerance - row.distance) * per_h - approach;
       r.active = false;
-      scale_ = std::max(scale_, std::abs(r.wanted));
+      most_wanted = std::max(most_wanted, std::abs(r.wanted));
       ++n_;
     }
+    slop_ = tolerances::kContactVelocity * most_wanted;
     for (Index i = 0; i < columns_; ++i) {
       right_[i] = 0.0;
       for (Index j = 0; j <= i; ++j) H_[i][j] = i == j ? 1.0 : 0.0;
@@ -144,8 +153,9 @@ class MotionProblem {
     Vec6 B[6];
   };
   struct Row {
-    int body_a, body_b;
-    double g_a[6], g_b[6];
+    Index size;  // of g, where it is not zero: the columns of both bodies, in order
+    std::array<std::uint8_t, 12> column;
+    std::array<double, 12> g;
     double stiffness;  // 1 / c
     double wanted;     // b
     double slack;      // b - g z, since the last step
@@ -167,66 +177,44 @@ class MotionProblem {
   }
 
   /// W = sum_k B_k B_k^T by Cholesky with the largest pivot first; a hinge has one column, what is fixed
-  /// none.
-  static Index factor(Mobility W, Vec6 (&B)[6]) {
-    const Vec6 whole = W.diagonal();
+  /// none. Of what is left of W only the diagonal is kept: each column is made when it is the pivot's.
+  static Index factor(const Mobility& W, Vec6 (&B)[6]) {
+    Vec6 left = W.diagonal();
     for (Index rank = 0; rank < 6; ++rank) {
       int pivot = -1;
       double most = tolerances::kNoMobility;  // of the share of the diagonal that is left
       for (int i = 0; i < 6; ++i)
-        if (W(i, i) > most * whole[i]) {
-          most = W(i, i) / whole[i];
+        if (left[i] > most * W(i, i)) {
+          most = left[i] / W(i, i);
           pivot = i;
         }
       if (pivot < 0) return rank;
-      B[rank] = W.col(pivot) / std::sqrt(W(pivot, pivot));
-      W -= B[rank] * B[rank].transpose();
+      Vec6 column = W.col(pivot);
+      for (Index k = 0; k < rank; ++k) column -= B[k] * B[k][pivot];
+      B[rank] = column / std::sqrt(left[pivot]);
+      left -= B[rank].cwiseAbs2();
     }
     return 6;
   }
 
-  /// What a push along `n`, with its turning part, is in a mover's columns.
-  static void project(const Mover& mover, const Vec3& n, const Vec3& turn, double (&g)[6]) {
-    for (Index k = 0; k < mover.rank; ++k)
-      g[k] = mover.B[k].head<3>().dot(n) + mover.B[k].tail<3>().dot(turn);
+  /// Adds what a push along `n`, with its turning part, is in a mover's columns.
+  static void project(const Mover& mover, const Vec3& n, const Vec3& turn, Row& row) {
+    for (Index k = 0; k < mover.rank; ++k) {
+      row.column[row.size] = static_cast<std::uint8_t>(mover.first + k);
+      row.g[row.size++] = mover.B[k].head<3>().dot(n) + mover.B[k].tail<3>().dot(turn);
+    }
   }
 
   /// Puts a row among those that push, or takes it out.
   void turn(Row& row) {
     row.active = !row.active;
     const double weight = row.active ? row.stiffness : -row.stiffness;
-    const Mover& a = mover_[Index(row.body_a)];
-    const Mover& b = mover_[Index(row.body_b)];
-    add_square(a, row.g_a, weight, row.wanted);
-    add_square(b, row.g_b, weight, row.wanted);
-    // H is kept below its diagonal.
-    if (a.first > b.first)
-      add_beside(a, row.g_a, b, row.g_b, weight);
-    else
-      add_beside(b, row.g_b, a, row.g_a, weight);
-  }
-  void add_square(const Mover& mover, const double (&g)[6], double weight, double wanted) {
-    for (Index i = 0; i < mover.rank; ++i) {
-      const double scaled = weight * g[i];
-      right_[mover.first + i] += scaled * wanted;
-      double* const H = &H_[mover.first + i][mover.first];
-      each_of(i + 1, [&](Index j) { H[j] += scaled * g[j]; });
+    for (Index i = 0; i < row.size; ++i) {
+      const double scaled = weight * row.g[i];
+      right_[row.column[i]] += scaled * row.wanted;
+      double* const H = H_[row.column[i]];
+      for (Index j = 0; j <= i; ++j) H[row.column[j]] += scaled * row.g[j];
     }
-  }
-  void add_beside(const Mover& below, const double (&g)[6], const Mover& left, const double (&q)[6],
-                  double weight) {
-    for (Index i = 0; i < below.rank; ++i) {
-      const double scaled = weight * g[i];
-      double* const H = &H_[below.first + i][left.first];
-      each_of(left.rank, [&](Index j) { H[j] += scaled * q[j]; });
-    }
-  }
-  /// act(0), act(1), ... of up to six. One is so frequent, of what turns on a hinge, that it has no loop:
-  /// compilers make them for many.
-  template <class Act>
-  static void each_of(Index count, const Act& act) {
-    if (count == 1) return act(0);
-    for (Index i = 0; i < count; ++i) act(i);
   }
 
   /// z = H^-1 right.
@@ -255,19 +243,15 @@ class MotionProblem {
   /// b - g z: by how much the row still approaches too fast.
   double slack(const Row& row) const {
     double sum = row.wanted;
-    const Mover& a = mover_[Index(row.body_a)];
-    const Mover& b = mover_[Index(row.body_b)];
-    each_of(a.rank, [&](Index k) { sum -= row.g_a[k] * z_[a.first + k]; });
-    each_of(b.rank, [&](Index k) { sum -= row.g_b[k] * z_[b.first + k]; });
+    for (Index i = 0; i < row.size; ++i) sum -= row.g[i] * z_[row.column[i]];
     return sum;
   }
   bool is_wrong(const Row& row) const {
-    const double tolerance = tolerances::kContactVelocity * scale_;
-    return row.active ? !(row.slack >= -tolerance) : !(row.slack <= tolerance);  // NaN is wrong
+    return row.active ? !(row.slack >= -slop_) : !(row.slack <= slop_);  // NaN is wrong
   }
 
   Index n_ = 0, movers_ = 0, columns_ = 0;
-  double scale_ = 0.0;
+  double slop_ = 0.0;  // rounding of a slack
   Row rows_[kMostRows];
   Mover mover_[kMostMovers];
   double H_[kMostColumns][kMostColumns], L_[kMostColumns][kMostColumns];

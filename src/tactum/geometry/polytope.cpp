@@ -6,6 +6,8 @@
 #include <map>
 #include <utility>
 
+#include "tactum/base/tolerances.h"
+
 namespace tactum {
 namespace {
 
@@ -93,6 +95,17 @@ void build_sides(Polytope& P) {
   }
 }
 
+/// Of four corners three: how far normals of sides are from square, their product tells.
+bool has_square_corners(const Polytope& P, const Polytope::Face& face) {
+  if (face.count != 4) return false;
+  const auto square_at = [&](int slot) {
+    const Vec3& before = P.sides[Index(face.first + slot)].normal;
+    const Vec3& after = P.sides[Index(face.first + slot + 1)].normal;
+    return std::abs(before.dot(after)) < tolerances::kCoplanar;
+  };
+  return square_at(0) && square_at(1) && square_at(2);
+}
+
 /// The direction through the middle of a table cell; the inverse of cell_of.
 Vec3 cell_direction(int side, int row, int column) {
   const double u = (2 * column + 1 - Polytope::kTableSide) / static_cast<double>(Polytope::kTableSide);
@@ -175,6 +188,7 @@ bool complete_polytope(Polytope& P, const char** why) {
   for (Index v = 0; v < P.vertices.size(); ++v)
     if (P.ray_first[v] == P.ray_first[v + 1]) return *why = "a vertex is no face's corner", false;
   build_sides(P);
+  for (Polytope::Face& face : P.faces) face.rectangle = has_square_corners(P, face);
   P.center.setZero();
   for (const Vec3& vertex : P.vertices) P.center += vertex;
   P.center /= static_cast<double>(P.vertices.size());

@@ -36,6 +36,7 @@ struct Polytope {
     Vec3 normal = Vec3::Zero();  ///< unit, outward
     double offset = 0.0;         ///< [m]
     int first = 0, count = 0;    ///< the loop: slots [first, first + count)
+    bool rectangle = false;      ///< four corners, all square up to rounding
   };
 
   /// A plane that bounds a face's column, normal . x <= offset inside, and what lies beyond it: told here as

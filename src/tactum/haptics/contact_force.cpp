@@ -22,19 +22,29 @@ bool same_facet(const Facet& a, const Facet& b) {
 
 /// What the rows are made from.
 struct Source {
-  std::span<const Pose> X_WB;
   std::span<const ContactPatch> patches;
   const std::vector<ShadingNormals>& shading;
 };
 
+/// Where the bodies of a facet are, which are those of the next one too as a rule.
+struct BodyPoses {
+  int a, b;
+  Pose X_WA, X_AB, X_BA;
+  BodyPoses(std::span<const Pose> X_WB, const Facet& facet) noexcept
+      : a(facet.body_a),
+        b(facet.body_b),
+        X_WA(X_WB[Index(a)]),
+        X_AB(relative_pose(X_WA, X_WB[Index(b)])),
+        X_BA(X_AB.inverse()) {}
+  bool are_of(const Facet& facet) const noexcept { return facet.body_a == a && facet.body_b == b; }
+};
+
 /// The points of a run of patches on one facet, weighed by area.
-void gather_points(const Source& from, std::span<const Facet> facet, std::vector<FacetPoint>& points) {
+void gather_points(const Source& from, const BodyPoses& poses, std::span<const Facet> facet,
+                   std::vector<FacetPoint>& points) {
   points.clear();
   double claims = 0.0;
   for (const Facet& f : facet) claims += stiffness_claim(from.patches[Index(f.patch)].manifold);
-  const Pose& X_WA = from.X_WB[Index(facet[0].body_a)];
-  const Pose X_AB = relative_pose(X_WA, from.X_WB[Index(facet[0].body_b)]);
-  const Pose X_BA = X_AB.inverse();
   for (const Facet& f : facet) {
     const ContactPatch& patch = from.patches[Index(f.patch)];
     const double share = stiffness_claim(patch.manifold) / claims;
@@ -43,12 +53,12 @@ void gather_points(const Source& from, std::span<const Facet> facet, std::vector
     if (from.shading.empty())
       std::fill_n(normals_A.begin(), count, patch.manifold.normal);
     else
-      shaded_normals(from.shading[Index(patch.body_a)], from.shading[Index(patch.body_b)], X_AB, X_BA, patch,
-                     {normals_A.data(), count});
+      shaded_normals(from.shading[Index(patch.body_a)], from.shading[Index(patch.body_b)], poses.X_AB,
+                     poses.X_BA, patch, {normals_A.data(), count});
     for (Index i = 0; i < count; ++i) {
       const ContactPoint& point = patch.manifold.points[i];
-      points.push_back({X_WA * (0.5 * (point.p_a + point.p_b)), rotated(X_WA.R, normals_A[i]), point.distance,
-                        share * point.weight});
+      points.push_back({poses.X_WA * (0.5 * (point.p_a + point.p_b)), rotated(poses.X_WA.R, normals_A[i]),
+                        point.distance, share * point.weight});
     }
   }
 }
@@ -109,11 +119,14 @@ void make_contact_rows(std::span<const Pose> X_WB, std::span<const ContactPatch>
   std::sort(out.facets.begin(), out.facets.end(),
             [](const Facet& a, const Facet& b) { return key(a) < key(b); });
 
-  const Source source{X_WB, patches, shading};
+  if (out.facets.empty()) return;
+  const Source source{patches, shading};
+  BodyPoses poses(X_WB, out.facets.front());
   for (auto first = out.facets.begin(); first != out.facets.end();) {
     const auto last =
         std::find_if(first, out.facets.end(), [&](const Facet& f) { return !same_facet(f, *first); });
-    gather_points(source, {first, last}, out.points);
+    if (!poses.are_of(*first)) poses = BodyPoses(X_WB, *first);
+    gather_points(source, poses, {first, last}, out.points);
     if (out.points.size() > 4) reduce_to_four(out.points);
     const double tolerance = patches[Index(first->patch)].tolerance;
     for (const FacetPoint& point : out.points) {

@@ -249,19 +249,19 @@ void ShadingNormals::shade_surface(double cosine) {
   if (!curved) triangle_normals_.clear();
 }
 
-const ShadedFace& ShadingNormals::face_at(int piece, const Feature& feature) const noexcept {
-  return faces_[Index(face_of_[Index(first_face_[Index(piece)] + feature.index)])];
+const ShadedFace* ShadingNormals::bent_face(int piece, const Feature& feature) const noexcept {
+  if (feature.kind != FeatureKind::kFace) return nullptr;
+  const ShadedFace& face = faces_[Index(face_of_[Index(first_face_[Index(piece)] + feature.index)])];
+  return face.count > 0 ? &face : nullptr;
 }
 
-bool ShadingNormals::bends(int piece, const Feature& feature) const noexcept {
-  return feature.kind == FeatureKind::kFace && face_at(piece, feature).count > 0;
+Vec3 ShadingNormals::deviation(const ShadedFace& face, const Vec3& point) const noexcept {
+  return interpolated(face, &corners_[Index(face.first)], point) - face.normal;
 }
 
 Vec3 ShadingNormals::deviation(int piece, const Feature& feature, const Vec3& point) const noexcept {
-  if (feature.kind != FeatureKind::kFace) return Vec3::Zero();
-  const ShadedFace& face = face_at(piece, feature);
-  if (face.count == 0) return Vec3::Zero();
-  return interpolated(face, &corners_[Index(face.first)], point) - face.normal;
+  const ShadedFace* face = bent_face(piece, feature);
+  return face != nullptr ? deviation(*face, point) : Vec3::Zero();
 }
 
 /// Barycentric coordinates weigh the corners of a triangle.
@@ -284,19 +284,16 @@ void shaded_normals(const ShadingNormals& a, const ShadingNormals& b, const Pose
                     const ContactPatch& patch, std::span<Vec3> normals) noexcept {
   const Manifold& manifold = patch.manifold;
   const bool on_pieces = !patch.of_surfaces;
-  const bool flat_a = on_pieces && !a.bends(patch.piece_a, manifold.a);
-  const bool flat_b = on_pieces && !b.bends(patch.piece_b, manifold.b);
+  const ShadedFace* bent_a = on_pieces ? a.bent_face(patch.piece_a, manifold.a) : nullptr;
+  const ShadedFace* bent_b = on_pieces ? b.bent_face(patch.piece_b, manifold.b) : nullptr;
   for (Index i = 0; i < std::min(normals.size(), manifold.points.size()); ++i) {
     const ContactPoint& point = manifold.points[i];
     Vec3 normal = manifold.normal;
-    if (!flat_b) {
-      const Vec3 p_b = X_BA * point.p_b;
-      normal += rotated(X_AB.R, on_pieces ? b.deviation(patch.piece_b, manifold.b, p_b)
-                                          : b.deviation_on_surface(manifold.b, p_b));
-    }
-    if (!flat_a)
-      normal -= on_pieces ? a.deviation(patch.piece_a, manifold.a, point.p_a)
-                          : a.deviation_on_surface(manifold.a, point.p_a);
+    if (bent_b != nullptr) normal += rotated(X_AB.R, b.deviation(*bent_b, X_BA * point.p_b));
+    if (bent_a != nullptr) normal -= a.deviation(*bent_a, point.p_a);
+    if (patch.of_surfaces)
+      normal += rotated(X_AB.R, b.deviation_on_surface(manifold.b, X_BA * point.p_b)) -
+                a.deviation_on_surface(manifold.a, point.p_a);
     const double length_sq = normal.squaredNorm();
     normals[i] = length_sq > 0.0 ? Vec3(normal * (1.0 / std::sqrt(length_sq))) : manifold.normal;
   }

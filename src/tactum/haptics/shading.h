@@ -41,16 +41,17 @@ class ShadingNormals {
 
   /// Whether any normal of the part deviates.
   bool bends() const noexcept { return !corners_.empty() || !triangle_normals_.empty(); }
-  /// ... or on a feature of a piece.
-  bool bends(int piece, const Feature& feature) const noexcept;
-  /// How much the interpolated normal at `point` (part's frame) differs from the face's own; zero for
-  /// features that are no faces, and on faces whose edges are all sharp.
+  /// The face that a feature of a piece is, where normals of it deviate; null for other features and for
+  /// faces whose edges are all sharp.
+  const ShadedFace* bent_face(int piece, const Feature& feature) const noexcept;
+  /// How much the interpolated normal at `point` (part's frame) differs from a bent face's own.
+  Vec3 deviation(const ShadedFace& face, const Vec3& point) const noexcept;
+  /// The same, zero where nothing is bent.
   Vec3 deviation(int piece, const Feature& feature, const Vec3& point) const noexcept;
   /// The same for a feature of the part's surface (surface_tree.h).
   Vec3 deviation_on_surface(const Feature& feature, const Vec3& point) const noexcept;
 
  private:
-  const ShadedFace& face_at(int piece, const Feature& feature) const noexcept;
   void shade_pieces(double cosine);
   void shade_surface(double cosine);
 
