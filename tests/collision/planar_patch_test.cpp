@@ -85,25 +85,47 @@ TEST(PlanarPatch, ClippingWhatIsNotConvexStaysWithinBounds) {
   }
 }
 
-/// ... nor by a box, that many sides cross.
+/// ... nor by a box, that many sides cross. Stars of so many corners that there may be no room are given up.
 TEST(PlanarPatch, ClippingWhatIsNotConvexByABoxStaysWithinIt) {
   const std::uint64_t seed = 40;
   Random random(seed);
+  const int always_fit = int(PatchPolygon::capacity()) / 4;
+  const int tries = cases::some_of(20000);
   std::size_t most = 0;
-  for (int i = 0; i < cases::some_of(20000); ++i) {
-    PatchPolygon polygon = random_star(random, 3 + random.index(int(PatchPolygon::capacity()) - 2));
+  int left = 0;
+  for (int i = 0; i < tries; ++i) {
+    const int most_corners = i % 2 ? always_fit : int(PatchPolygon::capacity());
+    PatchPolygon polygon = random_star(random, 3 + random.index(most_corners - 2));
     const Vec2 middle(random.uniform(-1, 1), random.uniform(-1, 1));
     const Vec2 half(random.index(3) ? random.uniform(0, 1) : 0.0,
                     random.index(3) ? random.uniform(0, 1) : 0.0);
     const PatchBox box{middle - half, middle + half};
     clip_polygon(polygon, box, 6.0);
     most = std::max(most, polygon.size());
+    left += polygon.empty() ? 0 : 1;
     for (const Vec2& corner : polygon) {
       ASSERT_LE((box.low - corner).maxCoeff(), 1e-11) << "seed " << seed << " case " << i;
       ASSERT_LE((corner - box.high).maxCoeff(), 1e-11) << "seed " << seed << " case " << i;
     }
   }
-  EXPECT_GT(most, std::size_t{kPatchCorners / 2});  // of more the polygon may be given up
+  EXPECT_GT(most, std::size_t{kPatchCorners / 2});
+  EXPECT_GT(left, tries / 3);
+}
+
+/// A face of the most corners there are of one, of which a box takes one off at each of its sides.
+TEST(PlanarPatch, ClippingTheMostCornersByABoxKeepsThem) {
+  PatchPolygon polygon;
+  for (int i = 0; i < kPatchCorners; ++i) {
+    const double angle = 2.0 * kPi * i / kPatchCorners;
+    polygon.push_back({std::cos(angle), std::sin(angle)});
+  }
+  const double beside = std::cos(2.0 * kPi / kPatchCorners);
+  const double reach = 0.5 * (1.0 + beside);
+  const double cut_off = (1.0 - reach) * (1.0 - reach) * std::sin(2.0 * kPi / kPatchCorners) / (1.0 - beside);
+  const double area = 0.5 * twice_area(polygon);
+  clip_polygon(polygon, PatchBox{{-reach, -reach}, {reach, reach}}, 3.0);
+  EXPECT_EQ(polygon.size(), std::size_t{kPatchCorners + 4});
+  EXPECT_NEAR(0.5 * twice_area(polygon), area - 4.0 * cut_off, 1e-14);
 }
 
 /// Both sides across an axis at once against one side after the other; corners on the sides, and boxes of no

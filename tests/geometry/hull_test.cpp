@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tactum/base/random.h"
 #include "tactum/base/tolerances.h"
 #include "tactum/geometry/primitives.h"
@@ -35,6 +37,17 @@ void expect_sound(const Polytope& P, double size) {
       EXPECT_EQ(side.count, P.faces[std::size_t(across)].count);
     }
   for (std::size_t v = 0; v < P.vertices.size(); ++v) EXPECT_GE(P.rays_at(int(v)).size(), P.flat ? 2u : 3u);
+}
+
+TEST(Polytope, KnowsWhichFacesAreRectangles) {
+  const auto rectangles = [](const Polytope& P) {
+    return std::count_if(P.faces.begin(), P.faces.end(), [](const auto& face) { return face.rectangle; });
+  };
+  EXPECT_EQ(rectangles(make_box({0.02, 0.03, 0.01})), 6);
+  EXPECT_EQ(rectangles(make_prism(5, 0.02, 0.02)), 5);
+  EXPECT_EQ(rectangles(*convex_hull({{0, 0, 0}, {1, 0, 0}, {1, 2, 0}, {0, 2, 0}})), 2);
+  EXPECT_EQ(rectangles(*convex_hull({{0, 0, 0}, {1, 0, 0}, {1.001, 2, 0}, {0, 2, 0}})), 0);
+  EXPECT_EQ(rectangles(*convex_hull({{0, 0, 0}, {1, 0, 0}, {2, 1, 0}, {1, 1, 0}})), 0);
 }
 
 TEST(Hull, TurnedBoxHasEightCornersAndSixFaces) {

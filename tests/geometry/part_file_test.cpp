@@ -71,6 +71,7 @@ void expect_same(const Polytope& a, const Polytope& b) {
     EXPECT_EQ(a.faces[i].offset, b.faces[i].offset);
     EXPECT_EQ(a.faces[i].first, b.faces[i].first);
     EXPECT_EQ(a.faces[i].count, b.faces[i].count);
+    EXPECT_EQ(a.faces[i].rectangle, b.faces[i].rectangle);
   }
   ASSERT_EQ(a.edges.size(), b.edges.size());
   for (std::size_t i = 0; i < a.edges.size(); ++i) {

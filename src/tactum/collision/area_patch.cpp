@@ -90,6 +90,20 @@ class ReferenceFace {
   Two x_, y_, z_;  // the components of both axes, A's frame
 };
 
+/// How far a leaning face has risen from the line of its edge: linear, zero on the line.
+struct Rise {
+  Vec2 slope = Vec2::Zero();
+  double offset = 0.0;
+  double operator()(const Vec2& x) const noexcept { return slope.dot(x) - offset; }
+};
+
+Rise rise_from_edge(const Projection& plane, const Polytope& P, int edge, const Vec2& face_slope) noexcept {
+  const Vec2 on_line = plane.flat(P.vertices[P.edges[edge].tail]);
+  const Vec2 along = (plane.flat(P.vertices[P.edges[edge].head]) - on_line).normalized();
+  const Vec2 across = face_slope - along * along.dot(face_slope);
+  return {across, across.dot(on_line)};
+}
+
 /// A place on B with the gap over it, as it is linear in the face's coordinates.
 struct OnB {
   Two xy, z_gap;
@@ -239,10 +253,10 @@ void face_face_contact(const PatchWork& w) noexcept {
     overlap.cut(rise.slope, rise.offset + highest * share);
   };
   if (w.a.face_share < 1.0)
-    cut_toward_edge(rise_from_edge(overlap.along_normal(), w.A, w.a.edge, {}, reference.slope() + gap.slope),
+    cut_toward_edge(rise_from_edge(overlap.along_normal(), w.A, w.a.edge, reference.slope() + gap.slope),
                     w.a.face_share);
   if (w.b.face_share < 1.0)
-    cut_toward_edge(rise_from_edge(reference.of_b(), w.B, w.b.edge, {}, -reference.slope()), w.b.face_share);
+    cut_toward_edge(rise_from_edge(reference.of_b(), w.B, w.b.edge, -reference.slope()), w.b.face_share);
   const PatchMoments m = alone ? moments_of(overlap.own()) : moments_of_all(overlap);
   const double size = std::max(w.A.size, w.B.size);
   if (m.area <= tolerances::kPatchArea * size * size) return sliver_contact(w, reference, gap, overlap.own());

@@ -49,19 +49,4 @@ inline void face_outline(const Projection& plane, const Polytope& P, int face_in
             [&](std::size_t i) { return flat.flat(vertices[corners[first + step * static_cast<int>(i)]]); });
 }
 
-/// How far a leaning face has risen from the line of its edge: linear, zero on the line.
-struct Rise {
-  Vec2 slope = Vec2::Zero();
-  double offset = 0.0;
-  double operator()(const Vec2& x) const noexcept { return slope.dot(x) - offset; }
-};
-
-inline Rise rise_from_edge(const Projection& plane, const Polytope& P, int edge, const Pose& X,
-                           const Vec2& face_slope) noexcept {
-  const Vec2 on_line = plane.flat(X * P.vertices[P.edges[edge].tail]);
-  const Vec2 along = (plane.flat(X * P.vertices[P.edges[edge].head]) - on_line).normalized();
-  const Vec2 across = face_slope - along * along.dot(face_slope);
-  return {across, across.dot(on_line)};
-}
-
 }  // namespace tactum

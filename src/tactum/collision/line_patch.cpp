@@ -163,7 +163,10 @@ struct FaceView {
     PatchInterval kept;
     for (int slot = face.first; slot < face.first + face.count; ++slot) {
       const Polytope::Side& side = F.sides[slot];
-      kept.keep_below(side.normal.dot(q0) - side.offset, side.normal.dot(q1) - side.offset, 0.0);
+      const double at0 = side.normal.dot(q0) - side.offset;
+      const double at1 = side.normal.dot(q1) - side.offset;
+      if (at0 <= 0.0 && at1 <= 0.0) continue;  // most are: no quotient
+      kept.keep_below(at0, at1, 0.0);
     }
     return kept;
   }

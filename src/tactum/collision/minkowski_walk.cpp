@@ -360,12 +360,12 @@ int aligned_face(const Polytope& P, int vertex, const Vec3& d, double& along) no
   return best;
 }
 
-/// Of the best aligned faces at vertices `a` and `b`, the better.
-MinkowskiFacet aligned_facet(const PairView& pair, const Vec3& n, int a, int b) noexcept {
+/// Of the best aligned faces at vertices `a` and `b`, the better; `n_B`: the direction in B's frame.
+MinkowskiFacet aligned_facet(const PairView& pair, const Vec3& n, const Vec3& n_B, int a, int b) noexcept {
   double along_a = 0.0;
   double along_b = 0.0;
   const int face_a = aligned_face(pair.A, a, -n, along_a);
-  const int face_b = aligned_face(pair.B, b, rotated(pair.X_BA.R, n), along_b);
+  const int face_b = aligned_face(pair.B, b, n_B, along_b);
   return along_a >= along_b ? facet_of_face(pair, true, face_a, b) : facet_of_face(pair, false, face_b, a);
 }
 
@@ -409,16 +409,18 @@ bool facet_of_edges(const PairView& pair, int edge_a, int edge_b, MinkowskiFacet
 }
 
 MinkowskiFacet facet_near(const PairView& pair, const Vec3& n, int from_a, int from_b) noexcept {
-  return aligned_facet(pair, n, support_vertex(pair.A, -n, from_a),
-                       support_vertex(pair.B, rotated(pair.X_BA.R, n), from_b));
+  const Vec3 n_B = rotated(pair.X_BA.R, n);
+  return aligned_facet(pair, n, n_B, support_vertex(pair.A, -n, from_a), support_vertex(pair.B, n_B, from_b));
 }
 
 MinkowskiFacet facet_near(const PairView& pair, const Vec3& n) noexcept {
-  return facet_near(pair, n, table_vertex(pair.A, -n), table_vertex(pair.B, rotated(pair.X_BA.R, n)));
+  const Vec3 n_B = rotated(pair.X_BA.R, n);
+  return aligned_facet(pair, n, n_B, support_vertex(pair.A, -n), support_vertex(pair.B, n_B));
 }
 
 MinkowskiFacet facet_toward(const PairView& pair, const Vec3& n) noexcept {
-  return aligned_facet(pair, n, table_vertex(pair.A, -n), table_vertex(pair.B, rotated(pair.X_BA.R, n)));
+  const Vec3 n_B = rotated(pair.X_BA.R, n);
+  return aligned_facet(pair, n, n_B, table_vertex(pair.A, -n), table_vertex(pair.B, n_B));
 }
 
 bool is_real(const PairView& pair, const MinkowskiFacet& facet) noexcept {

@@ -62,7 +62,7 @@ MinkowskiFacet facet_near(const PairView& pair, const Vec3& n) noexcept;
 /// The same, climbing from vertices that are near.
 MinkowskiFacet facet_near(const PairView& pair, const Vec3& n, int from_a, int from_b) noexcept;
 
-/// Less near, without a climb to the supports: the best aligned face at the vertices that the table tells.
+/// Less near, with one climb instead of three: the best aligned face at the vertices that the table tells.
 MinkowskiFacet facet_toward(const PairView& pair, const Vec3& n) noexcept;
 
 /// The witness points on a facet itself, without walking.

@@ -43,7 +43,6 @@ struct PatchWork {
   /// Of a point by its place: 0 to 3 of an area, 4 and 5 of a line, 6 of a point. Arms and ends go with the
   /// features, so the places do.
   std::uint64_t name(std::uint64_t place) const noexcept { return point_id(a.feature, b.feature, place); }
-  Vec3 vertex_b(int v) const noexcept { return X_AB * B.vertices[v]; }
 };
 
 /// Points of A and of B over each other at both ends of a segment; linear between.

@@ -404,7 +404,7 @@ class Tracker {
 
   const PairView& pair_;
   PairCache& cache_;
-  const MinkowskiFacet last_;  ///< the last frame's features, as they are now
+  const MinkowskiFacet last_;  ///< where the walk began: last_facet()
   MinkowskiWalk current_;
   int steps_;
 };

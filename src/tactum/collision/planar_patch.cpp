@@ -356,7 +356,9 @@ void clip_polygon(PatchPolygon& polygon, const PatchBox& box, double size) noexc
   const Vec2* end =
       cut_between<0>(polygon.begin(), polygon.size(), box.low.x(), box.high.x(), snap, between.data());
   const std::size_t n = static_cast<std::size_t>(end - between.data());
-  // What is not convex may have twice as many corners then. Where there is no room for that it is given up.
+  // What is not convex may have twice as many corners then. Where there is no room for that it is given up;
+  // of a face no side of a box makes more than two corners more.
+  static_assert(2 * (kPatchCorners + 2) <= PatchPolygon::capacity());
   if (n == 0 || 2 * n > PatchPolygon::capacity()) return polygon.clear();
   polygon.overwrite(
       [&](Vec2* to) { return cut_between<1>(between.data(), n, box.low.y(), box.high.y(), snap, to); });

@@ -30,7 +30,9 @@ struct PatchBox {
   Vec2 low = Vec2::Zero(), high = Vec2::Zero();
 };
 
-/// `polygon` clipped by a box, both sides across an axis in one pass; `size`: of the pieces [m].
+/// `polygon` clipped by a box, both sides across an axis in one pass; `size`: of the pieces [m]. Nothing is
+/// left of what has more than kPatchCorners + 2 corners between the first two sides: no convex face's
+/// outline.
 void clip_polygon(PatchPolygon& polygon, const PatchBox& box, double size) noexcept;
 
 /// Twice the signed area: positive when counter-clockwise.
@@ -69,7 +71,7 @@ inline PatchSpread spread_of(const PatchMoments& m, const Vec2& axis) noexcept {
           {(m.xy * c - xx * s) * scale, (yy * c - m.xy * s) * scale}};
 }
 
-/// A straight piece x0 + (x1 - x0) s of the plane.
+/// A part of a segment x0 + (x1 - x0) s.
 struct PatchInterval {
   double low = 0.0, high = 1.0;  ///< of s
   bool empty() const noexcept { return low > high; }

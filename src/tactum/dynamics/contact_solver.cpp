@@ -90,7 +90,7 @@ class MotionProblem {
       most_wanted = std::max(most_wanted, std::abs(r.wanted));
       ++n_;
     }
-    slop_ = tolerances::kContactVelocity * most_wanted;
+    allowed_ = tolerances::kContactVelocity * most_wanted;
     for (Index i = 0; i < columns_; ++i) {
       right_[i] = 0.0;
       for (Index j = 0; j <= i; ++j) H_[i][j] = i == j ? 1.0 : 0.0;
@@ -155,6 +155,7 @@ class MotionProblem {
   struct Row {
     Index size;  // of g, where it is not zero: the columns of both bodies, in order
     std::array<std::uint8_t, 12> column;
+    static_assert(kMostColumns <= 256);
     std::array<double, 12> g;
     double stiffness;  // 1 / c
     double wanted;     // b
@@ -247,11 +248,11 @@ class MotionProblem {
     return sum;
   }
   bool is_wrong(const Row& row) const {
-    return row.active ? !(row.slack >= -slop_) : !(row.slack <= slop_);  // NaN is wrong
+    return row.active ? !(row.slack >= -allowed_) : !(row.slack <= allowed_);  // NaN is wrong
   }
 
   Index n_ = 0, movers_ = 0, columns_ = 0;
-  double slop_ = 0.0;  // rounding of a slack
+  double allowed_ = 0.0;  // so much of a slack may stay [m/s]
   Row rows_[kMostRows];
   Mover mover_[kMostMovers];
   double H_[kMostColumns][kMostColumns], L_[kMostColumns][kMostColumns];
