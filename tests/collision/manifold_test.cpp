@@ -193,7 +193,7 @@ TEST(Manifold, EdgeOverAFaceAgreesWithCounting) {
       const double out_of_level = i % 2 ? random.uniform(0.018, 0.034) : random.uniform(0.0, 0.004);
       const Mat3 R = exp_rotation(Vec3(0, 0, random.uniform(-kPi, kPi))) *
                      exp_rotation(Vec3(out_of_level, 0, 0)) * on_edge;
-      Pose X_PQ(R, {random.uniform(-0.02, 0.02), random.uniform(-0.02, 0.02), -0.011 - height});
+      Pose X_PQ{R, {random.uniform(-0.02, 0.02), random.uniform(-0.02, 0.02), -0.011 - height}};
       PairCache cache;
       X_PQ.p.z() += closest_features(P, roof, X_PQ, cache).distance - 1e-4;
       for (bool face_of_a : {true, false}) {
