@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 #include "support/block_rig.h"
+#include "support/sample_meshes.h"
 
 namespace tactum {
 namespace {
@@ -85,6 +87,56 @@ TEST(Friction, APatchDoesNotCreepUnderAHandThatShakes) {
     EXPECT_LT(creep(0.9, turn), 1e-12) << "m/s";
     EXPECT_LT(creep(0.99, turn), 5e-8) << "m/s";
   }
+}
+
+/// A held block of 20 x 20 x 20 mm on a fixed one of 60 x 60 x 20 mm whose top is at z = 0; each has the
+/// shape of a box, either as one convex piece or as a surface of triangles.
+struct BoxOnBox : Rig {
+  BoxOnBox(bool surface_above, bool surface_below, double size, double mu) : Rig(2) {
+    world.bodies[0].part = box(size * Vec3(0.010, 0.010, 0.010), surface_above);
+    world.bodies[0].X_WB.p.z() = size * 0.011;
+    world.bodies[1].part = box(size * Vec3(0.030, 0.030, 0.010), surface_below);
+    world.bodies[1].X_WB.p.z() = -size * 0.010;
+    world.bodies[1].joint.kind = JointKind::kFixed;
+    settings.friction = {{0.0, mu, mu, 0.0}, 2};
+  }
+  static std::shared_ptr<const Part> box(const Vec3& half, bool surface) {
+    if (!surface) return solid_box(half);
+    Result<Part> part = part_from_mesh(testing::box_mesh(half), {.pieces = PieceSource::kSurface});
+    EXPECT_TRUE(part);
+    EXPECT_TRUE(part->is_surface());
+    return std::make_shared<const Part>(std::move(*part));
+  }
+};
+
+/// |F_t| / F_n of the felt force while the block is drawn over the other one, at its least and its most.
+std::pair<double, double> ratio_while_drawn(BoxOnBox& rig, double size, const Vec3& along) {
+  const double press_m = 0.002;  // beyond touching: 1.2 N at the default stiffness
+  rig.step({});
+  rig.go(at(0, 0, -0.001 * size - press_m), 300);
+  std::pair<double, double> ratio{1e9, 0.0};
+  for (int i = 1; i <= 1000; ++i) {
+    const Vec3 drawn = 0.010 * size * along * (i / 1000.0);
+    const FrameReport& report = rig.step(at(drawn.x(), drawn.y(), -0.001 * size - press_m));
+    if (i < 500) continue;
+    const double now = report.coupling.f.head<2>().norm() / report.coupling.f.z();
+    ratio = {std::min(ratio.first, now), std::max(ratio.second, now)};
+  }
+  EXPECT_EQ(rig.penetrating_frames, 0);
+  return ratio;
+}
+
+TEST(Friction, ActsBetweenPartsFeltByTheirSurfaces) {
+  for (const auto& [above, below] : {std::pair(false, true), {true, false}, {true, true}})
+    for (const double size : {0.5, 1.0, 3.0})
+      for (const double mu : {0.0, 0.1, 0.3})
+        for (const Vec3& along : {Vec3(1, 0, 0), Vec3(0.6, 0.8, 0)}) {
+          BoxOnBox rig(above, below, size, mu);
+          const auto [least, most] = ratio_while_drawn(rig, size, along);
+          EXPECT_NEAR(least, mu, 2e-3 * mu + 1e-9) << above << below << ' ' << size << ' ' << along.y();
+          EXPECT_LE(most - least, 1e-3 * mu + 1e-9) << above << below << ' ' << size << ' ' << along.y();
+          EXPECT_NEAR(most, mu, 2e-3 * mu + 1e-9) << above << below << ' ' << size << ' ' << along.y();
+        }
 }
 
 }  // namespace

@@ -266,7 +266,7 @@ double move_held_island(const World& world, const FrameSettings& settings, doubl
   c.stood = share > 0.0 ? 0 : c.stood + 1;
   if (share > 0.0) take_trial(state);
   if (c.stood >= kStandsFrames) feel(settings, dt_s, Vec6::Zero(), state);
-  c.friction.end(own_rows(state), c.first_row, c.problem, state.world.X_WB);
+  c.friction.end(world, own_rows(state), state.finder.patches(), c.first_row, c.problem, state.world.X_WB);
   const std::vector<Pose>& before = share > 0.0 ? c.X_WB_trial : state.world.X_WB;  // take_trial swaps them
   for (Index i = 0; i < world.bodies.size(); ++i)
     if (state.free.near_held[i]) state.world.V_WB[i] = twist_between(before[i], state.world.X_WB[i], dt_s);

@@ -236,8 +236,9 @@ void Friction::forget_anchors(ConstraintProblem& problem) noexcept {
   }
 }
 
-void Friction::end(std::span<const ContactRow> rows, std::size_t first_row, const ConstraintProblem& problem,
-                   std::span<const Pose> X_WB) noexcept {
+void Friction::end(const World& world, std::span<const ContactRow> rows,
+                   std::span<const ContactPatch> patches, std::size_t first_row,
+                   const ConstraintProblem& problem, std::span<const Pose> X_WB) noexcept {
   anchors_.clear();
   for (const FrictionPatch& patch : patches_) {
     if (!patch.acts) continue;
@@ -252,7 +253,7 @@ void Friction::end(std::span<const ContactRow> rows, std::size_t first_row, cons
         moment += active.multiplier * patch.centre_W;
         held |= active.multiplier > 0.0;
       } else if (row >= first_row && row - first_row < rows.size() &&
-                 rows[row - first_row].patch == patch.finder_patch) {
+                 key_of(world, patches[Index(rows[row - first_row].patch)]) == patch.key) {
         load += active.multiplier;
         moment += active.multiplier * rows[row - first_row].p_W;
       }

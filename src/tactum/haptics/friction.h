@@ -53,8 +53,8 @@ class Friction {
   /// Takes the anchors off, when they ask for what cannot be.
   void forget_anchors(ConstraintProblem& problem) noexcept;
   /// Remembers anchors and centres; the step led to X_WB.
-  void end(std::span<const ContactRow> rows, std::size_t first_row, const ConstraintProblem& problem,
-           std::span<const Pose> X_WB) noexcept;
+  void end(const World& world, std::span<const ContactRow> rows, std::span<const ContactPatch> patches,
+           std::size_t first_row, const ConstraintProblem& problem, std::span<const Pose> X_WB) noexcept;
   /// Appends a row per cone edge that pushes; returns the torques about normals on `body`.
   Vec3 add_forces(int body, double dt_s, const ConstraintProblem& problem,
                   std::vector<ContactRow>& rows) const noexcept;

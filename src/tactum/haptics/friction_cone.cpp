@@ -20,9 +20,15 @@ QpRow combined(double x, const QpRow& row, double y, const QpRow& other) noexcep
 }  // namespace
 
 PatchKey key_of(const World& world, const ContactPatch& patch) noexcept {
-  return {patch.body_a, patch.body_b,
-          world.bodies[Index(patch.body_a)].part->surface_group[Index(patch.piece_a)],
-          world.bodies[Index(patch.body_b)].part->surface_group[Index(patch.piece_b)]};
+  const Part& A = *world.bodies[Index(patch.body_a)].part;
+  const Part& B = *world.bodies[Index(patch.body_b)].part;
+  if (!patch.of_surfaces)
+    return {patch.body_a, patch.body_b, A.surface_group[Index(patch.piece_a)],
+            B.surface_group[Index(patch.piece_b)]};
+  const bool face_a = patch.manifold.a.kind == FeatureKind::kFace;
+  const bool face_b = patch.manifold.b.kind == FeatureKind::kFace;
+  return {patch.body_a, patch.body_b, face_b && !face_a ? kAnyGroup : A.tree.group_of(patch.piece_a),
+          face_a && !face_b ? kAnyGroup : B.tree.group_of(patch.piece_b)};
 }
 
 PatchMotion motion_of(const FrictionPatch& patch, const Vec3& along_W,

@@ -6,11 +6,15 @@
 
 namespace tactum {
 
-/// Which surfaces touch.
+/// Which surfaces touch, by the groups that their parts name: of pieces (Part::surface_group), or, where
+/// bodies meet by their surfaces, of coplanar triangles (SurfaceTree::group_of). The corners and edges of one
+/// body that touch the same face of the other are one patch, whatever triangles they belong to: kAnyGroup.
 struct PatchKey {
   int body_a = -1, body_b = -1, group_a = -1, group_b = -1;
   bool operator==(const PatchKey&) const = default;
 };
+
+inline constexpr int kAnyGroup = -1;
 
 /// How far an answer of the contact problem moves A's point at a patch's centre against B's, as rows of the
 /// problem: off the surface and along two directions in it [m], and how far it turns about the normal [rad].
