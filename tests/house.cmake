@@ -28,6 +28,9 @@ add_library(header_selfcheck OBJECT ${header_sources} ${CMAKE_CURRENT_BINARY_DIR
 target_compile_options(header_selfcheck PRIVATE -O0)
 target_link_libraries(header_selfcheck PRIVATE tactum_session tactum_warnings)
 
+# The frames of every shipped scene are the committed ones.
+add_test(NAME golden.frames COMMAND ${PYTHON3} ${tools}/golden_frames.py $<TARGET_FILE:tactum>)
+
 # One frame, the same bits: g++ and clang++, optimised or not, sanitized or not. ./test builds them all.
 file(GLOB bench_command ${PROJECT_SOURCE_DIR}/app/*bench*.cpp)
 if(bench_command)
