@@ -59,7 +59,7 @@ class Ours final : public FeelEngine {
   }
   Pose X_WB() const override { return state_->world.X_WB[0]; }
   Wrench felt() const override { return report_.coupling; }
-  double skin_m() const override { return state_->constraint.skin_m; }
+  double skin_m() const override { return state_->response.constraint()->constraint.skin_m; }
 
  private:
   World world_;

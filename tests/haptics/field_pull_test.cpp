@@ -105,7 +105,7 @@ TEST(FieldPull, AWellGivesBackWhatItTookAndAVortexGivesEveryTurn) {
     rig.settings.tool.X_BH.p.setZero();
     rig.go(above({0.02, 0, 0}), 400);
     for (int i = 0; i < 300; ++i) rig.step(rig.X_DH);
-    const double before_J = rig.begun().field.given_J;
+    const double before_J = rig.begun().hand.field.given_J;
     const Vec3 place = rig.X_WB().p;
     for (int i = 1; i <= 2000; ++i) {
       const double angle = 2.0 * kPi * i / 2000.0;
@@ -115,14 +115,14 @@ TEST(FieldPull, AWellGivesBackWhatItTookAndAVortexGivesEveryTurn) {
     }
     for (int i = 0; i < 300; ++i) rig.step(rig.X_DH);
     EXPECT_LT((rig.X_WB().p - place).norm(), 1e-9);
-    const double given_J = rig.begun().field.given_J - before_J;
+    const double given_J = rig.begun().hand.field.given_J - before_J;
     if (!turns) {
       EXPECT_NEAR(given_J, 0.0, 1e-8);
       continue;
     }
     // The part follows a little farther out and ahead: the mean of the points decides. A turn's work is
     // torque times angle, which stays the same all round.
-    const Wrench load = rig.begun().field.load.at_centre;
+    const Wrench load = rig.begun().hand.field.load.at_centre;
     const double radius = rig.X_WB().p.head<2>().norm();
     const Vec3 round = Vec3::UnitZ().cross(rig.X_WB().p).normalized();
     EXPECT_NEAR(given_J, load.f.dot(round) * 2.0 * kPi * radius, 0.02 * given_J);
@@ -139,7 +139,7 @@ TEST(FieldPull, TheWorkOfAStepIsThatOfItsPotential) {
     return sum;
   };
   rig.step(rig.X_DH);
-  const double start_J = energy() + rig.begun().field.given_J;
+  const double start_J = energy() + rig.begun().hand.field.given_J;
   Pose X;
   for (int i = 0; i < 3000; ++i) {
     const double t = 1e-3 * i;
@@ -148,7 +148,7 @@ TEST(FieldPull, TheWorkOfAStepIsThatOfItsPotential) {
     rig.step(X);
   }
   for (int i = 0; i < 300; ++i) rig.step(X);
-  EXPECT_NEAR(energy() + rig.begun().field.given_J, start_J, 2e-6);
+  EXPECT_NEAR(energy() + rig.begun().hand.field.given_J, start_J, 2e-6);
 }
 
 TEST(FieldPull, OnlyWhatIsHeldIsPulledAndLettingGoEndsIt) {
@@ -158,7 +158,7 @@ TEST(FieldPull, OnlyWhatIsHeldIsPulledAndLettingGoEndsIt) {
   rig.settings.tool.reach_m = 1.0;
   rig.step({});
   EXPECT_TRUE(rig.report.field.f.isZero(0.0));
-  EXPECT_EQ(rig.begun().field.body, -1);
+  EXPECT_EQ(rig.begun().hand.field.body, -1);
 }
 
 TEST(FieldPull, TakesNoMemory) {

@@ -197,7 +197,7 @@ TEST(Frame, APoseThatIsNoneIsNotFollowed) {
       }
     }
     EXPECT_LT((state.world.X_WB[0].p - before.p).norm(), 1e-12);
-    EXPECT_LT((state.tool.X_BH.R - Mat3::Identity()).norm(), 1e-12);
+    EXPECT_LT((state.hand.grasp.X_BH.R - Mat3::Identity()).norm(), 1e-12);
   }
 }
 

@@ -19,11 +19,11 @@ struct BlockRig : Rig {
     settings.response = ResponseModel::kConstraint;
     if (mu > 0.0) settings.friction = {{0.0, mu, mu, 0.0}, 2};
   }
-  double skin() { return begun().constraint.skin_m; }
+  double skin() { return begun().response.constraint()->constraint.skin_m; }
   /// The sum of the contact forces at the handle less the wrench that is felt.
   Wrench unaccounted() const {
-    const Wrench at_handle = moved(report.restoring, state->constraint.problem.movers().front().centre -
-                                                         state->constraint.problem.movers().front().origin);
+    const Wrench at_handle = moved(report.restoring, state->response.constraint()->constraint.problem.movers().front().centre -
+                                                         state->response.constraint()->constraint.problem.movers().front().origin);
     return at_handle - report.coupling;
   }
 };

@@ -37,6 +37,7 @@
 #include "tactum/collision/contact.h"
 #include "tactum/collision/contact_patch.h"
 #include "tactum/collision/contact_reduction.h"
+#include "tactum/collision/gap_oracle.h"
 #include "tactum/collision/schedule.h"
 #include "tactum/collision/seam_settler.h"
 #include "tactum/collision/steady_contact.h"
@@ -66,15 +67,6 @@ enum class PatchPoints {
   kClosest      ///< the closest point alone, on the closest features, as they are
 };
 
-/// What is asked and known of a patch's distance at other poses.
-enum class GapAnswer : std::uint8_t {
-  kNotAsked,
-  kAsked,
-  kExact,   ///< the distance has been computed
-  kProven,  ///< what has moved since it was computed proves that it is enough
-  kUnknown  ///< the budget was spent
-};
-
 /// Counted work of one frame: N, K and M of the paper's T_h = N t_s + K t_c + M t_f, and what was left.
 struct ContactWork {
   int broad_phase_runs = 0;    ///< 1 when boxes or lists had to be renewed, else 0 ("N-body tests")
@@ -97,7 +89,7 @@ struct ContactWork {
   bool rooms_full = false;    ///< something was dropped: raise the rooms
 };
 
-class ContactFinder {
+class ContactFinder final : public GapOracle {
  public:
   ContactFinder(std::vector<CollisionBody> bodies, std::span<const Pose> X_WB,
                 const ContactFinderRooms& rooms = {});
@@ -113,28 +105,18 @@ class ContactFinder {
   /// has an entry per body (schedule.h), or none.
   void find_patches(std::span<const Pose> X_WB, int budget, PatchPoints points = PatchPoints::kQuadrature,
                     std::span<const std::uint8_t> urgency = {}) noexcept;
-  /// Whether the budget was not ample in this frame.
-  bool thrifty() const noexcept { return thrifty_; }
-  /// Exact tests that are left of the frame's budget.
-  int tests_left() const noexcept { return tests_left_; }
-  /// Whether some pair of the body was left unproven: it may only stay where it is.
-  bool blocked(int body) const noexcept { return blocked_[static_cast<std::size_t>(body)] != 0; }
+  bool budget_limited() const noexcept override { return budget_limited_; }
+  int tests_left() const noexcept override { return tests_left_; }
+  bool blocked(int body) const noexcept override { return blocked_[static_cast<std::size_t>(body)] != 0; }
 
   std::span<const ContactPatch> patches() const noexcept { return patches_; }
-  /// The exact signed distance of the pieces of every patch with the bodies at other poses, near those of
-  /// the patches: what a step has to keep positive. `distance` has an entry per patch [m]. A distance that
-  /// could not be certified counts as none. Between surfaces it is that of every local minimum there is at
-  /// the other poses, told by the patches of the same features; where there is none, by the nearest patch.
-  ///
-  /// `asked` has an entry per patch and is answered in place. No test is made, when the budget is not ample,
-  /// where what moved since the last one proves that the distance is at least `enough`, nor when only
-  /// `keep_back` tests are left: then the distance is the bound. Pairs of the held part are asked first.
-  /// Returns how many tests were made.
   int distances_at(std::span<const Pose> X_WB, std::span<double> distance, std::span<GapAnswer> asked,
-                   std::span<const double> enough, int keep_back = 0) noexcept;
+                   std::span<const double> enough, int keep_back = 0) noexcept override;
   const ContactWork& work() const noexcept { return work_; }
   /// Largest distance of a point of body i from its origin [m].
   double radius(int i) const noexcept { return radius_[static_cast<std::size_t>(i)]; }
+  /// The same of every body [m].
+  std::span<const double> radii() const noexcept { return radius_; }
 
  private:
   struct Answer {
@@ -211,8 +193,8 @@ class ContactFinder {
   std::vector<DuePair> due_;
   std::vector<std::int32_t> handed_on_;  // pairs with an answer, or that had one
   std::vector<char> blocked_;            // by body
-  std::span<const std::uint8_t> urgency_;
-  bool thrifty_ = false;
+  std::vector<std::uint8_t> urgency_;    // by body; empty: all alike
+  bool budget_limited_ = false;
   int tests_left_ = 0;
   std::vector<ContactPatch> patches_;
   std::vector<int> objected_;  // patches of pieces that are apart, of points that are no contact of the parts
@@ -221,7 +203,7 @@ class ContactFinder {
   std::vector<SurfaceMinimum> minima_;
   std::vector<ReductionScratch> reduction_scratch_;
   std::size_t kept_minima_ = 0;
-  std::span<const double> reach_;
+  std::vector<double> reach_;  // by body
   PatchPoints points_ = PatchPoints::kQuadrature;
   double min_tolerance_ = 0.0;
   std::int64_t frame_ = 0;

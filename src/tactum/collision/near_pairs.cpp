@@ -52,6 +52,8 @@ ContactFinder::ContactFinder(std::vector<CollisionBody> bodies, std::span<const 
   pairs_.reserve(rooms.pairs);
   renewed_.reserve(rooms.pairs);
   near_pieces_.reserve(rooms.pairs);
+  urgency_.reserve(bodies_.size());
+  reach_.reserve(bodies_.size());
   due_.reserve(rooms.pairs);
   handed_on_.reserve(rooms.pairs);
   blocked_.assign(bodies_.size(), 0);
@@ -68,7 +70,7 @@ void ContactFinder::find_near_pairs(std::span<const Pose> X_WB, std::span<const 
                                     double min_tolerance) noexcept {
   work_ = {};
   work_.bodies = static_cast<int>(bodies_.size());
-  reach_ = reach;
+  reach_.assign(reach.begin(), reach.end());  // within what was reserved
   min_tolerance_ = min_tolerance;
   ++frame_;
   move_boxes(X_WB);

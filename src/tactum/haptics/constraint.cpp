@@ -4,7 +4,8 @@
 
 #include "tactum/base/tolerances.h"
 #include "tactum/haptics/constraint_rows.h"
-#include "tactum/haptics/frame_state.h"
+#include "tactum/haptics/constraint_step.h"
+#include "tactum/haptics/field_pull.h"
 #include "tactum/haptics/held_part.h"
 #include "tactum/math/screw.h"
 
@@ -24,30 +25,29 @@ constexpr double kReachMargin = 4.0;
 constexpr int kStandsFrames = 2;
 
 /// The bodies and what each wants: to the hand, on along its way; or, `at_rest`, nothing.
-void add_bodies(const World& world, const FrameSettings& settings, double dt_s, bool at_rest,
-                FrameState& state, FrameReport& report) {
-  ConstraintProblem& problem = state.constraint.problem;
+void add_bodies(bool at_rest, ConstraintStep& step) {
+  ConstraintProblem& problem = step.own.constraint.problem;
   problem.clear();
-  const int held = state.tool.body;
+  const int held = step.held.body;
   bool room = true;
   if (held >= 0) {
-    const Pose& X_WB = state.world.X_WB[Index(held)];
+    const Pose& X_WB = step.bodies.X_WB[Index(held)];
     Vec6 wanted = Vec6::Zero();
-    state.constraint.wanted = wanted;
+    step.own.constraint.wanted = wanted;
     if (!at_rest) {
-      state.constraint.wanted = wanted_by_hand(settings, dt_s, state);
-      wanted = with_load(world, settings, dt_s, state, state.constraint.wanted);
+      step.own.constraint.wanted = wanted_by_hand(step);
+      wanted = with_load(step, step.own.constraint.wanted);
     }
-    room &= problem.add_held(held, world.bodies[Index(held)], X_WB, X_WB * state.tool.X_BH.p,
-                             step_metric(settings, dt_s, state), wanted);
+    room &= problem.add_held(held, step.world.bodies[Index(held)], X_WB, X_WB * step.held.X_BH.p,
+                             step_metric(step.settings.coupling, step.held, step.dt_s), wanted);
   }
-  for (Index i = 0; i < world.bodies.size(); ++i) {
+  for (Index i = 0; i < step.world.bodies.size(); ++i) {
     const int b = static_cast<int>(i);
-    if (b == held || !state.free.near_held[i]) continue;
-    const Vec6 on = at_rest ? Vec6(Vec6::Zero()) : to_vector(state.world.V_WB[i] * dt_s);
-    room &= problem.add_free(b, world.bodies[i], state.world.X_WB[i], on, dt_s);
+    if (b == held || !step.own.free.near_held[i]) continue;
+    const Vec6 on = at_rest ? Vec6(Vec6::Zero()) : to_vector(step.bodies.V_WB[i] * step.dt_s);
+    room &= problem.add_free(b, step.world.bodies[i], step.bodies.X_WB[i], on, step.dt_s);
   }
-  if (!room) report.flags |= frame_flag::kSolverBounded;
+  if (!room) step.report.flags |= frame_flag::kSolverBounded;
   problem.add_joint_rows();
 }
 
@@ -120,170 +120,169 @@ bool solve_sliding(const FrameSettings& settings, ConstraintState& c, FrameRepor
 }
 
 /// Keeps what the answer says of forces: impulses, the rows that hold, the wrench at the handle.
-void keep_forces(const FrameSettings& settings, double dt_s, FrameState& state, FrameReport& report) {
-  ConstraintState& c = state.constraint;
+void keep_forces(ConstraintStep& step) {
+  ConstraintState& c = step.own.constraint;
   note_held(c, c.held);
-  for (ContactRow& row : own_rows(state)) row.impulse = 0.0;
+  for (ContactRow& row : own_rows(step)) row.impulse = 0.0;
   for (const QpActive& active : c.problem.answer().active) {
     const Index row = Index(active.row) - c.first_row;
     if (Index(active.row) >= c.first_row && row < c.own_rows)
-      state.contacts.rows[row].impulse = active.multiplier * dt_s;
+      step.own.contact_rows.rows[row].impulse = active.multiplier * step.dt_s;
   }
-  report.active_constraints = static_cast<int>(c.held.size());
-  feel(settings, dt_s, c.problem.displacement_at_centre(c.problem.movers().front()), state);
+  step.report.active_constraints = static_cast<int>(c.held.size());
+  feel(c.problem.displacement_at_centre(c.problem.movers().front()), step);
 }
 
 /// The farthest way of a point of the body in the last answer [m].
-double way_of(const FrameState& state, const Mover& mover) {
-  const Vec6 x = state.constraint.moves().displacement(mover.body);
-  return x.head<3>().norm() + x.tail<3>().norm() * state.finder.radius(mover.body);
+double way_of(const ConstraintStep& step, const Mover& mover) {
+  const Vec6 x = step.own.constraint.moves().displacement(mover.body);
+  return x.head<3>().norm() + x.tail<3>().norm() * step.radius_m[Index(mover.body)];
 }
 
 /// The share of the answer's step that is trusted.
-double trusted_share(const FrameSettings& settings, const FrameState& state) {
-  const ConstraintState& c = state.constraint;
+double trusted_share(const ConstraintStep& step) {
+  const ConstraintState& c = step.own.constraint;
   double share = 1.0;
   for (const Mover& mover : c.moves().movers()) {
-    const double way = way_of(state, mover);
-    const double trusted = state.reach[Index(mover.body)] - kReachMargin * c.skin_m;
+    const double way = way_of(step, mover);
+    const double trusted = step.own.reach[Index(mover.body)] - kReachMargin * c.skin_m;
     if (way * share > trusted) share = trusted / way;
-    if (mover.body != state.tool.body) continue;
+    if (mover.body != step.held.body) continue;
     const double turn = c.moves().displacement(mover.body).tail<3>().norm();
-    if (turn * share > settings.constraint.max_turn_rad) share = settings.constraint.max_turn_rad / turn;
+    if (turn * share > step.settings.constraint.max_turn_rad)
+      share = step.settings.constraint.max_turn_rad / turn;
   }
   return share;
 }
 
 /// Moves everything by `share` of the answer's step, on trial, and looks at every gap there.
-bool open_after(const World& world, double share, FrameState& state, FrameReport& report) {
-  ConstraintState& c = state.constraint;
-  c.X_WB_trial = state.world.X_WB;  // same size: nothing is allocated
+bool open_after(double share, ConstraintStep& step) {
+  ConstraintState& c = step.own.constraint;
+  c.X_WB_trial = step.bodies.X_WB;  // same size: nothing is allocated
   for (const Mover& mover : c.moves().movers()) {
     const Index i = Index(mover.body);
-    const Twist step = to_twist(c.moves().displacement(mover.body) * share);
-    c.X_WB_trial[i] = constrained_pose(world.bodies[i], advanced(state.world.X_WB[i], step, 1.0));
+    const Twist displacement = to_twist(c.moves().displacement(mover.body) * share);
+    c.X_WB_trial[i] =
+        constrained_pose(step.world.bodies[i], advanced(step.bodies.X_WB[i], displacement, 1.0));
     if (!c.X_WB_trial[i].finite()) return false;
   }
-  look_at_trial(0, state, report);
+  look_at_trial(0, step);
   for (Index p = 0; p < c.gap.size(); ++p)
-    if (state.free.patch_asked[p] && !open_at_trial(p, c)) return false;
+    if (step.own.free.patch_asked[p] && !open_at_trial(p, c)) return false;
   return true;
 }
 
-void take_trial(FrameState& state) {
-  ConstraintState& c = state.constraint;
-  state.world.X_WB.swap(c.X_WB_trial);
+void take_trial(ConstraintStep& step) {
+  ConstraintState& c = step.own.constraint;
+  step.bodies.X_WB.swap(c.X_WB_trial);
   for (Index p = 0; p < c.gap.size(); ++p)
-    if (state.free.patch_asked[p]) c.gap[p] = c.gap_trial[p];
+    if (step.own.free.patch_asked[p]) c.gap[p] = c.gap_trial[p];
 }
 
 /// Contacts nearer than half the skin are opened first, as far as there is room.
-void restore(const World& world, const FrameSettings& settings, double dt_s, FrameState& state,
-             FrameReport& report) {
-  ConstraintState& c = state.constraint;
+void restore(ConstraintStep& step) {
+  ConstraintState& c = step.own.constraint;
   bool tight = false;
-  for (Index p = 0; p < c.gap.size(); ++p) tight |= state.free.patch_asked[p] && c.gap[p] < 0.5 * c.skin_m;
-  if (!tight || state.finder.blocked(state.tool.body)) return;
-  add_bodies(world, settings, dt_s, true, state, report);
-  add_contact_rows(true, c.problem, state);
+  for (Index p = 0; p < c.gap.size(); ++p) tight |= step.own.free.patch_asked[p] && c.gap[p] < 0.5 * c.skin_m;
+  if (!tight || step.gaps.blocked(step.held.body)) return;
+  add_bodies(true, step);
+  add_contact_rows(true, c.problem, step);
   begin(rows_of(c.held, c), c.problem);
-  if (!solve_on(settings, c.problem, report)) return;
-  if (!open_after(world, trusted_share(settings, state), state, report)) return;
-  for (ContactRow& row : own_rows(state)) row.distance = gap_at_trial(row, state);
-  take_trial(state);
+  if (!solve_on(step.settings, c.problem, step.report)) return;
+  if (!open_after(trusted_share(step), step)) return;
+  for (ContactRow& row : own_rows(step)) row.distance = gap_at_trial(row, step);
+  take_trial(step);
 }
 
 /// Finds what pushes, where shading bends normals with these, and for those the problem of the way: to where
 /// the forces would have it, as far as the true normals let it. False when there is no answer.
-bool find_forces(const World& world, const FrameSettings& settings, double dt_s, FrameState& state,
-                 FrameReport& report) {
-  ConstraintState& c = state.constraint;
-  add_bodies(world, settings, dt_s, false, state, report);
+bool find_forces(ConstraintStep& step) {
+  ConstraintState& c = step.own.constraint;
+  add_bodies(false, step);
   c.shades = c.bent;
-  if (c.shades) exchange_normals(state);
-  add_contact_rows(false, c.problem, state);
+  if (c.shades) exchange_normals(step);
+  add_contact_rows(false, c.problem, step);
   c.friction.clear();
   begin(rows_of(c.held_without_friction, c), c.problem);
-  bool found = solve_on(settings, c.problem, report);
+  bool found = solve_on(step.settings, c.problem, step.report);
   note_held(c, c.held_without_friction);
-  if (found && c.friction.begin(world, settings.friction, own_rows(state), state.finder.patches(),
-                                state.world.X_WB, c.skin_m, c.first_row, c.problem)) {
+  if (found && c.friction.begin(step.world, step.settings.friction, own_rows(step), step.patches,
+                                step.bodies.X_WB, c.skin_m, c.first_row, c.problem)) {
     begin_sticking(c);
-    found = solve_sliding(settings, c, report);
+    found = solve_sliding(step.settings, c, step.report);
   }
-  if (found) keep_forces(settings, dt_s, state, report);
+  if (found) keep_forces(step);
   if (!c.shades) return found;
-  exchange_normals(state);
+  exchange_normals(step);
   c.way.follow(c.problem);
-  add_contact_rows(false, c.way, state);
+  add_contact_rows(false, c.way, step);
   begin(rows_of(c.held, c), c.way);
-  return found && solve_on(settings, c.way, report);
+  return found && solve_on(step.settings, c.way, step.report);
 }
 
 /// Solves again after a feedback.
-bool find_again(const FrameSettings& settings, double dt_s, FrameState& state, FrameReport& report) {
-  ConstraintState& c = state.constraint;
-  if (c.shades) return solve_on(settings, c.way, report);
-  const bool found =
-      c.friction.acts() ? solve_sliding(settings, c, report) : solve_on(settings, c.problem, report);
-  if (found) keep_forces(settings, dt_s, state, report);
+bool find_again(ConstraintStep& step) {
+  ConstraintState& c = step.own.constraint;
+  if (c.shades) return solve_on(step.settings, c.way, step.report);
+  const bool found = c.friction.acts() ? solve_sliding(step.settings, c, step.report)
+                                       : solve_on(step.settings, c.problem, step.report);
+  if (found) keep_forces(step);
   return found;
 }
 
 /// Goes where the hand wants as far as everything stays open; returns the share of the answer that was taken.
-double advance(const World& world, const FrameSettings& settings, double dt_s, FrameState& state,
-               FrameReport& report) {
-  if (!find_forces(world, settings, dt_s, state, report)) return 0.0;
-  if (state.finder.blocked(state.tool.body)) return 0.0;
+double advance(ConstraintStep& step) {
+  if (!find_forces(step)) return 0.0;
+  if (step.gaps.blocked(step.held.body)) return 0.0;
   double share = 0.0;
   for (int round = 0; round <= kFeedbacks; ++round) {
     if (round > 0) {
-      ++report.validation_retries;
-      feed_back(share, state);
-      if (!find_again(settings, dt_s, state, report)) break;
+      ++step.report.validation_retries;
+      feed_back(share, step);
+      if (!find_again(step)) break;
     }
-    share = trusted_share(settings, state);
-    if (open_after(world, share, state, report)) return share;
+    share = trusted_share(step);
+    if (open_after(share, step)) return share;
   }
   for (int halving = 0; halving < kHalvings; ++halving) {
-    ++report.validation_retries;
+    ++step.report.validation_retries;
     share *= 0.5;
-    if (open_after(world, share, state, report)) return share;
+    if (open_after(share, step)) return share;
   }
   return 0.0;
 }
 
 /// The island of the held part: its bodies' velocities are what they did, but for what only opened a gap,
 /// which no force did. Returns the share of the answer that was taken.
-double move_held_island(const World& world, const FrameSettings& settings, double dt_s, FrameState& state,
-                        FrameReport& report) {
-  ConstraintState& c = state.constraint;
-  state.free.patch_asked.clear();
-  for (const ContactPatch& patch : state.finder.patches())
-    state.free.patch_asked.push_back(state.free.of_held(patch) ? 1 : 0);
-  restore(world, settings, dt_s, state, report);
-  const double share = advance(world, settings, dt_s, state, report);
+double move_held_island(ConstraintStep& step) {
+  ConstraintState& c = step.own.constraint;
+  step.own.free.patch_asked.clear();
+  for (const ContactPatch& patch : step.patches)
+    step.own.free.patch_asked.push_back(step.own.free.of_held(patch) ? 1 : 0);
+  restore(step);
+  const double share = advance(step);
   c.stood = share > 0.0 ? 0 : c.stood + 1;
-  if (share > 0.0) take_trial(state);
-  if (c.stood >= kStandsFrames) feel(settings, dt_s, Vec6::Zero(), state);
-  c.friction.end(world, own_rows(state), state.finder.patches(), c.first_row, c.problem, state.world.X_WB);
-  const std::vector<Pose>& before = share > 0.0 ? c.X_WB_trial : state.world.X_WB;  // take_trial swaps them
-  for (Index i = 0; i < world.bodies.size(); ++i)
-    if (state.free.near_held[i]) state.world.V_WB[i] = twist_between(before[i], state.world.X_WB[i], dt_s);
+  if (share > 0.0) take_trial(step);
+  if (c.stood >= kStandsFrames) feel(Vec6::Zero(), step);
+  c.friction.end(step.world, own_rows(step), step.patches, c.first_row, c.problem, step.bodies.X_WB);
+  const std::vector<Pose>& before = share > 0.0 ? c.X_WB_trial : step.bodies.X_WB;  // take_trial swaps them
+  for (Index i = 0; i < step.world.bodies.size(); ++i)
+    if (step.own.free.near_held[i])
+      step.bodies.V_WB[i] = twist_between(before[i], step.bodies.X_WB[i], step.dt_s);
   return share;
 }
 
 /// The length that is trusted in the next frame, from what the held part's island did in this one.
-void trust_step(const FrameSettings& settings, FrameState& state) {
+void trust_step(ConstraintStep& step) {
   double way = 0.0;
-  for (Index i = 0; i < state.free.near_held.size(); ++i) {
-    if (!state.free.near_held[i]) continue;
-    const Twist step = twist_between(state.X_WB_start[i], state.world.X_WB[i], 1.0);
-    way = std::max(way, step.v.norm() + step.w.norm() * state.finder.radius(static_cast<int>(i)));
+  for (Index i = 0; i < step.own.free.near_held.size(); ++i) {
+    if (!step.own.free.near_held[i]) continue;
+    const Twist moved = twist_between(step.X_WB_start[i], step.bodies.X_WB[i], 1.0);
+    way = std::max(way, moved.v.norm() + moved.w.norm() * step.radius_m[i]);
   }
-  const Constraint& limits = settings.constraint;
-  const double most = state.finder.work().minima > 0 ? limits.max_step_on_surfaces_m : limits.max_step_m;
-  state.constraint.trust_m = std::clamp(kTrustGrowth * way, std::min(limits.least_step_m, most), most);
+  const Constraint& limits = step.settings.constraint;
+  const double most = step.work.minima > 0 ? limits.max_step_on_surfaces_m : limits.max_step_m;
+  step.own.constraint.trust_m = std::clamp(kTrustGrowth * way, std::min(limits.least_step_m, most), most);
 }
 
 /// The points at which something pushes the body: corners, and the centre of a patch whose load friction's
@@ -305,24 +304,25 @@ int pushing_points(std::span<const ContactRow> corners, int body, const Constrai
 }
 
 /// The contacts as they push: normal forces of corners, and of friction the edges of its cones.
-void report_rows(const World& world, double dt_s, FrameState& state, FrameReport& report) {
-  const int held = state.tool.body;
-  const ConstraintState& c = state.constraint;
-  if (c.shades) exchange_normals(state);
-  report.contact_points = static_cast<int>(c.names.size());
-  use_of_friction(world, c.friction, state.finder.patches(), c.first_row, c.problem, own_rows(state),
-                  state.constraint.friction_uses);
-  report.friction = sum_of(c.friction_uses);
-  report.held_contact_points = pushing_points({state.contacts.rows.data(), c.names.size()}, held, c);
+void report_rows(ConstraintStep& step) {
+  const int held = step.held.body;
+  const ConstraintState& c = step.own.constraint;
+  if (c.shades) exchange_normals(step);
+  step.report.contact_points = static_cast<int>(c.names.size());
+  use_of_friction(step.world, c.friction, step.patches, c.first_row, c.problem, own_rows(step),
+                  step.own.constraint.friction_uses);
+  step.report.friction = sum_of(c.friction_uses);
+  step.report.held_contact_points =
+      pushing_points({step.own.contact_rows.rows.data(), c.names.size()}, held, c);
   Vec3 torque = Vec3::Zero();
-  Vec3 origin = held < 0 ? Vec3(Vec3::Zero()) : state.X_WB_start[Index(held)].p;
-  if (state.free.held_island >= 0) {
+  Vec3 origin = held < 0 ? Vec3(Vec3::Zero()) : step.X_WB_start[Index(held)].p;
+  if (step.own.free.held_island >= 0) {
     origin = c.problem.movers().front().origin;
-    torque = c.friction.add_forces(held, dt_s, c.problem, state.contacts.rows);
+    torque = c.friction.add_forces(held, step.dt_s, c.problem, step.own.contact_rows.rows);
   }
   if (held < 0) return;
-  report.restoring = contact_wrench(state.contacts.rows, held, origin, dt_s);
-  report.restoring.t += torque;
+  step.report.restoring = contact_wrench(step.own.contact_rows.rows, held, origin, step.dt_s);
+  step.report.restoring.t += torque;
 }
 
 }  // namespace
@@ -347,48 +347,45 @@ ConstraintState::ConstraintState(const World& world, const FrameSettings& settin
   gap_answer.reserve(settings.budget.rooms.patches);
 }
 
-void trusted_reach(const World& world, double dt_s, FrameState& state) noexcept {
-  const ConstraintState& c = state.constraint;
-  const double pull = world.gravity_W.norm() * dt_s;
-  for (Index i = 0; i < state.reach.size(); ++i) {
-    state.reach[i] = kReachMargin * c.skin_m;
-    if (!world.bodies[i].moves()) continue;
-    const Twist& V = state.world.V_WB[i];
-    const bool held = static_cast<int>(i) == state.tool.body;
-    if (!held)
-      state.reach[i] += (V.v.norm() + pull + V.w.norm() * state.finder.radius(static_cast<int>(i))) * dt_s;
-    if (held || state.free.near_held[i]) state.reach[i] += c.trust_m;
+void trusted_reach(const MotionInput& input, const WorldState& bodies, ConstraintResponse& own) noexcept {
+  const ConstraintState& c = own.constraint;
+  const double pull = input.world.gravity_W.norm() * input.dt_s;
+  for (Index i = 0; i < own.reach.size(); ++i) {
+    own.reach[i] = kReachMargin * c.skin_m;
+    if (!input.world.bodies[i].moves()) continue;
+    const Twist& V = bodies.V_WB[i];
+    const bool held = static_cast<int>(i) == input.held.body;
+    if (!held) own.reach[i] += (V.v.norm() + pull + V.w.norm() * input.radius_m[i]) * input.dt_s;
+    if (held || own.free.near_held[i]) own.reach[i] += c.trust_m;
   }
 }
 
-void respond_constrained(const World& world, const FrameSettings& settings, double dt_s, FrameState& state,
-                         FrameReport& report) noexcept {
-  ConstraintState& c = state.constraint;
-  const std::span<const ContactPatch> patches = state.finder.patches();
+void respond_constrained(ConstraintStep& step) noexcept {
+  ConstraintState& c = step.own.constraint;
   c.gap.clear();
-  for (const ContactPatch& patch : patches) c.gap.push_back(patch.distance);
+  for (const ContactPatch& patch : step.patches) c.gap.push_back(patch.distance);
   c.gap_trial.resize(c.gap.size());
   c.gap_least.resize(c.gap.size());
   c.gap_answer.resize(c.gap.size());
 
-  state.free.others = others_move(world, state.tool.body);
-  let_wait(world, settings, dt_s, state, report);
-  find_islands(world, state);
-  begin_balance(world, dt_s, state);
-  make_corner_rows(world, settings, state);
-  strike(world, settings, dt_s, state, report);
-  move_free_bodies(world, settings, dt_s, state, report);
+  step.own.free.others = others_move(step.world, step.held.body);
+  let_wait(step);
+  find_islands(step);
+  begin_balance(step);
+  make_corner_rows(step);
+  strike(step);
+  move_free_bodies(step);
   double share = 1.0;  // of the held island's step
-  if (state.free.held_island >= 0) {
-    share = move_held_island(world, settings, dt_s, state, report);
+  if (step.own.free.held_island >= 0) {
+    share = move_held_island(step);
   } else {
     c.friction.forget();
   }
-  trust_step(settings, state);
-  end_turning(world, state);
-  end_balance(world, dt_s, share == 1.0 && !c.shades, state, report);
-  go_on(state);
-  report_rows(world, dt_s, state, report);
+  trust_step(step);
+  end_turning(step);
+  end_balance(share == 1.0 && !c.shades, step);
+  go_on(step);
+  report_rows(step);
 }
 
 }  // namespace tactum

@@ -18,10 +18,12 @@
 #include "tactum/haptics/frame_report.h"
 #include "tactum/haptics/friction.h"
 #include "tactum/haptics/friction_use.h"
+#include "tactum/haptics/step_input.h"
 
 namespace tactum {
 
-struct FrameState;
+class ConstraintResponse;
+struct ConstraintStep;
 
 /// What the response keeps from frame to frame, and its scratch, allocated at load time.
 struct ConstraintState {
@@ -60,18 +62,17 @@ struct ConstraintState {
 };
 
 /// How far points may move in the frame: the trusted length for the held part and, on top of their own way,
-/// for what it may push. Fills state.reach.
-void trusted_reach(const World& world, double dt_s, FrameState& state) noexcept;
+/// for what it may push. Fills own.reach.
+void trusted_reach(const MotionInput& input, const WorldState& bodies, ConstraintResponse& own) noexcept;
 
-/// Asks for the gaps at the trial of the patches that state.free.patch_asked names, as long as more than
+/// Asks for the gaps at the trial of the patches that FreeBodies::patch_asked names, as long as more than
 /// `keep_back` tests are left.
-void look_at_trial(int keep_back, FrameState& state, FrameReport& report) noexcept;
+void look_at_trial(int keep_back, ConstraintStep& step) noexcept;
 /// Whether the gap of a patch that was asked for is open at the trial.
 bool open_at_trial(std::size_t patch, const ConstraintState& c) noexcept;
 
-/// Moves everything that moves, the held part's island last. Fills state.contacts.rows, the felt wrench and
+/// Moves everything that moves, the held part's island last. Fills the contact rows, the felt wrench and
 /// the report's response fields.
-void respond_constrained(const World& world, const FrameSettings& settings, double dt_s, FrameState& state,
-                         FrameReport& report) noexcept;
+void respond_constrained(ConstraintStep& step) noexcept;
 
 }  // namespace tactum

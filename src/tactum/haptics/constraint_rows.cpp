@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "tactum/collision/patch_corners.h"
-#include "tactum/haptics/frame_state.h"
+#include "tactum/haptics/constraint_step.h"
 
 namespace tactum {
 namespace {
@@ -49,27 +49,25 @@ Vec3 bend(const ShadingNormals& a, const ShadingNormals& b, const Pose& X_AB, co
 
 /// The rows of a patch: one per corner.
 struct RowMaker {
-  const World& world;
-  const FrameSettings& settings;
-  FrameState& state;
+  ConstraintStep& step;
 
   void add(const ContactPatch& patch, int number, bool own) const noexcept {
     if (patch.manifold.points.empty() && (patch.manifold.a.index < 0 || patch.manifold.b.index < 0))
       return;  // only watched
-    ConstraintState& c = state.constraint;
-    ContactRows& out = state.contacts;
-    const int other = patch.body_a == state.tool.body   ? patch.body_b
-                      : patch.body_b == state.tool.body ? patch.body_a
-                                                        : -1;
-    const Pose& X_WA = state.world.X_WB[Index(patch.body_a)];
-    const Pose X_AB = relative_pose(X_WA, state.world.X_WB[Index(patch.body_b)]);
+    ConstraintState& c = step.own.constraint;
+    ContactRows& out = step.own.contact_rows;
+    const int other = patch.body_a == step.held.body   ? patch.body_b
+                      : patch.body_b == step.held.body ? patch.body_a
+                                                       : -1;
+    const Pose& X_WA = step.bodies.X_WB[Index(patch.body_a)];
+    const Pose X_AB = relative_pose(X_WA, step.bodies.X_WB[Index(patch.body_b)]);
     PatchCorners corners;
     if (patch.of_surfaces) {
       const ContactPoint& point = patch.manifold.points[0];
       corners.push_back({0.5 * (point.p_a + point.p_b), point.distance});
     } else {
-      const Polytope& A = world.bodies[Index(patch.body_a)].part->pieces[Index(patch.piece_a)];
-      const Polytope& B = world.bodies[Index(patch.body_b)].part->pieces[Index(patch.piece_b)];
+      const Polytope& A = step.world.bodies[Index(patch.body_a)].part->pieces[Index(patch.piece_a)];
+      const Polytope& B = step.world.bodies[Index(patch.body_b)].part->pieces[Index(patch.piece_b)];
       if (other < 0) {
         c.corner_memory.corners_of(A, B, X_AB, patch, corners);
       } else {  // what the hand holds hardly ever lies still to the bit
@@ -77,12 +75,12 @@ struct RowMaker {
       }
     }
     const Vec3 normal_W = X_WA.R * patch.manifold.normal;
-    const double friction = settings.friction.between(patch.body_a, patch.body_b);
-    const double restitution = settings.impacts.restitution.between(patch.body_a, patch.body_b);
+    const double friction = step.settings.friction.between(patch.body_a, patch.body_b);
+    const double restitution = step.settings.impacts.restitution.between(patch.body_a, patch.body_b);
     // What the hand drives into something that is held is no blow: its coupling is what bounces.
-    const Islands& islands = state.free.islands;
+    const Islands& islands = step.own.free.islands;
     const bool struck = (islands.moves(patch.body_a) || islands.moves(patch.body_b)) &&
-                        (other < 0 || world.bodies[Index(other)].joint.kind == JointKind::kFree);
+                        (other < 0 || step.world.bodies[Index(other)].joint.kind == JointKind::kFree);
     for (Index i = 0; i < corners.size(); ++i) {
       if (out.rows.size() == out.rows.capacity()) {
         out.full = true;
@@ -100,9 +98,9 @@ struct RowMaker {
       row.restitution = restitution;
       row.struck = struck;
       c.names.push_back(name_of(patch, i));
-      if (!own || state.shading.empty()) continue;
-      const Vec3 bent = bend(state.shading[Index(patch.body_a)], state.shading[Index(patch.body_b)], X_AB,
-                             patch, corners[i]);
+      if (!own || step.shading.empty()) continue;
+      const Vec3 bent =
+          bend(step.shading[Index(patch.body_a)], step.shading[Index(patch.body_b)], X_AB, patch, corners[i]);
       c.bent |= !bent.isZero(0.0);
       c.shaded.push_back(bent.isZero(0.0) ? normal_W : Vec3((normal_W + X_WA.R * bent).normalized()));
     }
@@ -111,31 +109,31 @@ struct RowMaker {
 
 }  // namespace
 
-void make_corner_rows(const World& world, const FrameSettings& settings, FrameState& state) noexcept {
-  ConstraintState& c = state.constraint;
-  ContactRows& out = state.contacts;
+void make_corner_rows(ConstraintStep& step) noexcept {
+  ConstraintState& c = step.own.constraint;
+  ContactRows& out = step.own.contact_rows;
   out.rows.clear();
   out.full = false;
   c.names.clear();
   c.shaded.clear();
   c.shades = c.bent = false;
-  const std::span<const ContactPatch> patches = state.finder.patches();
-  const RowMaker maker{world, settings, state};
+  const std::span<const ContactPatch> patches = step.patches;
+  const RowMaker maker{step};
   for (Index p = 0; p < patches.size() && !out.full; ++p)
-    if (state.free.of_held(patches[p])) maker.add(patches[p], static_cast<int>(p), true);
+    if (step.own.free.of_held(patches[p])) maker.add(patches[p], static_cast<int>(p), true);
   c.own_rows = out.rows.size();
   for (Index p = 0; p < patches.size() && !out.full; ++p)
-    if (!state.free.of_held(patches[p])) maker.add(patches[p], static_cast<int>(p), false);
+    if (!step.own.free.of_held(patches[p])) maker.add(patches[p], static_cast<int>(p), false);
 }
 
-std::span<ContactRow> own_rows(FrameState& state) noexcept {
-  return {state.contacts.rows.data(), state.constraint.own_rows};
+std::span<ContactRow> own_rows(ConstraintStep& step) noexcept {
+  return {step.own.contact_rows.rows.data(), step.own.constraint.own_rows};
 }
 
-void add_contact_rows(bool opening, ConstraintProblem& problem, FrameState& state) noexcept {
-  ConstraintState& c = state.constraint;
+void add_contact_rows(bool opening, ConstraintProblem& problem, ConstraintStep& step) noexcept {
+  ConstraintState& c = step.own.constraint;
   c.first_row = problem.rows();
-  for (const ContactRow& row : own_rows(state)) {
+  for (const ContactRow& row : own_rows(step)) {
     const double offset = c.skin_m - row.distance;
     problem.add_row(problem.row_of(row.body_a, row.body_b, push_of(row)),
                     opening ? offset : std::min(0.0, offset));
@@ -143,16 +141,16 @@ void add_contact_rows(bool opening, ConstraintProblem& problem, FrameState& stat
   c.feedback.assign(c.own_rows, 0.0);
 }
 
-void exchange_normals(FrameState& state) noexcept {
-  ConstraintState& c = state.constraint;
-  for (Index r = 0; r < c.shaded.size(); ++r) std::swap(c.shaded[r], state.contacts.rows[r].n_BA_W);
+void exchange_normals(ConstraintStep& step) noexcept {
+  ConstraintState& c = step.own.constraint;
+  for (Index r = 0; r < c.shaded.size(); ++r) std::swap(c.shaded[r], step.own.contact_rows.rows[r].n_BA_W);
 }
 
-double gap_at_trial(const ContactRow& row, const FrameState& state) noexcept {
-  const ConstraintState& c = state.constraint;
-  const ContactPatch& patch = state.finder.patches()[Index(row.patch)];
+double gap_at_trial(const ContactRow& row, const ConstraintStep& step) noexcept {
+  const ConstraintState& c = step.own.constraint;
+  const ContactPatch& patch = step.patches[Index(row.patch)];
   const auto carried = [&](int body, const Vec3& p_W) {
-    const Pose& before = state.world.X_WB[Index(body)];
+    const Pose& before = step.bodies.X_WB[Index(body)];
     return c.X_WB_trial[Index(body)] * rotated_back(before.R, p_W - before.p);
   };
   const bool on_a = by_face(patch.manifold.a, patch.beside_a);
@@ -160,27 +158,27 @@ double gap_at_trial(const ContactRow& row, const FrameState& state) noexcept {
   const int owner = on_a && !on_b ? row.body_a : row.body_b;
   const Vec3 half = 0.5 * row.distance * row.n_BA_W;
   const Vec3 normal =
-      c.X_WB_trial[Index(owner)].R * rotated_back(state.world.X_WB[Index(owner)].R, row.n_BA_W);
+      c.X_WB_trial[Index(owner)].R * rotated_back(step.bodies.X_WB[Index(owner)].R, row.n_BA_W);
   return normal.dot(carried(row.body_a, row.p_W + half) - carried(row.body_b, row.p_W - half));
 }
 
-double overstated_at_trial(std::span<const ContactRow> rows_of_patch, const FrameState& state) noexcept {
-  if (state.constraint.gap_answer[Index(rows_of_patch.front().patch)] != GapAnswer::kExact) return 0.0;
+double overstated_at_trial(std::span<const ContactRow> rows_of_patch, const ConstraintStep& step) noexcept {
+  if (step.own.constraint.gap_answer[Index(rows_of_patch.front().patch)] != GapAnswer::kExact) return 0.0;
   double least = std::numeric_limits<double>::infinity();
-  for (const ContactRow& row : rows_of_patch) least = std::min(least, gap_at_trial(row, state));
-  return std::max(0.0, least - state.constraint.gap_trial[Index(rows_of_patch.front().patch)]);
+  for (const ContactRow& row : rows_of_patch) least = std::min(least, gap_at_trial(row, step));
+  return std::max(0.0, least - step.own.constraint.gap_trial[Index(rows_of_patch.front().patch)]);
 }
 
-void feed_back(double share, FrameState& state) noexcept {
-  ConstraintState& c = state.constraint;
+void feed_back(double share, ConstraintStep& step) noexcept {
+  ConstraintState& c = step.own.constraint;
   ConstraintProblem& problem = c.moves();
-  const std::span<const ContactRow> rows = own_rows(state);
+  const std::span<const ContactRow> rows = own_rows(step);
   for (Index first = 0, end = 0; first < rows.size(); first = end) {
     for (end = first + 1; end < rows.size() && rows[end].patch == rows[first].patch;) ++end;
-    const double too_much = overstated_at_trial(rows.subspan(first, end - first), state);
+    const double too_much = overstated_at_trial(rows.subspan(first, end - first), step);
     for (Index r = first; r < end; ++r) {
       const double linear = problem.opening(problem.row_of(rows[r].body_a, rows[r].body_b, push_of(rows[r])));
-      const double gap = gap_at_trial(rows[r], state) - too_much;
+      const double gap = gap_at_trial(rows[r], step) - too_much;
       const double missing = (rows[r].distance + share * linear - gap) / share;
       problem.tighten(c.first_row + r, missing - c.feedback[r]);
       c.feedback[r] = missing;

@@ -4,7 +4,7 @@
 
 #include "tactum/base/tolerances.h"
 #include "tactum/haptics/constraint.h"
-#include "tactum/haptics/frame_state.h"
+#include "tactum/haptics/constraint_step.h"
 
 namespace tactum {
 namespace {
@@ -25,15 +25,15 @@ double least_gap(double now, double skin) {
 
 }  // namespace
 
-void look_at_trial(int keep_back, FrameState& state, FrameReport& report) noexcept {
-  ConstraintState& c = state.constraint;
+void look_at_trial(int keep_back, ConstraintStep& step) noexcept {
+  ConstraintState& c = step.own.constraint;
   for (Index p = 0; p < c.gap.size(); ++p) {
-    c.gap_answer[p] = state.free.patch_asked[p] ? GapAnswer::kAsked : GapAnswer::kNotAsked;
+    c.gap_answer[p] = step.own.free.patch_asked[p] ? GapAnswer::kAsked : GapAnswer::kNotAsked;
     c.gap_least[p] = least_gap(c.gap[p], c.skin_m);
   }
-  report.validation_tests +=
-      state.finder.distances_at(c.X_WB_trial, c.gap_trial, c.gap_answer, c.gap_least, keep_back);
-  state.waiting.ran_out |=
+  step.report.validation_tests +=
+      step.gaps.distances_at(c.X_WB_trial, c.gap_trial, c.gap_answer, c.gap_least, keep_back);
+  step.own.waiting.ran_out |=
       std::find(c.gap_answer.begin(), c.gap_answer.end(), GapAnswer::kUnknown) != c.gap_answer.end();
 }
 

@@ -4,17 +4,17 @@
 
 namespace tactum {
 
-double bodies_energy(const World& world, const WorldState& state, int held) noexcept {
+double bodies_energy(const World& world, const WorldState& bodies, int held) noexcept {
   double energy_J = 0.0;
   for (std::size_t i = 0; i < world.bodies.size(); ++i) {
     const Body& body = world.bodies[i];
     if (!body.moves()) continue;
-    const Pose& X_WB = state.X_WB[i];
+    const Pose& X_WB = bodies.X_WB[i];
     if (static_cast<int>(i) == held) {  // it has weight, but the hand does not feel its inertia
       energy_J -= body.mass_kg * world.gravity_W.dot(X_WB.p);
       continue;
     }
-    const Twist& V_WB = state.V_WB[i];
+    const Twist& V_WB = bodies.V_WB[i];
     const Vec3 w_B = X_WB.R.transpose() * V_WB.w;
     energy_J += 0.5 * body.mass_kg * V_WB.v.squaredNorm() + 0.5 * w_B.dot(body.inertia_B * w_B) -
                 body.mass_kg * world.gravity_W.dot(X_WB.p);
@@ -22,22 +22,20 @@ double bodies_energy(const World& world, const WorldState& state, int held) noex
   return energy_J;
 }
 
-PortInput port_input(const World& world, const FrameSettings& settings, const FrameState& state,
-                     const FrameReport& report) noexcept {
-  PortInput input;
-  input.wanted = report.smoothed;
-  input.sent = state.safety.sent;
+void add_stored_energy(const World& world, const Coupling& coupling, const HeldPart& held,
+                       const WorldState& bodies, double field_work_J, double pending_J,
+                       PortInput& port) noexcept {
   // What a field gives the held part is its own, as a falling weight's is; a vortex gives without end.
-  input.bodies_J = bodies_energy(world, state.world, state.tool.body) - state.field.given_J;
-  input.dt_s = settings.dt_s;
-  if (state.tool.body >= 0) {
-    const Twist stretch = twist_between(report.X_WH, report.X_WH_proxy, 1.0);
-    input.spring_J = 0.5 * settings.coupling.stiffness_N_per_m * stretch.v.squaredNorm();
-    // What a blow took from the bodies and is still to be felt.
-    input.spring_J += state.blows.pending_J();
-    input.spring_turning_J = 0.5 * settings.coupling.stiffness_Nm_per_rad * stretch.w.squaredNorm();
+  port.bodies_J = bodies_energy(world, bodies, held.body) - field_work_J;
+  if (held.body < 0) return;
+  Twist stretch;
+  if (held.hand_known) {
+    const Pose X_WH_proxy = bodies.X_WB[static_cast<std::size_t>(held.body)] * held.X_BH;
+    stretch = twist_between(held.X_WH, X_WH_proxy, 1.0);
   }
-  return input;
+  port.spring_J = 0.5 * coupling.stiffness_N_per_m * stretch.v.squaredNorm();
+  port.spring_J += pending_J;
+  port.spring_turning_J = 0.5 * coupling.stiffness_Nm_per_rad * stretch.w.squaredNorm();
 }
 
 }  // namespace tactum

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "tactum/haptics/frame_state.h"
 #include "tactum/math/screw.h"
 
 namespace tactum {
@@ -18,9 +17,8 @@ constexpr double kOvershoot = 1.5;
 /// From where on a field is called steep beside the coupling, a share of its stiffness.
 constexpr double kSteep = 0.5;
 
-double work_over_step(const Wrench& load, const FrameState& state) {
-  const Index held = Index(state.field.body);
-  return power(load, twist_between(state.X_WB_start[held], state.world.X_WB[held], 1.0));
+double work_over_step(const Wrench& load, std::span<const Pose> X_WB, const FieldPull& pull) {
+  return power(load, twist_between(pull.X_WB_start, X_WB[Index(pull.body)], 1.0));
 }
 
 /// How stiff the field is beside the coupling, both against ways and against turns [-].
@@ -31,47 +29,47 @@ double stiffness_beside(const Coupling& coupling, const FieldLoad& load) {
 
 }  // namespace
 
-void pull_by_fields(const World& world, FrameState& state) noexcept {
-  FieldPull& pull = state.field;
-  const int held = state.tool.body;
+void find_field_load(const World& world, std::span<const Pose> X_WB, HeldPart& held,
+                     FieldPull& pull) noexcept {
   if (world.fields.empty()) return;
   const FieldLoad before = pull.load;
-  const bool goes_on = held >= 0 && held == pull.body;
+  const bool goes_on = held.body >= 0 && held.body == pull.body;
   pull.load = {};
-  pull.body = held;
-  if (held < 0) return;
-  const Body& body = world.bodies[Index(held)];
-  pull.load = field_load(world.fields, body.field_points, state.world.X_WB[Index(held)], state.tool.X_BH.p);
-  if (goes_on) pull.given_J += 0.5 * work_over_step(pull.load.at_centre - before.at_centre, state);
+  pull.body = held.body;
+  if (held.body < 0) return;
+  const Body& body = world.bodies[Index(held.body)];
+  const Pose& X_WB_now = X_WB[Index(held.body)];
+  pull.load = field_load(world.fields, body.field_points, X_WB_now, held.X_BH.p);
+  if (goes_on) pull.given_J += 0.5 * work_over_step(pull.load.at_centre - before.at_centre, X_WB, pull);
+  pull.X_WB_start = X_WB_now;
+  held.in_field = true;
+  held.field = pull.load;
 }
 
-void book_field_work(FrameState& state) noexcept {
-  if (state.field.body >= 0) state.field.given_J += work_over_step(state.field.load.at_centre, state);
+void add_field_work(std::span<const Pose> X_WB, FieldPull& pull) noexcept {
+  if (pull.body >= 0) pull.given_J += work_over_step(pull.load.at_centre, X_WB, pull);
 }
 
-Wrench field_at_handle(const FrameState& state) noexcept {
-  if (state.field.body < 0) return {};
-  const Pose& X_WB = state.world.X_WB[Index(state.field.body)];
-  return moved(state.field.load.at_centre, X_WB.R * state.tool.X_BH.p);
+Wrench field_at_handle(const HeldPart& held, std::span<const Pose> X_WB) noexcept {
+  if (!held.in_field) return {};
+  return moved(held.field.at_centre, X_WB[Index(held.body)].R * held.X_BH.p);
 }
 
-HeldMetric step_metric(const FrameSettings& settings, double dt_s, const FrameState& state) noexcept {
-  const Coupling& coupling = settings.coupling;
+HeldMetric step_metric(const Coupling& coupling, const HeldPart& held, double dt_s) noexcept {
   const HeldMetric metric = held_metric(coupling, dt_s);
-  const double needed = (1.0 + stiffness_beside(coupling, state.field.load)) / kOvershoot;
+  const double needed = (1.0 + stiffness_beside(coupling, held.field)) / kOvershoot;
   return {std::max(metric.stiffness_N_per_m, coupling.stiffness_N_per_m * needed),
           std::max(metric.stiffness_Nm_per_rad, coupling.stiffness_Nm_per_rad * needed)};
 }
 
-Pose loaded_hand(const FrameSettings& settings, const FrameState& state) noexcept {
-  if (state.field.body < 0) return state.hand.X_WH;
-  const Coupling& coupling = settings.coupling;
-  const double stiffer = std::max(1.0, (1.0 + stiffness_beside(coupling, state.field.load)) / kOvershoot);
-  const Pose X_WH_proxy = state.world.X_WB[Index(state.field.body)] * state.tool.X_BH;
-  const Twist way = twist_between(X_WH_proxy, state.hand.X_WH, 1.0);
-  const Wrench load = field_at_handle(state);
-  const Twist step{(way.v + load.f / coupling.stiffness_N_per_m) / stiffer,
-                   (way.w + load.t / coupling.stiffness_Nm_per_rad) / stiffer};
+Pose loaded_hand(const Coupling& coupling, const HeldPart& held, const Pose& X_WB) noexcept {
+  if (!held.in_field) return held.X_WH;
+  const double stiffer = std::max(1.0, (1.0 + stiffness_beside(coupling, held.field)) / kOvershoot);
+  const Pose X_WH_proxy = X_WB * held.X_BH;
+  const Twist missing = twist_between(X_WH_proxy, held.X_WH, 1.0);
+  const Wrench load = moved(held.field.at_centre, X_WB.R * held.X_BH.p);
+  const Twist step{(missing.v + load.f / coupling.stiffness_N_per_m) / stiffer,
+                   (missing.w + load.t / coupling.stiffness_Nm_per_rad) / stiffer};
   return advanced(X_WH_proxy, step, 1.0);
 }
 

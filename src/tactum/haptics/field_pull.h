@@ -10,38 +10,41 @@
 ///
 /// and is made shorter; where it ends is the same.
 
+#include <span>
 #include <string>
 
 #include "tactum/dynamics/force_field.h"
 #include "tactum/dynamics/world.h"
 #include "tactum/haptics/constraint_problem.h"
+#include "tactum/haptics/step_input.h"
 
 namespace tactum {
 
-struct FrameState;
-
-/// What fields do to the held part.
+/// The load of force fields on what is held, from frame to frame, and the work it did.
 struct FieldPull {
   FieldLoad load;        ///< at the pose the frame starts with
   double given_J = 0.0;  ///< work on the held parts since the start, of either sign [J]
   int body = -1;         ///< on which the load acts; -1: none
+  Pose X_WB_start;       ///< its pose at the start of the frame [m]
 };
 
-/// Finds the load of this frame, and mends the work of the last step by what the field was at its end.
-void pull_by_fields(const World& world, FrameState& state) noexcept;
+/// Finds the load on the held body in this frame, and mends the work of the last step by what the field was
+/// at its end.
+void find_field_load(const World& world, std::span<const Pose> X_WB, HeldPart& held,
+                     FieldPull& pull) noexcept;
 
-/// Books the work of the load over the frame's step.
-void book_field_work(FrameState& state) noexcept;
+/// Adds the work of the load over the frame's step.
+void add_field_work(std::span<const Pose> X_WB, FieldPull& pull) noexcept;
 
 /// The load told at the handle, world axes.
-Wrench field_at_handle(const FrameState& state) noexcept;
+Wrench field_at_handle(const HeldPart& held, std::span<const Pose> X_WB) noexcept;
 
 /// The coupling over one frame, at least as stiff as the load needs its step to be short.
-HeldMetric step_metric(const FrameSettings& settings, double dt_s, const FrameState& state) noexcept;
+HeldMetric step_metric(const Coupling& coupling, const HeldPart& held, double dt_s) noexcept;
 
 /// In the penalty response: the pose of the handle at which the coupling carries the load, or as far towards
-/// it as is safe.
-Pose loaded_hand(const FrameSettings& settings, const FrameState& state) noexcept;
+/// it as is safe. X_WB is the held body's.
+Pose loaded_hand(const Coupling& coupling, const HeldPart& held, const Pose& X_WB) noexcept;
 
 /// How steep the scene's fields are beside the coupling, in a sentence for people; empty without fields.
 std::string field_sentence(const World& world, const Coupling& coupling);

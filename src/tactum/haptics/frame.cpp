@@ -1,16 +1,15 @@
 #include "tactum/haptics/frame.h"
 
 #include "tactum/haptics/energy.h"
-#include "tactum/haptics/picking.h"
-#include "tactum/haptics/response.h"
 
 namespace tactum {
 namespace {
 
-std::uint32_t flags_of(const ContactWork& work) {
-  return (work.unchecked > 0 ? frame_flag::kBudgetShort : 0u) |
-         (work.rooms_full ? frame_flag::kRoomsFull : 0u) |
-         (work.uncertified > 0 ? frame_flag::kUncertified : 0u);
+void report_held(const HeldPart& held, const WorldState& bodies, FrameReport& report) {
+  report.X_WH = held.X_WH;
+  if (held.body < 0) return;
+  report.X_WH_proxy = bodies.X_WB[static_cast<std::size_t>(held.body)] * held.X_BH;
+  report.field = held.field.at_centre;
 }
 
 }  // namespace
@@ -19,59 +18,49 @@ Wrench haptic_frame(const World& world, const FrameSettings& settings, const Dev
                     const FrameTick& tick, FrameState& state, FrameReport& report) noexcept {
   report = {};
   report.index = tick.index;
-  const double dt = settings.dt_s;
-  Wrench raw;
-  // Where is the hand?
-  const bool was_known = state.hand.known;
-  follow_hand(settings.workspace, sample, dt, state.hand);
-  if (!was_known && state.hand.known) grasp(settings, state);
-  if (sample.valid) pick_or_let_go(world, settings.tool, sample.buttons, state);
-  report.held = state.tool.body;
-  if (!state.hand.known) report.flags |= frame_flag::kNoHand;
+  WorldState& bodies = state.world;
+  ContactStage& contacts = state.contacts;
+  Wrench felt;
+  // Where is the hand, what does it hold, and what do force fields do to that?
+  const HeldPart held = track_hand(world, settings, sample, bodies.X_WB, state.hand);
+  report.held = held.body;
+  if (!held.hand_known) report.flags |= frame_flag::kNoHand;
   state.ended(Stage::kHand);
 
-  if (state.hand.known) {
-    // What do force fields do? How fast does everything move, and how far may it come: delta = v_c dt.
-    pull_by_fields(world, state);
-    wanted_velocities(world, settings, dt, state);
-    tolerances_from_speed(world, settings, dt, state);
-    set_urgency(state);
+  if (held.hand_known) {
+    // How far may everything move in this frame?
+    const MotionInput motion{world, settings, held, contacts.finder.radii(), settings.dt_s};
+    const std::span<const double> motion_bound = state.response.bound_motion(motion, bodies);
     state.ended(Stage::kVelocities);
 
     // Which pairs could touch, and where do they?
-    state.finder.find_near_pairs(state.world.X_WB, state.reach, settings.penalty.min_tolerance_m);
+    find_near_pairs(settings, bodies.X_WB, motion_bound, held.body, contacts);
     state.ended(Stage::kNearPairs);
-    state.finder.find_patches(state.world.X_WB, settings.budget.max_exact_tests, points_wanted(settings),
-                              state.waiting.urgency);
-    report.work = state.finder.work();
-    report.flags |= flags_of(report.work);
+    const std::span<const ContactPatch> patches =
+        find_patches(world, settings, bodies.X_WB, state.response.points(), contacts, report);
     state.ended(Stage::kExactTests);
 
-    // How do the proxy and the world answer?
-    respond(world, settings, dt, state, report);
+    // How do the held part and the world answer?
+    state.X_WB_start = bodies.X_WB;  // same size: nothing is allocated
+    const StepInput step{motion, patches, contacts.urgency, report.work, contacts.shading, state.X_WB_start};
+    state.response.step(step, contacts.finder, bodies, report);
+    add_field_work(bodies.X_WB, state.hand.field);
     state.ended(Stage::kResponse);
 
     // What does the hand feel?
-    raw = felt_wrench(settings, state, report);
+    report_held(held, bodies, report);
+    felt = state.response.felt(step, bodies);
   }
-  report.coupling = raw;
-  report.smoothed = smooth_wrench(settings.smoothing, state.smoothing, to_device(state.hand, raw));
+  report.coupling = felt;
+  report.smoothed = smooth_wrench(settings.smoothing, state.smoothing, to_device(state.hand, felt));
 
   // Does it make energy? Is it safe to send?
-  const PortInput port = port_input(world, settings, state, report);
+  PortInput port{.wanted = report.smoothed, .sent = state.safety.sent, .dt_s = settings.dt_s};
+  const double pending_J = state.response.pending_J();
+  add_stored_energy(world, settings.coupling, held, bodies, state.hand.field.given_J, pending_J, port);
   const Wrench passive = passive_wrench(settings.port, state.port, sample, port, report.port);
-  const SafetyInput input{.wanted = passive,
-                          .X_DH = sample.X_DH,
-                          .sample_valid = sample.valid,
-                          .sample_age_s = tick.now_s - sample.time_s,
-                          .motors_on = sample.motors_on,
-                          .refused = tick.refused,
-                          .now_s = tick.now_s,
-                          .period_s = tick.period_s,
-                          .late = tick.late,
-                          .stop = tick.stop};
   SafetyReport safety;
-  report.shown = safe_wrench(settings.safety, state.safety, input, safety);
+  report.shown = safe_wrench(settings.safety, state.safety, safety_input(sample, tick, passive), safety);
   report.safety = safety.flags;
   state.ended(Stage::kShow);
   return report.shown;

@@ -17,11 +17,11 @@
 #include "tactum/dynamics/resting_contact.h"
 #include "tactum/haptics/frame_report.h"
 #include "tactum/haptics/momentum.h"
-#include "tactum/haptics/settings.h"
+#include "tactum/haptics/step_input.h"
 
 namespace tactum {
 
-struct FrameState;
+struct ConstraintStep;
 
 /// What is kept from frame to frame, and scratch, allocated at load time.
 struct FreeBodies {
@@ -55,24 +55,22 @@ struct FreeBodies {
 void begin_midway(const World& world, double dt_s, WorldState& state) noexcept;
 
 /// Gravity up to the beginning of the frame.
-void pull_free_bodies(const World& world, double dt_s, FrameState& state) noexcept;
+void pull_free_bodies(const MotionInput& input, WorldState& bodies) noexcept;
 
 /// Whether any body but the held one moves.
 bool others_move(const World& world, int held) noexcept;
 
 /// Finds the islands, from the patches of the frame.
-void find_islands(const World& world, FrameState& state) noexcept;
+void find_islands(ConstraintStep& step) noexcept;
 
 /// Strikes blows, and gives gravity's other half: afterwards every body that is not held
 /// has the velocity with which it would go on if nothing held it.
-void strike(const World& world, const FrameSettings& settings, double dt_s, FrameState& state,
-            FrameReport& report) noexcept;
+void strike(ConstraintStep& step) noexcept;
 
 /// Moves all islands but `held_island`.
-void move_free_bodies(const World& world, const FrameSettings& settings, double dt_s, FrameState& state,
-                      FrameReport& report) noexcept;
+void move_free_bodies(ConstraintStep& step) noexcept;
 
 /// The rates at the end of the frame of the bodies that turn freely, from their mean ones.
-void end_turning(const World& world, FrameState& state) noexcept;
+void end_turning(ConstraintStep& step) noexcept;
 
 }  // namespace tactum

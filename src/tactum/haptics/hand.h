@@ -19,7 +19,6 @@ struct HandTracking {
   double time_s = 0.0;    ///< of the last valid sample [s]
   bool known = false;     ///< false until the first valid sample
   bool clutched = false;  ///< the clutch was pressed in the last frame
-  bool pressed = false;   ///< the primary button was
 };
 
 /// Takes a sample in. An invalid or implausible one leaves the hand where it was. `dt_s` is the nominal time

@@ -7,14 +7,13 @@
 
 namespace tactum {
 
-struct FrameState;
+struct ConstraintStep;
 
 /// The displacement of the handle that the coupling asks for, (m, rad).
-Vec6 wanted_by_hand(const FrameSettings& settings, double dt_s, const FrameState& state) noexcept;
+Vec6 wanted_by_hand(const ConstraintStep& step) noexcept;
 /// ... and where the held part's weight and force fields pull it from there.
-Vec6 with_load(const World& world, const FrameSettings& settings, double dt_s, const FrameState& state,
-               const Vec6& wanted) noexcept;
-/// What the hand feels when the handle moves so: sets state.constraint.felt.
-void feel(const FrameSettings& settings, double dt_s, const Vec6& displacement, FrameState& state) noexcept;
+Vec6 with_load(const ConstraintStep& step, const Vec6& wanted) noexcept;
+/// What the hand feels when the handle moves so: sets ConstraintState::felt.
+void feel(const Vec6& displacement, ConstraintStep& step) noexcept;
 
 }  // namespace tactum

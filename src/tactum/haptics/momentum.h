@@ -16,7 +16,7 @@
 
 namespace tactum {
 
-struct FrameState;
+struct ConstraintStep;
 
 /// Scratch of one frame, allocated at load time.
 struct Momentum {
@@ -35,10 +35,9 @@ struct Momentum {
 };
 
 /// Once it is known who moves, and gravity has had half its say (free_bodies.h).
-void begin_balance(const World& world, double dt_s, FrameState& state) noexcept;
+void begin_balance(ConstraintStep& step) noexcept;
 
 /// When all have moved. `as_forced`: the held part's island has gone where its contact forces would have it.
-void end_balance(const World& world, double dt_s, bool as_forced, FrameState& state,
-                 FrameReport& report) noexcept;
+void end_balance(bool as_forced, ConstraintStep& step) noexcept;
 
 }  // namespace tactum

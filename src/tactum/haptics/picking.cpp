@@ -2,8 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-
-#include "tactum/haptics/frame_state.h"
+#include <limits>
 
 namespace tactum {
 namespace {
@@ -30,16 +29,6 @@ double outside(const Part& part, const Vec3& p) {
   return least;
 }
 
-void let_go(FrameState& state) {
-  state.tool.body = -1;
-  state.constraint.felt = {};
-}
-
-void pick(int body, FrameState& state) {
-  state.tool.body = body;
-  state.tool.X_BH = relative_pose(state.world.X_WB[Index(body)], state.hand.X_WH);
-}
-
 }  // namespace
 
 int nearest_body(const World& world, std::span<const Pose> X_WB, const Vec3& p_W, double reach_m) noexcept {
@@ -56,14 +45,20 @@ int nearest_body(const World& world, std::span<const Pose> X_WB, const Vec3& p_W
   return nearest;
 }
 
-void pick_or_let_go(const World& world, const Tool& tool, std::uint32_t buttons, FrameState& state) noexcept {
+void pick_or_let_go(const World& world, std::span<const Pose> X_WB, const Tool& tool, const Pose& X_WH,
+                    std::uint32_t buttons, Grasp& grasp) noexcept {
   const bool pressed = (buttons & 1u) != 0;
-  const bool was_pressed = state.hand.pressed;
-  state.hand.pressed = pressed;
+  const bool was_pressed = grasp.pressed;
+  grasp.pressed = pressed;
   if (!tool.picks || pressed == was_pressed) return;
-  if (!pressed) return let_go(state);
-  const int body = nearest_body(world, state.world.X_WB, state.hand.X_WH.p, tool.reach_m);
-  if (body >= 0) pick(body, state);
+  if (!pressed) {
+    grasp.body = -1;
+    return;
+  }
+  const int body = nearest_body(world, X_WB, X_WH.p, tool.reach_m);
+  if (body < 0) return;
+  grasp.body = body;
+  grasp.X_BH = relative_pose(X_WB[Index(body)], X_WH);
 }
 
 }  // namespace tactum

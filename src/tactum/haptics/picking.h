@@ -12,14 +12,20 @@
 
 namespace tactum {
 
-struct FrameState;
-
 /// The body that moves and is nearest to a point of the world, and no farther than `reach_m`; -1 when there
 /// is none. The distance is to the nearest plane of the nearest convex piece, so it is short beside edges; of
 /// a part without pieces, to its nearest vertex. Cost: linear in faces, when the button is pressed.
 int nearest_body(const World& world, std::span<const Pose> X_WB, const Vec3& p_W, double reach_m) noexcept;
 
-/// When the button has been pressed or let go since the last frame.
-void pick_or_let_go(const World& world, const Tool& tool, std::uint32_t buttons, FrameState& state) noexcept;
+/// What the hand holds.
+struct Grasp {
+  int body = -1;         ///< index into World::bodies; -1: nothing
+  Pose X_BH;             ///< the handle in the held body's frame [m]
+  bool pressed = false;  ///< the primary button was pressed in the last frame
+};
+
+/// When the button has been pressed or let go since the last frame. `X_WH` is the hand.
+void pick_or_let_go(const World& world, std::span<const Pose> X_WB, const Tool& tool, const Pose& X_WH,
+                    std::uint32_t buttons, Grasp& grasp) noexcept;
 
 }  // namespace tactum

@@ -1,37 +1,42 @@
 #pragma once
-/// The stages of the response that frame.cpp strings together: the penalty response as published [Gregory
-/// 2000, 5.2, 6.1], or the constraint response (constraint.h), as the settings say.
+/// How the held part and the world answer: one of two responses, each a stage of the frame with the same
+/// three calls. Which one is chosen here, in one place; a third would be another file and another
+/// alternative.
 
-#include "tactum/haptics/frame_report.h"
-#include "tactum/haptics/frame_state.h"
+#include <variant>
+
+#include "tactum/haptics/constraint_response.h"
+#include "tactum/haptics/penalty_response.h"
 
 namespace tactum {
 
-/// The first time the hand is known, the device is mapped so that the handle stands at the tool's grasp point
-/// and the part is grasped in the orientation it has: nothing is pulled.
-void grasp(const FrameSettings& settings, FrameState& state) noexcept;
+class Response {
+ public:
+  /// The response that the settings name. It may change the velocities that the world starts with.
+  Response(const World& world, const FrameSettings& settings, WorldState& bodies);
 
-/// How fast does everything want to move: the held part towards the hand, at most the threshold distance;
-/// free bodies as they moved, pulled by gravity; all as their joints allow. Fills state.world.V_WB and
-/// state.resistance.
-void wanted_velocities(const World& world, const FrameSettings& settings, double dt_s,
-                       FrameState& state) noexcept;
+  /// What contacts are asked for.
+  PatchPoints points() const noexcept;
+  /// How far any point of a body may move in this frame, by body [m]; sets the velocities that the bodies
+  /// want.
+  std::span<const double> bound_motion(const MotionInput& input, WorldState& bodies) noexcept;
+  /// Moves everything that moves. Fills the report's response fields.
+  void step(const StepInput& input, GapOracle& gaps, WorldState& bodies, FrameReport& report) noexcept;
+  /// What the hand feels of that, at the handle, world axes; nothing while nothing is held [N, N m].
+  Wrench felt(const StepInput& input, const WorldState& bodies) noexcept;
 
-/// v_c dt of every body: linear and angular speed bound [Gregory 2000, 5.2]. Fills state.reach.
-void tolerances_from_speed(const World& world, const FrameSettings& settings, double dt_s,
-                           FrameState& state) noexcept;
+  /// The contacts of the last step, for displays.
+  std::span<const ContactRow> rows() const noexcept;
+  /// What friction does at the contacts that rub, by ContactRow::grip; empty in the penalty response.
+  std::span<const FrictionUse> friction_uses() const noexcept;
+  /// Energy of blows that is still to be felt [J].
+  double pending_J() const noexcept;
 
-/// What the response needs to know of a patch: points that carry its force, or its features.
-PatchPoints points_wanted(const FrameSettings& settings) noexcept;
+  /// The constraint response, if it is the one; else null. For tests and displays that look inside.
+  const ConstraintResponse* constraint() const noexcept { return std::get_if<ConstraintResponse>(&model_); }
 
-/// Penalty: advances to the smallest time of impact, applies the contact forces, advances with the new
-/// velocities for the rest of the frame, and puts every transform back on its joint. Constraint: moves
-/// everything as far as nothing is entered. Fills the report's response fields.
-void respond(const World& world, const FrameSettings& settings, double dt_s, FrameState& state,
-             FrameReport& report) noexcept;
-
-/// The raw wrench at the handle: the coupling from the hand to the proxy, or the sum of the constraint
-/// forces. Zero when nothing is held.
-Wrench felt_wrench(const FrameSettings& settings, FrameState& state, FrameReport& report) noexcept;
+ private:
+  std::variant<PenaltyResponse, ConstraintResponse> model_;
+};
 
 }  // namespace tactum

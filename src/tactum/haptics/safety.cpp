@@ -106,6 +106,19 @@ SafetyLimits tightened(const SafetyLimits& limits, const SafetySettings& setting
   return result;
 }
 
+SafetyInput safety_input(const DeviceSample& sample, const FrameTick& tick, const Wrench& wanted) noexcept {
+  return {.wanted = wanted,
+          .X_DH = sample.X_DH,
+          .sample_valid = sample.valid,
+          .sample_age_s = tick.now_s - sample.time_s,
+          .motors_on = sample.motors_on,
+          .refused = tick.refused,
+          .now_s = tick.now_s,
+          .period_s = tick.period_s,
+          .late = tick.late,
+          .stop = tick.stop};
+}
+
 Wrench safe_wrench(const SafetyLimits& limits, SafetyState& state, const SafetyInput& input,
                    SafetyReport& report) noexcept {
   report.flags = faults(limits, state, input);

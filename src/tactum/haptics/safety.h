@@ -24,6 +24,7 @@
 #include <string>
 
 #include "tactum/devices/device.h"
+#include "tactum/haptics/loop.h"
 #include "tactum/math/spatial.h"
 
 namespace tactum {
@@ -97,6 +98,9 @@ struct SafetyInput {
   bool late = false;          ///< the loop was late by more than it may
   bool stop = false;          ///< stop requested
 };
+
+/// The input of one frame.
+SafetyInput safety_input(const DeviceSample& sample, const FrameTick& tick, const Wrench& wanted) noexcept;
 
 struct SafetyState {
   Wrench sent;              ///< last frame's answer [N, N m]

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "tactum/haptics/frame_state.h"
+#include "tactum/haptics/constraint_step.h"
 #include "tactum/math/screw.h"
 
 namespace tactum {
@@ -14,11 +14,11 @@ constexpr int kStillFrames = 60;
 /// No point has gone farther in that time than this share of the skin: some nanometres.
 constexpr double kStillShare = 0.01;
 
-void count_touches(FrameState& state) {
-  Sleep& s = state.sleep;
+void count_touches(ConstraintStep& step) {
+  Sleep& s = step.own.sleep;
   s.touches.swap(s.touched);
   std::fill(s.touches.begin(), s.touches.end(), 0);
-  for (const ContactPatch& patch : state.finder.patches()) {
+  for (const ContactPatch& patch : step.patches) {
     ++s.touches[Index(patch.body_a)];
     ++s.touches[Index(patch.body_b)];
     s.islands.join(patch.body_a, patch.body_b);
@@ -26,17 +26,17 @@ void count_touches(FrameState& state) {
 }
 
 /// Whether the body is where it was, with what it touched.
-bool is_still(const FrameState& state, Index body) {
-  const Sleep& s = state.sleep;
-  if (s.touches[body] != s.touched[body] || static_cast<int>(body) == state.tool.body) return false;
-  const double most = kStillShare * state.constraint.skin_m;
+bool is_still(const ConstraintStep& step, Index body) {
+  const Sleep& s = step.own.sleep;
+  if (s.touches[body] != s.touched[body] || static_cast<int>(body) == step.held.body) return false;
+  const double most = kStillShare * step.own.constraint.skin_m;
   const Pose& was = s.X_still[body];
-  const Pose& is = state.world.X_WB[body];
+  const Pose& is = step.bodies.X_WB[body];
   const double way = (is.p - was.p).norm();
   if (way > most) return false;
   if (way == 0.0 && is.R == was.R) return true;  // as all that sleeps
   const Twist moved = twist_between(was, is, 1.0);
-  return moved.v.norm() + moved.w.norm() * state.finder.radius(static_cast<int>(body)) <= most;
+  return moved.v.norm() + moved.w.norm() * step.radius_m[body] <= most;
 }
 
 }  // namespace
@@ -49,27 +49,27 @@ Sleep::Sleep(const World& world)
       islands(world),
       restless(world.bodies.size(), 0) {}
 
-void let_sleep(const World& world, FrameState& state, FrameReport& report) noexcept {
-  Sleep& s = state.sleep;
-  std::vector<char>& waits = state.waiting.waits;  // nobody so far
-  s.islands.clear(world, waits);
-  count_touches(state);
+void let_sleep(ConstraintStep& step) noexcept {
+  Sleep& s = step.own.sleep;
+  std::vector<char>& waits = step.own.waiting.waits;  // nobody so far
+  s.islands.clear(step.world, waits);
+  count_touches(step);
   std::fill(s.restless.begin(), s.restless.end(), 0);
-  for (Index i = 0; i < world.bodies.size(); ++i) {
-    if (!world.bodies[i].moves()) continue;
-    if (is_still(state, i)) {
+  for (Index i = 0; i < step.world.bodies.size(); ++i) {
+    if (!step.world.bodies[i].moves()) continue;
+    if (is_still(step, i)) {
       s.still[i] = std::min(s.still[i] + 1, kStillFrames);
     } else {
-      s.X_still[i] = state.world.X_WB[i];
+      s.X_still[i] = step.bodies.X_WB[i];
       s.still[i] = 0;
     }
     if (s.still[i] < kStillFrames) s.restless[Index(s.islands.of(static_cast<int>(i)))] = 1;
   }
-  for (Index i = 0; i < world.bodies.size(); ++i) {
-    if (!world.bodies[i].moves() || s.restless[Index(s.islands.of(static_cast<int>(i)))]) continue;
+  for (Index i = 0; i < step.world.bodies.size(); ++i) {
+    if (!step.world.bodies[i].moves() || s.restless[Index(s.islands.of(static_cast<int>(i)))]) continue;
     waits[i] = 1;
-    state.waiting.V_kept[i] = state.world.V_WB[i] = {};
-    ++report.asleep;
+    step.own.waiting.V_kept[i] = step.bodies.V_WB[i] = {};
+    ++step.report.asleep;
   }
 }
 

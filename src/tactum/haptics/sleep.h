@@ -13,7 +13,7 @@
 
 namespace tactum {
 
-struct FrameState;
+struct ConstraintStep;
 
 /// Kept from frame to frame, and scratch, one entry per body; allocated at load time.
 struct Sleep {
@@ -28,7 +28,7 @@ struct Sleep {
 };
 
 /// Puts those to rest that may sleep (Waiting::waits), after the pairs have been tested.
-void let_sleep(const World& world, FrameState& state, FrameReport& report) noexcept;
+void let_sleep(ConstraintStep& step) noexcept;
 
 /// Everything is awake.
 void wake(Sleep& sleep) noexcept;

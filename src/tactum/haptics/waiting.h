@@ -25,7 +25,7 @@
 
 namespace tactum {
 
-struct FrameState;
+struct ConstraintStep;
 
 /// What is kept from frame to frame, and scratch, one entry per body; allocated at load time.
 struct Waiting {
@@ -34,7 +34,6 @@ struct Waiting {
   std::vector<char> waits;            ///< in this frame
   std::vector<int> waited;            ///< how many frames on end [-]
   std::vector<double> way;            ///< of the last step it took or tried [m]
-  std::vector<std::uint8_t> urgency;  ///< schedule.h
   std::vector<Pose> X_rest;           ///< the place it has hardly left
   std::vector<int> rested;            ///< frames that it moved in since [-]
   std::vector<int> contacts_at_rest;  ///< of those that sleep; 0: awake [-]
@@ -49,14 +48,10 @@ struct Waiting {
   std::vector<char> hit;      ///< by something fast
 };
 
-/// What is urgent in this frame: the held part, and what touched it in the last one. Before pairs are tested.
-void set_urgency(FrameState& state) noexcept;
-
 /// Chooses who waits, and puts them at rest. After the pairs have been tested.
-void let_wait(const World& world, const FrameSettings& settings, double dt_s, FrameState& state,
-              FrameReport& report) noexcept;
+void let_wait(ConstraintStep& step) noexcept;
 
 /// Gives those that waited their velocities back.
-void go_on(FrameState& state) noexcept;
+void go_on(ConstraintStep& step) noexcept;
 
 }  // namespace tactum

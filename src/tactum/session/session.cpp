@@ -117,7 +117,7 @@ Wrench Session::run(const DeviceSample& sample, const FrameTick& tick) noexcept 
   if (stage_clock_ != nullptr) stage_clock_->frame_begins();
   const Wrench F_D = haptic_frame(scene_.world, scene_.settings, sample, felt, state_, report_);
   if (!tick.stop) record_.add(report_, state_.world);
-  goals_.watch(scene_.world, state_.world, state_.tool.body, state_.contacts.rows);
+  goals_.watch(scene_.world, state_.world, state_.hand.grasp.body, state_.response.rows());
   if (feed_ != nullptr) feed_->take({report_, state_, scene_.settings}, stage_clock_);
   // A full ring means nobody has looked for seconds: the newest glance is then lost, the frame is not.
   glances_.push({report_.index, report_.shown.f.norm(), report_.shown.t.norm(), report_.contact_points,

@@ -11,7 +11,7 @@ Wrench from_device_axes(Source frame, const Wrench& F_D) { return rotated(frame.
 
 /// The contact forces act at the held part's centre of mass; the hand feels them at the handle.
 Wrench contact_at_handle(Source frame) noexcept {
-  const int held = frame.state.tool.body;
+  const int held = frame.state.hand.grasp.body;
   if (held < 0) return {};
   const Vec3& p_WB = frame.state.world.X_WB[static_cast<std::size_t>(held)].p;
   return moved(frame.report.restoring, frame.report.X_WH_proxy.p - p_WB);
@@ -88,7 +88,7 @@ constexpr Channel kChannels[] = {
   {"field_Nm", "Force fields, torque", "N m", "torque of force fields", "the same about its centre of mass",
    [](Source f) noexcept { return f.report.field.t.norm(); }},
   {"field_given_J", "From force fields", "J", "energy", "work they have done on what was held, of either sign",
-   [](Source f) noexcept { return f.state.field.given_J; }},
+   [](Source f) noexcept { return f.state.hand.field.given_J; }},
   {"safety_gain", "Ramp", "", "ramp", "of the start and stop ramps, 0 to 1",
    [](Source f) noexcept { return f.state.safety.gain; }},
   {"safety_flags", "Safety flags", "", "flags", "which limit acted, as bits",

@@ -49,13 +49,13 @@ void FrameFeed::draw(const FrameSource& frame, FramePicture& picture) noexcept {
   picture.X_WH = frame.report.X_WH;
   picture.X_WH_proxy = frame.report.X_WH_proxy;
   picture.X_WD = state.hand.X_WD;
-  picture.held = state.hand.known ? state.tool.body : -1;
+  picture.held = state.hand.known ? state.hand.grasp.body : -1;
   std::copy(state.world.X_WB.begin(), state.world.X_WB.end(), picture.X_WB.begin());
   picture.contacts.clear();
   picture.contacts_left_out = 0;
-  const std::span<const ContactPatch> patches = state.finder.patches();
+  const std::span<const ContactPatch> patches = state.contacts.finder.patches();
   const double rest = frame.settings.dt_s - frame.report.time_of_impact_s;  // what the impulses acted for
-  for (const ContactRow& row : state.contacts.rows) {
+  for (const ContactRow& row : state.response.rows()) {
     if (picture.contacts.size() == kContacts) {
       ++picture.contacts_left_out;
       continue;
@@ -71,7 +71,7 @@ void FrameFeed::draw(const FrameSource& frame, FramePicture& picture) noexcept {
     contact.force_N = rest > 0.0 ? row.impulse / rest : 0.0;
     contact.patch = row.patch;
     if (row.grip >= 0) {
-      const FrictionUse& use = state.constraint.friction_uses[Index(row.grip)];
+      const FrictionUse& use = state.response.friction_uses()[Index(row.grip)];
       contact.grip = use.sticks ? Grip::kSticks : Grip::kSlips;
       contact.cone_used = use.cone_used;
     }

@@ -1,0 +1,75 @@
+#include "tactum/haptics/contact_stage.h"
+
+#include <algorithm>
+
+#include "tactum/base/tolerances.h"
+
+namespace tactum {
+namespace {
+
+using Index = std::size_t;
+
+std::vector<CollisionBody> collision_bodies(const World& world) {
+  std::vector<CollisionBody> bodies;
+  for (const Body& body : world.bodies) bodies.push_back({body.part.get(), body.moves()});
+  return bodies;
+}
+
+void find_urgency(int held, ContactStage& stage) {
+  std::vector<std::uint8_t>& urgency = stage.urgency;
+  std::fill(urgency.begin(), urgency.end(), urgency::kOther);
+  if (held < 0) return;
+  for (const ContactPatch& patch : stage.finder.patches()) {
+    if (patch.body_a == held) urgency[Index(patch.body_b)] = urgency::kTouchesHeld;
+    if (patch.body_b == held) urgency[Index(patch.body_a)] = urgency::kTouchesHeld;
+  }
+  urgency[Index(held)] = urgency::kHeld;
+}
+
+/// Distances are those the frame found, before anything moved.
+void report_distances(const World& world, std::span<const ContactPatch> patches, FrameReport& report) {
+  for (const ContactPatch& patch : patches) {
+    const double size =
+        world.bodies[Index(patch.body_a)].part->size + world.bodies[Index(patch.body_b)].part->size;
+    report.penetrating |= -patch.distance > tolerances::kPenetrating * size;
+    report.tolerance_m = std::max(report.tolerance_m, patch.tolerance);
+    const bool first = &patch == patches.data();
+    report.min_distance_m = first ? patch.distance : std::min(report.min_distance_m, patch.distance);
+  }
+}
+
+std::uint32_t flags_of(const ContactWork& work) {
+  return (work.unchecked > 0 ? frame_flag::kBudgetShort : 0u) |
+         (work.rooms_full ? frame_flag::kRoomsFull : 0u) |
+         (work.uncertified > 0 ? frame_flag::kUncertified : 0u);
+}
+
+}  // namespace
+
+ContactStage::ContactStage(const World& world, const FrameSettings& settings, std::span<const Pose> X_WB)
+    : finder(collision_bodies(world), X_WB, settings.budget.rooms),
+      urgency(world.bodies.size(), urgency::kOther) {
+  if (!settings.shading.on) return;
+  bool some_bend = false;
+  for (const Body& body : world.bodies)
+    some_bend |= shading.emplace_back(*body.part, settings.shading.crease_rad).bends();
+  if (!some_bend) shading.clear();
+}
+
+void find_near_pairs(const FrameSettings& settings, std::span<const Pose> X_WB,
+                     std::span<const double> motion_bound, int held, ContactStage& stage) noexcept {
+  find_urgency(held, stage);
+  stage.finder.find_near_pairs(X_WB, motion_bound, settings.penalty.min_tolerance_m);
+}
+
+std::span<const ContactPatch> find_patches(const World& world, const FrameSettings& settings,
+                                           std::span<const Pose> X_WB, PatchPoints points,
+                                           ContactStage& stage, FrameReport& report) noexcept {
+  stage.finder.find_patches(X_WB, settings.budget.max_exact_tests, points, stage.urgency);
+  report.work = stage.finder.work();
+  report.flags |= flags_of(report.work);
+  report_distances(world, stage.finder.patches(), report);
+  return stage.finder.patches();
+}
+
+}  // namespace tactum

@@ -1,0 +1,30 @@
+#pragma once
+/// The stage of a frame that finds where bodies touch: the contact finder, told what is urgent, and what a
+/// face's shading makes of the contacts.
+
+#include <vector>
+
+#include "tactum/haptics/frame_report.h"
+#include "tactum/haptics/step_input.h"
+
+namespace tactum {
+
+struct ContactStage {
+  ContactStage(const World& world, const FrameSettings& settings, std::span<const Pose> X_WB);
+
+  ContactFinder finder;
+  std::vector<std::uint8_t> urgency;    ///< of each body (collision/schedule.h)
+  std::vector<ShadingNormals> shading;  ///< one per body; empty when shading is off, or bends nothing
+};
+
+/// Which pairs could touch, when no point of body i moves farther than `motion_bound[i]` [m]. What is held,
+/// and what touched it in the last frame, is urgent.
+void find_near_pairs(const FrameSettings& settings, std::span<const Pose> X_WB,
+                     std::span<const double> motion_bound, int held, ContactStage& stage) noexcept;
+
+/// Where they touch. Adds the work, the smallest distance and the flags to the report.
+std::span<const ContactPatch> find_patches(const World& world, const FrameSettings& settings,
+                                           std::span<const Pose> X_WB, PatchPoints points,
+                                           ContactStage& stage, FrameReport& report) noexcept;
+
+}  // namespace tactum
