@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Holds the layers of src/tactum apart:  tools/check_layers.py [ROOT]
 
-A file includes only its own layer and those to the left of it; devices and the geometry branch meet first in haptics.
+A file includes only its own layer and those to the left of it; the device branch (devices, loop) and the geometry branch meet first in haptics.
 Nothing inside includes the umbrella tactum.h. The folder of every layer has a README.md with a caption for each header
 (`pose.h`, or `pose` for header and source).
 """
@@ -14,10 +14,11 @@ STANDS_ON = {
     "base": [],
     "math": ["base"],
     "devices": ["math"],
+    "loop": ["devices"],
     "geometry": ["math"],
     "collision": ["geometry"],
     "dynamics": ["collision"],
-    "haptics": ["dynamics", "devices"],
+    "haptics": ["dynamics", "loop"],
     "scene": ["haptics"],
     "telemetry": ["scene"],
     "session": ["telemetry"],

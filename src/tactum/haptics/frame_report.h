@@ -7,7 +7,7 @@
 #include "tactum/base/hash.h"
 #include "tactum/collision/contact_finder.h"
 #include "tactum/dynamics/world.h"
-#include "tactum/haptics/passivity.h"
+#include "tactum/loop/passivity.h"
 #include "tactum/math/spatial.h"
 
 namespace tactum {

@@ -10,12 +10,12 @@
 #include "tactum/haptics/free_bodies.h"
 #include "tactum/haptics/hand.h"
 #include "tactum/haptics/impulse_display.h"
-#include "tactum/haptics/safety.h"
 #include "tactum/haptics/settings.h"
 #include "tactum/haptics/shading.h"
 #include "tactum/haptics/sleep.h"
-#include "tactum/haptics/smoothing.h"
 #include "tactum/haptics/waiting.h"
+#include "tactum/loop/safety.h"
+#include "tactum/loop/smoothing.h"
 
 namespace tactum {
 

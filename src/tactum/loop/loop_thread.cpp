@@ -1,4 +1,4 @@
-#include "tactum/haptics/loop_thread.h"
+#include "tactum/loop/loop_thread.h"
 
 #include <cerrno>
 #include <cmath>

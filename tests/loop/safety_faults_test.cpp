@@ -11,7 +11,7 @@
 
 #include "support/faulty_device.h"
 #include "support/pressed_block.h"
-#include "tactum/haptics/loop_thread.h"
+#include "tactum/loop/loop_thread.h"
 #include "tactum/math/screw.h"
 
 namespace tactum {

@@ -8,8 +8,8 @@
 
 #include "tactum/base/assert.h"
 #include "tactum/devices/registry.h"
-#include "tactum/haptics/loop_thread.h"
-#include "tactum/haptics/safety.h"
+#include "tactum/loop/loop_thread.h"
+#include "tactum/loop/safety.h"
 
 namespace tactum {
 namespace {

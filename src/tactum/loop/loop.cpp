@@ -1,4 +1,4 @@
-#include "tactum/haptics/loop.h"
+#include "tactum/loop/loop.h"
 
 #include <chrono>
 #include <cmath>

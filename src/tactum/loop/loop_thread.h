@@ -19,8 +19,8 @@
 #include <thread>
 
 #include "tactum/base/spsc_ring.h"
-#include "tactum/haptics/loop.h"
-#include "tactum/haptics/realtime.h"
+#include "tactum/loop/loop.h"
+#include "tactum/loop/realtime.h"
 
 namespace tactum {
 

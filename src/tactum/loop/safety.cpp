@@ -1,4 +1,4 @@
-#include "tactum/haptics/safety.h"
+#include "tactum/loop/safety.h"
 
 #include <algorithm>
 #include <cmath>

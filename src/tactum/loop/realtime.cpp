@@ -1,4 +1,4 @@
-#include "tactum/haptics/realtime.h"
+#include "tactum/loop/realtime.h"
 
 #include <pthread.h>
 #include <sched.h>

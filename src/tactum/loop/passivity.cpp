@@ -1,4 +1,4 @@
-#include "tactum/haptics/passivity.h"
+#include "tactum/loop/passivity.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "tactum/haptics/smoothing.h"
+#include "tactum/loop/smoothing.h"
 
 #include <gtest/gtest.h>
 
