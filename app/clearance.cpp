@@ -10,8 +10,8 @@
 #include "commands.h"
 #include "tactum/collision/surface_distance.h"
 #include "tactum/devices/motion_file.h"
-#include "tactum/geometry/mesh_import.h"
-#include "tactum/geometry/part_file.h"
+#include "tactum/mesh/mesh_import.h"
+#include "tactum/mesh/part_file.h"
 
 /// `tactum clearance A B MOTION.csv`: exact distance of two surfaces for every row of a motion.
 

@@ -8,9 +8,9 @@
 #include "tactum/base/random.h"
 #include "tactum/collision/surface_distance.h"
 #include "tactum/devices/motion_file.h"
-#include "tactum/geometry/mesh_import.h"
 #include "tactum/geometry/weld.h"
 #include "tactum/math/screw.h"
+#include "tactum/mesh/mesh_import.h"
 
 namespace tactum::bench {
 namespace {

@@ -16,10 +16,11 @@ STANDS_ON = {
     "devices": ["math"],
     "loop": ["devices"],
     "geometry": ["math"],
+    "mesh": ["geometry"],
     "collision": ["geometry"],
     "dynamics": ["collision"],
     "haptics": ["dynamics", "loop"],
-    "scene": ["haptics"],
+    "scene": ["haptics", "mesh"],
     "telemetry": ["scene"],
     "session": ["telemetry"],
 }

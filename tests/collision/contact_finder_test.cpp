@@ -15,6 +15,7 @@
 #include "tactum/base/tolerances.h"
 #include "tactum/collision/closest_features.h"
 #include "tactum/math/screw.h"
+#include "tactum/mesh/make_part.h"
 
 namespace tactum {
 namespace {

@@ -7,6 +7,7 @@
 #include "tactum/collision/contact_finder.h"
 #include "tactum/geometry/primitives.h"
 #include "tactum/math/screw.h"
+#include "tactum/mesh/make_part.h"
 
 namespace tactum {
 namespace {

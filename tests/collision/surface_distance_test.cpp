@@ -10,8 +10,8 @@
 
 #include "support/real_data.h"
 #include "tactum/base/random.h"
-#include "tactum/geometry/mesh_import.h"
 #include "tactum/math/screw.h"
+#include "tactum/mesh/mesh_import.h"
 
 namespace tactum {
 namespace {

@@ -13,8 +13,8 @@
 #include "support/surface_shapes.h"
 #include "tactum/collision/surface_distance.h"
 #include "tactum/devices/motion_file.h"
-#include "tactum/geometry/mesh_import.h"
 #include "tactum/geometry/weld.h"
+#include "tactum/mesh/mesh_import.h"
 
 namespace tactum {
 namespace {

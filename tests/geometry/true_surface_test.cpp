@@ -11,9 +11,10 @@
 #include "support/sample_meshes.h"
 #include "support/sample_solids.h"
 #include "tactum/base/random.h"
-#include "tactum/geometry/mesh_import.h"
+#include "tactum/geometry/coplanar_groups.h"
 #include "tactum/geometry/mesh_report.h"
-#include "tactum/geometry/part.h"
+#include "tactum/mesh/make_part.h"
+#include "tactum/mesh/mesh_import.h"
 #include "tactum/scene/gear.h"
 #include "tactum/scene/generated_parts.h"
 

@@ -13,6 +13,7 @@
 #include "tactum/haptics/frame.h"
 #include "tactum/haptics/shading.h"
 #include "tactum/math/screw.h"
+#include "tactum/mesh/make_part.h"
 
 namespace tactum {
 namespace {

@@ -9,6 +9,7 @@
 #include "tactum/geometry/hull.h"
 #include "tactum/geometry/polygon_clip.h"
 #include "tactum/geometry/primitives.h"
+#include "tactum/mesh/make_part.h"
 
 namespace tactum {
 namespace {

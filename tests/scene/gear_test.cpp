@@ -8,8 +8,8 @@
 #include "tactum/base/tolerances.h"
 #include "tactum/collision/surface_distance.h"
 #include "tactum/geometry/mesh_report.h"
-#include "tactum/geometry/part.h"
 #include "tactum/math/screw.h"
+#include "tactum/mesh/make_part.h"
 
 namespace tactum {
 namespace {

@@ -11,7 +11,7 @@
 /// A direction u is in a feature's normal cone when, from the feature, the surface falls away from u on all
 /// sides: only there can the feature be nearest to something outside. Faces have one direction, their outward
 /// normal. Features without a cone own nothing and cost nothing: reflex edges, pits and saddles, and the
-/// edges and vertices inside a flat face (coplanar_groups() in part.h), which would be felt as ghosts.
+/// edges and vertices inside a flat face (coplanar_groups.h), which would be felt as ghosts.
 ///
 /// Edges of one triangle, of more than two, and of two that disagree about outside are rims of each of their
 /// triangles: the surface is closed there by a wall straight behind it, so a rim is felt from the front and

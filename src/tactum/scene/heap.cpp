@@ -8,6 +8,7 @@
 #include "tactum/geometry/mass_properties.h"
 #include "tactum/geometry/primitives.h"
 #include "tactum/math/screw.h"
+#include "tactum/mesh/make_part.h"
 
 namespace tactum {
 namespace {

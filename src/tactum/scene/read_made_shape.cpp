@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "tactum/geometry/primitives.h"
+#include "tactum/mesh/make_part.h"
 #include "tactum/scene/bolt_and_nut.h"
 #include "tactum/scene/gear.h"
 #include "tactum/scene/generated_parts.h"
