@@ -6,12 +6,12 @@
 #include "support/sample_meshes.h"
 #include "tactum/base/random.h"
 #include "tactum/collision/penetration.h"
-#include "tactum/collision/triangle_pair.h"
 #include "tactum/geometry/hull.h"
 #include "tactum/geometry/primitives.h"
 #include "tactum/math/screw.h"
 #include "tactum/mesh/make_part.h"
 #include "tactum/mesh/piece_overlap.h"
+#include "tactum/surface/triangle_pair.h"
 
 namespace tactum {
 namespace {

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <set>
 
-#include "tactum/collision/surface_distance.h"
 #include "tactum/geometry/mass_properties.h"
 #include "tactum/geometry/mesh_report.h"
 #include "tactum/math/screw.h"
 #include "tactum/mesh/make_part.h"
+#include "tactum/surface/surface_distance.h"
 
 namespace tactum {
 namespace {

@@ -6,10 +6,10 @@
 #include <cmath>
 
 #include "tactum/base/tolerances.h"
-#include "tactum/collision/surface_distance.h"
 #include "tactum/geometry/mesh_report.h"
 #include "tactum/math/screw.h"
 #include "tactum/mesh/make_part.h"
+#include "tactum/surface/surface_distance.h"
 
 namespace tactum {
 namespace {

@@ -40,9 +40,9 @@
 #include "tactum/collision/schedule.h"
 #include "tactum/collision/seam_settler.h"
 #include "tactum/collision/steady_contact.h"
-#include "tactum/collision/surface_minima.h"
 #include "tactum/collision/sweep_and_prune.h"
 #include "tactum/geometry/part.h"
+#include "tactum/surface/surface_minima.h"
 
 namespace tactum {
 

@@ -22,7 +22,7 @@
 
 #include <span>
 
-#include "tactum/collision/surface_minima.h"
+#include "tactum/surface/surface_minima.h"
 
 namespace tactum {
 

@@ -11,10 +11,10 @@
 
 #include <vector>
 
-#include "tactum/collision/triangle_pair.h"
 #include "tactum/geometry/bvh.h"
 #include "tactum/geometry/triangle_mesh.h"
 #include "tactum/math/pose.h"
+#include "tactum/surface/triangle_pair.h"
 
 namespace tactum {
 

@@ -1,4 +1,4 @@
-#include "tactum/collision/surface_minima_features.h"
+#include "tactum/surface/surface_minima_features.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,9 @@
 
 #include <vector>
 
-#include "tactum/collision/surface_minima.h"
+#include "tactum/geometry/surface_tree.h"
+#include "tactum/math/pose.h"
+#include "tactum/surface/surface_minimum.h"
 
 namespace tactum {
 

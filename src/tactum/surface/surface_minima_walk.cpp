@@ -1,9 +1,9 @@
-#include "tactum/collision/surface_minima_walk.h"
+#include "tactum/surface/surface_minima_walk.h"
 
 #include <algorithm>
 #include <bit>
 
-#include "tactum/collision/surface_minima_leaves.h"
+#include "tactum/surface/surface_minima_leaves.h"
 
 namespace tactum {
 namespace {

@@ -1,6 +1,6 @@
 /// The tests of surface_minima_lanes.h for any processor, and the choice among them.
 
-#include "tactum/collision/surface_minima_kernels.h"
+#include "tactum/surface/surface_minima_kernels.h"
 
 namespace tactum::lanes {
 namespace {

@@ -1,4 +1,4 @@
-#include "tactum/collision/surface_distance.h"
+#include "tactum/surface/surface_distance.h"
 
 #include <gtest/gtest.h>
 

@@ -4,8 +4,8 @@
 
 #include <array>
 
-#include "tactum/collision/surface_minima_features.h"
-#include "tactum/collision/surface_minima_lanes.h"
+#include "tactum/surface/surface_minima_features.h"
+#include "tactum/surface/surface_minima_lanes.h"
 
 namespace tactum {
 

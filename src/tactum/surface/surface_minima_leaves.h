@@ -3,7 +3,7 @@
 /// features a leaf holds and nothing else: where they are is looked up in the mesh when a query first asks,
 /// which costs about as much as one comparison of two leaves.
 
-#include "tactum/collision/surface_minima_lanes.h"
+#include "tactum/surface/surface_minima_lanes.h"
 
 namespace tactum::lanes {
 

@@ -1,7 +1,7 @@
 /// The tests of surface_minima_lanes.h for processors with AVX2; compiled for them where the program is built
 /// for x86-64 (CMakeLists.txt), empty elsewhere.
 
-#include "tactum/collision/surface_minima_kernels.h"
+#include "tactum/surface/surface_minima_kernels.h"
 
 #ifdef __AVX2__
 

@@ -1,4 +1,4 @@
-#include "tactum/collision/triangle_pair.h"
+#include "tactum/surface/triangle_pair.h"
 
 #include <algorithm>
 

@@ -13,7 +13,7 @@
 #include <cstring>
 
 #include "tactum/base/tolerances.h"
-#include "tactum/collision/surface_minima_lanes.h"
+#include "tactum/surface/surface_minima_lanes.h"
 
 namespace tactum::lanes {
 

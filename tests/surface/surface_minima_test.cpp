@@ -1,4 +1,4 @@
-#include "tactum/collision/surface_minima.h"
+#include "tactum/surface/surface_minima.h"
 
 #include <gtest/gtest.h>
 
@@ -11,10 +11,10 @@
 #include "support/real_data.h"
 #include "support/sample_meshes.h"
 #include "support/surface_shapes.h"
-#include "tactum/collision/surface_distance.h"
 #include "tactum/devices/motion_file.h"
 #include "tactum/geometry/weld.h"
 #include "tactum/mesh/mesh_import.h"
+#include "tactum/surface/surface_distance.h"
 
 namespace tactum {
 namespace {

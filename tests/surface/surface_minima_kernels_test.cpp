@@ -10,8 +10,8 @@
 #include "collision/cases.h"
 #include "support/sample_meshes.h"
 #include "support/surface_shapes.h"
-#include "tactum/collision/surface_minima.h"
-#include "tactum/collision/surface_minima_leaves.h"
+#include "tactum/surface/surface_minima.h"
+#include "tactum/surface/surface_minima_leaves.h"
 
 namespace tactum {
 namespace {

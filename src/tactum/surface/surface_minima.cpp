@@ -1,9 +1,9 @@
-#include "tactum/collision/surface_minima.h"
+#include "tactum/surface/surface_minima.h"
 
 #include <algorithm>
 
 #include "tactum/base/tolerances.h"
-#include "tactum/collision/surface_minima_walk.h"
+#include "tactum/surface/surface_minima_walk.h"
 
 namespace tactum {
 namespace {
