@@ -6,7 +6,7 @@
 
 #include "support/real_data.h"
 #include "tactum/base/random.h"
-#include "tactum/collision/contact_finder.h"
+#include "tactum/contact/contact_finder.h"
 #include "tactum/geometry/hull.h"
 #include "tactum/geometry/polygon_clip.h"
 #include "tactum/geometry/primitives.h"

@@ -10,7 +10,7 @@
 
 #include <vector>
 
-#include "tactum/collision/contact_finder.h"
+#include "tactum/contact/contact_patch.h"
 #include "tactum/dynamics/contact_solver.h"
 #include "tactum/haptics/shading.h"
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "tactum/base/hash.h"
-#include "tactum/collision/contact_finder.h"
+#include "tactum/contact/contact_work.h"
 #include "tactum/dynamics/world.h"
 #include "tactum/loop/passivity.h"
 #include "tactum/math/spatial.h"

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "tactum/collision/contact_finder.h"
+#include "tactum/contact/contact_finder.h"
 #include "tactum/haptics/constraint.h"
 #include "tactum/haptics/contact_force.h"
 #include "tactum/haptics/field_pull.h"

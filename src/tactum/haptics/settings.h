@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "tactum/collision/contact_finder.h"
+#include "tactum/contact/contact_work.h"
 #include "tactum/loop/passivity.h"
 #include "tactum/loop/safety.h"
 #include "tactum/loop/smoothing.h"

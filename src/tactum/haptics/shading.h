@@ -13,7 +13,7 @@
 #include <span>
 #include <vector>
 
-#include "tactum/collision/contact_finder.h"
+#include "tactum/contact/contact_patch.h"
 #include "tactum/geometry/part.h"
 #include "tactum/haptics/settings.h"
 

@@ -1,4 +1,4 @@
-#include "tactum/collision/steady_contact.h"
+#include "tactum/contact/steady_contact.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "tactum/collision/sweep_and_prune.h"
+#include "tactum/contact/sweep_and_prune.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "tactum/collision/contact_reduction.h"
+#include "tactum/contact/contact_reduction.h"
 
 #include <algorithm>
 #include <cmath>

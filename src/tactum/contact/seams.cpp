@@ -1,4 +1,4 @@
-#include "tactum/collision/seams.h"
+#include "tactum/contact/seams.h"
 
 #include <algorithm>
 

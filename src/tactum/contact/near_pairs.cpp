@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "tactum/collision/contact_finder.h"
-#include "tactum/collision/motion_bound.h"
+#include "tactum/contact/contact_finder.h"
+#include "tactum/contact/motion_bound.h"
 
 namespace tactum {
 namespace {

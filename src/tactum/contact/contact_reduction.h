@@ -22,7 +22,7 @@
 
 #include <span>
 
-#include "tactum/surface/surface_minima.h"
+#include "tactum/surface/surface_minimum.h"
 
 namespace tactum {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "tactum/base/tolerances.h"
-#include "tactum/collision/contact_finder.h"
+#include "tactum/contact/contact_finder.h"
 
 namespace tactum {
 namespace {

@@ -1,4 +1,4 @@
-#include "tactum/collision/patch_corners.h"
+#include "tactum/contact/patch_corners.h"
 
 #include <algorithm>
 

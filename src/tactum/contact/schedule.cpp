@@ -1,4 +1,4 @@
-#include "tactum/collision/schedule.h"
+#include "tactum/contact/schedule.h"
 
 #include <algorithm>
 

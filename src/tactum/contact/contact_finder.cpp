@@ -1,13 +1,13 @@
-#include "tactum/collision/contact_finder.h"
+#include "tactum/contact/contact_finder.h"
 
 #include <algorithm>
 
 #include "tactum/base/tolerances.h"
 #include "tactum/collision/closest_features.h"
 #include "tactum/collision/manifold.h"
-#include "tactum/collision/motion_bound.h"
-#include "tactum/collision/patch_corners.h"
-#include "tactum/collision/seams.h"
+#include "tactum/contact/motion_bound.h"
+#include "tactum/contact/patch_corners.h"
+#include "tactum/contact/seams.h"
 
 namespace tactum {
 namespace {

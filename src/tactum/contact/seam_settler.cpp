@@ -1,11 +1,11 @@
-#include "tactum/collision/seam_settler.h"
+#include "tactum/contact/seam_settler.h"
 
 #include <algorithm>
 #include <tuple>
 
 #include "tactum/base/tolerances.h"
 #include "tactum/collision/manifold.h"
-#include "tactum/collision/seams.h"
+#include "tactum/contact/seams.h"
 
 namespace tactum {
 namespace {

@@ -1,10 +1,10 @@
 /// What pieces of one part settle between them.
 
-#include "tactum/collision/seams.h"
+#include "tactum/contact/seams.h"
 
 #include <gtest/gtest.h>
 
-#include "tactum/collision/contact_finder.h"
+#include "tactum/contact/contact_finder.h"
 #include "tactum/geometry/primitives.h"
 #include "tactum/math/screw.h"
 #include "tactum/mesh/make_part.h"

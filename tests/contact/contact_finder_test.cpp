@@ -1,4 +1,4 @@
-#include "tactum/collision/contact_finder.h"
+#include "tactum/contact/contact_finder.h"
 
 #include <gtest/gtest.h>
 

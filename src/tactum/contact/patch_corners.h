@@ -14,8 +14,8 @@
 
 #include <vector>
 
-#include "tactum/collision/contact_patch.h"
 #include "tactum/collision/planar_patch.h"
+#include "tactum/contact/contact_patch.h"
 #include "tactum/geometry/polytope.h"
 
 namespace tactum {

@@ -16,8 +16,8 @@
 #include <span>
 #include <vector>
 
-#include "tactum/collision/contact_patch.h"
-#include "tactum/collision/steady_contact.h"
+#include "tactum/contact/contact_patch.h"
+#include "tactum/contact/steady_contact.h"
 #include "tactum/geometry/part.h"
 
 namespace tactum {
