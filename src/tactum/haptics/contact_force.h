@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "tactum/contact/contact_patch.h"
+#include "tactum/contact/shading.h"
 #include "tactum/dynamics/contact_solver.h"
-#include "tactum/haptics/shading.h"
 
 namespace tactum {
 

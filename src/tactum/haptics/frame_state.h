@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "tactum/contact/contact_finder.h"
+#include "tactum/contact/shading.h"
 #include "tactum/haptics/constraint.h"
 #include "tactum/haptics/contact_force.h"
 #include "tactum/haptics/field_pull.h"
@@ -11,7 +12,6 @@
 #include "tactum/haptics/hand.h"
 #include "tactum/haptics/impulse_display.h"
 #include "tactum/haptics/settings.h"
-#include "tactum/haptics/shading.h"
 #include "tactum/haptics/sleep.h"
 #include "tactum/haptics/waiting.h"
 #include "tactum/loop/safety.h"

@@ -15,7 +15,6 @@
 
 #include "tactum/contact/contact_patch.h"
 #include "tactum/geometry/part.h"
-#include "tactum/haptics/settings.h"
 
 namespace tactum {
 

@@ -1,4 +1,4 @@
-#include "tactum/haptics/shading.h"
+#include "tactum/contact/shading.h"
 
 #include <algorithm>
 #include <array>
