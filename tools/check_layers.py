@@ -17,14 +17,15 @@ STANDS_ON = {
     "loop": ["devices"],
     "geometry": ["math"],
     "mesh": ["geometry"],
+    "parts": ["geometry"],
     "surface": ["geometry"],
     "collision": ["geometry"],
     "contact": ["collision", "surface"],
     "dynamics": ["geometry"],
     "haptics": ["contact", "dynamics", "loop"],
-    "scene": ["haptics", "mesh"],
-    "telemetry": ["scene"],
-    "session": ["telemetry"],
+    "scene": ["haptics", "mesh", "parts"],
+    "telemetry": ["haptics"],
+    "session": ["scene", "telemetry"],
 }
 INCLUDE = re.compile(r'^\s*#\s*include\s*["<]([^">]+)[">]', re.MULTILINE)
 

@@ -15,8 +15,8 @@
 #include "tactum/geometry/mesh_report.h"
 #include "tactum/mesh/make_part.h"
 #include "tactum/mesh/mesh_import.h"
-#include "tactum/scene/gear.h"
-#include "tactum/scene/generated_parts.h"
+#include "tactum/parts/gear.h"
+#include "tactum/parts/generated_parts.h"
 
 namespace tactum {
 namespace {

@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "tactum/math/screw.h"
-#include "tactum/scene/bolt_and_nut.h"
-#include "tactum/scene/gear.h"
+#include "tactum/parts/bolt_and_nut.h"
+#include "tactum/parts/gear.h"
 #include "tactum/scene/scene_file.h"
 #include "tactum/surface/surface_distance.h"
 

@@ -1,4 +1,4 @@
-#include "tactum/scene/iso_fit.h"
+#include "tactum/parts/iso_fit.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "tactum/scene/slotted_plate.h"
+#include "tactum/parts/slotted_plate.h"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <optional>
 
-#include "tactum/scene/generated_parts.h"
+#include "tactum/parts/generated_parts.h"
 
 namespace tactum {
 namespace {

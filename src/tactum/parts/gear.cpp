@@ -1,11 +1,11 @@
-#include "tactum/scene/gear.h"
+#include "tactum/parts/gear.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <optional>
 
-#include "tactum/scene/generated_parts.h"
+#include "tactum/parts/generated_parts.h"
 
 namespace tactum {
 namespace {

@@ -1,4 +1,4 @@
-#include "tactum/scene/bolt_and_nut.h"
+#include "tactum/parts/bolt_and_nut.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "tactum/scene/thread_sheet.h"
+#include "tactum/parts/thread_sheet.h"
 
 namespace tactum {
 namespace {

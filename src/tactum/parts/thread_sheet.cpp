@@ -1,4 +1,4 @@
-#include "tactum/scene/thread_sheet.h"
+#include "tactum/parts/thread_sheet.h"
 
 #include <cmath>
 #include <utility>

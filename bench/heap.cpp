@@ -1,4 +1,4 @@
-#include "tactum/scene/heap.h"
+#include "bench/heap.h"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@
 #include "tactum/math/screw.h"
 #include "tactum/mesh/make_part.h"
 
-namespace tactum {
+namespace tactum::bench {
 namespace {
 
 constexpr double kWidth_m = 0.005;  // of a jack's arms
@@ -155,4 +155,4 @@ Result<Scene> heap_scene(const HeapOptions& options) {
   return scene;
 }
 
-}  // namespace tactum
+}  // namespace tactum::bench

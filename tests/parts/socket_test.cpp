@@ -1,4 +1,4 @@
-#include "tactum/scene/socket.h"
+#include "tactum/parts/socket.h"
 
 #include <gtest/gtest.h>
 

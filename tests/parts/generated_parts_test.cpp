@@ -1,4 +1,4 @@
-#include "tactum/scene/generated_parts.h"
+#include "tactum/parts/generated_parts.h"
 
 #include <gtest/gtest.h>
 

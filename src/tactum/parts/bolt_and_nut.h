@@ -23,7 +23,7 @@
 #include <string>
 
 #include "tactum/geometry/triangle_mesh.h"
-#include "tactum/scene/metric_thread.h"
+#include "tactum/parts/metric_thread.h"
 
 namespace tactum {
 

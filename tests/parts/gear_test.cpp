@@ -1,4 +1,4 @@
-#include "tactum/scene/gear.h"
+#include "tactum/parts/gear.h"
 
 #include <gtest/gtest.h>
 

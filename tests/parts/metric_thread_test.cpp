@@ -1,4 +1,4 @@
-#include "tactum/scene/metric_thread.h"
+#include "tactum/parts/metric_thread.h"
 
 #include <gtest/gtest.h>
 

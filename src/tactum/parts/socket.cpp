@@ -1,4 +1,4 @@
-#include "tactum/scene/socket.h"
+#include "tactum/parts/socket.h"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "tactum/geometry/hull.h"
-#include "tactum/scene/generated_parts.h"
+#include "tactum/parts/generated_parts.h"
 
 namespace tactum {
 namespace {

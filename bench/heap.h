@@ -12,7 +12,7 @@
 #include "tactum/base/result.h"
 #include "tactum/scene/scene.h"
 
-namespace tactum {
+namespace tactum::bench {
 
 struct HeapOptions {
   int bodies = 200;        ///< that fall [-]
@@ -30,4 +30,4 @@ Result<Scene> heap_scene(const HeapOptions& options = {});
 /// How many of a heap's bodies come before its jacks.
 inline constexpr int kHeapFixtures = 6;
 
-}  // namespace tactum
+}  // namespace tactum::bench

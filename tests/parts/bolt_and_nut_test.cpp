@@ -1,4 +1,4 @@
-#include "tactum/scene/bolt_and_nut.h"
+#include "tactum/parts/bolt_and_nut.h"
 
 #include <gtest/gtest.h>
 

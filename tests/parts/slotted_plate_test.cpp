@@ -1,4 +1,4 @@
-#include "tactum/scene/slotted_plate.h"
+#include "tactum/parts/slotted_plate.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 /// pairs would take (an eighth in a small heap). Two hundred bodies with TACTUM_FULL=1, else some, and a few
 /// in a sanitized build.
 
-#include "tactum/scene/heap.h"
+#include "bench/heap.h"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@
 #include "oracles/exhaustive.h"
 #include "tactum/haptics/frame.h"
 
-namespace tactum {
+namespace tactum::bench {
 namespace {
 
 bool full() {
@@ -142,4 +142,4 @@ TEST(Heap, StaysWithinATenthOfItsPairsAndEntersNothing) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::bench
