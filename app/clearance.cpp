@@ -8,10 +8,10 @@
 
 #include "bench/distance_peer.h"
 #include "commands.h"
-#include "tactum/collision/surface_distance.h"
 #include "tactum/devices/motion_file.h"
-#include "tactum/geometry/mesh_import.h"
-#include "tactum/geometry/part_file.h"
+#include "tactum/mesh/mesh_import.h"
+#include "tactum/mesh/part_file.h"
+#include "tactum/surface/surface_distance.h"
 
 /// `tactum clearance A B MOTION.csv`: exact distance of two surfaces for every row of a motion.
 

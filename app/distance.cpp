@@ -15,8 +15,8 @@
 #include "tactum/collision/closest_features.h"
 #include "tactum/collision/penetration.h"
 #include "tactum/geometry/hull.h"
-#include "tactum/geometry/part_file.h"
 #include "tactum/math/rotation.h"
+#include "tactum/mesh/part_file.h"
 
 namespace tactum {
 namespace {

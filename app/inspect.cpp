@@ -8,10 +8,10 @@
 
 #include "commands.h"
 #include "part_text.h"
-#include "tactum/geometry/deviation.h"
-#include "tactum/geometry/mesh_import.h"
 #include "tactum/geometry/mesh_report.h"
-#include "tactum/geometry/part.h"
+#include "tactum/mesh/deviation.h"
+#include "tactum/mesh/make_part.h"
+#include "tactum/mesh/mesh_import.h"
 #include "view_part.h"
 
 /// `tactum inspect FILE...`: what is in a mesh file and what is wrong with it; what a prepared part is made

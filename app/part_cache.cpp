@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "tactum/base/hash.h"
-#include "tactum/geometry/mapped_file.h"
+#include "tactum/mesh/mapped_file.h"
 
 namespace tactum {
 namespace {

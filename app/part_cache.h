@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "tactum/geometry/prepare_part.h"
+#include "tactum/mesh/prepare_part.h"
 
 namespace tactum {
 

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "tactum/geometry/part_file.h"
+#include "tactum/mesh/part_file.h"
 
 namespace tactum {
 

@@ -11,8 +11,8 @@
 #include "output.h"
 #include "part_cache.h"
 #include "part_text.h"
-#include "tactum/geometry/mapped_file.h"
-#include "tactum/geometry/prepare_part.h"
+#include "tactum/mesh/mapped_file.h"
+#include "tactum/mesh/prepare_part.h"
 
 /// `tactum prepare MESH... -o PART`: meshes read, repaired, cut into pieces, verified and written as a part.
 

@@ -8,6 +8,7 @@
 #include "bench/peers/feel_peers.h"
 #include "tactum/haptics/frame.h"
 #include "tactum/math/screw.h"
+#include "tactum/mesh/make_part.h"
 
 namespace tactum::bench {
 namespace {

@@ -6,7 +6,7 @@
 #include "tactum/geometry/hull.h"
 #include "tactum/geometry/primitives.h"
 #include "tactum/math/screw.h"
-#include "tactum/scene/generated_parts.h"
+#include "tactum/parts/generated_parts.h"
 
 namespace tactum::bench {
 namespace {

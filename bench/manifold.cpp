@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "tactum/collision/manifold.h"
-#include "tactum/collision/steady_contact.h"
+#include "tactum/contact/steady_contact.h"
 
 namespace tactum::bench {
 namespace {

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <memory>
 
+#include "bench/heap.h"
 #include "bench/overlap.h"
 #include "tactum/base/hash.h"
 #include "tactum/haptics/frame.h"
-#include "tactum/scene/heap.h"
 
 namespace tactum::bench {
 namespace {

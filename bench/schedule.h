@@ -1,5 +1,5 @@
 #pragma once
-/// Scheduling: what a work budget costs. A heap of jacks (scene/heap.h) is stirred by a hand that is led,
+/// Scheduling: what a work budget costs. A heap of jacks (heap.h) is stirred by a hand that is led,
 /// once for each budget, told as a share of the most pairs that are near at once.
 ///
 ///   force error     the same frame computed again from a copy of the state, with all the budget it wants

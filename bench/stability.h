@@ -8,7 +8,7 @@
 ///
 /// A wall is *held* when the handle comes to rest: in the last third of the pressing it moves by less than it
 /// did in the third before, or by less than a hand can feel. It is *passive* when the ledger of the port
-/// (haptics/passivity.h), with the damping of device and hand and no credit but what the spring has stored,
+/// (loop/passivity.h), with the damping of device and hand and no credit but what the spring has stored,
 /// never falls 0.01 mJ below zero: no energy was made. The stiffest of each kind
 /// is found by bisection.
 

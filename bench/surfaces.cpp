@@ -7,7 +7,7 @@
 
 #include "bench/clock.h"
 #include "bench/surfaces_pairs.h"
-#include "tactum/collision/surface_minima.h"
+#include "tactum/surface/surface_minima.h"
 
 namespace tactum::bench {
 namespace {

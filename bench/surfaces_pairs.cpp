@@ -6,11 +6,11 @@
 #include "support/sample_meshes.h"
 #include "support/surface_shapes.h"
 #include "tactum/base/random.h"
-#include "tactum/collision/surface_distance.h"
 #include "tactum/devices/motion_file.h"
-#include "tactum/geometry/mesh_import.h"
 #include "tactum/geometry/weld.h"
 #include "tactum/math/screw.h"
+#include "tactum/mesh/mesh_import.h"
+#include "tactum/surface/surface_distance.h"
 
 namespace tactum::bench {
 namespace {

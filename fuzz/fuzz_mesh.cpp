@@ -7,8 +7,8 @@
 #include <string>
 #include <string_view>
 
-#include "tactum/geometry/mesh_import.h"
 #include "tactum/geometry/mesh_report.h"
+#include "tactum/mesh/mesh_import.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace tactum;

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "support/reseal.h"
-#include "tactum/geometry/part_file.h"
+#include "tactum/mesh/part_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace tactum;

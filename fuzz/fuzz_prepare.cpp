@@ -6,7 +6,7 @@
 #include <cstdlib>
 
 #include "tactum/base/tolerances.h"
-#include "tactum/geometry/prepare_part.h"
+#include "tactum/mesh/prepare_part.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace tactum;

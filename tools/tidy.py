@@ -13,7 +13,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 OWN = ("src/", "app/", "viewer/server/")
-HEART = ("src/tactum/base/", "src/tactum/devices/", "src/tactum/haptics/")
+HEART = ("src/tactum/base/", "src/tactum/devices/", "src/tactum/loop/", "src/tactum/haptics/")
 
 
 def chosen_sources(database, full):

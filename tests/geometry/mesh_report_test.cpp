@@ -6,12 +6,12 @@
 #include <fstream>
 #include <sstream>
 
-#include "geometry/gltf_sample.h"
+#include "mesh/gltf_sample.h"
 #include "support/real_data.h"
 #include "support/sample_meshes.h"
 #include "tactum/base/random.h"
-#include "tactum/geometry/mesh_import.h"
 #include "tactum/geometry/weld.h"
+#include "tactum/mesh/mesh_import.h"
 
 namespace tactum {
 namespace {

@@ -8,9 +8,9 @@
 #include "support/real_data.h"
 #include "support/sample_meshes.h"
 #include "support/surface_shapes.h"
-#include "tactum/geometry/mesh_import.h"
 #include "tactum/geometry/surface_cones.h"
 #include "tactum/geometry/weld.h"
+#include "tactum/mesh/mesh_import.h"
 
 namespace tactum {
 namespace {

@@ -11,11 +11,12 @@
 #include "support/sample_meshes.h"
 #include "support/sample_solids.h"
 #include "tactum/base/random.h"
-#include "tactum/geometry/mesh_import.h"
+#include "tactum/geometry/coplanar_groups.h"
 #include "tactum/geometry/mesh_report.h"
-#include "tactum/geometry/part.h"
-#include "tactum/scene/gear.h"
-#include "tactum/scene/generated_parts.h"
+#include "tactum/mesh/make_part.h"
+#include "tactum/mesh/mesh_import.h"
+#include "tactum/parts/gear.h"
+#include "tactum/parts/generated_parts.h"
 
 namespace tactum {
 namespace {

@@ -6,6 +6,7 @@
 #include "support/rig.h"
 #include "support/sandbox.h"
 #include "tactum/math/screw.h"
+#include "tactum/mesh/make_part.h"
 
 namespace tactum {
 namespace {

@@ -1,4 +1,5 @@
 #include "tactum/haptics/friction.h"
+#include "tactum/mesh/make_part.h"
 
 #include <gtest/gtest.h>
 

@@ -6,13 +6,14 @@
 
 #include "support/real_data.h"
 #include "tactum/base/random.h"
-#include "tactum/collision/contact_finder.h"
+#include "tactum/contact/contact_finder.h"
+#include "tactum/contact/shading.h"
 #include "tactum/geometry/hull.h"
 #include "tactum/geometry/polygon_clip.h"
 #include "tactum/geometry/primitives.h"
 #include "tactum/haptics/frame.h"
-#include "tactum/haptics/shading.h"
 #include "tactum/math/screw.h"
+#include "tactum/mesh/make_part.h"
 
 namespace tactum {
 namespace {

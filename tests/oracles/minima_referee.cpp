@@ -6,7 +6,7 @@
 #include <map>
 #include <set>
 
-#include "tactum/geometry/part.h"
+#include "tactum/geometry/coplanar_groups.h"
 
 namespace tactum::oracles {
 namespace {

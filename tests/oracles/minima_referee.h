@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "tactum/collision/surface_minima.h"
+#include "tactum/surface/surface_minima.h"
 
 namespace tactum::oracles {
 

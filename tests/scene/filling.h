@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "tactum/geometry/part.h"
+#include "tactum/mesh/make_part.h"
 
 namespace tactum::filling {
 

@@ -2,11 +2,11 @@
 
 #include <cmath>
 
-#include "tactum/collision/surface_distance.h"
 #include "tactum/math/screw.h"
-#include "tactum/scene/bolt_and_nut.h"
-#include "tactum/scene/gear.h"
+#include "tactum/parts/bolt_and_nut.h"
+#include "tactum/parts/gear.h"
 #include "tactum/scene/scene_file.h"
+#include "tactum/surface/surface_distance.h"
 
 namespace tactum {
 namespace {

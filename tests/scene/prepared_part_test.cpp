@@ -2,7 +2,7 @@
 
 #include "app/program.h"
 #include "support/sample_meshes.h"
-#include "tactum/geometry/prepare_part.h"
+#include "tactum/mesh/prepare_part.h"
 #include "tactum/scene/scene_file.h"
 
 namespace tactum {

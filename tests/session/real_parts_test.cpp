@@ -6,9 +6,9 @@
 #include <cstdlib>
 
 #include "support/real_data.h"
-#include "tactum/collision/surface_distance.h"
 #include "tactum/scene/builtin_scenes.h"
 #include "tactum/session/session.h"
+#include "tactum/surface/surface_distance.h"
 
 namespace tactum {
 namespace {

@@ -16,8 +16,8 @@
 #include <cmath>
 
 #include "app/program.h"
-#include "tactum/geometry/mesh_import.h"
 #include "tactum/geometry/mesh_report.h"
+#include "tactum/mesh/mesh_import.h"
 
 namespace tactum {
 namespace {

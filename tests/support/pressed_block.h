@@ -10,6 +10,7 @@
 #include "tactum/devices/hand_motion.h"
 #include "tactum/haptics/frame.h"
 #include "tactum/math/screw.h"
+#include "tactum/mesh/make_part.h"
 
 namespace tactum {
 

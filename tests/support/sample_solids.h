@@ -5,8 +5,8 @@
 #include <map>
 #include <vector>
 
-#include "tactum/geometry/polygon_split.h"
 #include "tactum/geometry/triangle_mesh.h"
+#include "tactum/mesh/polygon_split.h"
 
 namespace tactum::testing {
 

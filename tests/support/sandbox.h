@@ -8,6 +8,7 @@
 #include "tactum/geometry/primitives.h"
 #include "tactum/haptics/frame.h"
 #include "tactum/haptics/frame_state.h"
+#include "tactum/mesh/make_part.h"
 
 namespace tactum {
 

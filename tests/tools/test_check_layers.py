@@ -6,7 +6,7 @@ import check_layers
 class Layers(TreeTest):
     def setUp(self):
         super().setUp()
-        for layer in ("base", "math", "devices", "geometry", "haptics"):
+        for layer in ("base", "math", "devices", "loop", "geometry", "dynamics", "haptics", "telemetry"):
             self.write(f"src/tactum/{layer}/README.md", f"{layer}\n")
 
     def includes(self, layer, *names):
@@ -19,6 +19,13 @@ class Layers(TreeTest):
 
     def test_what_stands_to_the_right_is_caught(self):
         self.assert_one_fault(self.includes("math", "tactum/base/b.h", "tactum/haptics/frame.h"), "x.cpp:3", "haptics/frame.h")
+
+    def test_layers_side_by_side_do_not_see_each_other(self):
+        self.assert_one_fault(self.includes("loop", "tactum/geometry/g.h"), "geometry/g.h")
+        self.write("src/tactum/loop/x.cpp")
+        self.assert_one_fault(self.includes("dynamics", "tactum/collision/c.h"), "collision/c.h")
+        self.write("src/tactum/dynamics/x.cpp")
+        self.assert_one_fault(self.includes("telemetry", "tactum/scene/s.h"), "scene/s.h")
 
     def test_devices_and_geometry_do_not_see_each_other(self):
         self.assert_one_fault(self.includes("devices", "tactum/geometry/g.h"), "geometry/g.h")
@@ -42,6 +49,32 @@ class Layers(TreeTest):
         self.write("src/tactum/extras/x.cpp").unlink()
         (self.root / "src/tactum/extras").rmdir()
         self.assert_one_fault(self.includes("base", "tactum/extras/x.h"), "nobody knows")
+
+    def test_cycles_inside_a_layer_are_caught(self):
+        self.write("src/tactum/math/README.md", "`a` `b` `c`\n")
+        self.write("src/tactum/math/a.h", '#include "tactum/math/b.h"\n')
+        self.write("src/tactum/math/b.cpp", '#include "tactum/math/b.h"\n#include "tactum/math/c.h"\n')
+        self.write("src/tactum/math/b.h")
+        self.write("src/tactum/math/c.h")
+        self.assertEqual(list(check_layers.faults(self.root)), [])
+        self.write("src/tactum/math/c.h", '#include "tactum/math/a.h"\n')
+        self.assert_one_fault(check_layers.faults(self.root), "src/tactum/math", "a -> b -> c -> a")
+
+    def test_known_cycles_are_let_pass_and_are_there(self):
+        for layer, units in check_layers.KNOWN_CYCLES.items():
+            folder = ROOT / "src/tactum" / layer
+            self.assertEqual(set(check_layers.cycles([*folder.glob("*.h"), *folder.glob("*.cpp")], layer)), units)
+        for layer, count in check_layers.KNOWN_LARGE.items():
+            self.assertEqual(len(list((ROOT / "src/tactum" / layer).glob("*.h"))), count)
+
+    def test_large_layers_are_caught(self):
+        names = [f"x{i}" for i in range(check_layers.MOST_HEADERS + 1)]
+        self.write("src/tactum/math/README.md", " ".join(f"`{name}`" for name in names))
+        for name in names:
+            self.write(f"src/tactum/math/{name}.h")
+        self.assert_one_fault(check_layers.faults(self.root), "26 headers")
+        (self.root / "src/tactum/math/x0.h").unlink()
+        self.assertEqual(list(check_layers.faults(self.root)), [])
 
     def test_headers_without_caption_are_caught(self):
         self.write("src/tactum/math/pose.h")

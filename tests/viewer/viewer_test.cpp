@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "support/allocation_guard.h"
+#include "tactum/mesh/make_part.h"
 #include "tactum/scene/builtin_scenes.h"
 #include "tactum/scene/scene_file.h"
 #include "viewer/raw_page.h"

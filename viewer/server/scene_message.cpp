@@ -5,7 +5,7 @@
 
 #include "tactum/devices/registry.h"
 #include "tactum/haptics/coupling_gains.h"
-#include "tactum/haptics/safety.h"
+#include "tactum/loop/safety.h"
 #include "tactum/scene/builtin_scenes.h"
 #include "viewer/server/access.h"
 #include "viewer/server/field_arrows.h"

@@ -15,18 +15,10 @@
 #include <cstdint>
 
 #include "tactum/base/static_vector.h"
+#include "tactum/geometry/feature.h"
 #include "tactum/math/pose.h"
 
 namespace tactum {
-
-enum class FeatureKind : std::uint8_t { kVertex, kEdge, kFace };
-
-/// A vertex, edge or face of a polytope by its index.
-struct Feature {
-  FeatureKind kind = FeatureKind::kVertex;
-  int index = -1;  ///< -1: none yet
-  bool operator==(const Feature&) const = default;
-};
 
 /// A feature of A and one of B.
 struct FeaturePair {

@@ -7,6 +7,7 @@
 #include "tactum/collision/overlap.h"
 #include "tactum/collision/penetration.h"
 #include "tactum/collision/support_distance.h"
+#include "tactum/collision/voronoi_march.h"
 
 namespace tactum {
 namespace {

@@ -2,7 +2,8 @@
 /// What closest_features does when its walk proves nothing, or the pieces overlapped in the last frame. Rare
 /// under motion, and apart so that the frequent way stays short.
 
-#include "tactum/collision/voronoi_march.h"
+#include "tactum/collision/march.h"
+#include "tactum/collision/pair_view.h"
 
 namespace tactum {
 

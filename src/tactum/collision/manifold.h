@@ -26,6 +26,7 @@
 #include <span>
 
 #include "tactum/collision/contact.h"
+#include "tactum/collision/stretch.h"
 #include "tactum/geometry/polytope.h"
 
 namespace tactum {
@@ -39,14 +40,6 @@ void contact_manifold(const Polytope& A, const Polytope& B, const Pose& X_AB, co
 void contact_manifold_within(const Polytope& A, const Polytope& B, const Pose& X_AB,
                              const PairDistance& closest, double tolerance, double angle,
                              Manifold& out) noexcept;
-
-/// Features of two other pieces in the plane (or line) of a contact's: together they are one true face, or
-/// edge, that was cut (seams.h). Of the same kinds as the contact's.
-struct Stretch {
-  const Polytope* A = nullptr;
-  const Polytope* B = nullptr;
-  Feature a, b;
-};
 
 /// The patch of A and B and of all `others` as one: the points are those of the features uncut. Cost: that of
 /// a patch for each stretch, up to four times as they lean.

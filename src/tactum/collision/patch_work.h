@@ -7,8 +7,8 @@
 
 #include "tactum/collision/face_projection.h"
 #include "tactum/collision/facing_feature.h"
-#include "tactum/collision/manifold.h"
 #include "tactum/collision/pair_view.h"
+#include "tactum/collision/stretch.h"
 
 namespace tactum::detail {
 

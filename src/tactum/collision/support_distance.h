@@ -5,7 +5,8 @@
 /// judges it. A fallback. The nearest point of the simplex is taken over all its corners, edges and faces:
 /// slower than the usual recursion, and without its cases. Cost: about 0.3 us a step, 3-15 steps.
 
-#include "tactum/collision/voronoi_march.h"
+#include "tactum/collision/march.h"
+#include "tactum/collision/pair_view.h"
 
 namespace tactum {
 

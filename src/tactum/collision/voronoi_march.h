@@ -23,27 +23,10 @@
 /// the answer's distance. What rounding leaves of this is `doubt`. Cost: 15-25 ns a step; one step when the
 /// features of the last frame still hold.
 
-#include <limits>
-
+#include "tactum/collision/march.h"
 #include "tactum/collision/pair_view.h"
 
 namespace tactum {
-
-enum class MarchEnd : std::uint8_t {
-  kClosest,  ///< no Voronoi plane is violated
-  kOverlap,  ///< an edge goes through a face
-  kBehind,   ///< a vertex is behind the face in whose column it is: overlapping, or far beyond the piece
-  kCircle,   ///< came back to a state: the nearest of the circle is told
-  kBounded,  ///< out of steps
-};
-
-struct March {
-  /// The signed distance of the pieces is above the one told less this [m]. Infinite when the walk proves
-  /// nothing: it did not end closest, or its points coincide and have no normal.
-  double doubt = std::numeric_limits<double>::infinity();
-  MarchEnd end = MarchEnd::kBounded;
-  int steps = 0;
-};
 
 /// Walks from the features `a`, `b` (which must exist) and tells in `x` the features where it ended, and
 /// their points, normal and distance when it ended kClosest, kCircle or kBounded (the normal only when

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "tactum/collision/march.h"
 #include "tactum/collision/pair_view.h"
-#include "tactum/collision/voronoi_march.h"
 
 namespace tactum::march {
 

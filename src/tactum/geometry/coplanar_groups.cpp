@@ -1,10 +1,11 @@
+#include "tactum/geometry/coplanar_groups.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "tactum/base/tolerances.h"
 #include "tactum/geometry/mesh_edges.h"
-#include "tactum/geometry/part.h"
 
 namespace tactum {
 namespace {

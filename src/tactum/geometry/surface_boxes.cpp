@@ -9,13 +9,13 @@
 namespace tactum {
 namespace {
 
-constexpr std::size_t kLanes = SurfaceTree::kLanes;
+constexpr std::size_t kLanes = SurfaceLayout::kLanes;
 
 /// Of two boxes the larger is opened, or rather the one with the wider cone: its children face less. Beside
 /// this angle widths do not count [rad].
 constexpr float kNarrow = 0.02F;
 
-void put_lane(SurfaceTree::Lanes3& lanes, std::size_t lane, const Vec3& v) {
+void put_lane(SurfaceLayout::Lanes3& lanes, std::size_t lane, const Vec3& v) {
   for (std::size_t i = 0; i < 3; ++i) lanes[i][lane] = static_cast<float>(v[static_cast<int>(i)]);
 }
 
@@ -59,7 +59,8 @@ SurfaceBoxes::SurfaceBoxes(const TriangleMesh& mesh, const SurfaceCones& cones, 
   std::size_t leaf_count = 0;
   for (const auto& features : cones.features) leaf_count += (features.size() + kLanes - 1) / kLanes;
   leaves.reserve(leaf_count);
-  for (const SurfaceTree::Kind kind : {SurfaceTree::kVertices, SurfaceTree::kEdges, SurfaceTree::kFaces}) {
+  for (const SurfaceLayout::Kind kind :
+       {SurfaceLayout::kVertices, SurfaceLayout::kEdges, SurfaceLayout::kFaces}) {
     kind_ = kind;
     order_ = cones.features[kind];
     keyed_.resize(order_.size());
@@ -89,7 +90,7 @@ void SurfaceBoxes::make_child(std::size_t node, std::size_t lane, Range range) {
 }
 
 std::int32_t SurfaceBoxes::make_leaf(Range range) {
-  SurfaceTree::Corners& leaf = leaves.emplace_back();
+  SurfaceLayout::Corners& leaf = leaves.emplace_back();
   leaf.fill(-1);
   const std::size_t count = range.second - range.first;
   for (std::size_t lane = 0; lane < count; ++lane) leaf[lane] = order_[range.first + lane].corner;
@@ -188,7 +189,7 @@ SurfaceBoxes::Span SurfaceBoxes::span(Range range) const {
   return box;
 }
 
-void SurfaceBoxes::make_box(SurfaceTree::Node& node, std::size_t lane, Range range) {
+void SurfaceBoxes::make_box(SurfaceLayout::Node& node, std::size_t lane, Range range) {
   const Span box = span(range);
   const Vec3& up = box.axis[2];
   double width = 0.0;

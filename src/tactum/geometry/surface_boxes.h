@@ -5,8 +5,9 @@
 #include <utility>
 #include <vector>
 
+#include "tactum/base/large_array.h"
 #include "tactum/geometry/surface_cones.h"
-#include "tactum/geometry/surface_tree.h"
+#include "tactum/geometry/surface_layout.h"
 
 namespace tactum {
 
@@ -17,8 +18,8 @@ class SurfaceBoxes {
  public:
   SurfaceBoxes(const TriangleMesh& mesh, const SurfaceCones& cones, const Vec3& center);
 
-  LargeArray<SurfaceTree::Node> nodes;
-  LargeArray<SurfaceTree::Corners> leaves;
+  LargeArray<SurfaceLayout::Node> nodes;
+  LargeArray<SurfaceLayout::Corners> leaves;
   std::array<std::int32_t, 3> root{-1, -1, -1};  ///< SurfaceTree::root
 
  private:
@@ -34,7 +35,7 @@ class SurfaceBoxes {
     Vec3 center, half;  ///< [m]
   };
   Span span(Range range) const;
-  void make_box(SurfaceTree::Node& node, std::size_t lane, Range range);
+  void make_box(SurfaceLayout::Node& node, std::size_t lane, Range range);
   void split(Range range, std::size_t unit, std::vector<Range>& parts);
   void sort_halves(Range range, std::size_t halfway);
   void cut_across(const Vec3& axis, Range range, std::size_t halfway);
@@ -50,7 +51,7 @@ class SurfaceBoxes {
   const TriangleMesh& mesh_;
   Vec3 center_;
   double grown_;  // by what rounding to single precision may move a point [m]
-  SurfaceTree::Kind kind_ = SurfaceTree::kVertices;
+  SurfaceLayout::Kind kind_ = SurfaceLayout::kVertices;
   std::vector<ConedFeature> order_;  // of the kind at hand
   std::vector<std::pair<double, ConedFeature>> keyed_;
 };

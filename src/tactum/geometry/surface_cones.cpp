@@ -6,7 +6,7 @@
 
 #include "tactum/base/tolerances.h"
 #include "tactum/geometry/mesh_edges.h"
-#include "tactum/geometry/surface_tree.h"
+#include "tactum/geometry/surface_layout.h"
 
 namespace tactum {
 namespace {
@@ -39,7 +39,7 @@ class Finder {
       const double length = across.norm();
       cones_.normal.push_back(length > 0.0 ? Vec3(across / length) : Vec3::UnitZ());
     }
-    cones_.beyond.assign(count, {SurfaceTree::kWall, SurfaceTree::kWall, SurfaceTree::kWall});
+    cones_.beyond.assign(count, {SurfaceLayout::kWall, SurfaceLayout::kWall, SurfaceLayout::kWall});
     cones_.narrow.assign(count, 0);
     rim_.assign(count, 0);
   }
@@ -49,7 +49,7 @@ class Finder {
                   [&](const HalfEdge* first, const HalfEdge* last) { take_edge(first, last); });
     take_vertices();
     for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
-      cones_.features[SurfaceTree::kFaces].push_back(
+      cones_.features[SurfaceLayout::kFaces].push_back(
           {static_cast<std::int32_t>(3 * t), cones_.normal[t], 0.0});
     }
     return std::move(cones_);
@@ -59,9 +59,9 @@ class Finder {
   const Vec3& at(int vertex) const { return mesh_.vertices[vertex]; }
 
   /// `lean`: the largest angle from the triangle's normal to a direction of the cone [rad].
-  void own(SurfaceTree::Kind kind, int triangle, int k, const Vec3& axis, double width, double lean) {
+  void own(SurfaceLayout::Kind kind, int triangle, int k, const Vec3& axis, double width, double lean) {
     cones_.features[kind].push_back({3 * triangle + k, axis, width});
-    const unsigned bit = unsigned(k) + (kind == SurfaceTree::kEdges ? 0u : 3u);
+    const unsigned bit = unsigned(k) + (kind == SurfaceLayout::kEdges ? 0u : 3u);
     if (lean <= 0.5 * kPi) cones_.narrow[triangle] |= static_cast<std::uint8_t>(1u << bit);
   }
 
@@ -72,7 +72,7 @@ class Finder {
         const Triangle& t = mesh_.triangles[side->triangle];
         const Vec3& normal = cones_.normal[side->triangle];
         const Vec3 along = at(t[(side->corner + 1) % 3]) - at(t[side->corner]);
-        own(SurfaceTree::kEdges, side->triangle, side->corner,
+        own(SurfaceLayout::kEdges, side->triangle, side->corner,
             (normal + along.cross(normal).normalized()).normalized(), 0.25 * kPi, 0.5 * kPi);
       }
       return;
@@ -91,7 +91,7 @@ class Finder {
     const Triangle& t = mesh_.triangles[side.triangle];
     const Vec3 away = (at(t[(side.corner + 1) % 3]) - at(t[side.corner])).cross(normal).normalized();
     const Vec3 middle = std::cos(0.5 * turn) * normal + std::sin(0.5 * turn) * away;
-    own(SurfaceTree::kEdges, side.triangle, side.corner, middle, 0.5 * turn, turn);
+    own(SurfaceLayout::kEdges, side.triangle, side.corner, middle, 0.5 * turn, turn);
   }
 
   void take_vertices() {
@@ -165,7 +165,7 @@ class Finder {
     double width = 0.0;
     for (const Vec3& ray : rays) width = std::max(width, angle_between(axis, ray));
     // Beyond a right angle the hull of rays may reach farther than its rays.
-    own(SurfaceTree::kVertices, best / 3, best % 3, axis, width < 0.5 * kPi ? width : kPi, best_lean);
+    own(SurfaceLayout::kVertices, best / 3, best % 3, axis, width < 0.5 * kPi ? width : kPi, best_lean);
   }
 
   const TriangleMesh& mesh_;

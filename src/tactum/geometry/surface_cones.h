@@ -18,7 +18,7 @@ struct ConedFeature {
 };
 
 struct SurfaceCones {
-  std::array<std::vector<ConedFeature>, 3> features;  ///< by SurfaceTree::Kind
+  std::array<std::vector<ConedFeature>, 3> features;  ///< by SurfaceLayout::Kind
   std::vector<Vec3> normal;                           ///< of each triangle, unit, outward [-]
   std::vector<std::array<std::int32_t, 3>> beyond;    ///< SurfaceTree::beyond
   std::vector<std::uint8_t> narrow;                   ///< SurfaceTree::narrow_edge, narrow_vertex

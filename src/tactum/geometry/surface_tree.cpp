@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "tactum/geometry/part.h"
+#include "tactum/geometry/coplanar_groups.h"
 #include "tactum/geometry/surface_boxes.h"
 #include "tactum/geometry/surface_cones.h"
 

@@ -11,7 +11,7 @@
 /// A direction u is in a feature's normal cone when, from the feature, the surface falls away from u on all
 /// sides: only there can the feature be nearest to something outside. Faces have one direction, their outward
 /// normal. Features without a cone own nothing and cost nothing: reflex edges, pits and saddles, and the
-/// edges and vertices inside a flat face (coplanar_groups() in part.h), which would be felt as ghosts.
+/// edges and vertices inside a flat face (coplanar_groups.h), which would be felt as ghosts.
 ///
 /// Edges of one triangle, of more than two, and of two that disagree about outside are rims of each of their
 /// triangles: the surface is closed there by a wall straight behind it, so a rim is felt from the front and
@@ -31,11 +31,12 @@
 #include <vector>
 
 #include "tactum/base/large_array.h"
+#include "tactum/geometry/surface_layout.h"
 #include "tactum/geometry/triangle_mesh.h"
 
 namespace tactum {
 
-class SurfaceTree {
+class SurfaceTree : public SurfaceLayout {
  public:
   SurfaceTree() = default;
   /// Over a mesh whose triangles have three different corners and an area (weld() sees to it), outward.
@@ -61,26 +62,6 @@ class SurfaceTree {
 
   // ---- what the query reads ----
 
-  static constexpr int kLanes = 8;
-  using Lanes = std::array<float, kLanes>;
-  using Lanes3 = std::array<Lanes, 3>;
-  using Corners = std::array<std::int32_t, kLanes>;
-  enum Kind : std::uint8_t { kVertices, kEdges, kFaces };
-
-  /// Where eight oriented boxes stand: their middles and axes, `across` being up x along.
-  struct Stand {
-    Lanes3 up, center, along, across;  ///< axes are units [-], the center [m]
-  };
-  /// Eight boxes, told from the mesh's center. `up` is the mean direction of the cones within; `cone` is the
-  /// largest angle from it to one of them.
-  struct Node {
-    Stand at{};
-    Lanes3 half{};    ///< half the sides along `along`, `across` and `up` [m]
-    Lanes cone{};     ///< [rad]
-    Lanes extent{};   ///< of two boxes the one where it is larger is opened
-    Corners child{};  ///< a node; ~n: the leaf n; 0: no box
-  };
-
   const LargeArray<Node>& nodes() const noexcept { return nodes_; }
   /// Leaves hold eight features of one kind as corners 3 t + k of the triangles that own them: a vertex is
   /// that corner, an edge starts there, a face is the triangle, k = 0. -1: none, behind all others.
@@ -100,7 +81,6 @@ class SurfaceTree {
 
   /// Beyond the edge that starts at a corner and belongs to its triangle: the vertex of the neighbour that is
   /// not on the edge, or kWall at a rim.
-  static constexpr std::int32_t kWall = -1;
   std::int32_t beyond(std::int32_t corner) const noexcept {
     return beyond_[std::size_t(corner) / 3][std::size_t(corner) % 3];
   }

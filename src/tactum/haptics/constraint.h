@@ -13,7 +13,8 @@
 
 #include <vector>
 
-#include "tactum/collision/patch_corners.h"
+#include "tactum/contact/contact_finder.h"
+#include "tactum/contact/patch_corners.h"
 #include "tactum/haptics/constraint_problem.h"
 #include "tactum/haptics/frame_report.h"
 #include "tactum/haptics/friction.h"

@@ -4,7 +4,7 @@
 #include <limits>
 #include <utility>
 
-#include "tactum/collision/patch_corners.h"
+#include "tactum/contact/patch_corners.h"
 #include "tactum/haptics/constraint_step.h"
 
 namespace tactum {

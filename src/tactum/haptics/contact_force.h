@@ -10,9 +10,9 @@
 
 #include <vector>
 
-#include "tactum/collision/contact_finder.h"
+#include "tactum/contact/contact_patch.h"
+#include "tactum/contact/shading.h"
 #include "tactum/dynamics/contact_solver.h"
-#include "tactum/haptics/shading.h"
 
 namespace tactum {
 

@@ -13,7 +13,7 @@ struct ContactStage {
   ContactStage(const World& world, const FrameSettings& settings, std::span<const Pose> X_WB);
 
   ContactFinder finder;
-  std::vector<std::uint8_t> urgency;    ///< of each body (collision/schedule.h)
+  std::vector<std::uint8_t> urgency;    ///< of each body (contact/schedule.h)
   std::vector<ShadingNormals> shading;  ///< one per body; empty when shading is off, or bends nothing
 };
 

@@ -1,8 +1,8 @@
 #pragma once
 /// What a scene has stored, for the ledger of the passivity stage: springs and moving bodies.
 
-#include "tactum/haptics/passivity.h"
 #include "tactum/haptics/step_input.h"
+#include "tactum/loop/passivity.h"
 
 namespace tactum {
 

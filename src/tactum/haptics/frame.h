@@ -3,7 +3,7 @@
 
 #include "tactum/haptics/frame_report.h"
 #include "tactum/haptics/frame_state.h"
-#include "tactum/haptics/loop.h"
+#include "tactum/loop/loop.h"
 
 namespace tactum {
 

@@ -5,9 +5,9 @@
 #include <cstdint>
 
 #include "tactum/base/hash.h"
-#include "tactum/collision/contact_finder.h"
+#include "tactum/contact/contact_work.h"
 #include "tactum/dynamics/world.h"
-#include "tactum/haptics/passivity.h"
+#include "tactum/loop/passivity.h"
 #include "tactum/math/spatial.h"
 
 namespace tactum {

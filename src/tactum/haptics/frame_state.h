@@ -7,8 +7,8 @@
 #include "tactum/haptics/contact_stage.h"
 #include "tactum/haptics/hand_stage.h"
 #include "tactum/haptics/response.h"
-#include "tactum/haptics/safety.h"
-#include "tactum/haptics/smoothing.h"
+#include "tactum/loop/safety.h"
+#include "tactum/loop/smoothing.h"
 
 namespace tactum {
 

@@ -12,6 +12,7 @@
 /// stuck in one corner does not hold up the rest. The island of the held part is the problem of constraint.h,
 /// whose answer is exact, as long as it has room for it; where not, it is solved here like the others.
 
+#include "tactum/contact/contact_patch.h"
 #include "tactum/dynamics/impacts.h"
 #include "tactum/dynamics/islands.h"
 #include "tactum/dynamics/resting_contact.h"

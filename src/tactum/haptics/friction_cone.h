@@ -1,7 +1,7 @@
 #pragma once
 /// A patch of contact that rubs: which surfaces, where, and the cone its force lies in (friction.h draws it).
 
-#include "tactum/collision/contact_patch.h"
+#include "tactum/contact/contact_patch.h"
 #include "tactum/haptics/constraint_problem.h"
 
 namespace tactum {

@@ -5,10 +5,10 @@
 
 #include <vector>
 
-#include "tactum/collision/contact_finder.h"
-#include "tactum/haptics/passivity.h"
-#include "tactum/haptics/safety.h"
-#include "tactum/haptics/smoothing.h"
+#include "tactum/contact/contact_work.h"
+#include "tactum/loop/passivity.h"
+#include "tactum/loop/safety.h"
+#include "tactum/loop/smoothing.h"
 #include "tactum/math/spatial.h"
 
 namespace tactum {

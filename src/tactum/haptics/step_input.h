@@ -5,10 +5,10 @@
 #include <span>
 #include <vector>
 
-#include "tactum/collision/contact_finder.h"
+#include "tactum/contact/contact_finder.h"
+#include "tactum/contact/shading.h"
 #include "tactum/dynamics/world.h"
 #include "tactum/haptics/settings.h"
-#include "tactum/haptics/shading.h"
 
 namespace tactum {
 
@@ -34,7 +34,7 @@ struct MotionInput {
 
 struct StepInput : MotionInput {
   std::span<const ContactPatch> patches;
-  std::span<const std::uint8_t> urgency;       ///< of each body (collision/schedule.h)
+  std::span<const std::uint8_t> urgency;       ///< of each body (contact/schedule.h)
   const ContactWork& work;                     ///< what was looked at, and what was left
   const std::vector<ShadingNormals>& shading;  ///< one per body; empty when shading is off
   std::span<const Pose> X_WB_start;            ///< poses at the start of the frame [m]

@@ -7,7 +7,7 @@
 #include <cstring>
 #include <filesystem>
 
-#include "tactum/geometry/mapped_file.h"
+#include "tactum/mesh/mapped_file.h"
 #include "tactum/scene/toml_reader.h"
 
 namespace tactum {

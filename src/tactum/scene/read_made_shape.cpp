@@ -3,13 +3,14 @@
 #include <optional>
 
 #include "tactum/geometry/primitives.h"
-#include "tactum/scene/bolt_and_nut.h"
-#include "tactum/scene/gear.h"
-#include "tactum/scene/generated_parts.h"
-#include "tactum/scene/iso_fit.h"
+#include "tactum/mesh/make_part.h"
+#include "tactum/parts/bolt_and_nut.h"
+#include "tactum/parts/gear.h"
+#include "tactum/parts/generated_parts.h"
+#include "tactum/parts/iso_fit.h"
+#include "tactum/parts/slotted_plate.h"
+#include "tactum/parts/socket.h"
 #include "tactum/scene/scene_sections.h"
-#include "tactum/scene/slotted_plate.h"
-#include "tactum/scene/socket.h"
 
 namespace tactum {
 namespace {

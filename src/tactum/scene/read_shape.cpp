@@ -3,7 +3,8 @@
 
 #include <filesystem>
 
-#include "tactum/geometry/mesh_import.h"
+#include "tactum/mesh/make_part.h"
+#include "tactum/mesh/mesh_import.h"
 #include "tactum/scene/scene_sections.h"
 
 namespace tactum {

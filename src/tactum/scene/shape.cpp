@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "tactum/base/assert.h"
+#include "tactum/mesh/make_part.h"
 
 namespace tactum {
 namespace {

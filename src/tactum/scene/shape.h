@@ -8,10 +8,11 @@
 #include <vector>
 
 #include "tactum/base/result.h"
-#include "tactum/geometry/mesh_import.h"
 #include "tactum/geometry/part.h"
-#include "tactum/geometry/part_file.h"
 #include "tactum/geometry/polytope.h"
+#include "tactum/mesh/make_part.h"
+#include "tactum/mesh/mesh_import.h"
+#include "tactum/mesh/part_file.h"
 
 namespace tactum {
 

@@ -15,7 +15,7 @@
 #include "tactum/devices/device.h"
 #include "tactum/devices/pointer_device.h"
 #include "tactum/haptics/frame.h"
-#include "tactum/haptics/loop_thread.h"
+#include "tactum/loop/loop_thread.h"
 #include "tactum/scene/scene.h"
 #include "tactum/session/command.h"
 #include "tactum/telemetry/frame_feed.h"

@@ -1,0 +1,308 @@
+#include "tactum/contact/contact_finder.h"
+
+#include <algorithm>
+
+#include "tactum/base/tolerances.h"
+#include "tactum/collision/closest_features.h"
+#include "tactum/collision/manifold.h"
+#include "tactum/contact/motion_bound.h"
+#include "tactum/contact/patch_corners.h"
+#include "tactum/contact/seams.h"
+
+namespace tactum {
+namespace {
+
+using Index = std::size_t;
+
+/// Below every odometer reading less a tolerance.
+constexpr double kAlwaysDue = -1e300;
+
+/// A budget is ample when every due pair can be tested so often: once when it is found, and at the poses on
+/// trial.
+constexpr std::size_t kAmple = 4;
+
+/// An answer holds while what has moved since is no more than this share of the distance; of an overlap,
+/// while nothing has.
+constexpr double kKnownShare = 0.05;
+
+}  // namespace
+
+void ContactFinder::find_patches(std::span<const Pose> X_WB, int budget, PatchPoints points,
+                                 std::span<const std::uint8_t> urgency) noexcept {
+  points_ = points;
+  urgency_.assign(urgency.begin(), urgency.end());
+  tests_left_ = budget;
+  patches_.clear();
+  candidates_.clear();
+  objected_.clear();
+  due_.clear();
+  handed_on_.clear();
+  std::fill(blocked_.begin(), blocked_.end(), 0);
+  for (Index i = 0; i < pairs_.size(); ++i) {
+    Pair& pair = pairs_[i];
+    if (pair.free_until - odometers(pair.body_a, pair.body_b) > tolerance(pair.body_a, pair.body_b)) {
+      pair.in_contact = false;
+    } else {
+      due_.push_back({static_cast<std::int32_t>(i), urgency_of(pair.body_a, pair.body_b), pair.in_contact,
+                      pair.last_checked});
+    }
+  }
+  budget_limited_ = kAmple * due_.size() > static_cast<Index>(std::max(budget, 0));
+  // Before the list is handed over: what is known leaves it.
+  const int may_test = budget_limited_ ? leave_known(X_WB) : budget;
+  const int checked = prioritise(due_, may_test);
+  work_.due = static_cast<int>(due_.size());
+  for (int i = 0; i < work_.due; ++i) {
+    const std::int32_t number = due_[Index(i)].pair;
+    Pair& pair = pairs_[Index(number)];
+    if (i < checked) {
+      pair.last_checked = frame_;
+    } else {
+      const double until = pair.free_until - odometers(pair.body_a, pair.body_b);
+      leave(pair.body_a, pair.body_b, until, pair.last_checked);
+      if (!pair.in_contact || !pair.last.certified) continue;
+    }
+    handed_on_.push_back(number);
+  }
+  // In the order of the pairs, which is that of the last frame's patches.
+  if (budget_limited_) std::sort(handed_on_.begin(), handed_on_.end());
+  for (const std::int32_t number : handed_on_) {
+    Pair& pair = pairs_[Index(number)];
+    const Pose X_AB = relative_pose(X_WB[Index(pair.body_a)], X_WB[Index(pair.body_b)]);
+    if (pair.last_checked == frame_) {
+      test(pair, X_AB);
+    } else {
+      PairDistance last = pair.last.found;
+      // Of what was apart only a bound is known, and that it is apart.
+      const double bound = pair.free_until - odometers(pair.body_a, pair.body_b);
+      last.distance = last.distance > 0.0 ? std::max(bound, 0.0) : std::min(bound, last.distance);
+      hand_on(pair, last, X_AB);
+    }
+  }
+  for (const int number : objected_) settle_objected(patches_[Index(number)], X_WB);
+  candidate_order_.clear();
+  for (SeamCandidate& candidate : candidates_) candidate_order_.push_back(&candidate);
+  work_.rooms_full |= !settle_seams(candidate_order_, X_WB, patches_);
+  for (const bool held : {true, false})
+    for (const SweepAndPrune::Pair& near : sweep_.pairs())
+      if (meet_by_surfaces(near.a, near.b) && of_held(near.a, near.b) == held)
+        test_surfaces(near.a, near.b, X_WB);
+  work_.patches = static_cast<int>(patches_.size());
+}
+
+void ContactFinder::settle_objected(ContactPatch& patch, std::span<const Pose> X_WB) const noexcept {
+  const Part& part_a = *bodies_[Index(patch.body_a)].part;
+  const Part& part_b = *bodies_[Index(patch.body_b)].part;
+  const Pose X_AB = relative_pose(X_WB[Index(patch.body_a)], X_WB[Index(patch.body_b)]);
+  const PairView pair(part_a.pieces[Index(patch.piece_a)], part_b.pieces[Index(patch.piece_b)], X_AB);
+  const PairDistance found{.a = patch.manifold.a, .b = patch.manifold.b};
+  auto objected = objected_.begin();  // rising, as the patches
+  const auto leader = std::find_if(patches_.begin(), patches_.end(), [&](const ContactPatch& other) {
+    if (objected != objected_.end() && &other == &patches_[Index(*objected)]) {
+      ++objected;
+      return false;
+    }
+    return other.body_a == patch.body_a && other.body_b == patch.body_b &&
+           answered_by(pair, found, other.manifold.normal, other.distance);
+  });
+  if (leader == patches_.end()) return;
+  const Manifold& leading = leader->manifold;
+  patch.manifold.points.clear();
+  patch.manifold.normal = leading.normal;
+  const auto stretch = [](const Part& part, int of_piece, const Feature& feature, const Vec3& outward,
+                          int piece, bool& beside) {
+    const Feature same = same_feature(part, of_piece, feature, piece);
+    if (same.index >= 0 || feature.kind == FeatureKind::kFace) return same;
+    beside = true;
+    const int face = level_face(part.pieces[Index(of_piece)], feature, outward);
+    return same_feature(part, of_piece, {FeatureKind::kFace, face}, piece);
+  };
+  patch.manifold.a =
+      stretch(part_a, leader->piece_a, leading.a, -leading.normal, patch.piece_a, patch.beside_a);
+  patch.manifold.b = stretch(part_b, leader->piece_b, leading.b, rotated_back(X_AB.R, leading.normal),
+                             patch.piece_b, patch.beside_b);
+}
+
+std::uint8_t ContactFinder::urgency_of(int a, int b) const noexcept {
+  return urgency_.empty() ? urgency::kOther : std::min(urgency_[Index(a)], urgency_[Index(b)]);
+}
+
+/// A lower bound of the pair's distance: an answer less what the smaller body has moved since, as the other
+/// one sees it.
+double ContactFinder::bound_at(const Pair& pair, const Answer& answer, const Pose& X_AB) const noexcept {
+  if (!answer.certified) return kAlwaysDue;
+  const double radius_a = radius_[Index(pair.body_a)];
+  const double radius_b = radius_[Index(pair.body_b)];
+  const double moved = radius_b <= radius_a ? displacement(answer.X_AB, X_AB, radius_b)
+                                            : displacement(answer.X_AB.inverse(), X_AB.inverse(), radius_a);
+  return answer.found.distance - moved;
+}
+
+/// Takes the pairs whose answer holds from those that are due; returns how many of the others may be tested.
+int ContactFinder::leave_known(std::span<const Pose> X_WB) noexcept {
+  int held = 0;
+  const auto needs_no_test = [&](const DuePair& due) {
+    Pair& pair = pairs_[Index(due.pair)];
+    const Pose X_AB = relative_pose(X_WB[Index(pair.body_a)], X_WB[Index(pair.body_b)]);
+    double bound = bound_at(pair, pair.last, X_AB);
+    if (const double on_trial = bound_at(pair, pair.trial, X_AB); on_trial > bound) {
+      pair.last = pair.trial;
+      bound = on_trial;
+    }
+    // Measured between the two, the motion is less than what both odometers say.
+    const double here = odometers(pair.body_a, pair.body_b);
+    pair.free_until = std::max(pair.free_until, here + bound);
+    if (pair.free_until - here > tolerance(pair.body_a, pair.body_b)) {
+      pair.in_contact = false;
+      return true;
+    }
+    const double found = pair.last.found.distance;
+    if (pair.last.certified && bound >= found - kKnownShare * std::max(found, 0.0)) {
+      handed_on_.push_back(due.pair);
+      return true;
+    }
+    held += due.urgency == urgency::kHeld ? 1 : 0;
+    return false;
+  };
+  due_.erase(std::remove_if(due_.begin(), due_.end(), needs_no_test), due_.end());
+  work_.known = static_cast<int>(handed_on_.size());
+  return std::min(tests_left_, held + std::max(0, tests_left_ - held) / 2);
+}
+
+/// Counts a pair that is not tested in this frame, and tells whether that is safe.
+void ContactFinder::leave(int a, int b, double gap, std::int64_t last_checked) noexcept {
+  const auto moves_by = [&](int body) { return bodies_[Index(body)].moves ? reach_[Index(body)] : 0.0; };
+  ++work_.unchecked;
+  if (gap > moves_by(a) + moves_by(b)) return;
+  ++work_.left_unproven;
+  work_.left_of_held += of_held(a, b) ? 1 : 0;
+  if (last_checked >= 0)
+    work_.longest_unchecked = std::max(work_.longest_unchecked, static_cast<int>(frame_ - last_checked));
+  blocked_[Index(a)] = blocked_[Index(b)] = 1;
+}
+
+double ContactFinder::tolerance(int a, int b) const noexcept {
+  const auto reach_of = [&](int body) { return bodies_[Index(body)].moves ? reach_[Index(body)] : 0.0; };
+  return std::max(min_tolerance_, reach_of(a) + reach_of(b));
+}
+
+void ContactFinder::answer(Pair& pair, const Pose& X_AB, Answer& into) noexcept {
+  into.found =
+      closest_features(bodies_[Index(pair.body_a)].part->pieces[Index(pair.piece_a)],
+                       bodies_[Index(pair.body_b)].part->pieces[Index(pair.piece_b)], X_AB, pair.cache);
+  into.X_AB = X_AB;
+  into.certified = into.found.certified();
+  --tests_left_;
+}
+
+void ContactFinder::test(Pair& pair, const Pose& X_AB) noexcept {
+  answer(pair, X_AB, pair.last);
+  pair.trial.certified = false;
+  ++work_.exact_tests;
+  work_.feature_steps += pair.last.found.steps;
+  if (!pair.last.certified) ++work_.uncertified;
+  // What is not certified proves nothing: the pair is due again in the next frame.
+  pair.free_until =
+      pair.last.certified ? odometers(pair.body_a, pair.body_b) + pair.last.found.distance : kAlwaysDue;
+  hand_on(pair, pair.last.found, X_AB);
+}
+
+/// Makes a patch of what was found, when it is within the tolerance.
+void ContactFinder::hand_on(Pair& pair, const PairDistance& found, const Pose& X_AB) noexcept {
+  const Part& part_a = *bodies_[Index(pair.body_a)].part;
+  const Part& part_b = *bodies_[Index(pair.body_b)].part;
+  const Polytope& A = part_a.pieces[Index(pair.piece_a)];
+  const Polytope& B = part_b.pieces[Index(pair.piece_b)];
+  const double reach = tolerance(pair.body_a, pair.body_b);
+  pair.in_contact = found.distance < reach;
+  if (!pair.in_contact) {
+    pair.shown = {};
+    return;
+  }
+  if (patches_.size() + candidates_.size() >= patches_.capacity()) {
+    work_.rooms_full = true;
+    return;
+  }
+  const bool seams = !part_a.true_surface.alone() || !part_b.true_surface.alone();
+  const bool objected = seams && !is_true_contact(part_a, pair.piece_a, part_b, pair.piece_b, X_AB, found);
+  if (seams && points_ == PatchPoints::kQuadrature) {
+    SeamCandidate& candidate = candidates_.emplace_back();
+    candidate.body_a = pair.body_a;
+    candidate.body_b = pair.body_b;
+    candidate.piece_a = pair.piece_a;
+    candidate.piece_b = pair.piece_b;
+    candidate.pair = static_cast<int>(&pair - pairs_.data());
+    candidate.part_a = &part_a;
+    candidate.part_b = &part_b;
+    candidate.shown = &pair.shown;
+    candidate.reach = reach;
+    candidate.found = found;
+    candidate.objected = objected;
+    return;
+  }
+  ContactPatch& patch = patches_.emplace_back();
+  patch.body_a = pair.body_a;
+  patch.body_b = pair.body_b;
+  patch.piece_a = pair.piece_a;
+  patch.piece_b = pair.piece_b;
+  patch.pair = static_cast<int>(&pair - pairs_.data());
+  patch.facet_a = part_a.surface_group[Index(pair.piece_a)];
+  patch.facet_b = part_b.surface_group[Index(pair.piece_b)];
+  patch.tolerance = reach;
+  if (points_ == PatchPoints::kClosest) {
+    patch.distance = found.distance;
+    patch.manifold.normal = found.normal;
+    patch.manifold.a = found.a;
+    patch.manifold.b = found.b;
+    patch.manifold.points.push_back({found.p_a, found.p_b, found.distance, 1.0, 0});
+    if (objected && found.distance > 0.0) objected_.push_back(static_cast<int>(patches_.size()) - 1);
+    return;
+  }
+  const PairDistance shown = steady_depth(A, B, X_AB, found, pair.shown);
+  patch.distance = shown.distance;
+  contact_manifold(A, B, X_AB, shown, reach, patch.manifold);
+  steady_centroid(X_AB, patch.manifold, pair.shown);
+}
+
+int ContactFinder::distances_at(std::span<const Pose> X_WB, std::span<double> distance,
+                                std::span<GapAnswer> asked, std::span<const double> enough,
+                                int keep_back) noexcept {
+  const int before = tests_left_;
+  for (const bool held : {true, false}) {
+    for (Index i = 0; i < patches_.size();) {
+      const ContactPatch& patch = patches_[i];
+      Index end = i + 1;
+      while (patch.of_surfaces && end < patches_.size() && patches_[end].of_surfaces &&
+             patches_[end].body_a == patch.body_a && patches_[end].body_b == patch.body_b)
+        ++end;
+      if (asked[i] == GapAnswer::kAsked && of_held(patch.body_a, patch.body_b) == held) {
+        if (patch.of_surfaces) {
+          surface_distances_at({patches_.data() + i, end - i}, X_WB, distance.subspan(i, end - i),
+                               asked.subspan(i, end - i), keep_back);
+        } else {
+          asked[i] = distance_at(patch, X_WB, enough[i], keep_back, distance[i]);
+        }
+      }
+      i = end;
+    }
+  }
+  return before - tests_left_;
+}
+
+/// The distance of one patch's pieces, or a bound.
+GapAnswer ContactFinder::distance_at(const ContactPatch& patch, std::span<const Pose> X_WB, double enough,
+                                     int keep_back, double& distance) noexcept {
+  Pair& pair = pairs_[Index(patch.pair)];
+  const Pose X_AB = relative_pose(X_WB[Index(pair.body_a)], X_WB[Index(pair.body_b)]);
+  if (budget_limited_) {
+    distance = std::max(bound_at(pair, pair.last, X_AB), bound_at(pair, pair.trial, X_AB));
+    if (distance >= enough) return GapAnswer::kProven;
+  }
+  if (tests_left_ <= keep_back) return GapAnswer::kUnknown;
+  answer(pair, X_AB, pair.trial);
+  const double found = pair.trial.found.distance;
+  distance = pair.trial.certified ? found : std::min(0.0, found);  // 0 where it is no number
+  return GapAnswer::kExact;
+}
+
+}  // namespace tactum

@@ -1,0 +1,175 @@
+/// The first step of the contact finder (contact_finder.h): which bodies, and which of their pieces, are
+/// near.
+
+#include <algorithm>
+#include <utility>
+
+#include "tactum/contact/contact_finder.h"
+#include "tactum/contact/motion_bound.h"
+
+namespace tactum {
+namespace {
+
+using Index = std::size_t;
+
+/// Boxes and lists of near pairs are grown by this share of the smaller body's radius beyond the tolerance:
+/// more means they are renewed less often but hold more pairs.
+constexpr double kSlack = 0.05;
+
+/// The axis-aligned box around a turned box.
+Aabb turned(const Aabb& box, const Pose& X, double grown) {
+  const Vec3 center = X * box.center();
+  const Vec3 half = X.R.cwiseAbs() * box.half() + Vec3::Constant(grown);
+  return {center - half, center + half};
+}
+
+bool inside(const Aabb& small, const Aabb& large) {
+  return (small.min.array() >= large.min.array()).all() && (small.max.array() <= large.max.array()).all();
+}
+
+}  // namespace
+
+ContactFinder::ContactFinder(std::vector<CollisionBody> bodies, std::span<const Pose> X_WB,
+                             const ContactFinderRooms& rooms)
+    : bodies_(std::move(bodies)), last_X_WB_(X_WB.begin(), X_WB.end()), sweep_([&] {
+        for (Index i = 0; i < bodies_.size(); ++i) {
+          const Part& part = *bodies_[i].part;
+          double radius = 0.0;
+          Aabb box;
+          for (const Vec3& vertex : part.surface.vertices) {
+            radius = std::max(radius, vertex.norm());
+            box.extend(vertex);
+          }
+          radius_.push_back(radius);
+          part_box_.push_back(box);
+          slack_.push_back(kSlack * radius);
+          fat_box_.push_back(turned(box, X_WB[i], slack_.back()));
+        }
+        return SweepAndPrune(fat_box_);
+      }()) {
+  travel_.assign(bodies_.size(), 0.0);
+  lists_.resize(bodies_.size() * bodies_.size());
+  pairs_.reserve(rooms.pairs);
+  renewed_.reserve(rooms.pairs);
+  near_pieces_.reserve(rooms.pairs);
+  urgency_.reserve(bodies_.size());
+  reach_.reserve(bodies_.size());
+  due_.reserve(rooms.pairs);
+  handed_on_.reserve(rooms.pairs);
+  blocked_.assign(bodies_.size(), 0);
+  patches_.reserve(rooms.patches);
+  candidates_.reserve(rooms.patches);
+  candidate_order_.reserve(rooms.patches);
+  objected_.reserve(rooms.patches);
+  minima_.reserve(rooms.minima);
+  reduction_scratch_.reserve(rooms.minima);
+  kept_minima_ = rooms.kept_minima;
+}
+
+void ContactFinder::find_near_pairs(std::span<const Pose> X_WB, std::span<const double> reach,
+                                    double min_tolerance) noexcept {
+  work_ = {};
+  work_.bodies = static_cast<int>(bodies_.size());
+  reach_.assign(reach.begin(), reach.end());  // within what was reserved
+  min_tolerance_ = min_tolerance;
+  ++frame_;
+  move_boxes(X_WB);
+  const bool lists_hold = std::all_of(sweep_.pairs().begin(), sweep_.pairs().end(), [&](const auto& pair) {
+    return list_holds(list_of(pair.a, pair.b), pair.a, pair.b);
+  });
+  if (!lists_hold) renew_lists(X_WB);
+  for (const SweepAndPrune::Pair& near : sweep_.pairs())
+    work_.rooms_full |= list_of(near.a, near.b).cut_short;
+  work_.near_pairs = static_cast<int>(pairs_.size());
+}
+
+void ContactFinder::move_boxes(std::span<const Pose> X_WB) noexcept {
+  bool moved = false;
+  for (Index i = 0; i < bodies_.size(); ++i) {
+    if (!bodies_[i].moves) continue;
+    travel_[i] += displacement(last_X_WB_[i], X_WB[i], radius_[i]);
+    last_X_WB_[i] = X_WB[i];
+    const double needed = std::max(reach_[i], min_tolerance_);
+    const Aabb tight = turned(part_box_[i], X_WB[i], needed);
+    if (inside(tight, fat_box_[i])) continue;
+    fat_box_[i] = turned(part_box_[i], X_WB[i], needed + slack_[i]);
+    sweep_.move(static_cast<int>(i), fat_box_[i]);
+    moved = true;
+  }
+  if (!moved) return;
+  sweep_.update();
+  work_.broad_phase_runs = 1;
+}
+
+bool ContactFinder::list_holds(const BodyPair& list, int a, int b) const noexcept {
+  if (!bodies_[Index(a)].moves && !bodies_[Index(b)].moves) return true;
+  return list.renewal == renewal_ && odometers(a, b) - list.odometers + tolerance(a, b) <= list.reach;
+}
+
+void ContactFinder::renew_lists(std::span<const Pose> X_WB) noexcept {
+  work_.broad_phase_runs = 1;
+  renewed_.clear();
+  for (const SweepAndPrune::Pair& near : sweep_.pairs()) {
+    if (!bodies_[Index(near.a)].moves && !bodies_[Index(near.b)].moves) continue;
+    BodyPair& list = list_of(near.a, near.b);
+    const Index first = renewed_.size();
+    if (list_holds(list, near.a, near.b)) {
+      const Index room = renewed_.capacity() - renewed_.size();
+      list.cut_short = list.cut_short || Index(list.count) > room;
+      for (Index i = 0; i < std::min(Index(list.count), room); ++i)
+        renewed_.push_back(pairs_[Index(list.first) + i]);
+    } else {
+      const BodyPair old = list;
+      list.odometers = odometers(near.a, near.b);
+      list.reach = tolerance(near.a, near.b) + std::min(slack_[Index(near.a)], slack_[Index(near.b)]);
+      list.cut_short =
+          !collect(near.a, near.b, relative_pose(X_WB[Index(near.a)], X_WB[Index(near.b)]), list.reach);
+      append_pairs(near.a, near.b, old);
+    }
+    list.first = static_cast<std::int32_t>(first);
+    list.count = static_cast<std::int32_t>(renewed_.size() - first);
+    list.renewal = renewal_ + 1;
+  }
+  ++renewal_;  // a pair of bodies that is not near now has an older number, and no list any more
+  pairs_.swap(renewed_);
+}
+
+/// The near pieces of two bodies, sorted. False when the room did not suffice.
+bool ContactFinder::collect(int a, int b, const Pose& X_AB, double reach) noexcept {
+  near_pieces_.clear();
+  if (meet_by_surfaces(a, b)) return true;
+  const Index room = renewed_.capacity() - renewed_.size();
+  const bool complete =
+      for_each_pair_within(bodies_[Index(a)].part->hierarchy, bodies_[Index(b)].part->hierarchy, X_AB, reach,
+                           [&](int piece_a, int piece_b) {
+                             if (near_pieces_.size() == room) return false;
+                             near_pieces_.emplace_back(piece_a, piece_b);
+                             return true;
+                           });
+  std::sort(near_pieces_.begin(), near_pieces_.end());
+  return complete;
+}
+
+/// Makes pairs of the near pieces. Those of the old list stay what they are: both are sorted, so one walk
+/// along both suffices. What was not on it was beyond its reach.
+void ContactFinder::append_pairs(int a, int b, const BodyPair& old) noexcept {
+  const bool known = old.renewal == renewal_;
+  Index from = known ? Index(old.first) : 0;
+  const Index end = known ? from + Index(old.count) : 0;
+  const auto pieces_of = [](const Pair& pair) { return std::pair(pair.piece_a, pair.piece_b); };
+  for (const auto& pieces : near_pieces_) {
+    while (from < end && pieces_of(pairs_[from]) < pieces) ++from;
+    if (from < end && pieces_of(pairs_[from]) == pieces) {
+      renewed_.push_back(pairs_[from]);
+      continue;
+    }
+    Pair& pair = renewed_.emplace_back();
+    pair.body_a = a;
+    pair.body_b = b;
+    pair.piece_a = pieces.first;
+    pair.piece_b = pieces.second;
+    if (known && !old.cut_short) pair.free_until = old.odometers + old.reach;
+  }
+}
+
+}  // namespace tactum

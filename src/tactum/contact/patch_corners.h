@@ -1,0 +1,59 @@
+#pragma once
+/// Every corner of a contact patch, each with its gap: what a response needs in which nothing may penetrate.
+///
+///        A  /.........../        seen along the normal, A's face and B's face overlap in a polygon; the gap
+///    ------c-----------c---      between them is linear over it, so that no point of the polygon comes
+///    B     `-----------'         nearer than its corners do
+///
+/// The four weighted points of a manifold (manifold.h) carry a force as well as the whole area does, but lie
+/// inside it: held apart there, the corners overlap. Here the polygon is cut only where the gap exceeds the
+/// tolerance, never by how the faces lean. An edge or vertex that touches is taken as the border of its most
+/// level face. Where no face is near level the manifold's own points stand in.
+///
+/// Cost: 0.1 us for boxes.
+
+#include <vector>
+
+#include "tactum/collision/planar_patch.h"
+#include "tactum/contact/contact_patch.h"
+#include "tactum/geometry/polytope.h"
+
+namespace tactum {
+
+struct PatchCorner {
+  Vec3 p_A = Vec3::Zero();  ///< halfway between the two surfaces, A's frame [m]
+  double distance = 0.0;    ///< across the patch's normal [m]
+};
+
+using PatchCorners = StaticVector<PatchCorner, PatchPolygon::capacity() + 4>;
+
+/// The face at feature `f` that looks most along `n` (unit, P's frame): that whose corners count.
+int level_face(const Polytope& P, const Feature& f, const Vec3& n) noexcept;
+
+/// The corners of `patch`, found at distance `distance` [m], whose gap is at most `tolerance` [m]. The least
+/// gap is among them. False when the manifold's own points stand in.
+bool patch_corners(const Polytope& A, const Polytope& B, const Pose& X_AB, const Manifold& patch,
+                   double distance, double tolerance, PatchCorners& corners) noexcept;
+
+/// The corners of patches of pieces that lie as they lay when they were last asked for: remembered, so that
+/// what rests costs a comparison. A pair has one slot, which it may have to share; allocated at load time.
+class CornerMemory {
+ public:
+  explicit CornerMemory(std::size_t slots) : slots_(slots) {}
+  void corners_of(const Polytope& A, const Polytope& B, const Pose& X_AB, const ContactPatch& patch,
+                  PatchCorners& corners) noexcept;
+
+ private:
+  /// All that the corners follow from, and them; of more than there is room for nothing is remembered.
+  struct Slot {
+    std::array<int, 4> pair{-1, -1, -1, -1};
+    FeaturePair features;
+    Pose X_AB;
+    Vec3 normal = Vec3::Zero();
+    double distance = 0.0, tolerance = 0.0;
+    StaticVector<PatchCorner, 8> corners;
+  };
+  std::vector<Slot> slots_;
+};
+
+}  // namespace tactum

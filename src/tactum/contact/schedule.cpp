@@ -1,0 +1,28 @@
+#include "tactum/contact/schedule.h"
+
+#include <algorithm>
+
+namespace tactum {
+namespace {
+
+/// A strict order without ties, so that every standard library selects the same pairs.
+bool more_urgent(const DuePair& a, const DuePair& b) {
+  if (a.urgency != b.urgency) return a.urgency < b.urgency;
+  const auto since = [](const DuePair& due) {
+    return due.last_checked - (due.was_in_contact ? kHeadStart : 0);
+  };
+  if (since(a) != since(b)) return since(a) < since(b);
+  return a.pair < b.pair;
+}
+
+}  // namespace
+
+int prioritise(std::span<DuePair> due, int budget) noexcept {
+  if (static_cast<std::size_t>(std::max(budget, 0)) >= due.size()) return static_cast<int>(due.size());
+  const auto cut = due.begin() + std::max(budget, 0);
+  std::nth_element(due.begin(), cut, due.end(), more_urgent);
+  std::sort(due.begin(), cut, [](const DuePair& a, const DuePair& b) { return a.pair < b.pair; });
+  return std::max(budget, 0);
+}
+
+}  // namespace tactum

@@ -1,0 +1,319 @@
+#include "tactum/contact/seam_settler.h"
+
+#include <algorithm>
+#include <tuple>
+
+#include "tactum/base/tolerances.h"
+#include "tactum/collision/manifold.h"
+#include "tactum/contact/seams.h"
+
+namespace tactum {
+namespace {
+
+using Index = std::size_t;
+
+/// What is told so many times deeper on the whole part than its piece and the leaders together are is looked
+/// at again.
+constexpr double kFarDeeper = 2.0;
+
+/// The candidates of two bodies.
+class TwoBodies {
+ public:
+  TwoBodies(std::span<SeamCandidate*> candidates, const Pose& X_AB,
+            std::vector<ContactPatch>& patches) noexcept
+      : candidates_(candidates), X_AB_(X_AB), patches_(patches) {}
+
+  void settle() noexcept {
+    for (SeamCandidate* candidate : candidates_)
+      if (!candidate->settled && !candidate->objected) lead(*candidate);
+    for (SeamCandidate* candidate : candidates_)
+      if (!candidate->settled && !answered(*candidate)) tell_again(*candidate);
+    while (SeamCandidate* nearest = shallowest())
+      if (!answered(*nearest) && tell_beside_leaders(*nearest)) lead(*nearest);
+    for (SeamCandidate* candidate : candidates_)
+      if (!candidate->settled) *candidate->shown = {};
+  }
+  bool full() const noexcept { return full_; }
+
+ private:
+  static const Polytope& piece_a(const SeamCandidate& c) noexcept {
+    return c.part_a->pieces[Index(c.piece_a)];
+  }
+  static const Polytope& piece_b(const SeamCandidate& c) noexcept {
+    return c.part_b->pieces[Index(c.piece_b)];
+  }
+
+  /// Whether a leader answers for the candidate, which is then settled.
+  bool answered(SeamCandidate& candidate) noexcept {
+    const PairView pair(piece_a(candidate), piece_b(candidate), X_AB_);
+    for (const SeamCandidate* other : candidates_) {
+      if (other->patch < 0) continue;
+      const ContactPatch& patch = patches_[Index(other->patch)];
+      if (!answered_by(pair, candidate.found, patch.manifold.normal, patch.distance)) continue;
+      settle_as(candidate, *other);
+      return true;
+    }
+    return false;
+  }
+
+  /// What is objected to, as what it is on the whole part. Where that is nothing it may still follow.
+  void tell_again(SeamCandidate& candidate) noexcept {
+    candidate.on_pieces = candidate.found;
+    const std::optional<PairDistance> depth = on_true_surface(candidate, 0.0);
+    if (!depth || depth->distance >= candidate.reach) return;
+    candidate.found = *depth;
+    candidate.objected = false;
+  }
+
+  /// What was told far deeper than it was found and than the leaders are, as the way through the whole piece,
+  /// is judged anew. In a corner the deepest point of a contact lies in the neighbour, as deep as that is
+  /// entered: it is looked for beside the covered place. Where rounding leaves no true face or edge there
+  /// that has it, or the contact is true in its middle, it is what was found. False when it is nothing.
+  bool tell_beside_leaders(SeamCandidate& candidate) noexcept {
+    const PairDistance& on_pieces = candidate.on_pieces;
+    const double entered = deepest_leader();
+    const double beside = candidate.reach + entered;
+    const double likely = kFarDeeper * (beside - std::min(on_pieces.distance, 0.0));
+    if (-candidate.found.distance > likely) {
+      std::optional<PairDistance> near;
+      if (entered > 0.0) near = on_true_surface(candidate, beside);
+      if (near && -near->distance <= likely) {
+        candidate.found = *near;
+      } else if (on_pieces.distance < 0.0 &&
+                 ((entered > 0.0 && touches_beside(candidate, beside)) || touches_in_the_middle(candidate))) {
+        candidate.found = on_pieces;
+      }
+    }
+    // Apart, and beside the face.
+    candidate.objected = candidate.found.distance >= candidate.reach ||
+                         (on_pieces.distance >= 0.0 && candidate.found.distance < 0.0);
+    return !candidate.objected;
+  }
+
+  std::optional<PairDistance> on_true_surface(const SeamCandidate& candidate, double beside) const noexcept {
+    return depth_on_true_surface(*candidate.part_a, candidate.piece_a, *candidate.part_b, candidate.piece_b,
+                                 X_AB_, candidate.on_pieces, candidate.reach, beside);
+  }
+
+  /// Whether what was found is a true contact, or would be no farther than `beside` away.
+  bool touches_beside(const SeamCandidate& candidate, double beside) const noexcept {
+    return is_true_contact(*candidate.part_a, candidate.piece_a, *candidate.part_b, candidate.piece_b, X_AB_,
+                           candidate.on_pieces, beside);
+  }
+
+  /// Whether what is objected to for its closest points, which of a flat contact may be any, is a true
+  /// contact in the middle: in a corner that is entered both ways each wall is covered by the other at its
+  /// edge.
+  bool touches_in_the_middle(const SeamCandidate& candidate) const noexcept {
+    Manifold manifold;
+    contact_manifold(piece_a(candidate), piece_b(candidate), X_AB_, candidate.on_pieces, candidate.reach,
+                     manifold);
+    const bool flat = manifold.a.kind == FeatureKind::kFace && manifold.b.kind == FeatureKind::kFace;
+    return flat && is_true_stretch(candidate, manifold);
+  }
+
+  /// How deep the deepest leader is; none overlaps: 0.
+  double deepest_leader() const noexcept {
+    double deepest = 0.0;
+    for (const SeamCandidate* other : candidates_)
+      if (other->patch >= 0) deepest = std::max(deepest, -patches_[Index(other->patch)].distance);
+    return deepest;
+  }
+
+  SeamCandidate* shallowest() noexcept {
+    SeamCandidate* best = nullptr;
+    for (SeamCandidate* candidate : candidates_)
+      if (!candidate->settled && !candidate->objected &&
+          (best == nullptr || candidate->found.distance > best->found.distance))
+        best = candidate;
+    return best;
+  }
+
+  static void settle_as(SeamCandidate& candidate, const SeamCandidate& leader) noexcept {
+    candidate.settled = true;
+    *candidate.shown = *leader.shown;
+  }
+
+  ContactPatch* new_patch(const SeamCandidate& candidate) noexcept {
+    if (patches_.size() == patches_.capacity()) {
+      full_ = true;
+      return nullptr;
+    }
+    ContactPatch& patch = patches_.emplace_back();
+    patch.body_a = candidate.body_a;
+    patch.body_b = candidate.body_b;
+    patch.piece_a = candidate.piece_a;
+    patch.piece_b = candidate.piece_b;
+    patch.pair = candidate.pair;
+    patch.tolerance = candidate.reach;
+    return &patch;
+  }
+
+  /// Makes the patch of a true contact: its own stretch and those of its followers, as one.
+  void lead(SeamCandidate& nearest) noexcept {
+    PairDistance shown =
+        steady_depth(piece_a(nearest), piece_b(nearest), X_AB_, nearest.found, *nearest.shown);
+    shown.a = true_feature(*nearest.part_a, nearest.piece_a, shown.a, shown.p_a);
+    shown.b =
+        true_feature(*nearest.part_b, nearest.piece_b, shown.b, rotated_back(X_AB_.R, shown.p_b - X_AB_.p));
+    ContactPatch* patch = new_patch(nearest);
+    if (patch == nullptr) {
+      nearest.settled = true;
+      return;
+    }
+    contact_manifold(piece_a(nearest), piece_b(nearest), X_AB_, shown, nearest.reach, patch->manifold);
+    patch->distance = shown.distance;
+    PairDistance led = shown;
+    SeamCandidate& leader = widest(nearest, shown, *patch, led);
+    *leader.shown = *nearest.shown;
+    patch->facet_a = leader.part_a->surface_group[Index(leader.piece_a)];
+    patch->facet_b = leader.part_b->surface_group[Index(leader.piece_b)];
+    leader.patch = static_cast<int>(patches_.size()) - 1;
+    for (SeamCandidate* own : {&nearest, &leader}) {
+      own->settled = true;
+      own->led_by = leader.patch;
+    }
+    stretches_.clear();
+    for (SeamCandidate* other : candidates_)
+      if (!other->settled && !follow(*other, leader, shown, *patch)) share(*other, nearest, leader.patch);
+    if (!stretches_.empty())
+      contact_manifold_over(piece_a(leader), piece_b(leader), X_AB_, led, leader.reach,
+                            {stretches_.begin(), stretches_.size()}, patch->manifold);
+    steady_centroid(X_AB_, patch->manifold, *leader.shown);
+    for (SeamCandidate* other : candidates_)
+      if (other != &leader && other->led_by == leader.patch) remember(*other, leader, shown);
+  }
+
+  /// The leader's memory is that of whom it leads, unless what was shown would be the way through another
+  /// wall.
+  void remember(SeamCandidate& other, const SeamCandidate& leader, const PairDistance& shown) const noexcept {
+    const PairView pair(piece_a(other), piece_b(other), X_AB_);
+    int a = vertex_of(pair.A, other.found.a);
+    int b = vertex_of(pair.B, other.found.b);
+    const double likely = other.reach - std::min(shown.distance, 0.0);
+    const bool through = -pair.separation(shown.normal, a, b) > kFarDeeper * likely;
+    *other.shown = through ? SteadyContact{} : *leader.shown;
+  }
+
+  /// Where the nearest touches at a true edge that others have too, the one of them with the largest features
+  /// square to the normal; its patch is put in place, and in `led` the contact as it has it.
+  SeamCandidate& widest(SeamCandidate& nearest, const PairDistance& shown, ContactPatch& patch,
+                        PairDistance& led) noexcept {
+    const auto size_of = [](const Manifold& manifold) {
+      return static_cast<int>(manifold.a.kind) + static_cast<int>(manifold.b.kind);
+    };
+    SeamCandidate* best = &nearest;
+    if (shown.a.kind != FeatureKind::kEdge && shown.b.kind != FeatureKind::kEdge) return *best;
+    for (SeamCandidate* other : candidates_) {
+      FeaturePair same;
+      if (other->settled || other == &nearest || !same_features(shown.a, shown.b, nearest, *other, same))
+        continue;
+      const PairDistance mapped = on_features(shown, same);
+      Manifold manifold;
+      contact_manifold(piece_a(*other), piece_b(*other), X_AB_, mapped, other->reach, manifold);
+      if (size_of(manifold) <= size_of(patch.manifold) || !is_true_stretch(*other, manifold)) continue;
+      patch.manifold = manifold;
+      patch.piece_a = other->piece_a;
+      patch.piece_b = other->piece_b;
+      patch.pair = other->pair;
+      led = mapped;
+      best = other;
+    }
+    return *best;
+  }
+
+  /// The stretches that `other` has of features of `of`; false when it has none.
+  static bool same_features(const Feature& a, const Feature& b, const SeamCandidate& of,
+                            const SeamCandidate& other, FeaturePair& out) noexcept {
+    out.a = same_feature(*other.part_a, of.piece_a, a, other.piece_a);
+    if (out.a.index < 0) return false;
+    out.b = same_feature(*other.part_b, of.piece_b, b, other.piece_b);
+    return out.b.index >= 0;
+  }
+  static PairDistance on_features(const PairDistance& contact, const FeaturePair& features) noexcept {
+    PairDistance out = contact;
+    out.a = features.a;
+    out.b = features.b;
+    return out;
+  }
+
+  /// Settles `other` when it touches where the nearest does, with nothing to add: on the same features, or at
+  /// a corner that both have.
+  static void share(SeamCandidate& other, const SeamCandidate& nearest, int patch) noexcept {
+    const double noise =
+        tolerances::kCoplanarMeshOffset * std::max(piece_a(nearest).size, piece_b(nearest).size);
+    const bool same_place =
+        (other.found.p_a - nearest.found.p_a).norm() <= noise &&
+        (other.found.p_b - nearest.found.p_b).norm() <= noise &&
+        (other.found.normal - nearest.found.normal).norm() <= tolerances::kCoplanarMeshSine;
+    const auto on_same_features = [&] {
+      FeaturePair same;
+      return same_features(nearest.found.a, nearest.found.b, nearest, other, same) &&
+             same.a == other.found.a && same.b == other.found.b;
+    };
+    if (!same_place && !on_same_features()) return;
+    other.settled = true;
+    other.led_by = patch;
+  }
+
+  /// Takes the stretch that `other` has of the leader's contact into it; false when it has none.
+  bool follow(SeamCandidate& other, const SeamCandidate& leader, const PairDistance& shown,
+              const ContactPatch& patch) noexcept {
+    FeaturePair same;
+    if (!same_features(patch.manifold.a, patch.manifold.b, leader, other, same)) return false;
+    other.settled = true;
+    other.led_by = leader.patch;
+    const PairDistance mapped = on_features(shown, same);
+    Manifold own;
+    contact_manifold(piece_a(other), piece_b(other), X_AB_, mapped, other.reach, own);
+    if (own.points.size() > 1 && is_true_stretch(other, own) &&
+        !stretches_.push_back({&piece_a(other), &piece_b(other), mapped.a, mapped.b}))
+      full_ = true;
+    return true;
+  }
+
+  /// Whether the middle of the patch is on the true surface of both parts.
+  bool is_true_stretch(const SeamCandidate& candidate, const Manifold& manifold) const noexcept {
+    PairDistance middle;
+    middle.normal = manifold.normal;
+    middle.a = manifold.a;
+    middle.b = manifold.b;
+    for (const ContactPoint& point : manifold.points) {
+      middle.p_a += point.weight * point.p_a;
+      middle.p_b += point.weight * point.p_b;
+    }
+    return is_true_contact(*candidate.part_a, candidate.piece_a, *candidate.part_b, candidate.piece_b, X_AB_,
+                           middle);
+  }
+
+  std::span<SeamCandidate*> candidates_;
+  const Pose& X_AB_;
+  std::vector<ContactPatch>& patches_;
+  StaticVector<Stretch, 512> stretches_;  // of the patch in work
+  bool full_ = false;
+};
+
+}  // namespace
+
+bool settle_seams(std::span<SeamCandidate*> candidates, std::span<const Pose> X_WB,
+                  std::vector<ContactPatch>& patches) noexcept {
+  std::sort(candidates.begin(), candidates.end(), [](const SeamCandidate* p, const SeamCandidate* q) {
+    return std::tie(p->body_a, p->body_b, p->objected, p->found.distance, p->piece_a, p->piece_b) <
+           std::tie(q->body_a, q->body_b, q->objected, q->found.distance, q->piece_a, q->piece_b);
+  });
+  bool complete = true;
+  for (auto first = candidates.begin(); first != candidates.end();) {
+    const int a = (*first)->body_a;
+    const int b = (*first)->body_b;
+    const auto last = std::find_if(first, candidates.end(),
+                                   [&](const SeamCandidate* c) { return c->body_a != a || c->body_b != b; });
+    const Pose X_AB = relative_pose(X_WB[Index(a)], X_WB[Index(b)]);
+    TwoBodies bodies({first, last}, X_AB, patches);
+    bodies.settle();
+    complete = complete && !bodies.full();
+    first = last;
+  }
+  return complete;
+}
+
+}  // namespace tactum

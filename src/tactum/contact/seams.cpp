@@ -1,0 +1,279 @@
+#include "tactum/contact/seams.h"
+
+#include <algorithm>
+
+#include "tactum/base/tolerances.h"
+
+namespace tactum {
+namespace {
+
+using Index = std::size_t;
+
+/// How far a normal is leant over an edge to see whether the surface bends there [rad, small]: less than
+/// that is flat to a patch, whose features lean by as much anyway.
+constexpr double kLeanOver = 0.05 * tolerances::kPatchAngle;
+
+double noise_of(const Part& part) noexcept { return tolerances::kCoplanarMeshOffset * part.size; }
+
+int number_of(const Part& part, int piece, const Feature& feature) noexcept {
+  return part.true_surface.number(piece, static_cast<int>(feature.kind), feature.index);
+}
+
+/// Whether `p` is in P, or no farther than `slack` beyond a face.
+bool holds(const Polytope& P, const Vec3& p, double slack) noexcept {
+  return std::all_of(P.faces.begin(), P.faces.end(), [&](const Polytope::Face& plane) {
+    return plane.normal.dot(p) <= plane.offset + slack;
+  });
+}
+
+bool in_column(const Polytope& P, int face, const Vec3& p, double slack) noexcept {
+  const Polytope::Face& loop = P.faces[face];
+  for (int slot = loop.first; slot < loop.first + loop.count; ++slot)
+    if (P.sides[slot].normal.dot(p) > P.sides[slot].offset + slack) return false;
+  return true;
+}
+
+/// Of one side: the faces of `F`, told in its own frame, against the support of `S`. Calls
+/// take(face, vertex of S, distance) for those that could be nearer than `best`.
+template <class Take>
+void for_true_faces(const Part& part, int piece, const Polytope& S, const Pose& X_FS, int start,
+                    const Take& take) noexcept {
+  const Polytope& F = part.pieces[Index(piece)];
+  int vertex = start;
+  for (int face = 0; face < F.counts[2]; ++face) {
+    const bool covered =
+        !part.true_surface.alone() &&
+        part.true_surface.group[Index(number_of(part, piece, {FeatureKind::kFace, face}))] < 0;
+    if (covered) continue;
+    const Vec3& normal = F.faces[face].normal;
+    vertex = support_vertex(S, -rotated_back(X_FS.R, normal), vertex);
+    take(face, vertex, normal.dot(X_FS * S.vertices[vertex]) - F.faces[face].offset);
+  }
+}
+
+/// The side of `face` at its edge `edge`: unit, in its plane, outward.
+const Vec3& side_at(const Polytope& P, int face, int edge) noexcept {
+  const Polytope::Edge& e = P.edges[edge];
+  return P.sides[face == e.left ? e.left_slot : e.right_slot].normal;
+}
+
+/// Whether the surface bends at `edge` of `piece`, at point `p` on `at`: a normal that leans over the edge a
+/// little is one of the whole part's.
+bool is_true_edge(const Part& part, int piece, int edge, const Feature& at, const Vec3& p) noexcept {
+  const Polytope& P = part.pieces[Index(piece)];
+  for (const int face : {P.edges[edge].left, P.edges[edge].right}) {
+    if (part.true_surface.group_of(piece, 2, face) < 0) continue;
+    const Vec3 over = P.faces[face].normal + kLeanOver * side_at(P, face, edge);
+    if (allowed_by_neighbours(part, piece, at, p, over.normalized())) return true;
+  }
+  return false;
+}
+
+/// The face at `edge` that can be touched; where none can, `otherwise`.
+Feature exposed_face(const Part& part, int piece, int edge, const Feature& otherwise) noexcept {
+  const Polytope& P = part.pieces[Index(piece)];
+  for (const int face : {P.edges[edge].left, P.edges[edge].right})
+    if (part.true_surface.group_of(piece, 2, face) >= 0) return {FeatureKind::kFace, face};
+  return otherwise;
+}
+
+/// Pairs of true edges up to which all are tried.
+constexpr std::size_t kMostEdgePairs = 16384;
+using EdgeList = StaticVector<int, 1024>;
+
+/// The edges of `piece` where the surface bends, told at their middles; no more than there is room for.
+void true_edges(const Part& part, int piece, EdgeList& edges) noexcept {
+  const Polytope& P = part.pieces[Index(piece)];
+  for (int e = 0; e < P.counts[1]; ++e) {
+    const Feature edge{FeatureKind::kEdge, e};
+    const bool bends =
+        part.true_surface.alone() || part.true_surface.neighbours(number_of(part, piece, edge)).empty() ||
+        is_true_edge(part, piece, e, edge, 0.5 * (P.vertices[P.edges[e].tail] + P.vertices[P.edges[e].head]));
+    if (bends && !edges.push_back(e)) return;
+  }
+}
+
+/// Whether `outward` (square to the edge) is a normal of `P` at `edge`, by the sign: +1, or -1 for its
+/// opposite; 0 when neither is.
+double cone_sign(const Polytope& P, int edge, const Vec3& outward) noexcept {
+  const double left = side_at(P, P.edges[edge].left, edge).dot(outward);
+  const double right = side_at(P, P.edges[edge].right, edge).dot(outward);
+  return left >= 0.0 && right >= 0.0 ? 1.0 : left <= 0.0 && right <= 0.0 ? -1.0 : 0.0;
+}
+
+/// Two edges whose common normal both pieces have, where they cross.
+std::optional<PairDistance> crossing_edges(const Polytope& A, int edge_a, const Polytope& B, int edge_b,
+                                           const Pose& X_AB) noexcept {
+  const Polytope::Edge& a = A.edges[edge_a];
+  const Polytope::Edge& b = B.edges[edge_b];
+  const Vec3 along_b = X_AB.R * b.direction;
+  Vec3 n = a.direction.cross(along_b);
+  const double sine = n.norm();
+  if (!(sine > tolerances::kSamePlane)) return std::nullopt;  // parallel: the faces have told them
+  n /= sine;
+  const double sign = cone_sign(A, edge_a, -n);
+  if (sign == 0.0 || cone_sign(B, edge_b, sign * rotated_back(X_AB.R, n)) != 1.0) return std::nullopt;
+  n *= sign;
+  const Vec3& a0 = A.vertices[a.tail];
+  const Vec3 b0 = X_AB * B.vertices[b.tail];
+  // Where the lines cross, seen along n: in metres from their tails.
+  const Vec3 between = b0 - a0;
+  const double on_a = sign / sine * between.cross(along_b).dot(n);
+  const double on_b = sign / sine * between.cross(a.direction).dot(n);
+  if (on_a < 0.0 || on_a > a.length || on_b < 0.0 || on_b > b.length) return std::nullopt;
+  const Vec3 p_a = a0 + on_a * a.direction;
+  const Vec3 p_b = b0 + on_b * along_b;
+  return PairDistance{.distance = n.dot(p_a - p_b),
+                      .p_a = p_a,
+                      .p_b = p_b,
+                      .normal = n,
+                      .a = {FeatureKind::kEdge, edge_a},
+                      .b = {FeatureKind::kEdge, edge_b},
+                      .stop = Stop::kFallback};
+}
+
+}  // namespace
+
+bool allowed_by_neighbours(const Part& part, int piece, const Feature& feature, const Vec3& p,
+                           const Vec3& outward, double slack) noexcept {
+  if (part.true_surface.alone()) return true;
+  const double noise = noise_of(part);
+  const auto neighbours = part.true_surface.neighbours(number_of(part, piece, feature));
+  const auto covered_by = [&](int neighbour, const Vec3& at) {
+    const Polytope& N = part.pieces[Index(neighbour)];
+    return outward.dot(N.vertices[support_vertex(N, outward)]) > outward.dot(at) + 2.0 * noise &&
+           holds(N, at, 2.0 * noise);
+  };
+  const auto is_open = [&](const Vec3& at) {
+    return std::none_of(neighbours.begin(), neighbours.end(),
+                        [&](int neighbour) { return covered_by(neighbour, at); });
+  };
+  if (is_open(p)) return true;
+  if (slack == 0.0) return false;
+  // The nearest places beside p, square to `outward`, that some neighbour no longer covers.
+  for (const int neighbour : neighbours) {
+    if (!covered_by(neighbour, p)) continue;
+    for (const Polytope::Face& plane : part.pieces[Index(neighbour)].faces) {
+      const Vec3 aside = plane.normal - outward * outward.dot(plane.normal);
+      const double sine = aside.norm();
+      const double way = plane.offset + 3.0 * noise - plane.normal.dot(p);
+      if (!(way <= slack * sine)) continue;
+      const Vec3 beside = p + aside * (way / (sine * sine));
+      if (holds(part.pieces[Index(piece)], beside, noise) && is_open(beside)) return true;
+    }
+  }
+  return false;
+}
+
+bool is_true_contact(const Part& part_a, int piece_a, const Part& part_b, int piece_b, const Pose& X_AB,
+                     const PairDistance& found, double slack) noexcept {
+  return allowed_by_neighbours(part_a, piece_a, found.a, found.p_a, -found.normal, slack) &&
+         (part_b.true_surface.alone() ||
+          allowed_by_neighbours(part_b, piece_b, found.b, rotated_back(X_AB.R, found.p_b - X_AB.p),
+                                rotated_back(X_AB.R, found.normal), slack));
+}
+
+Feature true_feature(const Part& part, int piece, const Feature& feature, const Vec3& p) noexcept {
+  if (feature.kind == FeatureKind::kFace || part.true_surface.alone() ||
+      part.true_surface.neighbours(number_of(part, piece, feature)).empty())
+    return feature;
+  const Polytope& P = part.pieces[Index(piece)];
+  if (feature.kind == FeatureKind::kEdge)
+    return is_true_edge(part, piece, feature.index, feature, p)
+               ? feature
+               : exposed_face(part, piece, feature.index, feature);
+  int edges = 0;
+  Feature edge = feature;
+  for (const Polytope::Ray& ray : P.rays_at(feature.index))
+    if (is_true_edge(part, piece, ray.edge, feature, p)) {
+      ++edges;
+      edge = {FeatureKind::kEdge, ray.edge};
+    }
+  if (edges == 1) return edge;
+  if (edges > 1) return feature;
+  for (const Polytope::Ray& ray : P.rays_at(feature.index))
+    if (const Feature face = exposed_face(part, piece, ray.edge, feature); face.kind == FeatureKind::kFace)
+      return face;
+  return feature;
+}
+
+Feature same_feature(const Part& part, int of_piece, const Feature& feature, int piece) noexcept {
+  if (piece == of_piece) return feature;
+  if (part.true_surface.alone() || feature.kind == FeatureKind::kVertex) return {feature.kind, -1};
+  const int group = part.true_surface.group[Index(number_of(part, of_piece, feature))];
+  if (group < 0) return {feature.kind, -1};
+  const auto members = part.true_surface.members_of(group);
+  const auto same = std::lower_bound(members.begin(), members.end(), piece,
+                                     [](const TrueSurface::Member& m, int p) { return m.piece < p; });
+  return {feature.kind, same != members.end() && same->piece == piece ? same->index : -1};
+}
+
+std::optional<PairDistance> depth_on_true_surface(const Part& part_a, int piece_a, const Part& part_b,
+                                                  int piece_b, const Pose& X_AB, const PairDistance& found,
+                                                  double slack, double beside) noexcept {
+  const Polytope& A = part_a.pieces[Index(piece_a)];
+  const Polytope& B = part_b.pieces[Index(piece_b)];
+  const Pose X_BA = X_AB.inverse();
+  std::optional<PairDistance> best;
+  const auto take = [&](const PairDistance& candidate) {
+    if (is_true_contact(part_a, piece_a, part_b, piece_b, X_AB, candidate, beside)) best = candidate;
+  };
+  const auto nearer = [&](double distance) { return !best || distance > best->distance; };
+  for_true_faces(part_b, piece_b, A, X_BA, vertex_of(A, found.a), [&](int face, int vertex, double distance) {
+    const Vec3& normal = B.faces[face].normal;
+    const Vec3 foot = X_BA * A.vertices[vertex] - normal * distance;
+    if (!nearer(distance) || !in_column(B, face, foot, slack + beside)) return;
+    take({.distance = distance,
+          .p_a = A.vertices[vertex],
+          .p_b = X_AB * foot,
+          .normal = X_AB.R * normal,
+          .a = {FeatureKind::kVertex, vertex},
+          .b = {FeatureKind::kFace, face},
+          .stop = Stop::kFallback});
+  });
+  for_true_faces(part_a, piece_a, B, X_AB, vertex_of(B, found.b), [&](int face, int vertex, double distance) {
+    const Vec3& normal = A.faces[face].normal;
+    const Vec3 deepest = X_AB * B.vertices[vertex];
+    const Vec3 foot = deepest - normal * distance;
+    if (!nearer(distance) || !in_column(A, face, foot, slack + beside)) return;
+    take({.distance = distance,
+          .p_a = foot,
+          .p_b = deepest,
+          .normal = -normal,
+          .a = {FeatureKind::kFace, face},
+          .b = {FeatureKind::kVertex, vertex},
+          .stop = Stop::kFallback});
+  });
+  EdgeList edges_a;
+  EdgeList edges_b;
+  true_edges(part_a, piece_a, edges_a);
+  true_edges(part_b, piece_b, edges_b);
+  if (edges_a.size() * edges_b.size() > kMostEdgePairs) return best;
+  for (const int a : edges_a)
+    for (const int b : edges_b)
+      if (const std::optional<PairDistance> crossing = crossing_edges(A, a, B, b, X_AB);
+          crossing && nearer(crossing->distance))
+        take(*crossing);
+  return best;
+}
+
+bool answered_by(const PairView& pair, const PairDistance& found, const Vec3& n, double distance) noexcept {
+  const double least = distance - tolerances::kCoplanarMeshOffset * pair.size;
+  const Vec3 n_B = pair.X_BA.R * n;
+  int a = vertex_of(pair.A, found.a);
+  int b = vertex_of(pair.B, found.b);
+  double height_a = -n.dot(pair.A.vertices[Index(a)]);
+  double height_b = n_B.dot(pair.B.vertices[Index(b)]);
+  const double apart = -n.dot(pair.X_AB.p);  // of the origins
+  // Towards the supports a step at a time: most neighbours turn out not to part the pieces at the first.
+  for (;;) {
+    if (apart - height_a - height_b < least) return false;
+    const int next_a = uphill(pair.A, -n, a, height_a);
+    const int next_b = uphill(pair.B, n_B, b, height_b);
+    if (next_a == a && next_b == b) return true;
+    a = next_a;
+    b = next_b;
+  }
+}
+
+}  // namespace tactum

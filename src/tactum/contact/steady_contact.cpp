@@ -1,0 +1,69 @@
+#include "tactum/contact/steady_contact.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tactum/collision/pair_view.h"
+
+namespace tactum {
+namespace {
+
+/// The depth along unit `n`, told at the point of `found`.
+PairDistance depth_across(const PairView& pair, const PairDistance& found, const Vec3& n) noexcept {
+  PairDistance result = found;
+  int a = vertex_of(pair.A, found.a);
+  int b = vertex_of(pair.B, found.b);
+  result.normal = n;
+  result.distance = pair.separation(n, a, b);
+  result.a = {FeatureKind::kVertex, a};
+  result.b = {FeatureKind::kVertex, b};
+  result.p_b = found.p_b + n * n.dot(pair.vertex_b(b) - found.p_b);
+  result.p_a = result.p_b + n * result.distance;
+  return result;
+}
+
+}  // namespace
+
+PairDistance steady_depth(const Polytope& A, const Polytope& B, const Pose& X_AB, const PairDistance& found,
+                          SteadyContact& last) noexcept {
+  const Vec3 from = last.normal_A;
+  last.normal_A = found.normal;
+  if (found.distance >= 0.0 || from.isZero() || from.dot(found.normal) >= std::cos(kNormalTurn)) return found;
+  const Vec3 toward = found.normal - from * from.dot(found.normal);
+  const double sine = toward.norm();
+  if (sine < tolerances::kParallelSine) return found;  // turned right round: no way is the nearest
+  const PairView pair(A, B, X_AB);
+  const Vec3 n = from * std::cos(kNormalTurn) + toward * (std::sin(kNormalTurn) / sine);
+  const PairDistance between = depth_across(pair, found, n.normalized());
+  const PairDistance start = depth_across(pair, found, from);
+  if (between.distance < kDeepestDetour * std::min(start.distance, found.distance)) return found;
+  last.normal_A = between.normal;
+  return between;
+}
+
+void steady_centroid(const Pose& X_AB, Manifold& patch, SteadyContact& last) noexcept {
+  if (patch.points.empty()) {
+    last.has_centroid = false;
+    return;
+  }
+  Vec3 centroid = Vec3::Zero();
+  for (const ContactPoint& point : patch.points) centroid += 0.5 * point.weight * (point.p_a + point.p_b);
+  if (last.has_centroid) {
+    const Vec3 way = 0.5 * (last.centroid_A + X_AB * last.centroid_B) - centroid;
+    const Vec3 back = way - patch.normal * patch.normal.dot(way);
+    const double length = back.norm();
+    if (length > kCentroidStep) {
+      const Vec3 shift = back * (1.0 - kCentroidStep / length);
+      for (ContactPoint& point : patch.points) {
+        point.p_a += shift;
+        point.p_b += shift;
+      }
+      centroid += shift;
+    }
+  }
+  last.centroid_A = centroid;
+  last.centroid_B = X_AB.R.transpose() * (centroid - X_AB.p);
+  last.has_centroid = true;
+}
+
+}  // namespace tactum

@@ -1,0 +1,136 @@
+/// The half of the contact finder (contact_finder.h) for bodies that meet by their surfaces.
+
+#include <algorithm>
+
+#include "tactum/base/tolerances.h"
+#include "tactum/contact/contact_finder.h"
+
+namespace tactum {
+namespace {
+
+using Index = std::size_t;
+
+/// How deep surfaces may cross in the penalty response and still be told apart, as a share of the smaller
+/// part's size. Walls thinner than that may be pushed through; the constraint response lets nothing cross.
+constexpr double kSurfaceDepth = 0.02;
+
+/// At the end of a step only gaps below this share of the tolerance are looked for: the others are open.
+constexpr double kWatched = 0.15;
+
+/// Of surfaces that were apart it is asked first how far, up to so many tolerances: that far they need not be
+/// asked again.
+constexpr double kFarther = 8.0;
+
+}  // namespace
+
+void ContactFinder::test_surfaces(int a, int b, std::span<const Pose> X_WB) noexcept {
+  if (!bodies_[Index(a)].moves && !bodies_[Index(b)].moves) return;
+  const double reach = tolerance(a, b);
+  BodyPair& list = list_of(a, b);
+  if (list.free_until - odometers(a, b) > reach) return;
+  if (tests_left_ <= 0) return leave(a, b, list.free_until - odometers(a, b), frame_);
+  --tests_left_;
+  ++work_.exact_tests;
+  const Part& part_a = *bodies_[Index(a)].part;
+  const Part& part_b = *bodies_[Index(b)].part;
+  // Where nothing may cross, what is below zero is rounding.
+  const bool may_cross = points_ == PatchPoints::kQuadrature;
+  const MinimaQuery query{
+      .reach = reach,
+      .depth = may_cross ? kSurfaceDepth * std::min(part_a.size, part_b.size) : kWatched * reach,
+      .cone_slack = tolerances::kConeSlack};
+  const Pose X_AB = relative_pose(X_WB[Index(a)], X_WB[Index(b)]);
+  if (list.apart) {
+    MinimaQuery farther = query;
+    farther.reach *= kFarther;
+    MinimaWork work;
+    const double clearance = surface_clearance(part_a.tree, part_b.tree, X_AB, farther, work);
+    ++work_.surface_queries;
+    work_.feature_steps += work.feature_pairs;
+    list.free_until = odometers(a, b) + clearance;
+    if (clearance > reach) return;
+  }
+  const MinimaWork found = surface_minima(part_a.tree, part_b.tree, X_AB, query, minima_);
+  ++work_.surface_queries;
+  work_.minima += found.minima;
+  work_.feature_steps += found.feature_pairs;
+  work_.rooms_full |= found.full;
+  list.apart = minima_.empty();
+  list.free_until = odometers(a, b) + (list.apart ? reach : 0.0);
+  Index kept = minima_.size();
+  if (kept > kept_minima_) {
+    reduction_scratch_.resize(kept);  // within what was reserved
+    Vec3 center = Vec3::Zero();
+    for (const SurfaceMinimum& minimum : minima_) center += minimum.p_a / double(minima_.size());
+    const double radius = radius_[Index(a)] + radius_[Index(b)];
+    const ReductionReport reduced =
+        reduce_contacts(minima_, reduction_scratch_, kept_minima_,
+                        {.center = center, .max_translation = reach, .max_rotation = reach / radius});
+    kept = Index(reduced.kept);
+    work_.dropped_minima += reduced.dropped;
+    work_.dropped_error = std::max(work_.dropped_error, reduced.largest_error);
+  }
+  for (Index i = 0; i < kept; ++i) {
+    // Outside their true cones two edges may seem to have crossed that have not. Apart they count, however
+    // near: the far end of an almost flat contact is such a pair, and the next step may find it in the cones.
+    const bool edges = minima_[i].a.kind == FeatureKind::kEdge && minima_[i].b.kind == FeatureKind::kEdge;
+    if (edges && !minima_[i].strict && minima_[i].distance < 0.0) continue;
+    // Parallel edges have two minima, at the ends of the interval they share; they stand side by side.
+    const bool second_end = i > 0 && minima_[i - 1].a == minima_[i].a && minima_[i - 1].b == minima_[i].b;
+    add_surface_patch(a, b, minima_[i], second_end, reach);
+  }
+}
+
+void ContactFinder::add_surface_patch(int a, int b, const SurfaceMinimum& minimum, bool second_end,
+                                      double reach) noexcept {
+  if (patches_.size() == patches_.capacity()) {
+    work_.rooms_full = true;
+    return;
+  }
+  ContactPatch& patch = patches_.emplace_back();
+  patch.body_a = a;
+  patch.body_b = b;
+  patch.piece_a = minimum.triangle_a;
+  patch.piece_b = minimum.triangle_b;
+  patch.of_surfaces = true;
+  // The corners of one part on a face of the other are one contact, whichever of its faces they belong to.
+  const auto facet = [](const SurfaceTree& tree, const Feature& feature) {
+    return feature.kind == FeatureKind::kFace ? tree.group_of(feature.index) : -1;
+  };
+  patch.facet_a = facet(bodies_[Index(a)].part->tree, minimum.a);
+  patch.facet_b = facet(bodies_[Index(b)].part->tree, minimum.b);
+  patch.distance = minimum.distance;
+  patch.tolerance = reach;
+  patch.manifold.normal = minimum.normal;
+  patch.manifold.a = minimum.a;
+  patch.manifold.b = minimum.b;
+  patch.manifold.points.push_back(
+      {minimum.p_a, minimum.p_b, minimum.distance, 1.0, point_id(minimum.a, minimum.b, second_end ? 1 : 0)});
+}
+
+void ContactFinder::surface_distances_at(std::span<const ContactPatch> patches, std::span<const Pose> X_WB,
+                                         std::span<double> distance, std::span<GapAnswer> asked,
+                                         int keep_back) noexcept {
+  std::fill(asked.begin(), asked.end(), tests_left_ > keep_back ? GapAnswer::kExact : GapAnswer::kUnknown);
+  if (tests_left_ <= keep_back) return;
+  --tests_left_;
+  const ContactPatch& first = patches.front();
+  const Part& part_a = *bodies_[Index(first.body_a)].part;
+  const Part& part_b = *bodies_[Index(first.body_b)].part;
+  const MinimaQuery query{.reach = kWatched * first.tolerance, .depth = first.tolerance, .cone_slack = 0.0};
+  const Pose X_AB = relative_pose(X_WB[Index(first.body_a)], X_WB[Index(first.body_b)]);
+  surface_minima(part_a.tree, part_b.tree, X_AB, query, minima_);
+  std::fill(distance.begin(), distance.end(), query.reach);
+  const auto nearest = std::min_element(patches.begin(), patches.end(),
+                                        [](const auto& p, const auto& q) { return p.distance < q.distance; });
+  for (const SurfaceMinimum& minimum : minima_) {
+    auto same = std::find_if(patches.begin(), patches.end(), [&](const ContactPatch& patch) {
+      return patch.manifold.a == minimum.a && patch.manifold.b == minimum.b;
+    });
+    if (same == patches.end()) same = nearest;
+    double& d = distance[Index(same - patches.begin())];
+    d = std::min(d, minimum.distance);
+  }
+}
+
+}  // namespace tactum

@@ -1,0 +1,17 @@
+#pragma once
+/// Names of what a shape is made of.
+
+#include <cstdint>
+
+namespace tactum {
+
+enum class FeatureKind : std::uint8_t { kVertex, kEdge, kFace };
+
+/// A vertex, edge or face of a polytope, or of a surface (surface_tree.h), by its index.
+struct Feature {
+  FeatureKind kind = FeatureKind::kVertex;
+  int index = -1;  ///< -1: none yet
+  bool operator==(const Feature&) const = default;
+};
+
+}  // namespace tactum

@@ -1,0 +1,103 @@
+#include "tactum/loop/passivity.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tactum/math/screw.h"
+
+namespace tactum {
+namespace {
+
+/// One of the two ledgers over one step.
+struct Step {
+  Vec3 way;          // made since the last frame
+  Vec3 sent;         // force (torque) held meanwhile
+  double damping;    // the device's own
+  double given_J;    // by the scene's bodies
+  double highest_J;  // the ledger may become
+  double credit_J;
+  double max_injected;
+  double dt_s;
+};
+
+void book(const Step& step, double& ledger_J) noexcept {
+  const double passed_J =
+      -step.sent.dot(step.way) + step.damping * step.way.squaredNorm() / step.dt_s + step.given_J;
+  ledger_J = std::clamp(ledger_J + passed_J, -step.credit_J, step.highest_J);
+}
+
+/// What the wrench and the controller's part of it have done over the way.
+void add_up(const Vec3& way, const Vec3& sent, const Vec3& damper, EnergyTotals& total) noexcept {
+  const double work_J = sent.dot(way);
+  (work_J > 0.0 ? total.to_hand_J : total.from_hand_J) += std::abs(work_J);
+  total.damped_J -= damper.dot(way);
+}
+
+/// A thread turns one kind of work into the other: what one ledger owes, the other pays as far as it can.
+void settle(double& ledger_J, double& other_J) noexcept {
+  const double paid_J = std::max(0.0, std::min(-ledger_J, other_J));
+  ledger_J += paid_J;
+  other_J -= paid_J;
+}
+
+/// The damping to add.
+double injected(const Step& step, double ledger_J) noexcept {
+  const double way_sq = step.way.squaredNorm();
+  if (!(ledger_J < 0.0) || way_sq == 0.0) return 0.0;
+  // a |V|^2 dt = - ledger, with V = way / dt; a huge quotient is cut to what is allowed
+  return std::min(-ledger_J * step.dt_s / way_sq, step.max_injected);
+}
+
+}  // namespace
+
+Wrench passive_wrench(const PortSettings& settings, PortState& state, const DeviceSample& sample,
+                      const PortInput& input, PortReport& report) noexcept {
+  Wrench F = input.wanted;
+  if (!settings.actuates_torque) F.t.setZero();
+  report = {};
+  if (sample.valid && plausible(sample.X_DH) && input.dt_s > 0.0) {
+    const Twist way = state.known ? twist_between(state.X_DH, sample.X_DH, 1.0) : Twist{};
+    const double given_J = state.known ? std::max(0.0, state.bodies_J - input.bodies_J) : 0.0;
+    const Step moved{way.v,
+                     input.sent.f,
+                     settings.damping_Ns_per_m,
+                     given_J,
+                     settings.credit_J + input.spring_J,
+                     settings.credit_J,
+                     settings.max_injected_Ns_per_m,
+                     input.dt_s};
+    const Step turned{way.w,
+                      input.sent.t,
+                      settings.damping_Nms_per_rad,
+                      given_J,
+                      settings.credit_turning_J + input.spring_turning_J,
+                      settings.credit_turning_J,
+                      settings.actuates_torque ? settings.max_injected_Nms_per_rad : 0.0,
+                      input.dt_s};
+    add_up(way.v, input.sent.f, state.damper.f, state.total);
+    add_up(way.w, input.sent.t, state.damper.t, state.total_turning);
+    book(moved, state.ledger_J);
+    book(turned, state.ledger_turning_J);
+    if (settings.actuates_torque) {
+      settle(state.ledger_J, state.ledger_turning_J);
+      settle(state.ledger_turning_J, state.ledger_J);
+    }
+    report.injected_Ns_per_m = injected(moved, state.ledger_J);
+    report.injected_Nms_per_rad = injected(turned, state.ledger_turning_J);
+    state.damper = {-report.injected_Ns_per_m / input.dt_s * way.v,
+                    -report.injected_Nms_per_rad / input.dt_s * way.w};
+    F = F + state.damper;
+    state.X_DH = sample.X_DH;
+    state.bodies_J = input.bodies_J;
+    state.known = true;
+  } else {
+    state.damper = {};
+  }
+  report.total = state.total;
+  report.total_turning = state.total_turning;
+  report.ledger_J = state.ledger_J;
+  report.ledger_turning_J = state.ledger_turning_J;
+  return F;
+}
+
+}  // namespace tactum

@@ -1,0 +1,76 @@
+#include "tactum/loop/realtime.h"
+
+#include <pthread.h>
+#include <sched.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+namespace tactum {
+namespace {
+
+constexpr unsigned long kTimerSlack_ns = 1;        // the kernel's default is 50 us
+constexpr std::size_t kStackToTouch = 256 * 1024;  // bytes; the deepest frame uses a few KB
+constexpr std::size_t kPage = 4096;
+
+void touch_stack() noexcept {
+  volatile unsigned char block[kStackToTouch];
+  for (std::size_t i = 0; i < kStackToTouch; i += kPage) block[i] = 0;
+  static_cast<void>(block[0]);
+}
+
+void ask_realtime(int priority, LoopPrivileges& got) {
+  sched_param parameter{};
+  parameter.sched_priority = priority;
+  const int error = pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameter);
+  got.realtime = error == 0;
+  got.sentences.push_back(
+      got.realtime
+          ? "real-time scheduling: SCHED_FIFO, priority " + std::to_string(priority)
+          : "no real-time scheduling (" + std::string(std::strerror(error)) +
+                "): other programs can delay frames; allow it with 'ulimit -r 99' or an rtprio line in "
+                "/etc/security/limits.conf");
+}
+
+void ask_locked_memory(LoopPrivileges& got) {
+  // Under a finite limit, locking what is yet to come would make later allocations fail, so then it is not
+  // asked.
+  rlimit limit{};
+  const bool unlimited =
+      geteuid() == 0 || (getrlimit(RLIMIT_MEMLOCK, &limit) == 0 && limit.rlim_cur == RLIM_INFINITY);
+  int error = unlimited ? 0 : EPERM;
+  // On fault: pages are locked once touched, the gigabytes a program only reserves are not.
+  if (unlimited && mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) != 0) error = errno;
+  got.memory_locked = error == 0;
+  got.sentences.push_back(got.memory_locked
+                              ? "memory locked: no frame waits for a page from disk"
+                              : "memory not locked (" + std::string(std::strerror(error)) +
+                                    "): frames can wait for the disk when memory is short; allow it with "
+                                    "'ulimit -l unlimited'");
+}
+
+}  // namespace
+
+LoopPrivileges acquire_privileges(const RealtimeSettings& settings) {
+  LoopPrivileges got;
+  if (settings.realtime) {
+    ask_realtime(settings.priority, got);
+  } else {
+    got.sentences.push_back("no real-time scheduling: not asked for");
+  }
+  if (settings.lock_memory) {
+    ask_locked_memory(got);
+  } else {
+    got.sentences.push_back("memory not locked: not asked for");
+  }
+  got.timer_slack = prctl(PR_SET_TIMERSLACK, kTimerSlack_ns, 0, 0, 0) == 0;
+  got.sentences.push_back(got.timer_slack ? "timer slack: 1 ns" : "timer slack: the system's default");
+  touch_stack();
+  return got;
+}
+
+}  // namespace tactum

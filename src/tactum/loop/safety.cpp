@@ -1,0 +1,182 @@
+#include "tactum/loop/safety.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tactum/math/screw.h"
+
+namespace tactum {
+namespace {
+
+using namespace safety_flag;
+
+constexpr double kFullScaleTime_s = 0.005;
+
+/// A frozen pose matters when this share of the largest force (torque) would go on being sent.
+constexpr double kMatters = 0.01;
+
+/// Scales `v` to at most `limit`; true when it did. A limit of zero gives exactly zero.
+bool limit_length(Vec3& v, double limit) noexcept {
+  const double length = v.norm();
+  if (!(length > limit)) return false;
+  v *= limit / length;  // a length that overflows to infinity gives zero
+  return true;
+}
+
+/// Moves `v` back to within `step` of `from`; true when it did.
+bool limit_step(const Vec3& from, Vec3& v, double step) noexcept {
+  Vec3 change = v - from;
+  if (!limit_length(change, step)) return false;
+  v = from + change;
+  return true;
+}
+
+/// What is wrong with how the pose moves; remembers the pose.
+std::uint32_t faults_of_motion(const SafetyLimits& limits, SafetyState& state,
+                               const SafetyInput& input) noexcept {
+  if (!input.sample_valid || !plausible(input.X_DH)) return 0;
+  const double time_s = input.now_s - input.sample_age_s;
+  std::uint32_t flags = 0;
+  if (state.measured) {
+    // The first argument is kept when the second is NaN.
+    const double since_s = std::max(input.period_s, time_s - state.measured_s);
+    const Twist step = twist_between(state.X_DH, input.X_DH, 1.0);
+    if (step.v.norm() > limits.max_speed_m_per_s * since_s ||
+        step.w.norm() > limits.max_turn_rad_per_s * since_s)
+      flags |= kPoseLeapt;
+    const bool still = input.X_DH.p == state.X_DH.p && input.X_DH.R == state.X_DH.R;
+    state.still_s = still ? state.still_s + input.period_s : 0.0;
+    const bool matters = input.wanted.f.norm() > kMatters * limits.max_force_N ||
+                         input.wanted.t.norm() > kMatters * limits.max_torque_Nm;
+    if (state.still_s > limits.max_still_s && matters) flags |= kPoseFrozen;
+  }
+  state.X_DH = input.X_DH;
+  state.measured_s = time_s;
+  state.measured = true;
+  return flags;
+}
+
+std::uint32_t faults(const SafetyLimits& limits, SafetyState& state, const SafetyInput& input) noexcept {
+  std::uint32_t flags = 0;
+  if (!input.wanted.finite() || !std::isfinite(input.period_s) || input.period_s <= 0.0)
+    flags |= kNonFiniteWrench;
+  if (!plausible(input.X_DH)) flags |= kImplausiblePose;
+  // Written so that a NaN is stale; a sample from the future comes from a broken clock.
+  if (!(std::abs(input.sample_age_s) <= limits.max_sample_age_s)) flags |= kStaleSample;
+  state.invalid_reads = input.sample_valid ? 0 : std::min(state.invalid_reads + 1, limits.max_invalid_reads);
+  if (!input.sample_valid && state.invalid_reads >= limits.max_invalid_reads) flags |= kReadsFailing;
+  if (input.late) flags |= kMissedDeadline;
+  if (input.refused) flags |= kWrenchRefused;
+  if (!input.motors_on) flags |= kMotorsOff;
+  return flags | faults_of_motion(limits, state, input);
+}
+
+/// Moves the gain along its ramp. A ramp of no length is a step.
+std::uint32_t move_gain(const SafetyLimits& limits, SafetyState& state, const SafetyInput& input) noexcept {
+  const double ramp_s = input.stop ? limits.stop_ramp_s : limits.start_ramp_s;
+  const double step = ramp_s > input.period_s ? input.period_s / ramp_s : 1.0;
+  state.gain = std::clamp(state.gain + (input.stop ? -step : step), 0.0, 1.0);
+  if (input.stop) return kStopping;
+  return state.gain < 1.0 ? kStarting : 0;
+}
+
+}  // namespace
+
+SafetyLimits safety_limits(const DeviceInfo& info) noexcept {
+  SafetyLimits limits;
+  limits.max_force_N = std::max(0.0, info.max_force_N);
+  limits.max_torque_Nm = std::max(0.0, info.max_torque_Nm);
+  limits.max_force_slew_N_per_s = limits.max_force_N / kFullScaleTime_s;
+  limits.max_torque_slew_Nm_per_s = limits.max_torque_Nm / kFullScaleTime_s;
+  if (info.max_still_s > 0.0) limits.max_still_s = info.max_still_s;
+  return limits;
+}
+
+SafetyLimits tightened(const SafetyLimits& limits, const SafetySettings& settings) noexcept {
+  // std::min and std::max keep their first argument when the second is NaN.
+  const auto smaller = [](double limit, double asked) { return std::max(0.0, std::min(limit, asked)); };
+  SafetyLimits result = limits;
+  result.max_force_N = smaller(limits.max_force_N, settings.max_force_N);
+  result.max_torque_Nm = smaller(limits.max_torque_Nm, settings.max_torque_Nm);
+  result.max_force_slew_N_per_s = smaller(limits.max_force_slew_N_per_s, settings.max_force_slew_N_per_s);
+  result.max_torque_slew_Nm_per_s =
+      smaller(limits.max_torque_slew_Nm_per_s, settings.max_torque_slew_Nm_per_s);
+  result.start_ramp_s = std::max(limits.start_ramp_s, settings.start_ramp_s);
+  result.stop_ramp_s = smaller(limits.stop_ramp_s, settings.stop_ramp_s);
+  return result;
+}
+
+SafetyInput safety_input(const DeviceSample& sample, const FrameTick& tick, const Wrench& wanted) noexcept {
+  return {.wanted = wanted,
+          .X_DH = sample.X_DH,
+          .sample_valid = sample.valid,
+          .sample_age_s = tick.now_s - sample.time_s,
+          .motors_on = sample.motors_on,
+          .refused = tick.refused,
+          .now_s = tick.now_s,
+          .period_s = tick.period_s,
+          .late = tick.late,
+          .stop = tick.stop};
+}
+
+Wrench safe_wrench(const SafetyLimits& limits, SafetyState& state, const SafetyInput& input,
+                   SafetyReport& report) noexcept {
+  report.flags = faults(limits, state, input);
+  if (report.flags != 0) {
+    state.gain = 0.0;
+    state.sent = {};
+    return state.sent;
+  }
+  report.flags |= move_gain(limits, state, input);
+  if (input.stop && state.gain <= 0.0) {
+    report.flags |= kStopped;
+    state.sent = {};
+    return state.sent;
+  }
+  Wrench F = input.wanted;
+  if (limit_length(F.f, limits.max_force_N)) report.flags |= kForceLimited;
+  if (limit_length(F.t, limits.max_torque_Nm)) report.flags |= kTorqueLimited;
+  F = F * state.gain;
+  if (limit_step(state.sent.f, F.f, limits.max_force_slew_N_per_s * input.period_s)) {
+    report.flags |= kForceSlewed;
+  }
+  if (limit_step(state.sent.t, F.t, limits.max_torque_slew_Nm_per_s * input.period_s)) {
+    report.flags |= kTorqueSlewed;
+  }
+  // The last wrench may lie outside limits that were tightened since; a slewed one must not.
+  if (limit_length(F.f, limits.max_force_N)) report.flags |= kForceLimited;
+  if (limit_length(F.t, limits.max_torque_Nm)) report.flags |= kTorqueLimited;
+  state.sent = F;
+  return F;
+}
+
+std::string safety_flag_names(std::uint32_t flags) {
+  static constexpr struct {
+    std::uint32_t flag;
+    const char* name;
+  } kNames[] = {
+      {kForceLimited, "force limited"},
+      {kTorqueLimited, "torque limited"},
+      {kForceSlewed, "force slew limited"},
+      {kTorqueSlewed, "torque slew limited"},
+      {kStarting, "starting"},
+      {kStopping, "stopping"},
+      {kStopped, "stopped"},
+      {kNonFiniteWrench, "wrench not finite"},
+      {kImplausiblePose, "pose not finite"},
+      {kStaleSample, "sample stale"},
+      {kReadsFailing, "reads failing"},
+      {kMissedDeadline, "deadline missed"},
+      {kPoseLeapt, "pose leapt"},
+      {kPoseFrozen, "pose frozen"},
+      {kWrenchRefused, "wrench refused"},
+      {kMotorsOff, "motors off"},
+  };
+  std::string text;
+  for (const auto& entry : kNames) {
+    if ((flags & entry.flag) != 0) text += (text.empty() ? "" : ", ") + std::string(entry.name);
+  }
+  return text;
+}
+
+}  // namespace tactum

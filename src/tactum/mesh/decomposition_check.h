@@ -1,0 +1,30 @@
+#pragma once
+/// From convex bodies to pieces, pieces that are one after all, and the proof that they are the solid.
+
+#include <vector>
+
+#include "tactum/base/result.h"
+#include "tactum/geometry/polytope.h"
+#include "tactum/mesh/decomposition_solid.h"
+
+namespace tactum::detail {
+
+/// The hull of a body without reflex edges. An error when it holds more than the body by more than `noise`
+/// [m] everywhere on its surface.
+Result<Polytope> convex_piece(const std::vector<Vec3>& corners, const Solid& body, double noise);
+
+/// Joins pieces whose union is convex, until there are none: a plane parts the two, and every other face of
+/// either holds the other. Returns how many pieces went.
+int join_convex(std::vector<Polytope>& pieces, double noise);
+
+/// Whether the volumes add up to `volume` within `slack` [m^3] and no two pieces overlap by more than `noise`
+/// [m].
+Result<void> check_pieces(const std::vector<Polytope>& pieces, double volume, double noise, double slack);
+
+/// Whether the pieces share a point that is deeper than `depth` [m] in both.
+bool overlap_deeper(const Polytope& a, const Polytope& b, double depth);
+
+/// [m^3]
+double volume_of(const Polytope& piece);
+
+}  // namespace tactum::detail

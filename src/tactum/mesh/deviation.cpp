@@ -1,0 +1,193 @@
+#include "tactum/mesh/deviation.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "tactum/base/tolerances.h"
+
+namespace tactum {
+namespace {
+
+/// The nearest point of a segment, squared distance from p.
+double to_segment_sq(const Vec3& a, const Vec3& b, const Vec3& p) {
+  const Vec3 along = b - a;
+  const double length_sq = along.squaredNorm();
+  const double t = length_sq > 0.0 ? std::clamp(along.dot(p - a) / length_sq, 0.0, 1.0) : 0.0;
+  return (p - (a + t * along)).squaredNorm();
+}
+
+double area_of(const TriangleMesh& mesh, const Triangle& t) {
+  const Vec3& a = mesh.vertices[t[0]];
+  return 0.5 * (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a).norm();
+}
+
+/// Calls visit(triangle, point) for every sample of the mesh.
+template <class Visitor>
+void for_each_sample(const TriangleMesh& mesh, int area_samples, Visitor&& visit) {
+  constexpr int kFinest = 64;  // rows of the grid on one triangle
+  double area = 0.0;
+  for (const Triangle& t : mesh.triangles) area += area_of(mesh, t);
+  std::vector<bool> seen(mesh.vertices.size(), false);
+  for (int i = 0; i < static_cast<int>(mesh.triangles.size()); ++i) {
+    const Triangle& t = mesh.triangles[i];
+    for (int corner = 0; corner < 3; ++corner) {
+      const Vec3& from = mesh.vertices[t[corner]];
+      visit(i, Vec3(0.5 * (from + mesh.vertices[t[(corner + 1) % 3]])));
+      if (!seen[t[corner]]) visit(i, from);
+      seen[t[corner]] = true;
+    }
+    const double share = area > 0.0 ? area_of(mesh, t) / area : 0.0;
+    const int rows = std::clamp(static_cast<int>(std::ceil(std::sqrt(area_samples * share))), 1, kFinest);
+    for (int u = 0; u < rows; ++u) {
+      for (int v = 0; u + v < rows; ++v) {  // centres of the upright cells: one row, the centre
+        const double a = (u + 1.0 / 3.0) / rows;
+        const double b = (v + 1.0 / 3.0) / rows;
+        visit(i,
+              Vec3((1.0 - a - b) * mesh.vertices[t[0]] + a * mesh.vertices[t[1]] + b * mesh.vertices[t[2]]));
+      }
+    }
+  }
+}
+
+/// Whether the point lies on or in a solid piece other than `own`.
+bool in_other_piece(const Part& part, int own, const Vec3& point, double slack) {
+  const std::vector<Bvh::Node>& nodes = part.hierarchy.nodes();
+  std::vector<int> stack = {0};
+  while (!stack.empty()) {
+    const int at = stack.back();
+    stack.pop_back();
+    const Bvh::Node& node = nodes[at];
+    if (((point - node.center).cwiseAbs() - node.half).maxCoeff() > slack) continue;
+    if (!node.leaf()) {
+      stack.push_back(node.second);
+      stack.push_back(at + 1);
+      continue;
+    }
+    for (int i = node.second; i < node.second + node.count; ++i) {
+      const int other = part.hierarchy.order()[i];
+      const Polytope& piece = part.pieces[other];
+      if (other == own || piece.flat) continue;
+      const auto below = [&](const Polytope::Face& face) {
+        return face.normal.dot(point) <= face.offset + slack;
+      };
+      if (std::all_of(piece.faces.begin(), piece.faces.end(), below)) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+NearestOnMesh::NearestOnMesh(const TriangleMesh& mesh) : mesh_(mesh) {
+  std::vector<Aabb> boxes(mesh.triangles.size());
+  for (std::size_t t = 0; t < boxes.size(); ++t)
+    for (int corner : mesh.triangles[t]) boxes[t].extend(mesh.vertices[corner]);
+  if (!boxes.empty()) tree_ = Bvh(boxes, 2);
+}
+
+double NearestOnMesh::to_triangle_sq(int triangle, const Vec3& point) const {
+  const Triangle& t = mesh_.triangles[triangle];
+  const std::array<Vec3, 3> p = {mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]};
+  const Vec3 normal = (p[1] - p[0]).cross(p[2] - p[0]);
+  bool above = !normal.isZero(0.0);
+  for (int i = 0; i < 3; ++i) above = above && normal.cross(p[(i + 1) % 3] - p[i]).dot(point - p[i]) >= 0.0;
+  if (above) {
+    const double height = normal.dot(point - p[0]) / normal.norm();
+    return height * height;
+  }
+  double best = to_segment_sq(p[0], p[1], point);
+  best = std::min(best, to_segment_sq(p[1], p[2], point));
+  return std::min(best, to_segment_sq(p[2], p[0], point));
+}
+
+double NearestOnMesh::distance(const Vec3& point) {
+  if (tree_.empty()) return 1e300;
+  double best = to_triangle_sq(last_, point);
+  const auto box_sq = [&](int node) {
+    const Bvh::Node& box = tree_.nodes()[node];
+    return ((point - box.center).cwiseAbs() - box.half).cwiseMax(0.0).squaredNorm();
+  };
+  std::array<int, 2 * Bvh::kMaxDepth> stack{};
+  int size = 0;
+  stack[size++] = 0;
+  while (size > 0) {
+    const int at = stack[--size];
+    if (box_sq(at) >= best) continue;
+    const Bvh::Node& node = tree_.nodes()[at];
+    if (!node.leaf()) {
+      const bool second_nearer = box_sq(node.second) < box_sq(at + 1);
+      stack[size++] = second_nearer ? at + 1 : node.second;
+      stack[size++] = second_nearer ? node.second : at + 1;
+      continue;
+    }
+    for (int i = node.second; i < node.second + node.count; ++i) {
+      const int triangle = tree_.order()[i];
+      const double found = to_triangle_sq(triangle, point);
+      if (found >= best) continue;
+      best = found;
+      last_ = triangle;
+    }
+  }
+  return std::sqrt(best);
+}
+
+TriangleMesh faces_of(const Part& part, const Vec3& origin, std::vector<int>& piece) {
+  TriangleMesh faces;
+  piece.clear();
+  if (part.pieces.empty()) {
+    faces = part.surface;
+    piece.assign(faces.triangles.size(), 0);
+  }
+  for (std::size_t i = 0; i < part.pieces.size(); ++i) {
+    const Polytope& of = part.pieces[i];
+    const int base = static_cast<int>(faces.vertices.size());
+    faces.vertices.insert(faces.vertices.end(), of.vertices.begin(), of.vertices.end());
+    for (const Polytope::Face& face : of.faces) {
+      const int* loop = of.face_vertices.data() + face.first;
+      for (int k = 1; k + 1 < face.count; ++k) {
+        faces.triangles.push_back({base + loop[0], base + loop[k], base + loop[k + 1]});
+        piece.push_back(static_cast<int>(i));
+      }
+      if (of.flat) break;  // its back is the same polygon
+    }
+  }
+  for (Vec3& vertex : faces.vertices) vertex += origin;
+  return faces;
+}
+
+Deviation surface_deviation(const TriangleMesh& mesh, const Part& part, const Vec3& origin,
+                            int area_samples) {
+  Deviation out;
+  Aabb box;
+  for (const Triangle& t : mesh.triangles)
+    for (int corner : t) box.extend(mesh.vertices[corner]);
+  out.size = box.diagonal();
+  std::vector<int> piece;
+  const TriangleMesh faces = faces_of(part, origin, piece);
+  NearestOnMesh on_part(faces);
+  for_each_sample(mesh, area_samples, [&](int, const Vec3& point) {
+    ++out.mesh_samples;
+    const double distance = on_part.distance(point);
+    if (distance <= out.mesh_to_part) return;
+    out.mesh_to_part = distance;
+    out.worst_on_mesh = point;
+  });
+  NearestOnMesh on_mesh(mesh);
+  const double slack = tolerances::kSurfaceDeviation * out.size;
+  for_each_sample(faces, area_samples, [&](int triangle, const Vec3& point) {
+    ++out.part_samples;
+    const double distance = on_mesh.distance(point);
+    if (distance <= out.part_to_mesh) return;
+    if (distance > slack && part.pieces.size() > 1 &&
+        in_other_piece(part, piece[triangle], point - origin, slack)) {
+      ++out.inner_samples;
+      return;
+    }
+    out.part_to_mesh = distance;
+    out.worst_on_part = point;
+  });
+  return out;
+}
+
+}  // namespace tactum

@@ -1,0 +1,244 @@
+#include "tactum/mesh/make_part.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tactum/base/tolerances.h"
+#include "tactum/geometry/coplanar_groups.h"
+#include "tactum/geometry/hull.h"
+#include "tactum/geometry/mesh_edges.h"
+#include "tactum/geometry/mesh_report.h"
+#include "tactum/geometry/weld.h"
+#include "tactum/mesh/decomposition.h"
+
+namespace tactum {
+namespace {
+
+/// The faces of a polytope, cut into triangles, behind `surface`.
+void append_faces(const Polytope& piece, TriangleMesh& surface) {
+  const int base = static_cast<int>(surface.vertices.size());
+  surface.vertices.insert(surface.vertices.end(), piece.vertices.begin(), piece.vertices.end());
+  for (const Polytope::Face& face : piece.faces) {
+    const int* loop = piece.face_vertices.data() + face.first;
+    for (int i = 1; i + 1 < face.count; ++i) {
+      surface.triangles.push_back({base + loop[0], base + loop[i], base + loop[i + 1]});
+    }
+  }
+}
+
+/// Of bodies joined rigidly; where they overlap, the overlap counts twice.
+MassProperties joined(const std::vector<MassProperties>& bodies) {
+  MassProperties sum;
+  for (const MassProperties& body : bodies) {
+    sum.volume += body.volume;
+    sum.mass += body.mass;
+    sum.center += body.mass * body.center;
+  }
+  sum.center /= sum.mass;
+  for (const MassProperties& body : bodies) {
+    const Vec3 r = body.center - sum.center;
+    sum.inertia += body.inertia + body.mass * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());
+  }
+  return sum;
+}
+
+Result<void> check_options(const PartOptions& options) {
+  const bool sound = std::isfinite(options.scale) && options.scale > 0.0 &&
+                     std::isfinite(options.density_kg_per_m3) && options.density_kg_per_m3 > 0.0;
+  if (sound) return {};
+  return Error{"the part cannot be built",
+               fmt::format("scale {}, density {}", options.scale, options.density_kg_per_m3),
+               "numbers above zero", options.name};
+}
+
+/// What follows from surface, pieces and mass.
+void complete(Part& part) {
+  part.size = bounds(part.surface.vertices).diagonal();
+  for (const Vec3& vertex : part.surface.vertices) {
+    part.radius = std::max(part.radius, (vertex - part.mass.center).norm());
+  }
+  std::vector<Aabb> boxes;
+  boxes.reserve(part.pieces.size());
+  for (const Polytope& piece : part.pieces) boxes.push_back(bounds(piece.vertices));
+  part.hierarchy = Bvh(boxes);
+  const std::vector<int> groups = coplanar_groups(part.surface);
+  part.tree = SurfaceTree(part.surface, groups);
+  if (part.is_surface()) part.group_count = 1 + *std::max_element(groups.begin(), groups.end());
+  find_true_surface(part);
+  if (!part.mass.approximation.empty()) part.remarks.push_back(part.mass.approximation);
+}
+
+Error unusable(const PartOptions& options, const std::string& found, const std::string& expected) {
+  return Error{"the part cannot be built", found, expected, options.name};
+}
+
+/// The edge where the surface is most concave, if it is so by more than single-precision files explain.
+Result<void> check_convex(const TriangleMesh& mesh, const std::string& name, const PartOptions& options) {
+  const MeshReport report = report_mesh(mesh);
+  if (!report.closed || !report.oriented || report.components != 1) {
+    return unusable(
+        options,
+        fmt::format("piece '{}' with {} boundary, {} non-manifold and {} misoriented edges in {} components",
+                    name, report.boundary_edges, report.non_manifold_edges, report.misoriented_edges,
+                    report.components),
+        "a closed surface of one component for each piece");
+  }
+  double worst = tolerances::kCoplanarMeshOffset * report.box.diagonal();
+  const HalfEdge* offending = nullptr;
+  const std::vector<HalfEdge> sides = sorted_half_edges(mesh);
+  for_each_edge(sides, [&](const HalfEdge* first, const HalfEdge*) {
+    const Triangle& t = mesh.triangles[first[0].triangle];
+    const Vec3& a = mesh.vertices[t[0]];
+    if (has_no_area(a, mesh.vertices[t[1]], mesh.vertices[t[2]])) return;
+    const Vec3 normal = (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a).normalized();
+    const Vec3& far = mesh.vertices[mesh.triangles[first[1].triangle][(first[1].corner + 2) % 3]];
+    const double height = normal.dot(far - a);
+    if (height <= worst) return;
+    worst = height;
+    offending = first;
+  });
+  if (offending == nullptr) return {};
+  const Vec3& p = mesh.vertices[offending->low];
+  const Vec3& q = mesh.vertices[offending->high];
+  return unusable(
+      options,
+      fmt::format(
+          "piece '{}' bent inward by {:.3g} m at the edge ({:.6g} {:.6g} {:.6g}) - ({:.6g} {:.6g} {:.6g})",
+          name, worst, p.x(), p.y(), p.z(), q.x(), q.y(), q.z()),
+      "convex pieces");
+}
+
+/// The triangles of one group, scaled and welded.
+TriangleMesh group_mesh(const ImportedMesh& mesh, const MeshGroup& group, double scale) {
+  TriangleMesh part;
+  for (int i = 0; i < group.triangle_count; ++i) {
+    const Triangle& t = mesh.mesh.triangles[group.first_triangle + i];
+    const int first = static_cast<int>(part.vertices.size());
+    for (int corner : t) part.vertices.emplace_back(scale * mesh.mesh.vertices[corner]);
+    part.triangles.push_back({first, first + 1, first + 2});
+  }
+  return weld(part).mesh;
+}
+
+/// So many pieces are allowed when a solid is asked for.
+constexpr int kMostPieces = 512;
+
+void add_solid_pieces(std::vector<Polytope> pieces, Part& part) {
+  part.pieces = std::move(pieces);
+  part.group_count = static_cast<int>(part.pieces.size());
+  for (int i = 0; i < part.group_count; ++i) part.surface_group.push_back(i);
+}
+
+/// `closed` is the welded mesh, with all its triangles.
+Result<void> add_pieces(const TriangleMesh& closed, bool convex, const PartOptions& options, Part& part) {
+  const bool chosen_here = options.pieces == PieceSource::kAuto;
+  if (options.pieces == PieceSource::kGiven)
+    return unusable(options, "given pieces asked for, and a mesh without groups", "a group for each piece");
+  if (options.pieces != PieceSource::kSurface) {
+    if (convex) {
+      if (Result<Polytope> solid = convex_hull(part.surface.vertices); solid && !solid->flat) {
+        add_solid_pieces({std::move(*solid)}, part);
+        part.way = "solid: convex as it is";
+        return {};
+      }
+    }
+    const int few = chosen_here ? kFewSolidPieces : kMostPieces;
+    Result<SolidPieces> solid =
+        solid_pieces(closed, options.most_solid_pieces > 0 ? options.most_solid_pieces : few);
+    if (solid) {
+      part.way = fmt::format("solid: {} convex pieces from {} reflex edges", solid->pieces.size(),
+                             solid->reflex_edges);
+      add_solid_pieces(std::move(solid->pieces), part);
+      return {};
+    }
+    if (!chosen_here) return unusable(options, solid.error().found, solid.error().expected);
+    part.way = fmt::format("surface: {} ({})", solid.error().what, solid.error().found);
+  } else {
+    part.way = "surface: asked for";
+  }
+  return {};
+}
+
+void tell_repairs(const WeldReport& weld_report, const MeshReport& report, Part& part) {
+  const auto tell = [&part](std::size_t count, const char* text) {
+    if (count > 0) part.remarks.push_back(fmt::format("{} {}.", count, text));
+  };
+  tell(weld_report.index_degenerate.size(), "triangles with two equal corners were dropped");
+  tell(weld_report.zero_area.size(), "triangles without area were dropped");
+  tell(weld_report.duplicates.size(), "triangles that stood twice were dropped");
+  tell(static_cast<std::size_t>(report.boundary_edges), "edges are open: the surface has holes");
+  tell(static_cast<std::size_t>(report.misoriented_edges), "edges join triangles that face opposite ways");
+}
+
+}  // namespace
+
+Result<Part> part_from_clouds(const std::vector<std::vector<Vec3>>& clouds, const PartOptions& options) {
+  if (Result<void> sound = check_options(options); !sound) return sound.error();
+  if (clouds.empty()) return unusable(options, "no piece", "at least one");
+  Part part;
+  part.name = options.name;
+  std::vector<MassProperties> masses;
+  std::vector<Polytope> pieces;
+  for (std::size_t i = 0; i < clouds.size(); ++i) {
+    std::vector<Vec3> points = clouds[i];
+    for (Vec3& point : points) point *= options.scale;
+    Result<Polytope> piece = convex_hull(points);
+    if (!piece)
+      return unusable(options, fmt::format("piece {}: {}", i, piece.error().message()),
+                      "points that span a solid");
+    if (piece->flat)
+      return unusable(options, fmt::format("piece {} with all points in a plane", i),
+                      "points that span a solid");
+    TriangleMesh faces;
+    append_faces(*piece, faces);
+    masses.push_back(mass_properties_or_hull(faces, options.density_kg_per_m3));
+    append_faces(*piece, part.surface);
+    pieces.push_back(std::move(*piece));
+  }
+  part.way = fmt::format("given: {} convex pieces", pieces.size());
+  add_solid_pieces(std::move(pieces), part);
+  part.mass = joined(masses);
+  complete(part);
+  return part;
+}
+
+Result<Part> part_from_convex_groups(const ImportedMesh& mesh, const PartOptions& options) {
+  if (Result<void> sound = check_options(options); !sound) return sound.error();
+  std::vector<std::vector<Vec3>> clouds;
+  for (const MeshGroup& group : mesh.groups) {
+    const TriangleMesh piece = group_mesh(mesh, group, options.scale);
+    if (Result<void> convex = check_convex(piece, group.name, options); !convex) return convex.error();
+    clouds.push_back(piece.vertices);
+  }
+  PartOptions scaled = options;
+  scaled.scale = 1.0;
+  return part_from_clouds(clouds, scaled);
+}
+
+Result<Part> part_from_mesh(const TriangleMesh& mesh, const PartOptions& options) {
+  if (Result<void> sound = check_options(options); !sound) return sound.error();
+  TriangleMesh scaled = mesh;
+  for (Vec3& vertex : scaled.vertices) vertex *= options.scale;
+  MeshReport report = report_mesh(scaled);
+  Part part;
+  part.name = options.name;
+  if (report.closed && report.oriented && report.volume < 0.0) {
+    for (Triangle& t : scaled.triangles) std::swap(t[1], t[2]);
+    part.remarks.emplace_back("The normals point inward: the surface was turned round.");
+    report = report_mesh(scaled);
+  }
+  part.mass = mass_properties_or_hull(scaled, options.density_kg_per_m3);
+  WeldedMesh welded = weld(scaled, {.drop_zero_area = true, .drop_duplicates = true});
+  part.surface = std::move(welded.mesh);
+  tell_repairs(welded.report, report, part);
+  const TriangleMesh closed =
+      weld(scaled).mesh;  // where triangles without area still hold the surface together
+  if (Result<void> made = add_pieces(closed, report.convex, options, part); !made) return made.error();
+  if (part.surface.triangles.empty()) return unusable(options, "no triangle with an area", "a surface");
+  complete(part);
+  return part;
+}
+
+}  // namespace tactum

@@ -1,0 +1,216 @@
+#include "tactum/mesh/mesh_repair.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "tactum/geometry/mesh_edges.h"
+#include "tactum/geometry/weld.h"
+#include "tactum/mesh/cap_triangles.h"
+#include "tactum/mesh/hole_filling.h"
+
+namespace tactum {
+namespace {
+
+/// Collects findings with the place of the first triangle of each.
+class Notes {
+ public:
+  Notes(const TriangleMesh& given, std::vector<RepairNote>& notes) : given_(given), notes_(notes) {}
+
+  void tell(bool mended, const char* kind, const std::string& text, int count, int triangle = -1) {
+    if (count == 0) return;
+    RepairNote note{kind, text, count, triangle, Vec3::Zero(), mended};
+    if (triangle >= 0) {
+      for (int corner : given_.triangles[triangle]) note.place += given_.vertices[corner] / 3.0;
+    }
+    notes_.push_back(std::move(note));
+  }
+  void tell(bool mended, const char* kind, const std::string& text, const std::vector<int>& triangles) {
+    tell(mended, kind, text, static_cast<int>(triangles.size()), triangles.empty() ? -1 : triangles.front());
+  }
+
+ private:
+  const TriangleMesh& given_;
+  std::vector<RepairNote>& notes_;
+};
+
+/// The same corners in the same turning sense, beginning with the lowest.
+Triangle turned_to_lowest(const Triangle& t) {
+  const int lowest = static_cast<int>(std::min_element(t.begin(), t.end()) - t.begin());
+  return {t[lowest], t[(lowest + 1) % 3], t[(lowest + 2) % 3]};
+}
+
+/// Drops triangles that an earlier one equals; tells which, and which stand back to back with an earlier one.
+void drop_duplicates(RepairedMesh& out, std::vector<int>& dropped, std::vector<int>& back_to_back) {
+  std::map<Triangle, int> seen;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < out.mesh.triangles.size(); ++i) {
+    const Triangle t = turned_to_lowest(out.mesh.triangles[i]);
+    if (!seen.emplace(t, 0).second) {
+      dropped.push_back(out.source[i]);
+      continue;
+    }
+    if (seen.count({t[0], t[2], t[1]}) > 0) back_to_back.push_back(out.source[i]);
+    out.mesh.triangles[kept] = out.mesh.triangles[i];
+    out.source[kept++] = out.source[i];
+  }
+  out.mesh.triangles.resize(kept);
+  out.source.resize(kept);
+}
+
+void drop_unused_vertices(TriangleMesh& mesh) {
+  std::vector<int> target(mesh.vertices.size(), -1);
+  for (const Triangle& t : mesh.triangles)
+    for (int corner : t) target[corner] = 0;
+  int kept = 0;
+  for (std::size_t v = 0; v < target.size(); ++v) {
+    if (target[v] < 0) continue;
+    target[v] = kept;
+    mesh.vertices[kept++] = mesh.vertices[v];
+  }
+  mesh.vertices.resize(kept);
+  for (Triangle& t : mesh.triangles)
+    for (int& corner : t) corner = target[corner];
+}
+
+/// Vertices at which fans of triangles meet that share no edge there.
+std::vector<int> pinched_at(const TriangleMesh& mesh, const std::vector<HalfEdge>& sides) {
+  DisjointSets fans(static_cast<int>(3 * mesh.triangles.size()));  // corners of triangles
+  for_each_edge(sides, [&](const HalfEdge* first, const HalfEdge* last) {
+    for (const HalfEdge* side = first; side != last; ++side) {
+      const int next = (side->corner + 1) % 3;
+      const int next_first = (first->corner + 1) % 3;
+      const bool same = side->forward == first->forward;
+      fans.join(3 * first->triangle + first->corner, 3 * side->triangle + (same ? side->corner : next));
+      fans.join(3 * first->triangle + next_first, 3 * side->triangle + (same ? next : side->corner));
+    }
+  });
+  std::vector<int> fan_of(mesh.vertices.size(), -1);
+  std::vector<bool> told(mesh.vertices.size(), false);
+  std::vector<int> triangles;
+  for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
+    for (int corner = 0; corner < 3; ++corner) {
+      const int vertex = mesh.triangles[t][corner];
+      const int fan = fans.find(3 * t + corner);
+      if (fan_of[vertex] < 0) fan_of[vertex] = fan;
+      if (fan_of[vertex] == fan || told[vertex]) continue;
+      told[vertex] = true;
+      triangles.push_back(t);
+    }
+  }
+  return triangles;
+}
+
+/// Holes, and what is wrong at edges and vertices; `filled` are the rims that were closed.
+void tell_topology(const RepairedMesh& out, const std::vector<int>& filled, Notes& notes) {
+  notes.tell(true, "closed_holes", "holes were closed", filled);
+  std::vector<int> open;
+  std::size_t shortest = out.mesh.triangles.size() * 3;
+  std::size_t longest = 0;
+  for (const Rim& rim : rims_of(out.mesh)) {
+    open.push_back(out.source[rim.triangle]);
+    shortest = std::min(shortest, rim.vertices.size());
+    longest = std::max(longest, rim.vertices.size());
+  }
+  notes.tell(false, "holes", fmt::format("holes are open, with rims of {} to {} edges", shortest, longest),
+             open);
+  std::vector<int> crowded;  // edges of more than two triangles
+  const std::vector<HalfEdge> sides = sorted_half_edges(out.mesh);
+  for_each_edge(sides, [&](const HalfEdge* first, const HalfEdge* last) {
+    if (last - first > 2) crowded.push_back(out.source[first->triangle]);
+  });
+  notes.tell(false, "non_manifold_edges", "edges have more than two triangles", crowded);
+  std::vector<int> pinched = pinched_at(out.mesh, sides);
+  for (int& triangle : pinched) triangle = out.source[triangle];
+  notes.tell(false, "pinched_vertices", "vertices join fans of triangles that share no edge", pinched);
+}
+
+void tell_components(const RepairedMesh& out, Notes& notes) {
+  struct Kind {
+    const char* kind;
+    const char* text;
+    bool mended;
+    bool (*holds)(const MeshComponent&);
+  };
+  constexpr Kind kKinds[] = {
+      {"turned_components", "components faced the wrong way and were turned round", true,
+       [](const MeshComponent& c) { return c.turned; }},
+      {"cavities", "components lie inside another and are taken for cavities, facing inward", true,
+       [](const MeshComponent& c) { return c.depth % 2 != 0; }},
+      {"cutting_components", "components lie partly inside another: where they overlap counts twice", false,
+       [](const MeshComponent& c) { return c.cuts_other; }},
+      {"empty_components", "closed components enclose no volume", false,
+       [](const MeshComponent& c) { return c.empty_inside(); }},
+      {"twisted_components", "components have one side only (a Moebius band) and cannot face outward", false,
+       [](const MeshComponent& c) { return c.twisted_edges > 0; }}};
+  for (const Kind& kind : kKinds) {
+    std::vector<int> first;
+    for (const MeshComponent& component : out.components)
+      if (kind.holds(component)) first.push_back(out.source[component.first_triangle]);
+    notes.tell(kind.mended, kind.kind, kind.text, first);
+  }
+}
+
+/// Orients and keeps count of which triangles given stand turned now; a component is turned when most of its
+/// triangles are.
+void orient(RepairedMesh& out, std::vector<bool>& turned) {
+  OrientedMesh oriented = orient_components(out.mesh);
+  for (int triangle : oriented.flipped)
+    if (const int source = out.source[triangle]; source >= 0) turned[source] = !turned[source];
+  std::vector<int> turned_of(oriented.components.size(), 0);
+  for (std::size_t t = 0; t < out.source.size(); ++t)
+    if (out.source[t] >= 0 && turned[out.source[t]]) ++turned_of[oriented.component[t]];
+  out.components = std::move(oriented.components);
+  for (std::size_t c = 0; c < out.components.size(); ++c)
+    out.components[c].turned = 2 * turned_of[c] > out.components[c].triangles;
+}
+
+}  // namespace
+
+std::string RepairNote::sentence() const {
+  std::string text_of = fmt::format("{} {}", count, text);
+  if (triangle >= 0)
+    text_of += fmt::format(" (the first: triangle {} at {:.6g} {:.6g} {:.6g})", triangle, place.x(),
+                           place.y(), place.z());
+  return text_of + ".";
+}
+
+RepairedMesh repair_mesh(const TriangleMesh& mesh, const RepairOptions& options) {
+  RepairedMesh out;
+  Notes notes(mesh, out.notes);
+  WeldedMesh welded = weld(mesh);
+  out.mesh = std::move(welded.mesh);
+  out.source = std::move(welded.source);
+  notes.tell(true, "joined_vertices", "vertices stood at the place of another and were joined",
+             welded.report.vertices_joined);
+  notes.tell(true, "degenerate_triangles", "triangles had two equal corners and were dropped",
+             welded.report.index_degenerate);
+  std::vector<int> dropped;
+  std::vector<int> back_to_back;
+  drop_duplicates(out, dropped, back_to_back);
+  notes.tell(true, "duplicate_triangles", "triangles stood twice and were dropped", dropped);
+  notes.tell(false, "back_to_back_triangles", "triangles stand back to back with another", back_to_back);
+
+  std::vector<bool> turned(mesh.triangles.size(), false);  // of the triangles given
+  orient(out, turned);
+  std::vector<int> filled;
+  for (const Rim& rim : close_holes(out.mesh, options.close_holes))
+    if (rim.closed) filled.push_back(out.source[rim.triangle]);
+  out.source.resize(out.mesh.triangles.size(), -1);
+  CapReport caps = mend_caps(out.mesh, out.source);
+  std::erase_if(caps.mended, [](int triangle) { return triangle < 0; });  // within a hole just closed
+  notes.tell(true, "zero_area_mended", "triangles without area were given to their neighbours", caps.mended);
+  notes.tell(false, "zero_area_left", "triangles without area are left", caps.left);
+  orient(out, turned);
+  std::vector<int> flipped;
+  for (std::size_t t = 0; t < turned.size(); ++t)
+    if (turned[t]) flipped.push_back(static_cast<int>(t));
+  notes.tell(true, "flipped_triangles", "triangles faced the wrong way and were turned round", flipped);
+  drop_unused_vertices(out.mesh);
+  tell_topology(out, filled, notes);
+  tell_components(out, notes);
+  return out;
+}
+
+}  // namespace tactum

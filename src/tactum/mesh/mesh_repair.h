@@ -1,0 +1,53 @@
+#pragma once
+/// A mesh made fit to be a part, and every word of what was done to it.
+///
+///   weld           vertices that are one become one; triangles with two equal corners go       (weld.h)
+///   duplicates     a triangle that stands twice the same way round goes; back to back it stays
+///   caps           a triangle without area gives its middle corner to the neighbour:
+///
+///             c                      c            T = a b c has no height. Its neighbour N = b a d is cut
+///        a---------b   ->       a----*----b       at c: nothing moves, no edge is left with a corner in
+///          \  N  /                \  |  /         its middle.
+///             d                      d
+///
+///   orientation    outward by component, cavities inward                                (mesh_orientation.h)
+///   holes          closed only when asked, up to a number of edges                          (hole_filling.h)
+///
+/// No vertex is ever moved, so the surface stays the file's to the last bit but for what was taken away,
+/// which lies on what is left to kWeld and kDegenerateTriangle of its size. Deterministic; n log n.
+
+#include <string>
+#include <vector>
+
+#include "tactum/geometry/triangle_mesh.h"
+#include "tactum/mesh/mesh_orientation.h"
+
+namespace tactum {
+
+struct RepairOptions {
+  int close_holes = 0;  ///< holes of at most this many edges are closed; 0: none
+};
+
+/// One kind of finding: how often, and where the first one is.
+struct RepairNote {
+  std::string kind;           ///< a key: "duplicate_triangles"
+  std::string text;           ///< a clause behind the count: "triangles stood twice and were dropped"
+  int count = 0;              ///< how many
+  int triangle = -1;          ///< number in the mesh given of the first; -1: none
+  Vec3 place = Vec3::Zero();  ///< of the first [m]
+  bool mended = false;        ///< the mesh that comes out no longer has it
+
+  /// "COUNT TEXT (triangle N at X Y Z)".
+  std::string sentence() const;
+};
+
+struct RepairedMesh {
+  TriangleMesh mesh;
+  std::vector<int> source;                ///< number in the mesh given of each triangle; -1: closes a hole
+  std::vector<MeshComponent> components;  ///< as they stand after repair
+  std::vector<RepairNote> notes;          ///< kinds that occurred, only
+};
+
+RepairedMesh repair_mesh(const TriangleMesh& mesh, const RepairOptions& options = {});
+
+}  // namespace tactum

@@ -1,0 +1,78 @@
+#pragma once
+/// From a mesh as files hold it to a part that is proved to be that mesh:
+///
+///   mesh -> unit -> repair -> mass -> pieces -> verification -> part file
+///
+/// Each stage tells what it found and did. Verification is code of its own (deviation.h, piece_overlap.h):
+/// the surface must agree both ways to kSurfaceDeviation, volumes and areas must add up, no two solid pieces
+/// may overlap. A part that fails is not written; when the choice of pieces was ours, the next way is tried.
+///
+/// The ways to pieces, in the order "auto" tries them, stand in one table in prepare_pieces.cpp.
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "tactum/base/result.h"
+#include "tactum/geometry/mesh_report.h"
+#include "tactum/mesh/deviation.h"
+#include "tactum/mesh/mesh_import.h"
+#include "tactum/mesh/mesh_repair.h"
+#include "tactum/mesh/part_file.h"
+#include "tactum/mesh/piece_overlap.h"
+
+namespace tactum {
+
+struct PrepareOptions {
+  std::string name = {};              ///< of the part
+  std::string unit = "auto";          ///< of the mesh's numbers: auto, m, cm, mm, inch
+  std::string pieces = "auto";        ///< the way to pieces: auto, or one of pieces_ways()
+  int close_holes = 0;                ///< holes of at most this many edges are closed; 0: none
+  double density_kg_per_m3 = 1000.0;  ///< [kg/m^3]
+  int area_samples = kAreaSamples;    ///< of the verification, over either surface, beside corners and sides
+};
+
+/// What verification measured.
+struct Verification {
+  Deviation deviation;
+  PieceOverlaps overlaps;
+  double mesh_volume = -1.0;    ///< that solid pieces must have together; negative: not known [m^3]
+  double pieces_volume = -1.0;  ///< that they have; negative: the part is a surface [m^3]
+  double mesh_area = -1.0;      ///< that the faces must have together; negative: cuts add to it [m^2]
+  double pieces_area = 0.0;     ///< that they have [m^2]
+};
+
+/// All numbers of a preparation; the part file keeps them as JSON.
+struct PrepareReport {
+  std::string format;
+  UnitGuess unit;
+  std::vector<RepairNote> notes;
+  std::vector<MeshComponent> components;
+  MeshReport mesh;  ///< after repair
+  std::string pieces;
+  std::string pieces_reason;
+  Verification verification;
+};
+
+/// Told before each stage; `share` is the part of the work that is done, 0 to 1.
+using PrepareProgress = std::function<void(const char* stage, double share)>;
+
+/// Of a mesh in the units of its file. An error says what makes it unusable and where.
+Result<PartFile> prepare_part(const ImportedMesh& imported, const PrepareOptions& options,
+                              const PrepareProgress& progress = {});
+
+/// The names of the ways to pieces.
+std::vector<std::string> pieces_ways();
+
+/// Of a part with its frame at `origin` against the mesh it was made of, in metres. `reference` is the mesh
+/// before repair with the triangles that close holes; volume and area as in Verification, negative: not
+/// asked.
+Verification verify_part(const TriangleMesh& reference, const Part& part, const Vec3& origin, double volume,
+                         double area, int area_samples = kAreaSamples);
+
+/// What verification found wrong, as an error; nothing when the part passes.
+Result<void> verdict_on(const Verification& found, const std::string& name);
+
+std::string to_json(const PrepareReport& report, const Part& part);
+
+}  // namespace tactum

@@ -1,0 +1,38 @@
+#pragma once
+/// The ways from a repaired mesh to the pieces of a part, as `tactum prepare --pieces` offers them.
+
+#include <string>
+#include <vector>
+
+#include "tactum/base/result.h"
+#include "tactum/geometry/mesh_report.h"
+#include "tactum/geometry/part.h"
+#include "tactum/mesh/make_part.h"
+#include "tactum/mesh/mesh_import.h"
+
+namespace tactum {
+
+/// What a way to pieces may look at.
+struct PiecesInput {
+  const ImportedMesh& given;  ///< as in the file, in metres, with its groups
+  const TriangleMesh& mesh;   ///< repaired, in metres
+  const MeshReport& report;   ///< of mesh
+  const PartOptions& options;
+};
+
+struct PiecesWay {
+  const char* name;
+  /// Why "auto" may take it; empty when it is not for this mesh.
+  std::string (*suits)(const PiecesInput& input);
+  /// Where the part's frame should stand: its centre of mass [m].
+  Result<Vec3> (*center)(const PiecesInput& input);
+  /// The volume that its solid pieces must have together [m^3]; negative: none is known.
+  double (*volume)(const PiecesInput& input);
+  /// The part with its frame at `origin`.
+  Result<Part> (*make)(const PiecesInput& input, const Vec3& origin);
+};
+
+/// In the order they are tried.
+const std::vector<PiecesWay>& all_pieces_ways();
+
+}  // namespace tactum

@@ -1,0 +1,22 @@
+#pragma once
+/// Leaves of a SurfaceTree laid out in lanes as surface_minima_lanes.h reads them. A tree stores which
+/// features a leaf holds and nothing else: where they are is looked up in the mesh when a query first asks,
+/// which costs about as much as one comparison of two leaves.
+
+#include "tactum/surface/surface_minima_lanes.h"
+
+namespace tactum::lanes {
+
+/// Which leaf is under a box; `box.at` is not read.
+inline std::uint32_t leaf_under(const Box& box) noexcept {
+  return static_cast<std::uint32_t>(~box.node->child[box.lane]);
+}
+
+/// In the frame of the leaf's own tree.
+void lay_out(const SurfaceTree& tree, const Box& box, VertexLeaf& leaf) noexcept;
+void lay_out(const SurfaceTree& tree, const Box& box, const Kernels& kernels, EdgeLeaf& leaf) noexcept;
+/// Limits grown by that length [m].
+void lay_out(const SurfaceTree& tree, const Box& box, const Kernels& kernels, float grown,
+             FaceLeaf& leaf) noexcept;
+
+}  // namespace tactum::lanes

@@ -1,0 +1,145 @@
+/// A heap of jacks of twenty pieces each, stirred by the held one, with a tenth of the exact tests that its
+/// pairs would take (an eighth in a small heap). Two hundred bodies with TACTUM_FULL=1, else some, and a few
+/// in a sanitized build.
+
+#include "bench/heap.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+
+#include "collision/cases.h"
+#include "oracles/exhaustive.h"
+#include "tactum/haptics/frame.h"
+
+namespace tactum::bench {
+namespace {
+
+bool full() {
+  const char* const asked = std::getenv("TACTUM_FULL");
+  return asked != nullptr && *asked != '\0';
+}
+
+/// An ideal device that follows the scene's hand.
+struct HeapRig {
+  Scene scene;
+  FrameState state;
+  FrameReport report;
+  std::uint64_t frame = 0;
+
+  HeapRig(Scene made, int budget)
+      : scene([&] {
+          made.settings.budget.max_exact_tests = budget;
+          return std::move(made);
+        }()),
+        state(scene.world, scene.settings) {}
+  const FrameReport& step() {
+    DeviceSample sample;
+    sample.valid = true;
+    sample.time_s = static_cast<double>(frame) * scene.settings.dt_s;
+    sample.X_DH = scene.hand->at(sample.time_s).X_DH;
+    FrameTick tick;
+    tick.index = frame++;
+    tick.now_s = sample.time_s;
+    haptic_frame(scene.world, scene.settings, sample, tick, state, report);
+    return report;
+  }
+  /// Whether two bodies share a point, by every feature of every pair of pieces.
+  bool entered(std::size_t a, std::size_t b) const {
+    const Body& A = scene.world.bodies[a];
+    const Body& B = scene.world.bodies[b];
+    if (!A.moves() && !B.moves()) return false;
+    const Pose X_AB = relative_pose(state.world.X_WB[a], state.world.X_WB[b]);
+    for (const Polytope& piece_b : B.part->pieces) {
+      const Vec3 centre_b = X_AB * centre(piece_b);
+      for (const Polytope& piece_a : A.part->pieces) {
+        if ((centre(piece_a) - centre_b).norm() > piece_a.size + piece_b.size) continue;
+        if (oracle::surely_overlap(piece_a, piece_b, X_AB, 1e-9L)) return true;
+      }
+    }
+    return false;
+  }
+
+ private:
+  static Vec3 centre(const Polytope& piece) {
+    Vec3 sum = Vec3::Zero();
+    for (const Vec3& v : piece.vertices) sum += v;
+    return sum / static_cast<double>(piece.vertices.size());
+  }
+};
+
+/// What must hold in every frame, and what a run amounted to.
+struct HeapWatch {
+  int budget = 0, most_near = 0, short_frames = 0, unproven = 0, longest = 0, met = 0, asleep = 0;
+
+  void frame(HeapRig& rig) {
+    const FrameReport& report = rig.step();
+    ASSERT_LE(report.tests(), budget) << "frame " << rig.frame;
+    ASSERT_EQ(report.work.left_of_held, 0) << "frame " << rig.frame;
+    ASSERT_FALSE(report.penetrating) << "frame " << rig.frame;
+    ASSERT_EQ(report.flags & (frame_flag::kRoomsFull | frame_flag::kPointsFull), 0u) << "frame " << rig.frame;
+    most_near = std::max(most_near, report.work.near_pairs);
+    short_frames += report.work.unchecked > 0 ? 1 : 0;
+    unproven += report.work.left_unproven;
+    longest = std::max(longest, report.longest_wait);
+    met += report.held_contact_points > 0 ? 1 : 0;
+    asleep = report.asleep;
+    const std::size_t bodies = rig.scene.world.bodies.size();
+    for (std::size_t b = 1; b < bodies && rig.frame % 25 == 0; ++b) {
+      ASSERT_FALSE(rig.entered(0, b)) << "frame " << rig.frame;
+    }
+    for (std::size_t a = 1; a < bodies && rig.frame % (full() ? 500 : 250) == 0; ++a) {
+      for (std::size_t b = a + 1; b < bodies; ++b) {
+        ASSERT_FALSE(rig.entered(a, b)) << a << " and " << b << ", frame " << rig.frame;
+      }
+    }
+  }
+};
+
+TEST(Heap, StaysWithinATenthOfItsPairsAndEntersNothing) {
+  HeapOptions options;
+  HeapWatch watch;
+  int times_near = 10;
+  if (full()) {
+    options.calm_s = 2.0;
+    watch.budget = 380;
+  } else if (cases::kSlowness > 1) {  // a sanitized build looks for faults of memory
+    options = {.bodies = 8, .width_m = 0.08, .calm_s = 0.2};
+    watch.budget = 45;
+    times_near = 4;
+  } else {
+    options = {.bodies = 40, .width_m = 0.12, .calm_s = 0.6};
+    watch.budget = 100;
+    times_near = 8;  // the small heap has them at a time or not, as it happens to fall
+  }
+  Result<Scene> made = heap_scene(options);
+  ASSERT_TRUE(made) << made.error().message();
+  HeapRig rig(std::move(*made), watch.budget);
+  const auto frames = static_cast<std::uint64_t>(frames_of_motion(rig.scene));
+  while (rig.frame < frames) ASSERT_NO_FATAL_FAILURE(watch.frame(rig));
+  EXPECT_GE(watch.most_near, times_near * watch.budget) << "the budget must be a tenth of the pairs";
+  EXPECT_GT(watch.short_frames, 100) << "the budget must have been short";
+  EXPECT_GT(watch.unproven, 0);
+  EXPECT_GT(watch.met, 300) << "the held part must have met others";
+
+  // The hand rests now: motion stops, and then nothing is left unchecked.
+  const std::uint64_t longest = frames + 10'000;
+  while (watch.asleep < options.bodies && rig.frame < longest) ASSERT_NO_FATAL_FAILURE(watch.frame(rig));
+  EXPECT_LT(rig.frame, longest) << watch.asleep << " at rest";
+  for (int i = 0; i < 100; ++i) {
+    ASSERT_NO_FATAL_FAILURE(watch.frame(rig));
+    EXPECT_EQ(rig.report.work.unchecked, 0);
+    EXPECT_EQ(rig.report.waiting, 0);
+  }
+  std::printf(
+      "[   NOTE   ] %d pairs near at once, %d tests a frame at most; short in %d of %d frames, longest wait "
+      "%d "
+      "frames; at rest after %d frames\n",
+      watch.most_near, watch.budget, watch.short_frames, static_cast<int>(frames), watch.longest,
+      static_cast<int>(rig.frame));
+}
+
+}  // namespace
+}  // namespace tactum::bench

@@ -1,0 +1,335 @@
+#include "tactum/contact/contact_finder.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+#include "oracles/exhaustive.h"
+#include "support/sample_meshes.h"
+#include "support/surface_shapes.h"
+#include "tactum/base/random.h"
+#include "tactum/base/tolerances.h"
+#include "tactum/collision/closest_features.h"
+#include "tactum/math/screw.h"
+#include "tactum/mesh/make_part.h"
+
+namespace tactum {
+namespace {
+
+Vec3 random_vector(Random& random, double size) {
+  const double x = random.uniform(-size, size);
+  const double y = random.uniform(-size, size);
+  const double z = random.uniform(-size, size);
+  return {x, y, z};
+}
+
+/// A ring of boxes with a few extra ones inside.
+Part cluttered_part(Random& random) {
+  std::vector<std::vector<Vec3>> clouds;
+  for (int k = 0; k < 14; ++k) {
+    const Pose X{exp_rotation(random_vector(random, 2)), random_vector(random, 0.03)};
+    std::vector<Vec3> cloud;
+    for (int i = 0; i < 8; ++i)
+      cloud.push_back(X * Vec3(i & 1 ? 0.004 : -0.004, i & 2 ? 0.003 : -0.003, i & 4 ? 0.006 : -0.006));
+    clouds.push_back(cloud);
+  }
+  Result<Part> part = part_from_clouds(clouds);
+  EXPECT_TRUE(part);
+  part->true_surface =
+      {};  // every pair by itself: what pieces settle between them is tested in seams_test.cpp
+  return std::move(*part);
+}
+
+using Key = std::tuple<int, int, int, int>;
+
+TEST(ContactFinder, FindsEveryPatchThatTestingAllPairsFinds) {
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    Random random(seed);
+    const double speed = seed % 2 ? 1.0 : 0.05;  // a hasty and a careful hand
+    std::vector<Part> parts;
+    std::vector<CollisionBody> bodies;
+    std::vector<Pose> X;
+    std::vector<Twist> V;
+    for (int i = 0; i < 4; ++i) {
+      parts.push_back(cluttered_part(random));
+      X.push_back({exp_rotation(random_vector(random, 1)), random_vector(random, 0.025)});
+      V.emplace_back();
+    }
+    for (int i = 0; i < 4; ++i) bodies.push_back({&parts[std::size_t(i)], i != 2});
+    ContactFinder finder(bodies, X);
+    std::vector<double> reach(4, 0.0);
+    const double min_tolerance = 1e-4;
+    int patches = 0;
+    int runs = 0;
+    for (int frame = 0; frame < 300; ++frame) {
+      for (std::size_t i = 0; i < 4; ++i) {
+        if (frame % 50 == 0) {
+          V[i].v = speed * random_vector(random, 0.3);
+          V[i].w = speed * random_vector(random, 5.0);
+        }
+        V[i].v -= 0.005 * X[i].p;  // stay together
+        if (!bodies[i].moves) V[i] = {};
+        reach[i] = (V[i].v.norm() + V[i].w.norm() * finder.radius(static_cast<int>(i))) * 1e-3;
+      }
+      finder.find_near_pairs(X, reach, min_tolerance);
+      finder.find_patches(X, 1 << 20);
+      runs += finder.work().broad_phase_runs;
+      std::map<Key, double> found;
+      for (const ContactPatch& patch : finder.patches())
+        found[{patch.body_a, patch.body_b, patch.piece_a, patch.piece_b}] = patch.distance;
+      patches += static_cast<int>(found.size());
+      for (int a = 0; a < 4; ++a)
+        for (int b = a + 1; b < 4; ++b) {
+          const Pose X_AB = relative_pose(X[std::size_t(a)], X[std::size_t(b)]);
+          const double tolerance = std::max(min_tolerance, reach[std::size_t(a)] + reach[std::size_t(b)]);
+          for (int p = 0; p < 14; ++p)
+            for (int q = 0; q < 14; ++q) {
+              PairCache cold;
+              const PairDistance d =
+                  closest_features(parts[std::size_t(a)].pieces[std::size_t(p)],
+                                   parts[std::size_t(b)].pieces[std::size_t(q)], X_AB, cold);
+              const auto at = found.find({a, b, p, q});
+              if (std::abs(d.distance - tolerance) < 1e-9) continue;
+              ASSERT_EQ(at != found.end(), d.distance < tolerance)
+                  << "seed " << seed << " frame " << frame << " distance " << d.distance;
+              if (at != found.end() && d.distance > 0.0) {
+                ASSERT_NEAR(at->second, d.distance, 1e-9) << "seed " << seed;
+              }
+            }
+        }
+      for (std::size_t i = 0; i < 4; ++i) X[i] = renormalized(advanced(X[i], V[i], 1e-3));
+    }
+    EXPECT_GT(patches, 300) << "seed " << seed << ": the test must have something to find";
+    if (speed < 0.1) {
+      EXPECT_LT(runs, 150) << "a careful hand's lists must be kept for some frames";
+    }
+    EXPECT_EQ(finder.work().uncertified, 0);
+  }
+}
+
+/// Two rings that come near, part and come near again: what is felt is what a query of its own finds, and far
+/// away hardly anything is asked.
+TEST(ContactFinder, AsksSurfacesThatAreApartSeldom) {
+  const Result<Part> ring =
+      part_from_mesh(testing::torus(40, 20, 0.02, 0.006), {.pieces = PieceSource::kSurface});
+  ASSERT_TRUE(ring);
+  const double tolerance = 1e-4;
+  const auto pose = [](int frame) {
+    return Pose{exp_rotation(Vec3(0.001, 0.002, 0.3)), {0, 0, 0.01255 + 5e-4 * std::cos(frame * 2e-3 * kPi)}};
+  };
+  const CollisionBody body{&*ring, true};
+  std::vector<Pose> X = {Pose(), pose(0)};
+  ContactFinder finder({body, body}, X);
+  std::vector<SurfaceMinimum> minima;
+  minima.reserve(10000);
+  const std::vector<double> reach(2, 0.0);
+  std::array<int, 2> queries{};  // apart, near
+  std::array<int, 2> frames{};
+  for (int frame = 0; frame < 2000; ++frame) {
+    X[1] = pose(frame);
+    finder.find_near_pairs(X, reach, tolerance);
+    finder.find_patches(X, 1000, PatchPoints::kClosest);
+    surface_minima(ring->tree, ring->tree, X[1], {tolerance, 0.0, tolerances::kConeSlack}, minima);
+    ASSERT_EQ(finder.patches().empty(), minima.empty()) << frame;
+    const std::size_t near = minima.empty() ? 0 : 1;
+    queries[near] += finder.work().surface_queries;
+    ++frames[near];
+    for (const ContactPatch& patch : finder.patches()) {
+      EXPECT_TRUE(std::any_of(minima.begin(), minima.end(), [&](const SurfaceMinimum& m) {
+        return m.a == patch.manifold.a && m.b == patch.manifold.b && m.distance == patch.distance;
+      }));
+    }
+  }
+  EXPECT_GT(frames[1], 200);
+  EXPECT_GT(frames[0], 500);
+  EXPECT_LT(queries[0], frames[0] / 5);
+}
+
+TEST(ContactFinder, WithABudgetEveryPairsTurnComes) {
+  Random random(9);
+  std::vector<Part> parts;
+  parts.push_back(cluttered_part(random));
+  parts.push_back(cluttered_part(random));
+  const std::vector<Pose> X(2);
+  ContactFinder finder({{&parts[0], true}, {&parts[1], true}}, X);
+  const std::vector<double> reach(2, 0.001);
+  finder.find_near_pairs(X, reach, 1e-4);
+  finder.find_patches(X, 1 << 20);
+  const int all = finder.work().exact_tests;
+  const std::size_t patches = finder.patches().size();
+  EXPECT_FALSE(finder.budget_limited());
+  ASSERT_GT(all, 20);
+  ContactFinder limited({{&parts[0], true}, {&parts[1], true}}, X);
+  int tests = 0;
+  for (int frame = 0; frame * 5 < all + 5; ++frame) {
+    limited.find_near_pairs(X, reach, 1e-4);
+    limited.find_patches(X, 10);
+    const ContactWork& work = limited.work();
+    EXPECT_TRUE(limited.budget_limited());
+    EXPECT_LE(work.exact_tests, 5) << "half is kept for the poses on trial";
+    EXPECT_EQ(work.due, work.exact_tests + work.unchecked);
+    EXPECT_EQ(work.left_unproven > 0, limited.blocked(0));
+    tests += work.exact_tests;
+    if (frame == 0) {
+      EXPECT_EQ(work.unchecked, all - 5);
+    }
+  }
+  // Nothing moves: each pair has been tested once, its answer holds, and its patch is handed on.
+  EXPECT_EQ(tests, all);
+  EXPECT_EQ(limited.work().unchecked, 0);
+  EXPECT_EQ(limited.patches().size(), patches);
+}
+
+TEST(ContactFinder, PairsOfTheHeldPartAreTestedBeforeAllOthers) {
+  Random random(5);
+  const Part part = cluttered_part(random);
+  std::vector<Pose> X;
+  std::vector<CollisionBody> bodies;
+  for (int i = 0; i < 6; ++i) {
+    X.push_back({exp_rotation(random_vector(random, 1)), random_vector(random, 0.02)});
+    bodies.push_back({&part, true});
+  }
+  const std::vector<double> reach(6, 1e-3);
+  const std::vector<std::uint8_t> urgency = {urgency::kOther, urgency::kOther,       urgency::kOther,
+                                             urgency::kHeld,  urgency::kTouchesHeld, urgency::kOther};
+  ContactFinder finder(bodies, X);
+  ContactFinder all(bodies, X);
+  for (ContactFinder* each : {&finder, &all}) each->find_near_pairs(X, reach, 1e-4);
+  all.find_patches(X, 1 << 20);
+  int of_held = 0;
+  for (const ContactPatch& patch : all.patches()) of_held += patch.body_a == 3 || patch.body_b == 3 ? 1 : 0;
+  const int budget = all.work().exact_tests / 2;
+  finder.find_patches(X, budget, PatchPoints::kQuadrature, urgency);
+  int found = 0;
+  for (const ContactPatch& patch : finder.patches()) found += patch.body_a == 3 || patch.body_b == 3 ? 1 : 0;
+  EXPECT_GT(of_held, 5);
+  EXPECT_EQ(found, of_held);
+  EXPECT_EQ(finder.work().left_of_held, 0);
+  EXPECT_FALSE(finder.blocked(3) && finder.work().left_unproven == 0);
+  EXPECT_GT(finder.work().left_unproven, 0);
+  // With less than its own pairs need, it is told that it must not move.
+  ContactFinder poor(bodies, X);
+  poor.find_near_pairs(X, reach, 1e-4);
+  poor.find_patches(X, 3, PatchPoints::kQuadrature, urgency);
+  EXPECT_EQ(poor.work().exact_tests, 3);
+  EXPECT_GT(poor.work().left_of_held, 0);
+  EXPECT_TRUE(poor.blocked(3));
+}
+
+/// With too little room for near pairs it is told; once the room suffices, nothing that was left out is
+/// missed.
+TEST(ContactFinder, WhatFoundNoRoomIsLookedForAgain) {
+  Random random(9);
+  const Part part = cluttered_part(random);
+  const std::vector<CollisionBody> bodies(2, {&part, true});
+  const std::vector<double> reach(2, 2e-4);
+  for (const std::size_t room : {5, 20}) {
+    std::vector<Pose> X = {{Mat3::Identity(), Vec3(0, 0, 0.01)}, {}};
+    ContactFinder finder(bodies, X, {.pairs = room});
+    int short_of_room = 0;
+    int found = 0;
+    for (int frame = 0; frame < 1200; ++frame) {
+      // Apart, until hardly a pair is near, and together again.
+      X[0].p.x() = 0.07 * (0.5 - 0.5 * std::cos(2 * kPi * frame / 400.0));
+      finder.find_near_pairs(X, reach, 1e-3);
+      finder.find_patches(X, 1 << 20, PatchPoints::kClosest);
+      ASSERT_LE(finder.work().near_pairs, int(room));
+      if (finder.work().rooms_full) {
+        ++short_of_room;
+        continue;
+      }
+      ContactFinder fresh(bodies, X);
+      fresh.find_near_pairs(X, reach, 1e-3);
+      fresh.find_patches(X, 1 << 20, PatchPoints::kClosest);
+      ASSERT_EQ(finder.patches().size(), fresh.patches().size()) << "frame " << frame;
+      for (std::size_t i = 0; i < fresh.patches().size(); ++i) {
+        const double gap = fresh.patches()[i].distance;  // a depth may be another one with memory
+        ASSERT_NEAR(std::max(0.0, finder.patches()[i].distance), std::max(0.0, gap), 1e-9)
+            << "frame " << frame;
+      }
+      found += static_cast<int>(fresh.patches().size());
+    }
+    EXPECT_GT(short_of_room, 0) << "room " << room;
+    EXPECT_GT(found, 0) << "room " << room;
+  }
+}
+
+/// Bodies that crowd together, each as far as its patches allow, and stand still where they are blocked: with
+/// any budget nothing is ever entered, as separating axes see it.
+TEST(ContactFinder, WhatABudgetLeavesIsNotEntered) {
+  for (const int budget : {3, 8}) {
+    Random random(21);
+    const Part part = cluttered_part(random);
+    constexpr std::size_t kBodies = 5;
+    std::vector<Pose> X;
+    std::vector<Twist> V(kBodies);
+    const std::vector<CollisionBody> bodies(kBodies, {&part, true});
+    for (std::size_t i = 0; i < kBodies; ++i)
+      X.push_back({exp_rotation(random_vector(random, 1)),
+                   0.11 * Vec3(double(i % 2), double(i / 2), 0.3 * double(i % 3))});
+    const Vec3 middle(0.055, 0.11, 0.033);
+    ContactFinder finder(bodies, X);
+    std::vector<double> reach(kBodies);
+    int safely = 0;
+    int unproven = 0;
+    for (int frame = 0; frame < 1500; ++frame) {
+      for (std::size_t i = 0; i < kBodies; ++i) {
+        if (frame % 40 == 0) V[i] = {2.0 * (middle - X[i].p), random_vector(random, 3.0)};
+        reach[i] = (V[i].v.norm() + V[i].w.norm() * finder.radius(static_cast<int>(i))) * 1e-3;
+      }
+      finder.find_near_pairs(X, reach, 1.5e-3);  // more than they go
+      finder.find_patches(X, budget, PatchPoints::kClosest);
+      ASSERT_LE(finder.work().exact_tests, budget);
+      safely += finder.work().unchecked - finder.work().left_unproven;
+      unproven += finder.work().left_unproven;
+      std::vector<double> room(kBodies, 1.0);  // [m]
+      for (const ContactPatch& patch : finder.patches())
+        for (const int body : {patch.body_a, patch.body_b})
+          room[std::size_t(body)] = std::min(room[std::size_t(body)], 0.45 * patch.distance);
+      for (std::size_t i = 0; i < kBodies; ++i) {
+        // Who goes nearly half of each gap is soon so near that rounding decides the sign.
+        ASSERT_GE(room[i], -1e-13 * part.size) << "budget " << budget << " frame " << frame;
+        const double share = std::clamp(room[i] / reach[i], 0.0, 1.0);
+        if (!finder.blocked(static_cast<int>(i))) X[i] = renormalized(advanced(X[i], V[i], 1e-3 * share));
+      }
+      if (frame % 50 != 0) continue;
+      for (std::size_t a = 0; a < kBodies; ++a)
+        for (std::size_t b = a + 1; b < kBodies; ++b)
+          for (const Polytope& A : part.pieces)
+            for (const Polytope& B : part.pieces)
+              ASSERT_FALSE(oracle::surely_overlap(A, B, relative_pose(X[a], X[b]), 1e-9L))
+                  << "frame " << frame;
+    }
+    EXPECT_GT(unproven, 0) << "budget " << budget << ": nothing was short";
+    EXPECT_GT(safely, 0) << "budget " << budget;
+  }
+}
+
+TEST(Schedule, TheMostUrgentComeFirst) {
+  std::vector<DuePair> due;
+  Random random(3);
+  for (int i = 0; i < 100; ++i) {
+    const auto rank = static_cast<std::uint8_t>(random.index(3));
+    due.push_back({i, rank, random.index(4) == 0, random.index(20)});
+  }
+  const std::vector<DuePair> all = due;
+  const int budget = 40;
+  ASSERT_EQ(prioritise(due, budget), budget);
+  const auto urgency = [](const DuePair& d) {
+    return std::tuple(d.urgency, d.last_checked - (d.was_in_contact ? kHeadStart : 0), d.pair);
+  };
+  auto least_urgent_taken = urgency(due[0]);
+  for (int i = 0; i < budget; ++i)
+    least_urgent_taken = std::max(least_urgent_taken, urgency(due[std::size_t(i)]));
+  for (std::size_t i = budget; i < due.size(); ++i) EXPECT_GT(urgency(due[i]), least_urgent_taken);
+  for (int i = 1; i < budget; ++i) EXPECT_LT(due[std::size_t(i) - 1].pair, due[std::size_t(i)].pair);
+  EXPECT_EQ(prioritise(due, 1000), 100);
+  EXPECT_EQ(prioritise(due, 0), 0);
+}
+
+}  // namespace
+}  // namespace tactum

@@ -1,0 +1,200 @@
+#include "tactum/mesh/prepare_part.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "support/real_data.h"
+#include "support/sample_meshes.h"
+#include "tactum/base/tolerances.h"
+
+namespace tactum {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::box_mesh;
+using testing::icosphere;
+using testing::prism;
+using testing::transformed;
+
+ImportedMesh as_imported(const std::vector<TriangleMesh>& groups) {
+  ImportedMesh out;
+  for (const TriangleMesh& group : groups) {
+    const int base = static_cast<int>(out.mesh.vertices.size());
+    out.groups.push_back({"group" + std::to_string(out.groups.size()),
+                          static_cast<int>(out.mesh.triangles.size()),
+                          static_cast<int>(group.triangles.size())});
+    out.mesh.vertices.insert(out.mesh.vertices.end(), group.vertices.begin(), group.vertices.end());
+    for (const Triangle& t : group.triangles)
+      out.mesh.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
+  }
+  return out;
+}
+
+TriangleMesh dented_ball() {
+  TriangleMesh mesh = icosphere(3);
+  for (Vec3& v : mesh.vertices) v *= 0.05;
+  mesh.vertices[40] *= 0.8;
+  return mesh;
+}
+
+TEST(PreparePart, StandsAtItsCentreOfMassAndKnowsWhereThatWas) {
+  const TriangleMesh rod = transformed(prism(12, 0.01, 0.02), Mat3::Identity(), Vec3(0.1, 0.2, 0.3));
+  const Result<PartFile> file = prepare_part(as_imported({rod}), {.name = "rod", .density_kg_per_m3 = 7800});
+  ASSERT_TRUE(file) << file.error().message();
+  EXPECT_LT((file->origin - Vec3(0.1, 0.2, 0.3)).norm(), 1e-15);
+  EXPECT_LT(file->part.mass.center.norm(), 1e-15);
+  EXPECT_EQ(file->part.pieces.size(), 1u);
+  const nlohmann::json report = nlohmann::json::parse(file->report);
+  EXPECT_EQ(report["unit"]["name"], "metres");
+  EXPECT_EQ(report["pieces"]["way"], "solid");
+  EXPECT_EQ(report["pieces"]["solid"], true);
+  EXPECT_LT(report["verification"]["deviation_over_size"].get<double>(), tolerances::kSurfaceDeviation);
+  EXPECT_NEAR(report["verification"]["mesh_volume_m3"].get<double>(), file->part.mass.volume, 1e-18);
+}
+
+TEST(PreparePart, UnitsAreGuessedOrTaken) {
+  TriangleMesh box = box_mesh({40, 20, 10});
+  const Result<PartFile> guessed = prepare_part(as_imported({box}), {});
+  ASSERT_TRUE(guessed);
+  EXPECT_NEAR(guessed->part.mass.volume, 64e-6, 1e-12);  // in millimetres
+  const Result<PartFile> inches = prepare_part(as_imported({box}), {.unit = "inch"});
+  EXPECT_NEAR(inches->part.mass.volume, 64000 * std::pow(0.0254, 3), 1e-9);
+  EXPECT_FALSE(prepare_part(as_imported({box}), {.unit = "furlong"}));
+}
+
+TEST(PreparePart, GroupsBecomePiecesWhenEachIsConvexAndNoneOverlap) {
+  const auto cube_at = [](double x) {
+    return transformed(box_mesh({0.1, 0.1, 0.1}), Mat3::Identity(), Vec3(x, 0, 0));
+  };
+  const Result<PartFile> touching = prepare_part(as_imported({cube_at(0), cube_at(0.2)}), {});
+  ASSERT_TRUE(touching) << touching.error().message();
+  EXPECT_EQ(touching->part.pieces.size(), 2u);
+  EXPECT_LT((touching->origin - Vec3(0.1, 0, 0)).norm(), 1e-15);
+
+  const ImportedMesh overlapping = as_imported({cube_at(0), cube_at(0.15)});
+  const Result<PartFile> asked = prepare_part(overlapping, {.name = "cubes", .pieces = "given"});
+  ASSERT_FALSE(asked);
+  EXPECT_NE(asked.error().message().find("1 pairs of pieces that overlap, pieces 0 and 1 by 0.05 m"),
+            std::string::npos)
+      << asked.error().message();
+  const Result<PartFile> chosen = prepare_part(overlapping, {.name = "cubes"});
+  ASSERT_TRUE(chosen) << chosen.error().message();
+  const nlohmann::json report = nlohmann::json::parse(chosen->report);
+  EXPECT_EQ(report["pieces"]["way"], "surface");
+  EXPECT_NE(report["pieces"]["reason"].get<std::string>().find("not given, since"), std::string::npos);
+}
+
+TEST(PreparePart, ClosesHolesWhenAskedAndVerifiesAgainstTheClosedMesh) {
+  TriangleMesh ball = dented_ball();
+  ball.triangles.pop_back();
+  const Result<PartFile> open = prepare_part(as_imported({ball}), {});
+  ASSERT_TRUE(open) << open.error().message();
+  EXPECT_FALSE(open->part.mass.approximation.empty());
+  const Result<PartFile> closed = prepare_part(as_imported({ball}), {.close_holes = 3});
+  ASSERT_TRUE(closed) << closed.error().message();
+  EXPECT_TRUE(closed->part.mass.approximation.empty());
+  EXPECT_NEAR(closed->part.mass.volume, prepare_part(as_imported({dented_ball()}), {})->part.mass.volume,
+              1e-18);
+}
+
+TEST(PreparePart, NestedSolidsAreASolidWithACavity) {
+  const Result<PartFile> file = prepare_part(
+      as_imported({box_mesh({0.2, 0.2, 0.2}), box_mesh({0.1, 0.1, 0.1})}), {.pieces = "surface"});
+  ASSERT_TRUE(file) << file.error().message();
+  EXPECT_NEAR(file->part.mass.volume, 0.064 - 0.008, 1e-12);
+  EXPECT_NE(file->report.find("taken for cavities"), std::string::npos);
+}
+
+TEST(PreparePart, RefusesInOneSentenceWhatIsNoPart) {
+  const auto refusal = [](const TriangleMesh& mesh, const PrepareOptions& options) {
+    const Result<PartFile> file = prepare_part(as_imported({mesh}), options);
+    return file ? "prepared" : file.error().message();
+  };
+  TriangleMesh line;
+  line.vertices = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
+  line.triangles = {{0, 1, 2}};
+  EXPECT_EQ(
+      refusal(line, {.name = "line"}),
+      "line: the mesh cannot be prepared: found no triangle with an area, expected a surface or a solid");
+  TriangleMesh flat = box_mesh({1, 1, 0});  // a closed box pressed flat
+  EXPECT_NE(refusal(flat, {}).find("a closed surface that encloses no volume, about 0 0 "), std::string::npos)
+      << refusal(flat, {});
+  for (const double scale : {1e-9, 1e9}) {
+    TriangleMesh ball = icosphere(1);
+    for (Vec3& v : ball.vertices) v *= scale;
+    EXPECT_NE(refusal(ball, {.unit = "m"}).find("give the unit"), std::string::npos);
+  }
+}
+
+TEST(PreparePart, ScaleDoesNotMatterWithinTheRangeOfParts) {
+  for (const double scale : {1e-5, 1e-3, 1.0, 1e3, 1e5}) {
+    SCOPED_TRACE(scale);
+    TriangleMesh ball = dented_ball();
+    for (Vec3& v : ball.vertices) v *= scale;
+    const Result<PartFile> file = prepare_part(as_imported({ball}), {.unit = "m"});
+    ASSERT_TRUE(file) << file.error().message();
+    EXPECT_TRUE(file->part.mass.approximation.empty());
+  }
+}
+
+TEST(PreparePart, TheSamePartComesOutEveryTime) {
+  const ImportedMesh mesh =
+      as_imported({dented_ball(), transformed(prism(7, 0.01, 0.1), Mat3::Identity(), Vec3(1, 0, 0))});
+  EXPECT_EQ(part_bytes(*prepare_part(mesh, {})), part_bytes(*prepare_part(mesh, {})));
+}
+
+TEST(PreparePart, TellsItsStagesInOrder) {
+  std::vector<double> shares;
+  ASSERT_TRUE(prepare_part(as_imported({dented_ball()}), {},
+                           [&](const char*, double share) { shares.push_back(share); }));
+  EXPECT_GE(shares.size(), 4u);
+  EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
+  EXPECT_LE(shares.back(), 1.0);
+}
+
+/// Every mesh of the folder, the broken ones too: prepared and verified, or refused in a sentence with a
+/// place. The long run prints a table; the short one takes files up to a size.
+TEST(PreparePart, EveryRealMeshIsPreparedOrRefusedWithItsReason) {
+  TACTUM_NEEDS_REAL_DATA();
+  const std::uintmax_t most_bytes = testing::full_run() ? 1u << 30 : 60'000;
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::recursive_directory_iterator(testing::real_data())) {
+    std::string ending = entry.path().extension().string();
+    std::transform(ending.begin(), ending.end(), ending.begin(),
+                   [](unsigned char c) { return std::tolower(c); });
+    if (ending != ".obj" && ending != ".stl" && ending != ".ply" && ending != ".off") continue;
+    if (entry.file_size() <= most_bytes) files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  int prepared = 0;
+  for (const fs::path& path : files) {
+    SCOPED_TRACE(path.string());
+    const auto start = std::chrono::steady_clock::now();
+    const std::string name = path.filename().string();
+    const Result<ImportedMesh> mesh = import_mesh(path.string());
+    const Result<PartFile> file = mesh ? prepare_part(*mesh, {.name = name}) : Result<PartFile>(mesh.error());
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    if (!file) {
+      EXPECT_FALSE(file.error().where.empty());
+      if (testing::full_run())
+        std::printf("| %s | refused: %s |\n", name.c_str(), file.error().message().c_str());
+      continue;
+    }
+    ++prepared;
+    const nlohmann::json report = nlohmann::json::parse(file->report);
+    const double deviation = report["verification"]["deviation_over_size"].get<double>();
+    EXPECT_LE(deviation, tolerances::kSurfaceDeviation);
+    EXPECT_TRUE(read_part(part_bytes(*file), name));
+    if (testing::full_run())
+      std::printf("| %s | %d | %s | %.1g | %.2f |\n", name.c_str(), report["mesh"]["triangles"].get<int>(),
+                  report["pieces"]["way"].get<std::string>().c_str(), deviation, seconds);
+  }
+  EXPECT_GT(prepared, 20);
+}
+
+}  // namespace
+}  // namespace tactum
