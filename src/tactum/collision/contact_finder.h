@@ -1,8 +1,7 @@
 #pragma once
 /// Where do the bodies touch? The first half of a frame, from poses to contact patches, in three steps:
 ///
-///   bodies  --- sweep and prune --->  near bodies  --- hierarchies --->  near pieces  --- exact tests --->
-///   patches
+///   bodies -- sweep and prune --> near bodies -- hierarchies --> near pieces -- exact tests --> patches
 ///
 /// Bodies made of convex pieces meet piece by piece, by tracked pairs. Where either has none, both meet by
 /// their surfaces: every local minimum of distance is a patch of one point (surface_minima.h).
@@ -20,8 +19,7 @@
 ///
 ///   found d apart at X_AB, moved by m since    known, when m is a small share of d: no test is needed
 ///   d - m > what both may move in the frame    left safely: they cannot touch, and their patch is not missed
-///   else                                       left unproven: neither body may move in this frame, see
-///   blocked()
+///   else                                       left unproven: neither body may move, see blocked()
 ///
 /// Pieces of one part share walls that nobody can touch, and true faces that were cut; what pairs of pieces
 /// answer is settled between them before it is handed on (seam_settler.h).

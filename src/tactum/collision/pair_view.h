@@ -2,9 +2,9 @@
 /// Two convex pieces and where they are, as every query of this folder looks at them: B's pose in A, its
 /// inverse, and the lengths that tolerances are measured by. Both live for one query.
 ///
-///   separation(n) = min_A n.a - max_B n.b     the gap between the two support planes across n (unit, from B
-///   to A):
-///                                             a rigorous lower bound on the signed distance, whatever n is.
+///   separation(n) = min_A n.a - max_B n.b     the gap between the two support planes across n (unit, from
+///                                             B to A): a rigorous lower bound on the signed distance,
+///                                             whatever n is.
 
 #include <algorithm>
 #include <cmath>

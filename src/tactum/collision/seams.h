@@ -6,7 +6,7 @@
 ///        |       |                   part: at that point the normal is not one that all pieces there allow.
 ///     ___|_1_____|___             It is *objected* to, and its neighbour answers for it.
 ///    |     |2    |   |         2  both pieces' tops belong to one true face: one contact, led by the
-///    nearest; |     |     |   |            the other follows with its part of the face.
+///    |     |     |   |            nearest; the other follows with its part of the face.
 ///    |_____|_____|___|
 ///
 /// What is objected to, and no neighbour answers for (a part deep in a small piece; a wall touched where it

@@ -2,8 +2,7 @@
 /// What of the pieces' own surfaces is the part's true surface. Pieces that share walls have faces, edges and
 /// corners that nobody can touch, and true faces that were cut into several:
 ///
-///      ____________            a  the corner is in the middle of a true face: outward is up, and nothing
-///      else
+///      ____________            a  the corner is in the middle of a true face: its only normal is up
 ///     |     a|     |           b  the face is covered by the neighbour: nothing can touch it
 ///     |     b|     |           c  two faces in one plane: one true face, one group
 ///     |__c___|__c__|           d  a corner of both
