@@ -21,7 +21,7 @@ namespace {
 
 using testing::box_mesh;
 
-constexpr double kDoubt = 1e-7;
+constexpr double kErrorBound = 1e-7;
 
 std::vector<int> corners_of(const SurfaceTree& tree, const Feature& feature) {
   std::vector<int> corners;
@@ -63,7 +63,7 @@ int expect_as_referee(const TriangleMesh& mesh_a, const TriangleMesh& mesh_b, co
   const SurfaceTree a(mesh_a);
   const SurfaceTree b(mesh_b);
   const std::vector<SurfaceMinimum> found = query(a, b, X_AB, what);
-  const auto truth = oracles::every_minimum(mesh_a, mesh_b, X_AB, what, kDoubt);
+  const auto truth = oracles::every_minimum(mesh_a, mesh_b, X_AB, what, kErrorBound);
   const double length = 1e-9 * std::max(a.size(), b.size());
   std::vector<int> claimed(truth.size(), 0);
   for (const SurfaceMinimum& m : found) {
@@ -73,7 +73,7 @@ int expect_as_referee(const TriangleMesh& mesh_a, const TriangleMesh& mesh_b, co
     for (std::size_t i = 0; i < truth.size() && !known; ++i) {
       known = truth[i].a == corners_a && truth[i].b == corners_b && claimed[i] == 0 &&
               std::abs(truth[i].distance - m.distance) < length && (truth[i].p_a - m.p_a).norm() < length &&
-              (truth[i].p_b - m.p_b).norm() < length && (truth[i].normal - m.normal).norm() < kDoubt;
+              (truth[i].p_b - m.p_b).norm() < length && (truth[i].normal - m.normal).norm() < kErrorBound;
       if (known) claimed[i] = 1;
     }
     EXPECT_TRUE(known) << "no minimum: kinds " << int(m.a.kind) << int(m.b.kind) << " at " << m.distance
@@ -83,7 +83,7 @@ int expect_as_referee(const TriangleMesh& mesh_a, const TriangleMesh& mesh_b, co
     if (!known) return static_cast<int>(found.size());
   }
   for (std::size_t i = 0; i < truth.size(); ++i) {
-    if (truth[i].margin < kDoubt || claimed[i] != 0) continue;
+    if (truth[i].margin < kErrorBound || claimed[i] != 0) continue;
     ADD_FAILURE() << "missed " << told(truth[i]) << ", " << cases::describe(X_AB);
     break;
   }

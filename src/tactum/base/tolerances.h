@@ -32,7 +32,7 @@ inline constexpr double kParallelSine = 1e-8;
 
 /// Edges cross at an angle when its sine is above this: all that follows from their cross and dot products is
 /// then right to kCrossingRounding of the lengths over the sine squared, a thousandth of the certificate.
-/// Lower, and doubt grows that careful means would not leave.
+/// Lower, and the error bound grows beyond what careful means would leave.
 inline constexpr double kCrossingSine = 0.1;
 /// ... as a cross product of unit vectors has an error of some 4 roundings (1.1e-16), the places along the
 /// edges one of some 16 of what they are made of.
@@ -103,12 +103,12 @@ inline constexpr double kDependentRow = 1e-7;
 inline constexpr double kRowKept_m = 1e-12;
 
 /// The gap at which the constraint response holds contacts apart, a share of the largest moving part's size.
-/// Some thousand times the certificate, so that a validated pose is open beyond doubt; a tenth of the
-/// tightest fit of engineering.
+/// Some thousand times the certificate, so that a validated pose is open beyond any error bound; a tenth of
+/// the tightest fit of engineering.
 inline constexpr double kSkin = 5e-6;
 
-/// A pair overlaps when its depth exceeds this share of the pieces' size: below it is the certificate's own
-/// doubt.
+/// A pair overlaps when its depth exceeds this share of the pieces' size: what is less
+/// the certificate leaves open.
 inline constexpr double kPenetrating = 1e-9;
 
 /// The normal cones of features are widened by this angle [rad] when contacts are looked for, the most a part

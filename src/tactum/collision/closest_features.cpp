@@ -29,8 +29,8 @@ namespace {
   const bool tracked = valid_feature(A, cache.a) && valid_feature(B, cache.b);
   const FeaturePair seed = tracked ? FeaturePair{cache.a, cache.b} : first_seed(pair);
   const March march = march::walk(pair, seed, tolerances::kVoronoiSlack * pair.scale, x);
-  if (!(march.doubt <= certificate(pair) && std::abs(x.distance) < march::kInfinity)) {
-    x = settle_doubt(PairView(pair), cache, march, x);
+  if (!(march.error_bound <= certificate(pair) && std::abs(x.distance) < march::kInfinity)) {
+    x = resolve_uncertified(PairView(pair), cache, march, x);
     return x;
   }
   x.stop = Stop::kCertified;  // the walk proved it itself

@@ -71,7 +71,7 @@ struct PairDistance {
   Feature a, b;                ///< the features the witness points lie on
   /// How much less than `distance` the signed distance can be at most [m]: below 1e-9 of the size when
   /// certified, infinite when nothing is known.
-  double doubt = 0.0;
+  double error_bound = 0.0;
   Stop stop = Stop::kBounded;
   int steps = 0;  ///< feature pairs visited
   bool certified() const { return stop != Stop::kBounded; }

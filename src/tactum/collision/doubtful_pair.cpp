@@ -13,7 +13,7 @@ namespace {
 
 using Kind = FeatureKind;
 
-/// Distance and normal as the features give them, with the doubt that the support planes leave.
+/// Distance and normal as the features give them, with the error bound that the support planes leave.
 struct Judged {
   PairDistance answer = {};
   int support_a = 0, support_b = 0;
@@ -63,14 +63,14 @@ Judged judge(const PairView& pair, const PairDistance& at, const Vec3& normal) n
   x.distance = normal.dot(at.p_a - at.p_b);
   judged.support_a = vertex_of(pair.A, at.a);
   judged.support_b = vertex_of(pair.B, at.b);
-  x.doubt = std::numeric_limits<double>::infinity();
+  x.error_bound = std::numeric_limits<double>::infinity();
   if (normal.isZero()) return judged;
   const double gap = pair.separation(normal, judged.support_a, judged.support_b);
   // The points' whole distance counts, and that they lie on one normal.
   const Vec3 d = at.p_a - at.p_b;
   const double over = d.norm() - gap;
   // Below the lower bound no points lie: these are not known, or the planes are lost in rounding.
-  if (over >= -certificate(pair)) x.doubt = std::max(over, (d - normal * x.distance).norm());
+  if (over >= -certificate(pair)) x.error_bound = std::max(over, (d - normal * x.distance).norm());
   return judged;
 }
 
@@ -130,16 +130,16 @@ class Query {
   /// Judges the points `at`, with their features' normal or that normal healed.
   bool certified(const PairDistance& at, Stop stop) noexcept {
     last_ = judge(pair_, at, features_normal(pair_, at));
-    if (last_.answer.doubt > certificate(pair_) && std::isfinite(last_.answer.doubt)) {
+    if (last_.answer.error_bound > certificate(pair_) && std::isfinite(last_.answer.error_bound)) {
       const Judged healed = judge(pair_, at, inside_cones(pair_, at.a, at.b, last_.answer.normal));
-      if (healed.answer.doubt < last_.answer.doubt) last_ = healed;
+      if (healed.answer.error_bound < last_.answer.error_bound) last_ = healed;
     }
     const double gap = (at.p_a - at.p_b).norm();
     if (gap < least_gap_) {
       least_gap_ = gap;
       best_ = last_;
     }
-    if (last_.answer.doubt > certificate(pair_)) return false;
+    if (last_.answer.error_bound > certificate(pair_)) return false;
     done(last_.answer, stop);
     return true;
   }
@@ -211,8 +211,8 @@ class Query {
 
 }  // namespace
 
-PairDistance settle_doubt(const PairView& pair, PairCache& cache, const March& first,
-                          const PairDistance& at) noexcept {
+PairDistance resolve_uncertified(const PairView& pair, PairCache& cache, const March& first,
+                                 const PairDistance& at) noexcept {
   if (is_no_pose(pair.X_AB)) return of_no_pose();
   return Query(pair, cache).run(first, at);
 }

@@ -60,7 +60,7 @@ inline bool is_no_pose(const Pose& X) noexcept {
 inline PairDistance of_no_pose() noexcept {
   PairDistance x;
   x.distance = std::numeric_limits<double>::quiet_NaN();
-  x.doubt = std::numeric_limits<double>::infinity();
+  x.error_bound = std::numeric_limits<double>::infinity();
   x.a = x.b = {FeatureKind::kVertex, 0};
   return x;
 }

@@ -48,10 +48,10 @@ Step edges_along(const PiecePair& pair, double slack, int a, int b, Place& at, P
   if (of_p.slope > across.slack) return {Outcome::kMoved, face(of_p.face), edge(b)};
   const Toward of_q = face_toward(g, out_of_columns(S.Q, g, -1.0, S.turned_to_Q(across.direction)));
   if (of_q.slope > across.slack) return {Outcome::kMoved, edge(a), face(of_q.face)};
-  const double doubt = reach_beyond(S.P, e, of_p.slope) + reach_beyond(S.Q, g, of_q.slope) +
-                       std::abs(e.direction.dot(across.direction)) * S.P.size +
-                       std::abs(w.dot(across.direction)) * S.Q.size + across.aside;
-  tell(at.p, -across.direction, at.gap, doubt, x);
+  const double error_bound = reach_beyond(S.P, e, of_p.slope) + reach_beyond(S.Q, g, of_q.slope) +
+                             std::abs(e.direction.dot(across.direction)) * S.P.size +
+                             std::abs(w.dot(across.direction)) * S.Q.size + across.aside;
+  tell(at.p, -across.direction, at.gap, error_bound, x);
   return {Outcome::kClosest, edge(a), edge(b)};
 }
 

@@ -20,8 +20,8 @@
 /// The walk's last tests are a proof. A vertex all of whose edges fall away from a plane is the support
 /// vertex of a convex piece, an edge square to the plane whose two faces fall away is its support edge, a
 /// face is its own: so the planes through the answer's features, square to its normal, separate the pieces by
-/// the answer's distance. What rounding leaves of this is `doubt`. Cost: 15-25 ns a step; one step when the
-/// features of the last frame still hold.
+/// the answer's distance. What rounding leaves open is added up in `error_bound`. Cost: 15-25 ns a step; one
+/// step when the features of the last frame still hold.
 
 #include <limits>
 
@@ -40,7 +40,7 @@ enum class MarchEnd : std::uint8_t {
 struct March {
   /// The signed distance of the pieces is above the one told less this [m]. Infinite when the walk proves
   /// nothing: it did not end closest, or its points coincide and have no normal.
-  double doubt = std::numeric_limits<double>::infinity();
+  double error_bound = std::numeric_limits<double>::infinity();
   MarchEnd end = MarchEnd::kBounded;
   int steps = 0;
 };

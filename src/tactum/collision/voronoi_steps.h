@@ -101,12 +101,12 @@ inline Feature face(int index) noexcept { return {FeatureKind::kFace, index}; }
 
 /// The end of a walk at the point `p_a` of A, across the normal `n` from B to A, in A's frame. Number by
 /// number: what is copied as a whole waits for parts that have just been written.
-inline void tell(const Vec3& p_a, const Vec3& n, double gap, double doubt, PairDistance& x) noexcept {
+inline void tell(const Vec3& p_a, const Vec3& n, double gap, double error_bound, PairDistance& x) noexcept {
   x.p_a << p_a.x(), p_a.y(), p_a.z();
   x.normal << n.x(), n.y(), n.z();
   x.p_b = x.p_a - x.normal * gap;
   x.distance = gap;
-  x.doubt = doubt;
+  x.error_bound = error_bound;
 }
 
 /// The points of a place that proves nothing.
@@ -116,7 +116,7 @@ void tell_points(const Sides<Swapped>& S, const Place& at, PairDistance& x) noex
   x.p_b = S.X_AB * (Swapped ? at.p : at.q);
   x.normal.setZero();
   x.distance = at.gap;
-  x.doubt = kInfinity;
+  x.error_bound = kInfinity;
 }
 
 /// Which of an edge, its ends and its faces a point leads to from the edge.
@@ -176,10 +176,10 @@ Step vertex_edge(const Sides<Swapped>& S, Feature fp, Feature fq, Place& at, Pai
   } else {
     // The normal itself is judged: over a small gap it is off by more than the point is.
     const double rise = std::max(left.normal.dot(d_Q), right.normal.dot(d_Q));
-    const double doubt = reach_beyond(S.P, fp.index, at_p.slope / at.gap) +
-                         reach_beyond(S.Q, g, rise / at.gap) +
-                         std::abs(g.direction.dot(d_Q)) / at.gap * S.Q.size;
-    tell(S.of_A(at.p, at.q), S.normal(d_P, d_Q) / at.gap, at.gap, doubt, x);
+    const double error_bound = reach_beyond(S.P, fp.index, at_p.slope / at.gap) +
+                               reach_beyond(S.Q, g, rise / at.gap) +
+                               std::abs(g.direction.dot(d_Q)) / at.gap * S.Q.size;
+    tell(S.of_A(at.p, at.q), S.normal(d_P, d_Q) / at.gap, at.gap, error_bound, x);
   }
   return {Outcome::kClosest, fp, fq};
 }
@@ -333,10 +333,10 @@ inline Step edge_edge(const PiecePair& pair, const Sides<false>& S, Feature fp, 
     return {Outcome::kMoved, fp, face(of_q.face)};
   }
   const double lengths = S.P.size + S.Q.size + r.lpNorm<1>();
-  const double doubt = (tolerances::kCrossingRounding * lengths + S.slack) * per_square;
-  if (doubt > tolerances::kCertificate * pair.size)
+  const double error_bound = (tolerances::kCrossingRounding * lengths + S.slack) * per_square;
+  if (error_bound > tolerances::kCertificate * pair.size)
     return edges_along(pair, S.slack, fp.index, fq.index, at, x);
-  tell(p, c * (-sign * per_sine), gap, doubt, x);
+  tell(p, c * (-sign * per_sine), gap, error_bound, x);
   return {Outcome::kClosest, fp, fq};
 }
 
@@ -396,8 +396,8 @@ inline March walk(const PiecePair& pair, FeaturePair at, double slack, PairDista
       x.a = at.a;
       x.b = at.b;
       if (outcome == Outcome::kClosest) {
-        x.doubt += slack;  // of the numbers that were added up
-        return {x.doubt, MarchEnd::kClosest, march.steps};
+        x.error_bound += slack;  // of the numbers that were added up
+        return {x.error_bound, MarchEnd::kClosest, march.steps};
       }
       march.end = outcome == Outcome::kOverlap ? MarchEnd::kOverlap : MarchEnd::kBehind;
       return march;

@@ -49,7 +49,7 @@ struct FrameReport {
   Wrench shown;     ///< after safety, device axes: what was sent [N, N m]
   double tolerance_m = 0.0;     ///< largest delta of a pair in contact; 0 without contact [m]
   double min_distance_m = 0.0;  ///< smallest signed distance of the pairs in contact; 0 without contact [m]
-  bool penetrating = false;     ///< some pair overlaps by more than its certificate could doubt
+  bool penetrating = false;     ///< some pair overlaps by more than its error bound
   double time_of_impact_s =
       0.0;                      ///< smallest, from the start of the frame; the whole step without impact [s]
   int contact_points = 0;       ///< rows of the contact problem
