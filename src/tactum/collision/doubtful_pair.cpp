@@ -105,24 +105,24 @@ class Query {
   Query(const PairView& pair, PairCache& cache) noexcept : pair_(pair), cache_(cache) {}
 
   /// From a first walk, which ended at `at` and did not prove itself.
-  PairDistance run(const March& first, const PairDistance& at) noexcept {
+  PairDistance run(const FeatureWalk& first, const PairDistance& at) noexcept {
     if (walked(first, at) || on_planes() || by_supports() || by_every_feature()) return result_;
     return done(best_.answer, Stop::kBounded);
   }
 
  private:
   /// Judges the walk, and walks again from the supports with wider slack. True when certified or overlapping.
-  bool walked(March march, PairDistance at) noexcept {
+  bool walked(FeatureWalk walk, PairDistance at) noexcept {
     double slack = tolerances::kVoronoiSlack * pair_.scale;
     for (int attempt = 0; attempt < kAttempts; ++attempt) {
-      steps_ += march.steps;
-      if (march.end == MarchEnd::kOverlap) return overlapping();
-      if (march.end == MarchEnd::kBehind) return by_supports();
-      const bool straight = attempt == 0 && march.end == MarchEnd::kClosest;
+      steps_ += walk.steps;
+      if (walk.end == FeatureWalkEnd::kOverlap) return overlapping();
+      if (walk.end == FeatureWalkEnd::kBehind) return by_supports();
+      const bool straight = attempt == 0 && walk.end == FeatureWalkEnd::kClosest;
       if (certified(at, straight ? Stop::kCertified : Stop::kFallback)) return true;
       slack *= kWiderSlack;
-      march =
-          voronoi_march(pair_, {Kind::kVertex, last_.support_a}, {Kind::kVertex, last_.support_b}, slack, at);
+      walk =
+          feature_walk(pair_, {Kind::kVertex, last_.support_a}, {Kind::kVertex, last_.support_b}, slack, at);
     }
     return false;
   }
@@ -155,14 +155,15 @@ class Query {
   /// What no walk can lead astray, and then a walk from there for the last digits.
   bool by_supports() noexcept {
     PairDistance at;
-    const March supports = closest_by_supports(pair_, cache_.overlap, at);
+    const FeatureWalk supports = closest_by_supports(pair_, cache_.overlap, at);
     steps_ += supports.steps;
-    if (supports.end == MarchEnd::kOverlap) return overlapping();
+    if (supports.end == FeatureWalkEnd::kOverlap) return overlapping();
     PairDistance polished;
-    const March march = voronoi_march(pair_, at.a, at.b, tolerances::kVoronoiSlack * pair_.scale, polished);
-    steps_ += march.steps;
-    if (march.end == MarchEnd::kOverlap) return overlapping();
-    if (march.end == MarchEnd::kClosest && certified(polished, Stop::kFallback)) return true;
+    const FeatureWalk walk =
+        feature_walk(pair_, at.a, at.b, tolerances::kVoronoiSlack * pair_.scale, polished);
+    steps_ += walk.steps;
+    if (walk.end == FeatureWalkEnd::kOverlap) return overlapping();
+    if (walk.end == FeatureWalkEnd::kClosest && certified(polished, Stop::kFallback)) return true;
     return certified(at, Stop::kFallback) || on_planes();
   }
 
@@ -211,7 +212,7 @@ class Query {
 
 }  // namespace
 
-PairDistance resolve_uncertified(const PairView& pair, PairCache& cache, const March& first,
+PairDistance resolve_uncertified(const PairView& pair, PairCache& cache, const FeatureWalk& first,
                                  const PairDistance& at) noexcept {
   if (is_no_pose(pair.X_AB)) return of_no_pose();
   return Query(pair, cache).run(first, at);

@@ -11,7 +11,7 @@ inline double certificate(const PiecePair& pair) noexcept { return tolerances::k
 
 /// Climbs down the ladder of docs/algorithms/closest_features.md from a walk that ended with `first` at the
 /// features and points of `at`.
-PairDistance resolve_uncertified(const PairView& pair, PairCache& cache, const March& first,
+PairDistance resolve_uncertified(const PairView& pair, PairCache& cache, const FeatureWalk& first,
                                  const PairDistance& at) noexcept;
 
 /// Pieces that overlapped in the last frame: true with their depth in `x`, when that is proved to be one.

@@ -149,7 +149,7 @@ OverlapProof proof_of(const Simplex& simplex) noexcept {
 
 }  // namespace
 
-March closest_by_supports(const PairView& pair, OverlapProof& proof, PairDistance& x) noexcept {
+FeatureWalk closest_by_supports(const PairView& pair, OverlapProof& proof, PairDistance& x) noexcept {
   constexpr int kSteps = 100;
   Simplex simplex;
   Vec3 d = pair.A.center - pair.X_AB * pair.B.center;
@@ -157,12 +157,12 @@ March closest_by_supports(const PairView& pair, OverlapProof& proof, PairDistanc
   simplex.corners[0] = support(pair, d, nullptr);
   simplex.count = 1;
   d = reduce(simplex);
-  March march;
-  march.end = MarchEnd::kClosest;
-  for (march.steps = 1; march.steps < kSteps; ++march.steps) {
+  FeatureWalk walk;
+  walk.end = FeatureWalkEnd::kClosest;
+  for (walk.steps = 1; walk.steps < kSteps; ++walk.steps) {
     if (simplex.count == 4 || d.norm() <= tolerances::kVoronoiSlack * pair.scale) {
       proof = proof_of(simplex);
-      march.end = MarchEnd::kOverlap;
+      walk.end = FeatureWalkEnd::kOverlap;
       break;
     }
     const Corner next = support(pair, d, &simplex.corners[0]);
@@ -180,7 +180,7 @@ March closest_by_supports(const PairView& pair, OverlapProof& proof, PairDistanc
     d = nearer;
   }
   tell(pair, simplex, x);
-  return march;
+  return walk;
 }
 
 }  // namespace tactum

@@ -11,6 +11,6 @@ namespace tactum {
 
 /// Closest points in `x`, with the lowest features they lie on; or kOverlap and a common point, and then in
 /// `proof` what shows it.
-March closest_by_supports(const PairView& pair, OverlapProof& proof, PairDistance& x) noexcept;
+FeatureWalk closest_by_supports(const PairView& pair, OverlapProof& proof, PairDistance& x) noexcept;
 
 }  // namespace tactum

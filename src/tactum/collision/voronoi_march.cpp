@@ -4,7 +4,7 @@
 #include "tactum/collision/voronoi_steps.h"
 
 namespace tactum {
-namespace march {
+namespace vclip {
 namespace {
 
 /// The unit direction from edge to edge and its angular error: the points' difference `d`, or the cross
@@ -138,10 +138,11 @@ void tell_features(const PiecePair& pair, double slack, PairDistance& x) noexcep
     tell_points(Sides<false>(pair, slack), place, x);
 }
 
-}  // namespace march
+}  // namespace vclip
 
-March voronoi_march(const PiecePair& pair, Feature a, Feature b, double slack, PairDistance& x) noexcept {
-  return march::walk(pair, {a, b}, slack, x);
+FeatureWalk feature_walk(const PiecePair& pair, Feature a, Feature b, double slack,
+                         PairDistance& x) noexcept {
+  return vclip::walk_features(pair, {a, b}, slack, x);
 }
 
 }  // namespace tactum

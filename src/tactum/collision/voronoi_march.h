@@ -29,7 +29,7 @@
 
 namespace tactum {
 
-enum class MarchEnd : std::uint8_t {
+enum class FeatureWalkEnd : std::uint8_t {
   kClosest,  ///< no Voronoi plane is violated
   kOverlap,  ///< an edge goes through a face
   kBehind,   ///< a vertex is behind the face in whose column it is: overlapping, or far beyond the piece
@@ -37,11 +37,11 @@ enum class MarchEnd : std::uint8_t {
   kBounded,  ///< out of steps
 };
 
-struct March {
+struct FeatureWalk {
   /// The signed distance of the pieces is above the one told less this [m]. Infinite when the walk proves
   /// nothing: it did not end closest, or its points coincide and have no normal.
   double error_bound = std::numeric_limits<double>::infinity();
-  MarchEnd end = MarchEnd::kBounded;
+  FeatureWalkEnd end = FeatureWalkEnd::kBounded;
   int steps = 0;
 };
 
@@ -49,6 +49,6 @@ struct March {
 /// their points, normal and distance when it ended kClosest, kCircle or kBounded (the normal only when
 /// closest); the stop and the steps of `x` are the caller's. `slack` [m] is how far a point must be outside a
 /// plane to cross it.
-March voronoi_march(const PiecePair& pair, Feature a, Feature b, double slack, PairDistance& x) noexcept;
+FeatureWalk feature_walk(const PiecePair& pair, Feature a, Feature b, double slack, PairDistance& x) noexcept;
 
 }  // namespace tactum

@@ -8,7 +8,7 @@
 #include "tactum/collision/pair_view.h"
 #include "tactum/collision/voronoi_march.h"
 
-namespace tactum::march {
+namespace tactum::vclip {
 
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -379,38 +379,39 @@ inline Outcome step_on(const PiecePair& pair, double slack, FeaturePair& at, Pla
 /// The end of a walk that proves nothing: where the features `x.a`, `x.b` are nearest.
 [[gnu::noinline]] void tell_features(const PiecePair& pair, double slack, PairDistance& x) noexcept;
 
-/// voronoi_march, to be made part of its caller.
-inline March walk(const PiecePair& pair, FeaturePair at, double slack, PairDistance& x) noexcept {
+/// What feature_walk() does, inline.
+inline FeatureWalk walk_features(const PiecePair& pair, FeaturePair at, double slack,
+                                 PairDistance& x) noexcept {
   double least = kInfinity;
   FeaturePair nearest = at;
   FeaturePair mark;  // a state to be met again, if the walk goes in circles [Brent 1980]
   int next_mark = 8;
   const auto bound = [&] { return 64 + static_cast<int>(pair.A.edges.size() + pair.B.edges.size()) / 4; };
-  March march;
-  while (march.steps < 64 || march.steps < bound()) {
+  FeatureWalk walk;
+  while (walk.steps < 64 || walk.steps < bound()) {
     const FeaturePair was = at;
     Place place;
     const Outcome outcome = step_on(pair, slack, at, place, x);
-    ++march.steps;
+    ++walk.steps;
     if (outcome != Outcome::kMoved) {
       x.a = at.a;
       x.b = at.b;
       if (outcome == Outcome::kClosest) {
         x.error_bound += slack;  // of the numbers that were added up
-        return {x.error_bound, MarchEnd::kClosest, march.steps};
+        return {x.error_bound, FeatureWalkEnd::kClosest, walk.steps};
       }
-      march.end = outcome == Outcome::kOverlap ? MarchEnd::kOverlap : MarchEnd::kBehind;
-      return march;
+      walk.end = outcome == Outcome::kOverlap ? FeatureWalkEnd::kOverlap : FeatureWalkEnd::kBehind;
+      return walk;
     }
     if (place.gap < least) {
       least = place.gap;
       nearest = was;
     }
     if (at.a == mark.a && at.b == mark.b) {
-      march.end = MarchEnd::kCircle;
+      walk.end = FeatureWalkEnd::kCircle;
       break;
     }
-    if (march.steps == next_mark) {
+    if (walk.steps == next_mark) {
       mark = at;
       next_mark *= 2;
     }
@@ -418,7 +419,7 @@ inline March walk(const PiecePair& pair, FeaturePair at, double slack, PairDista
   x.a = nearest.a;
   x.b = nearest.b;
   tell_features(pair, slack, x);
-  return march;
+  return walk;
 }
 
-}  // namespace tactum::march
+}  // namespace tactum::vclip
