@@ -106,7 +106,7 @@ class Query {
 
   /// From a first walk, which ended at `at` and did not prove itself.
   PairDistance run(const FeatureWalk& first, const PairDistance& at) noexcept {
-    if (walked(first, at) || on_planes() || by_supports() || by_every_feature()) return result_;
+    if (walked(first, at) || on_planes() || by_supports() || by_brute_force()) return result_;
     return done(best_.answer, Stop::kBounded);
   }
 
@@ -167,10 +167,10 @@ class Query {
     return certified(at, Stop::kFallback) || on_planes();
   }
 
-  bool by_every_feature() noexcept {
+  bool by_brute_force() noexcept {
     if (pair_.A.edges.size() * pair_.B.edges.size() > kSmallEdgePairs) return false;
     PairDistance at;
-    closest_of_every_feature(pair_, at);
+    brute_force_distance(pair_, at);
     return certified(at, Stop::kFallback) || on_planes();
   }
 
