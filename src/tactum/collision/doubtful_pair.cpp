@@ -204,7 +204,7 @@ class Query {
 
   const PairView& pair_;
   PairCache& cache_;
-  Judged last_, best_{of_no_pose()};
+  Judged last_, best_{invalid_result()};
   double least_gap_ = std::numeric_limits<double>::infinity();
   PairDistance result_;
   int steps_ = 0;
@@ -214,7 +214,7 @@ class Query {
 
 PairDistance resolve_uncertified(const PairView& pair, PairCache& cache, const FeatureWalk& first,
                                  const PairDistance& at) noexcept {
-  if (is_no_pose(pair.X_AB)) return of_no_pose();
+  if (is_invalid_pose(pair.X_AB)) return invalid_result();
   return Query(pair, cache).run(first, at);
 }
 

@@ -52,12 +52,12 @@ struct PairView : PiecePair {
 };
 
 /// A pose that nothing can be told of: not finite, or so far off that squares of lengths are not.
-inline bool is_no_pose(const Pose& X) noexcept {
+inline bool is_invalid_pose(const Pose& X) noexcept {
   return !X.R.allFinite() || !std::isfinite(X.p.squaredNorm());
 }
 
 /// What is told of it: a distance that is no number, and nothing proved.
-inline PairDistance of_no_pose() noexcept {
+inline PairDistance invalid_result() noexcept {
   PairDistance x;
   x.distance = std::numeric_limits<double>::quiet_NaN();
   x.error_bound = std::numeric_limits<double>::infinity();

@@ -425,8 +425,8 @@ PairDistance penetration_depth(const Polytope& A, const Polytope& B, const Pose&
     x = tracked_depth(pair, cache);
     if (x.certified()) return x;
   }
-  if (is_no_pose(X_AB)) {
-    x = of_no_pose();
+  if (is_invalid_pose(X_AB)) {
+    x = invalid_result();
     return x;
   }
   Shallowest shallowest(pair);
@@ -449,7 +449,7 @@ PairDistance penetration_exhaustive(const Polytope& A, const Polytope& B, const 
 
 PairDistance depth_along(const Polytope& A, const Polytope& B, const Pose& X_AB,
                          const Vec3& direction) noexcept {
-  if (is_no_pose(X_AB) || !direction.allFinite()) return of_no_pose();
+  if (is_invalid_pose(X_AB) || !direction.allFinite()) return invalid_result();
   const PairView pair(A, B, X_AB);
   const MinkowskiWalk walk = walk_along_ray(pair, facet_near(pair, direction), direction);
   PairDistance result = answer(pair, walk, walk.steps);
