@@ -130,7 +130,7 @@ inline constexpr double kPointArea_m2 = 1e-14;
 inline constexpr double kLineWidth_m = 1e-10;
 
 /// ... and what a segment without length counts for, so that shares can always be told [m^2].
-inline constexpr double kLeastClaim_m2 = 1e-24;
+inline constexpr double kLeastWeight_m2 = 1e-24;
 
 /// A corner of a polygon face turns the wrong way only beyond this (cross product over the square of the
 /// polygon's extent): single-precision corners on a straight side turn by 1e-7 either way, and a fan over

@@ -25,13 +25,13 @@ struct ContactPatch {
   Manifold manifold;
 };
 
-/// A patch's claim on its facet's stiffness: its area; for a segment, next to that, its length times a
+/// A patch's weight in its facet's stiffness: its area; for a segment, next to that, its length times a
 /// hair's breadth; for a point next to nothing [m^2].
-inline double stiffness_claim(const Manifold& manifold) noexcept {
+inline double patch_weight(const Manifold& manifold) noexcept {
   if (manifold.area > 0.0) return manifold.area;
   if (manifold.points.size() < 2) return tolerances::kPointArea_m2;
   const double length = (manifold.points[1].p_a - manifold.points[0].p_a).norm();
-  return std::max(length * tolerances::kLineWidth_m, tolerances::kLeastClaim_m2);
+  return std::max(length * tolerances::kLineWidth_m, tolerances::kLeastWeight_m2);
 }
 
 }  // namespace tactum
