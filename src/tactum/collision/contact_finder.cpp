@@ -118,9 +118,9 @@ void ContactFinder::settle_objected(ContactPatch& patch, std::span<const Pose> X
     return same_feature(part, of_piece, {FeatureKind::kFace, face}, piece);
   };
   patch.manifold.a =
-      stretch(part_a, leader->piece_a, leading.a, -leading.normal, patch.piece_a, patch.beside_a);
+      stretch(part_a, leader->piece_a, leading.a, -leading.normal, patch.piece_a, patch.neighbour_face_a);
   patch.manifold.b = stretch(part_b, leader->piece_b, leading.b, rotated_back(X_AB.R, leading.normal),
-                             patch.piece_b, patch.beside_b);
+                             patch.piece_b, patch.neighbour_face_b);
 }
 
 std::uint8_t ContactFinder::urgency_of(int a, int b) const noexcept {

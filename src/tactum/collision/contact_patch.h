@@ -17,7 +17,7 @@ struct ContactPatch {
   bool of_surfaces = false;        ///< the features of the manifold are those of SurfaceTree
   /// An edge or corner of A (of B) touches on another piece; the feature, if any, is the face beside it on
   /// this one.
-  bool beside_a = false, beside_b = false;
+  bool neighbour_face_a = false, neighbour_face_b = false;
   /// Patches of the same bodies and facets share one stiffness: they touch on the same two flat walls.
   int facet_a = -1, facet_b = -1;
   double distance = 0.0;   ///< of the pieces, negative when they overlap [m]
