@@ -223,7 +223,7 @@ void ContactFinder::hand_on(Pair& pair, const PairDistance& found, const Pose& X
     work_.rooms_full = true;
     return;
   }
-  const bool seams = !part_a.true_surface.alone() || !part_b.true_surface.alone();
+  const bool seams = !part_a.true_surface.single_piece() || !part_b.true_surface.single_piece();
   const bool objected = seams && !is_true_contact(part_a, pair.piece_a, part_b, pair.piece_b, X_AB, found);
   if (seams && points_ == PatchPoints::kQuadrature) {
     SeamCandidate& candidate = candidates_.emplace_back();

@@ -42,7 +42,7 @@ void for_true_faces(const Part& part, int piece, const Polytope& S, const Pose& 
   int vertex = start;
   for (int face = 0; face < F.counts[2]; ++face) {
     const bool covered =
-        !part.true_surface.alone() &&
+        !part.true_surface.single_piece() &&
         part.true_surface.group[Index(number_of(part, piece, {FeatureKind::kFace, face}))] < 0;
     if (covered) continue;
     const Vec3& normal = F.faces[face].normal;
@@ -87,7 +87,8 @@ void true_edges(const Part& part, int piece, EdgeList& edges) noexcept {
   for (int e = 0; e < P.counts[1]; ++e) {
     const Feature edge{FeatureKind::kEdge, e};
     const bool bends =
-        part.true_surface.alone() || part.true_surface.neighbours(number_of(part, piece, edge)).empty() ||
+        part.true_surface.single_piece() ||
+        part.true_surface.neighbours(number_of(part, piece, edge)).empty() ||
         is_true_edge(part, piece, e, edge, 0.5 * (P.vertices[P.edges[e].tail] + P.vertices[P.edges[e].head]));
     if (bends && !edges.push_back(e)) return;
   }
@@ -136,7 +137,7 @@ std::optional<PairDistance> crossing_edges(const Polytope& A, int edge_a, const 
 
 bool allowed_by_neighbours(const Part& part, int piece, const Feature& feature, const Vec3& p,
                            const Vec3& outward, double slack) noexcept {
-  if (part.true_surface.alone()) return true;
+  if (part.true_surface.single_piece()) return true;
   const double noise = noise_of(part);
   const auto neighbours = part.true_surface.neighbours(number_of(part, piece, feature));
   const auto covered_by = [&](int neighbour, const Vec3& at) {
@@ -168,13 +169,13 @@ bool allowed_by_neighbours(const Part& part, int piece, const Feature& feature, 
 bool is_true_contact(const Part& part_a, int piece_a, const Part& part_b, int piece_b, const Pose& X_AB,
                      const PairDistance& found, double slack) noexcept {
   return allowed_by_neighbours(part_a, piece_a, found.a, found.p_a, -found.normal, slack) &&
-         (part_b.true_surface.alone() ||
+         (part_b.true_surface.single_piece() ||
           allowed_by_neighbours(part_b, piece_b, found.b, rotated_back(X_AB.R, found.p_b - X_AB.p),
                                 rotated_back(X_AB.R, found.normal), slack));
 }
 
 Feature true_feature(const Part& part, int piece, const Feature& feature, const Vec3& p) noexcept {
-  if (feature.kind == FeatureKind::kFace || part.true_surface.alone() ||
+  if (feature.kind == FeatureKind::kFace || part.true_surface.single_piece() ||
       part.true_surface.neighbours(number_of(part, piece, feature)).empty())
     return feature;
   const Polytope& P = part.pieces[Index(piece)];
@@ -199,7 +200,7 @@ Feature true_feature(const Part& part, int piece, const Feature& feature, const 
 
 Feature same_feature(const Part& part, int of_piece, const Feature& feature, int piece) noexcept {
   if (piece == of_piece) return feature;
-  if (part.true_surface.alone() || feature.kind == FeatureKind::kVertex) return {feature.kind, -1};
+  if (part.true_surface.single_piece() || feature.kind == FeatureKind::kVertex) return {feature.kind, -1};
   const int group = part.true_surface.group[Index(number_of(part, of_piece, feature))];
   if (group < 0) return {feature.kind, -1};
   const auto members = part.true_surface.members_of(group);

@@ -40,7 +40,7 @@ struct Part {
   std::vector<int> surface_group;  ///< of each piece: its contact patch, 0 .. group_count - 1
   int group_count = 0;
   Bvh hierarchy;             ///< over the pieces
-  TrueSurface true_surface;  ///< what of solid pieces can be touched; alone() for surfaces
+  TrueSurface true_surface;  ///< what of solid pieces can be touched; single_piece() for surfaces
   SurfaceTree tree;          ///< over the surface
   MassProperties mass;
   double radius = 0.0;               ///< largest distance of a vertex from the centre of mass [m]

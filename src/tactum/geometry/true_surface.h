@@ -40,7 +40,7 @@ struct TrueSurface {
   double exposed_area = 0.0;  ///< of all faces, without what is covered [m^2]
 
   /// No two pieces touch: every feature is true as it is.
-  bool alone() const noexcept { return first.empty(); }
+  bool single_piece() const noexcept { return first.empty(); }
   /// The number of a vertex (kind 0), edge (1) or face (2) of a piece.
   int number(int piece, int kind, int index) const noexcept {
     return first[static_cast<std::size_t>(piece)][static_cast<std::size_t>(kind)] + index;
