@@ -36,7 +36,7 @@ void ContactFinder::find_patches(std::span<const Pose> X_WB, int budget, PatchPo
   candidates_.clear();
   objected_.clear();
   due_.clear();
-  handed_on_.clear();
+  emitted_.clear();
   std::fill(blocked_.begin(), blocked_.end(), 0);
   for (Index i = 0; i < pairs_.size(); ++i) {
     Pair& pair = pairs_[i];
@@ -62,11 +62,11 @@ void ContactFinder::find_patches(std::span<const Pose> X_WB, int budget, PatchPo
       leave(pair.body_a, pair.body_b, until, pair.last_checked);
       if (!pair.in_contact || !pair.last.certified) continue;
     }
-    handed_on_.push_back(number);
+    emitted_.push_back(number);
   }
   // In the order of the pairs, which is that of the last frame's patches.
-  if (thrifty_) std::sort(handed_on_.begin(), handed_on_.end());
-  for (const std::int32_t number : handed_on_) {
+  if (thrifty_) std::sort(emitted_.begin(), emitted_.end());
+  for (const std::int32_t number : emitted_) {
     Pair& pair = pairs_[Index(number)];
     const Pose X_AB = relative_pose(X_WB[Index(pair.body_a)], X_WB[Index(pair.body_b)]);
     if (pair.last_checked == frame_) {
@@ -76,7 +76,7 @@ void ContactFinder::find_patches(std::span<const Pose> X_WB, int budget, PatchPo
       // Of what was apart only a bound is known, and that it is apart.
       const double bound = pair.free_until - odometers(pair.body_a, pair.body_b);
       last.distance = last.distance > 0.0 ? std::max(bound, 0.0) : std::min(bound, last.distance);
-      hand_on(pair, last, X_AB);
+      emit_patch(pair, last, X_AB);
     }
   }
   for (const int number : objected_) settle_objected(patches_[Index(number)], X_WB);
@@ -158,14 +158,14 @@ int ContactFinder::leave_known(std::span<const Pose> X_WB) noexcept {
     }
     const double found = pair.last.found.distance;
     if (pair.last.certified && bound >= found - kKnownShare * std::max(found, 0.0)) {
-      handed_on_.push_back(due.pair);
+      emitted_.push_back(due.pair);
       return true;
     }
     held += due.urgency == urgency::kHeld ? 1 : 0;
     return false;
   };
   due_.erase(std::remove_if(due_.begin(), due_.end(), needs_no_test), due_.end());
-  work_.known = static_cast<int>(handed_on_.size());
+  work_.known = static_cast<int>(emitted_.size());
   return std::min(tests_left_, held + std::max(0, tests_left_ - held) / 2);
 }
 
@@ -204,11 +204,11 @@ void ContactFinder::test(Pair& pair, const Pose& X_AB) noexcept {
   // What is not certified proves nothing: the pair is due again in the next frame.
   pair.free_until =
       pair.last.certified ? odometers(pair.body_a, pair.body_b) + pair.last.found.distance : kAlwaysDue;
-  hand_on(pair, pair.last.found, X_AB);
+  emit_patch(pair, pair.last.found, X_AB);
 }
 
 /// Makes a patch of what was found, when it is within the tolerance.
-void ContactFinder::hand_on(Pair& pair, const PairDistance& found, const Pose& X_AB) noexcept {
+void ContactFinder::emit_patch(Pair& pair, const PairDistance& found, const Pose& X_AB) noexcept {
   const Part& part_a = *bodies_[Index(pair.body_a)].part;
   const Part& part_b = *bodies_[Index(pair.body_b)].part;
   const Polytope& A = part_a.pieces[Index(pair.piece_a)];

@@ -173,7 +173,7 @@ class ContactFinder {
   bool of_held(int a, int b) const noexcept { return urgency_of(a, b) == urgency::kHeld; }
   std::uint8_t urgency_of(int a, int b) const noexcept;
   void test(Pair& pair, const Pose& X_AB) noexcept;
-  void hand_on(Pair& pair, const PairDistance& found, const Pose& X_AB) noexcept;
+  void emit_patch(Pair& pair, const PairDistance& found, const Pose& X_AB) noexcept;
   /// A neighbour across the seam is nearer than what is objected to. Where its normal parts these pieces as
   /// well it leads: of this patch, without a point, only the stretch of the same true faces counts, along the
   /// leader's normal, of an edge or corner that of its most level face; where there is none it has no
@@ -207,8 +207,8 @@ class ContactFinder {
   std::vector<Pair> pairs_, renewed_;
   std::vector<std::pair<std::int32_t, std::int32_t>> near_pieces_;  // of the two bodies in work
   std::vector<DuePair> due_;
-  std::vector<std::int32_t> handed_on_;  // pairs with an answer, or that had one
-  std::vector<char> blocked_;            // by body
+  std::vector<std::int32_t> emitted_;  // pairs with an answer, or that had one
+  std::vector<char> blocked_;          // by body
   std::span<const std::uint8_t> urgency_;
   bool thrifty_ = false;
   int tests_left_ = 0;

@@ -53,7 +53,7 @@ ContactFinder::ContactFinder(std::vector<CollisionBody> bodies, std::span<const 
   renewed_.reserve(rooms.pairs);
   near_pieces_.reserve(rooms.pairs);
   due_.reserve(rooms.pairs);
-  handed_on_.reserve(rooms.pairs);
+  emitted_.reserve(rooms.pairs);
   blocked_.assign(bodies_.size(), 0);
   patches_.reserve(rooms.patches);
   candidates_.reserve(rooms.patches);
