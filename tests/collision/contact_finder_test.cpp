@@ -160,18 +160,18 @@ TEST(ContactFinder, WithABudgetEveryPairsTurnComes) {
   finder.find_patches(X, 1 << 20);
   const int all = finder.work().exact_tests;
   const std::size_t patches = finder.patches().size();
-  EXPECT_FALSE(finder.thrifty());
+  EXPECT_FALSE(finder.budget_limited());
   ASSERT_GT(all, 20);
-  ContactFinder thrifty({{&parts[0], true}, {&parts[1], true}}, X);
+  ContactFinder budget_limited({{&parts[0], true}, {&parts[1], true}}, X);
   int tests = 0;
   for (int frame = 0; frame * 5 < all + 5; ++frame) {
-    thrifty.find_near_pairs(X, reach, 1e-4);
-    thrifty.find_patches(X, 10);
-    const ContactWork& work = thrifty.work();
-    EXPECT_TRUE(thrifty.thrifty());
+    budget_limited.find_near_pairs(X, reach, 1e-4);
+    budget_limited.find_patches(X, 10);
+    const ContactWork& work = budget_limited.work();
+    EXPECT_TRUE(budget_limited.budget_limited());
     EXPECT_LE(work.exact_tests, 5) << "half is kept for the poses on trial";
     EXPECT_EQ(work.due, work.exact_tests + work.unchecked);
-    EXPECT_EQ(work.left_unproven > 0, thrifty.blocked(0));
+    EXPECT_EQ(work.left_unproven > 0, budget_limited.blocked(0));
     tests += work.exact_tests;
     if (frame == 0) {
       EXPECT_EQ(work.unchecked, all - 5);
@@ -179,8 +179,8 @@ TEST(ContactFinder, WithABudgetEveryPairsTurnComes) {
   }
   // Nothing moves: each pair has been tested once, its answer holds, and its patch is handed on.
   EXPECT_EQ(tests, all);
-  EXPECT_EQ(thrifty.work().unchecked, 0);
-  EXPECT_EQ(thrifty.patches().size(), patches);
+  EXPECT_EQ(budget_limited.work().unchecked, 0);
+  EXPECT_EQ(budget_limited.patches().size(), patches);
 }
 
 TEST(ContactFinder, PairsOfTheHeldPartAreTestedBeforeAllOthers) {

@@ -47,9 +47,9 @@ void ContactFinder::find_patches(std::span<const Pose> X_WB, int budget, PatchPo
                       pair.last_checked});
     }
   }
-  thrifty_ = kAmple * due_.size() > static_cast<Index>(std::max(budget, 0));
+  budget_limited_ = kAmple * due_.size() > static_cast<Index>(std::max(budget, 0));
   // Before the list is handed over: what is known leaves it.
-  const int may_test = thrifty_ ? leave_known(X_WB) : budget;
+  const int may_test = budget_limited_ ? leave_known(X_WB) : budget;
   const int checked = prioritise(due_, may_test);
   work_.due = static_cast<int>(due_.size());
   for (int i = 0; i < work_.due; ++i) {
@@ -65,7 +65,7 @@ void ContactFinder::find_patches(std::span<const Pose> X_WB, int budget, PatchPo
     emitted_.push_back(number);
   }
   // In the order of the pairs, which is that of the last frame's patches.
-  if (thrifty_) std::sort(emitted_.begin(), emitted_.end());
+  if (budget_limited_) std::sort(emitted_.begin(), emitted_.end());
   for (const std::int32_t number : emitted_) {
     Pair& pair = pairs_[Index(number)];
     const Pose X_AB = relative_pose(X_WB[Index(pair.body_a)], X_WB[Index(pair.body_b)]);
@@ -294,7 +294,7 @@ GapAnswer ContactFinder::distance_at(const ContactPatch& patch, std::span<const 
                                      int keep_back, double& distance) noexcept {
   Pair& pair = pairs_[Index(patch.pair)];
   const Pose X_AB = relative_pose(X_WB[Index(pair.body_a)], X_WB[Index(pair.body_b)]);
-  if (thrifty_) {
+  if (budget_limited_) {
     distance = std::max(bound_at(pair, pair.last, X_AB), bound_at(pair, pair.trial, X_AB));
     if (distance >= enough) return GapAnswer::kProven;
   }

@@ -112,7 +112,7 @@ class ContactFinder {
   void find_patches(std::span<const Pose> X_WB, int budget, PatchPoints points = PatchPoints::kQuadrature,
                     std::span<const std::uint8_t> urgency = {}) noexcept;
   /// Whether the budget was not ample in this frame.
-  bool thrifty() const noexcept { return thrifty_; }
+  bool budget_limited() const noexcept { return budget_limited_; }
   /// Exact tests that are left of the frame's budget.
   int tests_left() const noexcept { return tests_left_; }
   /// Whether some pair of the body was left unproven: it may only stay where it is.
@@ -210,7 +210,7 @@ class ContactFinder {
   std::vector<std::int32_t> emitted_;  // pairs with an answer, or that had one
   std::vector<char> blocked_;          // by body
   std::span<const std::uint8_t> urgency_;
-  bool thrifty_ = false;
+  bool budget_limited_ = false;
   int tests_left_ = 0;
   std::vector<ContactPatch> patches_;
   std::vector<int> objected_;  // patches of pieces that are apart, of points that are no contact of the parts

@@ -152,7 +152,7 @@ void let_wait(const World& world, const FrameSettings& settings, double dt_s, Fr
   }
   w.ran_out = false;
   const bool some_blocked = state.finder.work().left_unproven > 0;
-  if (!state.finder.thrifty() && !some_blocked) {
+  if (!state.finder.budget_limited() && !some_blocked) {
     std::fill(w.waits.begin(), w.waits.end(), 0);
     std::fill(w.waited.begin(), w.waited.end(), 0);
     std::fill(w.rested.begin(), w.rested.end(), 0);
