@@ -237,7 +237,7 @@ TEST(ContactFinder, WhatFoundNoRoomIsLookedForAgain) {
       finder.find_near_pairs(X, reach, 1e-3);
       finder.find_patches(X, 1 << 20, PatchPoints::kClosest);
       ASSERT_LE(finder.work().near_pairs, int(room));
-      if (finder.work().rooms_full) {
+      if (finder.work().capacity_reached) {
         ++short_of_room;
         continue;
       }

@@ -82,7 +82,7 @@ void ContactFinder::find_patches(std::span<const Pose> X_WB, int budget, PatchPo
   for (const int number : objected_) settle_objected(patches_[Index(number)], X_WB);
   candidate_order_.clear();
   for (SeamCandidate& candidate : candidates_) candidate_order_.push_back(&candidate);
-  work_.rooms_full |= !settle_seams(candidate_order_, X_WB, patches_);
+  work_.capacity_reached |= !settle_seams(candidate_order_, X_WB, patches_);
   for (const bool held : {true, false})
     for (const SweepAndPrune::Pair& near : sweep_.pairs())
       if (meet_by_surfaces(near.a, near.b) && of_held(near.a, near.b) == held)
@@ -220,7 +220,7 @@ void ContactFinder::emit_patch(Pair& pair, const PairDistance& found, const Pose
     return;
   }
   if (patches_.size() + candidates_.size() >= patches_.capacity()) {
-    work_.rooms_full = true;
+    work_.capacity_reached = true;
     return;
   }
   const bool seams = !part_a.true_surface.single_piece() || !part_b.true_surface.single_piece();

@@ -50,8 +50,8 @@ struct CollisionBody {
   bool moves = true;  ///< two bodies that do not move are never tested
 };
 
-/// Rooms reserved at load time; a full one sets a flag and drops the rest of that step.
-struct ContactFinderRooms {
+/// Room reserved at load time; a full one sets a flag and drops the rest of that step.
+struct ContactFinderCapacity {
   std::size_t pairs = 1 << 16;     ///< near piece pairs
   std::size_t patches = 4096;      ///< contact patches of a frame
   std::size_t minima = 8192;       ///< local minima of two surfaces
@@ -91,14 +91,14 @@ struct ContactWork {
   int unchecked = 0;      ///< due pairs beyond the budget
   int left_unproven = 0;  ///< ... that no bound proves to stay apart in this frame
   int left_of_held = 0;   ///< ... of these, pairs of the held part
-  int longest_unchecked = 0;  ///< frames since the last check of a pair that was left unproven
-  bool rooms_full = false;    ///< something was dropped: raise the rooms
+  int longest_unchecked = 0;      ///< frames since the last check of a pair that was left unproven
+  bool capacity_reached = false;  ///< something was dropped: raise the capacity
 };
 
 class ContactFinder {
  public:
   ContactFinder(std::vector<CollisionBody> bodies, std::span<const Pose> X_WB,
-                const ContactFinderRooms& rooms = {});
+                const ContactFinderCapacity& capacity = {});
 
   /// Renews what the motion since the last frame has made stale. `reach[i]` [m] bounds how far any point of
   /// body i moves in this frame; the tolerance of a pair is the sum of its reaches, at least `min_tolerance`

@@ -30,7 +30,7 @@ bool inside(const Aabb& small, const Aabb& large) {
 }  // namespace
 
 ContactFinder::ContactFinder(std::vector<CollisionBody> bodies, std::span<const Pose> X_WB,
-                             const ContactFinderRooms& rooms)
+                             const ContactFinderCapacity& capacity)
     : bodies_(std::move(bodies)), last_X_WB_(X_WB.begin(), X_WB.end()), sweep_([&] {
         for (Index i = 0; i < bodies_.size(); ++i) {
           const Part& part = *bodies_[i].part;
@@ -49,19 +49,19 @@ ContactFinder::ContactFinder(std::vector<CollisionBody> bodies, std::span<const 
       }()) {
   travel_.assign(bodies_.size(), 0.0);
   lists_.resize(bodies_.size() * bodies_.size());
-  pairs_.reserve(rooms.pairs);
-  renewed_.reserve(rooms.pairs);
-  near_pieces_.reserve(rooms.pairs);
-  due_.reserve(rooms.pairs);
-  emitted_.reserve(rooms.pairs);
+  pairs_.reserve(capacity.pairs);
+  renewed_.reserve(capacity.pairs);
+  near_pieces_.reserve(capacity.pairs);
+  due_.reserve(capacity.pairs);
+  emitted_.reserve(capacity.pairs);
   blocked_.assign(bodies_.size(), 0);
-  patches_.reserve(rooms.patches);
-  candidates_.reserve(rooms.patches);
-  candidate_order_.reserve(rooms.patches);
-  objected_.reserve(rooms.patches);
-  minima_.reserve(rooms.minima);
-  reduction_scratch_.reserve(rooms.minima);
-  kept_minima_ = rooms.kept_minima;
+  patches_.reserve(capacity.patches);
+  candidates_.reserve(capacity.patches);
+  candidate_order_.reserve(capacity.patches);
+  objected_.reserve(capacity.patches);
+  minima_.reserve(capacity.minima);
+  reduction_scratch_.reserve(capacity.minima);
+  kept_minima_ = capacity.kept_minima;
 }
 
 void ContactFinder::find_near_pairs(std::span<const Pose> X_WB, std::span<const double> reach,
@@ -77,7 +77,7 @@ void ContactFinder::find_near_pairs(std::span<const Pose> X_WB, std::span<const 
   });
   if (!lists_hold) renew_lists(X_WB);
   for (const SweepAndPrune::Pair& near : sweep_.pairs())
-    work_.rooms_full |= list_of(near.a, near.b).cut_short;
+    work_.capacity_reached |= list_of(near.a, near.b).cut_short;
   work_.near_pairs = static_cast<int>(pairs_.size());
 }
 

@@ -54,7 +54,7 @@ void ContactFinder::test_surfaces(int a, int b, std::span<const Pose> X_WB) noex
   ++work_.surface_queries;
   work_.minima += found.minima;
   work_.feature_steps += found.feature_pairs;
-  work_.rooms_full |= found.full;
+  work_.capacity_reached |= found.full;
   list.apart = minima_.empty();
   list.free_until = odometers(a, b) + (list.apart ? reach : 0.0);
   Index kept = minima_.size();
@@ -84,7 +84,7 @@ void ContactFinder::test_surfaces(int a, int b, std::span<const Pose> X_WB) noex
 void ContactFinder::add_surface_patch(int a, int b, const SurfaceMinimum& minimum, bool second_end,
                                       double reach) noexcept {
   if (patches_.size() == patches_.capacity()) {
-    work_.rooms_full = true;
+    work_.capacity_reached = true;
     return;
   }
   ContactPatch& patch = patches_.emplace_back();

@@ -9,7 +9,7 @@ namespace {
 
 std::uint32_t flags_of(const ContactWork& work) {
   return (work.unchecked > 0 ? frame_flag::kBudgetShort : 0u) |
-         (work.rooms_full ? frame_flag::kRoomsFull : 0u) |
+         (work.capacity_reached ? frame_flag::kCapacityReached : 0u) |
          (work.uncertified > 0 ? frame_flag::kUncertified : 0u);
 }
 

@@ -15,7 +15,7 @@ namespace tactum {
 /// What the frame could not do in full, each with the setting to raise. A frame never stops for these.
 namespace frame_flag {
 inline constexpr std::uint32_t kBudgetShort = 1u << 0;  ///< pairs left unchecked: WorkBudget::max_exact_tests
-inline constexpr std::uint32_t kRoomsFull = 1u << 1;    ///< pairs or patches dropped: WorkBudget::rooms
+inline constexpr std::uint32_t kCapacityReached = 1u << 1;  ///< pairs or patches dropped: WorkBudget
 inline constexpr std::uint32_t kPointsFull =
     1u << 2;  ///< contact points dropped: WorkBudget::max_contact_points
 inline constexpr std::uint32_t kSolverBounded = 1u << 3;  ///< not converged: WorkBudget::solver_iterations

@@ -145,7 +145,7 @@ Result<Scene> heap_scene(const HeapOptions& options) {
   settings.shading.on = false;
   settings.friction = {std::vector<double>(world.bodies.size() * world.bodies.size(), kFriction), bodies};
   settings.budget.max_contact_points = 100 * bodies;
-  settings.budget.rooms = {.pairs = std::size_t(400 * bodies), .patches = std::size_t(100 * bodies)};
+  settings.budget.capacity = {.pairs = std::size_t(400 * bodies), .patches = std::size_t(100 * bodies)};
   scene.device = "premium-1.5-6dof";
   scene.grip = "medium";
   // So deep that the jack is covered by the heap's upper layers, and its arms stay off the floor.
