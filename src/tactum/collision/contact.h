@@ -48,11 +48,11 @@ struct PairCache {
   Vec3 normal_A = Vec3::Zero();  ///< last normal from B to A, unit, or zero when there was none [-]
   OverlapProof overlap;          ///< known when they overlapped in the last frame
   // Of an overlapping pair: the next best ways out, and the walk that looks for others (penetration.h).
-  std::array<FeaturePair, 2> rivals{};
-  FeaturePair scout;
-  std::uint32_t turn = 0;         ///< frames tracked inside
-  std::uint32_t scouted = 0;      ///< starts looked at for a scout
-  std::uint32_t scout_turns = 0;  ///< that the scout has walked
+  std::array<FeaturePair, 2> candidate_minima{};
+  FeaturePair explorer;
+  std::uint32_t turn = 0;             ///< frames tracked inside
+  std::uint32_t explorer_starts = 0;  ///< starts looked at for an explorer
+  std::uint32_t explorer_turns = 0;   ///< that the explorer has walked
 };
 
 /// Why a query stopped.
