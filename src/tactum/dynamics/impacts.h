@@ -1,6 +1,6 @@
 #pragma once
-/// Impacts: what bodies do to each other in no time at all [Mirtich 1996]. One pair of bodies after the
-/// other, the fastest approach first, until none approaches faster than what rests does. So a blow travels
+/// Impacts: what bodies do to each other in no time at all [Mirtich 1996b]. One pair of bodies after
+/// the other, the fastest approach first, until none approaches faster than what rests does. So a blow travels
 /// through a row of touching balls as it does through Newton's cradle, where all contacts at once would share
 /// it.
 ///
