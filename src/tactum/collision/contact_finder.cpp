@@ -48,8 +48,8 @@ void ContactFinder::find_patches(std::span<const Pose> X_WB, int budget, PatchPo
     }
   }
   budget_limited_ = kAmple * due_.size() > static_cast<Index>(std::max(budget, 0));
-  // Before the list is handed over: what is known leaves it.
-  const int may_test = budget_limited_ ? leave_known(X_WB) : budget;
+  // Pairs whose answer still holds leave the list before it is put in order.
+  const int may_test = budget_limited_ ? skip_still_valid(X_WB) : budget;
   const int checked = prioritise(due_, may_test);
   work_.due = static_cast<int>(due_.size());
   for (int i = 0; i < work_.due; ++i) {
@@ -59,7 +59,7 @@ void ContactFinder::find_patches(std::span<const Pose> X_WB, int budget, PatchPo
       pair.last_checked = frame_;
     } else {
       const double until = pair.free_until - odometers(pair.body_a, pair.body_b);
-      leave(pair.body_a, pair.body_b, until, pair.last_checked);
+      skip(pair.body_a, pair.body_b, until, pair.last_checked);
       if (!pair.in_contact || !pair.last.certified) continue;
     }
     emitted_.push_back(number);
@@ -138,8 +138,9 @@ double ContactFinder::bound_at(const Pair& pair, const Answer& answer, const Pos
   return answer.found.distance - moved;
 }
 
-/// Takes the pairs whose answer holds from those that are due; returns how many of the others may be tested.
-int ContactFinder::leave_known(std::span<const Pose> X_WB) noexcept {
+/// Removes the pairs whose last answer still holds from those that are due. Returns how many of the others
+/// may be tested.
+int ContactFinder::skip_still_valid(std::span<const Pose> X_WB) noexcept {
   int held = 0;
   const auto needs_no_test = [&](const DuePair& due) {
     Pair& pair = pairs_[Index(due.pair)];
@@ -169,8 +170,8 @@ int ContactFinder::leave_known(std::span<const Pose> X_WB) noexcept {
   return std::min(tests_left_, held + std::max(0, tests_left_ - held) / 2);
 }
 
-/// Counts a pair that is not tested in this frame, and tells whether that is safe.
-void ContactFinder::leave(int a, int b, double gap, std::int64_t last_checked) noexcept {
+/// Counts a pair that is not tested in this frame, and blocks its bodies where that is not safe.
+void ContactFinder::skip(int a, int b, double gap, std::int64_t last_checked) noexcept {
   const auto moves_by = [&](int body) { return bodies_[Index(body)].moves ? reach_[Index(body)] : 0.0; };
   ++work_.unchecked;
   if (gap > moves_by(a) + moves_by(b)) return;

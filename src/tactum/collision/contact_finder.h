@@ -168,8 +168,8 @@ class ContactFinder {
   void append_pairs(int a, int b, const BodyPair& old) noexcept;
   double bound_at(const Pair& pair, const Answer& answer, const Pose& X_AB) const noexcept;
   void answer(Pair& pair, const Pose& X_AB, Answer& into) noexcept;
-  int leave_known(std::span<const Pose> X_WB) noexcept;
-  void leave(int a, int b, double gap, std::int64_t last_checked) noexcept;
+  int skip_still_valid(std::span<const Pose> X_WB) noexcept;
+  void skip(int a, int b, double gap, std::int64_t last_checked) noexcept;
   bool of_held(int a, int b) const noexcept { return urgency_of(a, b) == urgency::kHeld; }
   std::uint8_t urgency_of(int a, int b) const noexcept;
   void test(Pair& pair, const Pose& X_AB) noexcept;

@@ -28,7 +28,7 @@ void ContactFinder::test_surfaces(int a, int b, std::span<const Pose> X_WB) noex
   const double reach = tolerance(a, b);
   BodyPair& list = list_of(a, b);
   if (list.free_until - odometers(a, b) > reach) return;
-  if (tests_left_ <= 0) return leave(a, b, list.free_until - odometers(a, b), frame_);
+  if (tests_left_ <= 0) return skip(a, b, list.free_until - odometers(a, b), frame_);
   --tests_left_;
   ++work_.exact_tests;
   const Part& part_a = *bodies_[Index(a)].part;
