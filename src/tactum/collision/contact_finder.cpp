@@ -14,7 +14,7 @@ namespace {
 
 using Index = std::size_t;
 
-/// Below every odometer reading less a tolerance.
+/// Below every accumulated motion less a tolerance.
 constexpr double kAlwaysDue = -1e300;
 
 /// A budget is ample when every due pair can be tested so often: once when it is found, and at the poses on
@@ -40,7 +40,8 @@ void ContactFinder::find_patches(std::span<const Pose> X_WB, int budget, PatchPo
   std::fill(blocked_.begin(), blocked_.end(), 0);
   for (Index i = 0; i < pairs_.size(); ++i) {
     Pair& pair = pairs_[i];
-    if (pair.free_until - odometers(pair.body_a, pair.body_b) > tolerance(pair.body_a, pair.body_b)) {
+    if (pair.free_until - accumulated_motion(pair.body_a, pair.body_b) >
+        tolerance(pair.body_a, pair.body_b)) {
       pair.in_contact = false;
     } else {
       due_.push_back({static_cast<std::int32_t>(i), urgency_of(pair.body_a, pair.body_b), pair.in_contact,
@@ -58,7 +59,7 @@ void ContactFinder::find_patches(std::span<const Pose> X_WB, int budget, PatchPo
     if (i < checked) {
       pair.last_checked = frame_;
     } else {
-      const double until = pair.free_until - odometers(pair.body_a, pair.body_b);
+      const double until = pair.free_until - accumulated_motion(pair.body_a, pair.body_b);
       skip(pair.body_a, pair.body_b, until, pair.last_checked);
       if (!pair.in_contact || !pair.last.certified) continue;
     }
@@ -74,7 +75,7 @@ void ContactFinder::find_patches(std::span<const Pose> X_WB, int budget, PatchPo
     } else {
       PairDistance last = pair.last.found;
       // Of what was apart only a bound is known, and that it is apart.
-      const double bound = pair.free_until - odometers(pair.body_a, pair.body_b);
+      const double bound = pair.free_until - accumulated_motion(pair.body_a, pair.body_b);
       last.distance = last.distance > 0.0 ? std::max(bound, 0.0) : std::min(bound, last.distance);
       emit_patch(pair, last, X_AB);
     }
@@ -150,8 +151,8 @@ int ContactFinder::skip_still_valid(std::span<const Pose> X_WB) noexcept {
       pair.last = pair.trial;
       bound = on_trial;
     }
-    // Measured between the two, the motion is less than what both odometers say.
-    const double here = odometers(pair.body_a, pair.body_b);
+    // Measured between the two poses, the motion is less than the accumulated one.
+    const double here = accumulated_motion(pair.body_a, pair.body_b);
     pair.free_until = std::max(pair.free_until, here + bound);
     if (pair.free_until - here > tolerance(pair.body_a, pair.body_b)) {
       pair.in_contact = false;
@@ -203,8 +204,9 @@ void ContactFinder::test(Pair& pair, const Pose& X_AB) noexcept {
   work_.feature_steps += pair.last.found.steps;
   if (!pair.last.certified) ++work_.uncertified;
   // What is not certified proves nothing: the pair is due again in the next frame.
-  pair.free_until =
-      pair.last.certified ? odometers(pair.body_a, pair.body_b) + pair.last.found.distance : kAlwaysDue;
+  pair.free_until = pair.last.certified
+                        ? accumulated_motion(pair.body_a, pair.body_b) + pair.last.found.distance
+                        : kAlwaysDue;
   emit_patch(pair, pair.last.found, X_AB);
 }
 

@@ -7,11 +7,11 @@
 /// their surfaces: every local minimum of distance is a patch of one point (surface_minima.h).
 ///
 /// What holds from frame to frame is kept: no step is repeated while a bound on the motion proves that its
-/// answer cannot have changed. Every body carries an odometer, `travel`: no point of it has moved farther
-/// than that since the start. A list of pairs made with reach R at the odometers' sum S0 holds all pairs
-/// within `tolerance` while  (S - S0) + tolerance <= R;  a pair found d apart at S0 needs no test while  d -
-/// (S - S0) > tolerance. Both are proofs, not guesses; they are what makes a frame with coherent motion
-/// cheap.
+/// answer cannot have changed. For every body the accumulated motion `travel` is kept: no point of it has
+/// moved farther than that since the start. With S the sum of two bodies' accumulated motions, a list of
+/// their pairs made with reach R at S0 holds all pairs within `tolerance` while  (S - S0) + tolerance <= R;
+/// a pair found d apart at S0 needs no test while  d - (S - S0) > tolerance. Both are proofs, not guesses;
+/// they are what makes a frame with coherent motion cheap.
 ///
 /// Exact tests are bounded by a budget (schedule.h). While it is ample, every pair that may be within its
 /// tolerance is tested. Where it is not, answers are kept as long as they hold, and what is left over is
@@ -146,19 +146,19 @@ class ContactFinder {
     SteadyContact shown;
     Answer last;                     ///< where the pair is, or was not long ago
     Answer trial;                    ///< where it was on trial; nothing says that it went there
-    double free_until = -1e300;      ///< odometer sum at which the distance may have shrunk to zero
+    double free_until = -1e300;      ///< accumulated motion at which the distance may have shrunk to zero
     std::int64_t last_checked = -1;  ///< frame
     bool in_contact = false;
   };
   /// The pieces of two near bodies: pairs_[first, first + count), sorted by piece.
   struct BodyPair {
     std::int32_t first = 0, count = 0;
-    double odometers = 0.0;      ///< S0
-    double reach = 0.0;          ///< R
-    bool cut_short = false;      ///< the room was full: pairs are missing
-    std::int64_t renewal = -1;   ///< the renewal it was last part of
-    double free_until = -1e300;  ///< of two surfaces: as in Pair
-    bool apart = false;          ///< ... and nothing was within the tolerance when last asked
+    double accumulated_motion = 0.0;  ///< S0
+    double reach = 0.0;               ///< R
+    bool cut_short = false;           ///< the room was full: pairs are missing
+    std::int64_t renewal = -1;        ///< the renewal it was last part of
+    double free_until = -1e300;       ///< of two surfaces: as in Pair
+    bool apart = false;               ///< ... and nothing was within the tolerance when last asked
   };
 
   void move_boxes(std::span<const Pose> X_WB) noexcept;
@@ -189,7 +189,9 @@ class ContactFinder {
   void add_surface_patch(int a, int b, const SurfaceMinimum& minimum, bool second_end, double reach) noexcept;
   void surface_distances_at(std::span<const ContactPatch> patches, std::span<const Pose> X_WB,
                             std::span<double> distance, std::span<GapAnswer> asked, int keep_back) noexcept;
-  double odometers(int a, int b) const noexcept { return travel_[std::size_t(a)] + travel_[std::size_t(b)]; }
+  double accumulated_motion(int a, int b) const noexcept {
+    return travel_[std::size_t(a)] + travel_[std::size_t(b)];
+  }
   double tolerance(int a, int b) const noexcept;
   BodyPair& list_of(int a, int b) noexcept {
     return lists_[std::size_t(a) * bodies_.size() + std::size_t(b)];

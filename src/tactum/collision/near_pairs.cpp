@@ -101,7 +101,8 @@ void ContactFinder::move_boxes(std::span<const Pose> X_WB) noexcept {
 
 bool ContactFinder::list_holds(const BodyPair& list, int a, int b) const noexcept {
   if (!bodies_[Index(a)].moves && !bodies_[Index(b)].moves) return true;
-  return list.renewal == renewal_ && odometers(a, b) - list.odometers + tolerance(a, b) <= list.reach;
+  return list.renewal == renewal_ &&
+         accumulated_motion(a, b) - list.accumulated_motion + tolerance(a, b) <= list.reach;
 }
 
 void ContactFinder::renew_lists(std::span<const Pose> X_WB) noexcept {
@@ -118,7 +119,7 @@ void ContactFinder::renew_lists(std::span<const Pose> X_WB) noexcept {
         renewed_.push_back(pairs_[Index(list.first) + i]);
     } else {
       const BodyPair old = list;
-      list.odometers = odometers(near.a, near.b);
+      list.accumulated_motion = accumulated_motion(near.a, near.b);
       list.reach = tolerance(near.a, near.b) + std::min(slack_[Index(near.a)], slack_[Index(near.b)]);
       list.cut_short =
           !collect(near.a, near.b, relative_pose(X_WB[Index(near.a)], X_WB[Index(near.b)]), list.reach);
@@ -166,7 +167,7 @@ void ContactFinder::append_pairs(int a, int b, const BodyPair& old) noexcept {
     pair.body_b = b;
     pair.piece_a = pieces.first;
     pair.piece_b = pieces.second;
-    if (known && !old.cut_short) pair.free_until = old.odometers + old.reach;
+    if (known && !old.cut_short) pair.free_until = old.accumulated_motion + old.reach;
   }
 }
 

@@ -27,8 +27,8 @@ void ContactFinder::test_surfaces(int a, int b, std::span<const Pose> X_WB) noex
   if (!bodies_[Index(a)].moves && !bodies_[Index(b)].moves) return;
   const double reach = tolerance(a, b);
   BodyPair& list = list_of(a, b);
-  if (list.free_until - odometers(a, b) > reach) return;
-  if (tests_left_ <= 0) return skip(a, b, list.free_until - odometers(a, b), frame_);
+  if (list.free_until - accumulated_motion(a, b) > reach) return;
+  if (tests_left_ <= 0) return skip(a, b, list.free_until - accumulated_motion(a, b), frame_);
   --tests_left_;
   ++work_.exact_tests;
   const Part& part_a = *bodies_[Index(a)].part;
@@ -47,7 +47,7 @@ void ContactFinder::test_surfaces(int a, int b, std::span<const Pose> X_WB) noex
     const double clearance = surface_clearance(part_a.tree, part_b.tree, X_AB, farther, work);
     ++work_.surface_queries;
     work_.feature_steps += work.feature_pairs;
-    list.free_until = odometers(a, b) + clearance;
+    list.free_until = accumulated_motion(a, b) + clearance;
     if (clearance > reach) return;
   }
   const MinimaWork found = surface_minima(part_a.tree, part_b.tree, X_AB, query, minima_);
@@ -56,7 +56,7 @@ void ContactFinder::test_surfaces(int a, int b, std::span<const Pose> X_WB) noex
   work_.feature_steps += found.feature_pairs;
   work_.capacity_reached |= found.full;
   list.apart = minima_.empty();
-  list.free_until = odometers(a, b) + (list.apart ? reach : 0.0);
+  list.free_until = accumulated_motion(a, b) + (list.apart ? reach : 0.0);
   Index kept = minima_.size();
   if (kept > kept_minima_) {
     reduction_scratch_.resize(kept);  // within what was reserved
