@@ -115,7 +115,7 @@ void ContactFinder::settle_objected(ContactPatch& patch, std::span<const Pose> X
     const Feature same = same_feature(part, of_piece, feature, piece);
     if (same.index >= 0 || feature.kind == FeatureKind::kFace) return same;
     beside = true;
-    const int face = level_face(part.pieces[Index(of_piece)], feature, outward);
+    const int face = reference_face(part.pieces[Index(of_piece)], feature, outward);
     return same_feature(part, of_piece, {FeatureKind::kFace, face}, piece);
   };
   patch.manifold.a =
