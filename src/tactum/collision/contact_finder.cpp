@@ -34,7 +34,7 @@ void ContactFinder::find_patches(std::span<const Pose> X_WB, int budget, PatchPo
   tests_left_ = budget;
   patches_.clear();
   candidates_.clear();
-  objected_.clear();
+  internal_contacts_.clear();
   due_.clear();
   emitted_.clear();
   std::fill(blocked_.begin(), blocked_.end(), 0);
@@ -80,7 +80,7 @@ void ContactFinder::find_patches(std::span<const Pose> X_WB, int budget, PatchPo
       emit_patch(pair, last, X_AB);
     }
   }
-  for (const int number : objected_) settle_objected(patches_[Index(number)], X_WB);
+  for (const int number : internal_contacts_) settle_internal_contact(patches_[Index(number)], X_WB);
   candidate_order_.clear();
   for (SeamCandidate& candidate : candidates_) candidate_order_.push_back(&candidate);
   work_.capacity_reached |= !settle_seams(candidate_order_, X_WB, patches_);
@@ -91,16 +91,16 @@ void ContactFinder::find_patches(std::span<const Pose> X_WB, int budget, PatchPo
   work_.patches = static_cast<int>(patches_.size());
 }
 
-void ContactFinder::settle_objected(ContactPatch& patch, std::span<const Pose> X_WB) const noexcept {
+void ContactFinder::settle_internal_contact(ContactPatch& patch, std::span<const Pose> X_WB) const noexcept {
   const Part& part_a = *bodies_[Index(patch.body_a)].part;
   const Part& part_b = *bodies_[Index(patch.body_b)].part;
   const Pose X_AB = relative_pose(X_WB[Index(patch.body_a)], X_WB[Index(patch.body_b)]);
   const PairView pair(part_a.pieces[Index(patch.piece_a)], part_b.pieces[Index(patch.piece_b)], X_AB);
   const PairDistance found{.a = patch.manifold.a, .b = patch.manifold.b};
-  auto objected = objected_.begin();  // rising, as the patches
+  auto internal = internal_contacts_.begin();  // rising, as the patches
   const auto leader = std::find_if(patches_.begin(), patches_.end(), [&](const ContactPatch& other) {
-    if (objected != objected_.end() && &other == &patches_[Index(*objected)]) {
-      ++objected;
+    if (internal != internal_contacts_.end() && &other == &patches_[Index(*internal)]) {
+      ++internal;
       return false;
     }
     return other.body_a == patch.body_a && other.body_b == patch.body_b &&
@@ -227,7 +227,7 @@ void ContactFinder::emit_patch(Pair& pair, const PairDistance& found, const Pose
     return;
   }
   const bool seams = !part_a.true_surface.single_piece() || !part_b.true_surface.single_piece();
-  const bool objected = seams && !is_true_contact(part_a, pair.piece_a, part_b, pair.piece_b, X_AB, found);
+  const bool internal = seams && !is_true_contact(part_a, pair.piece_a, part_b, pair.piece_b, X_AB, found);
   if (seams && points_ == PatchPoints::kQuadrature) {
     SeamCandidate& candidate = candidates_.emplace_back();
     candidate.body_a = pair.body_a;
@@ -240,7 +240,7 @@ void ContactFinder::emit_patch(Pair& pair, const PairDistance& found, const Pose
     candidate.shown = &pair.shown;
     candidate.reach = reach;
     candidate.found = found;
-    candidate.objected = objected;
+    candidate.internal = internal;
     return;
   }
   ContactPatch& patch = patches_.emplace_back();
@@ -258,7 +258,7 @@ void ContactFinder::emit_patch(Pair& pair, const PairDistance& found, const Pose
     patch.manifold.a = found.a;
     patch.manifold.b = found.b;
     patch.manifold.points.push_back({found.p_a, found.p_b, found.distance, 1.0, 0});
-    if (objected && found.distance > 0.0) objected_.push_back(static_cast<int>(patches_.size()) - 1);
+    if (internal && found.distance > 0.0) internal_contacts_.push_back(static_cast<int>(patches_.size()) - 1);
     return;
   }
   const PairDistance shown = steady_depth(A, B, X_AB, found, pair.shown);

@@ -174,12 +174,13 @@ class ContactFinder {
   std::uint8_t urgency_of(int a, int b) const noexcept;
   void test(Pair& pair, const Pose& X_AB) noexcept;
   void emit_patch(Pair& pair, const PairDistance& found, const Pose& X_AB) noexcept;
-  /// A neighbour across the seam is nearer than what is objected to. Where its normal parts these pieces as
-  /// well it leads: of this patch, without a point, only the stretch of the same true faces counts, along the
-  /// leader's normal, of an edge or corner that of its most level face; where there is none it has no
-  /// features, and is only watched. Where no neighbour leads, as between the walls of a corner, it is a
-  /// contact of its own.
-  void settle_objected(ContactPatch& patch, std::span<const Pose> X_WB) const noexcept;
+  /// Settles an internal contact, `patch`. The leader is the neighbour across the seam that is nearer and
+  /// whose normal separates these two pieces as well. With a leader the patch loses its point and takes the
+  /// leader's normal; what counts of it is its stretch of the same true faces, or, where the leader touches
+  /// with an edge or corner, of the reference face there. Where there is no such stretch the patch keeps no
+  /// features, and only its distance is watched. Without a leader, as in the corner of two walls, the patch
+  /// is a contact of its own.
+  void settle_internal_contact(ContactPatch& patch, std::span<const Pose> X_WB) const noexcept;
   GapAnswer distance_at(const ContactPatch& patch, std::span<const Pose> X_WB, double enough, int keep_back,
                         double& distance) noexcept;
   bool meet_by_surfaces(int a, int b) const noexcept {
@@ -215,7 +216,8 @@ class ContactFinder {
   bool budget_limited_ = false;
   int tests_left_ = 0;
   std::vector<ContactPatch> patches_;
-  std::vector<int> objected_;  // patches of pieces that are apart, of points that are no contact of the parts
+  std::vector<int>
+      internal_contacts_;  // patches of pieces that are apart, of points that are no contact of the parts
   std::vector<SeamCandidate> candidates_;
   std::vector<SeamCandidate*> candidate_order_;
   std::vector<SurfaceMinimum> minima_;

@@ -58,7 +58,7 @@ ContactFinder::ContactFinder(std::vector<CollisionBody> bodies, std::span<const 
   patches_.reserve(capacity.patches);
   candidates_.reserve(capacity.patches);
   candidate_order_.reserve(capacity.patches);
-  objected_.reserve(capacity.patches);
+  internal_contacts_.reserve(capacity.patches);
   minima_.reserve(capacity.minima);
   reduction_scratch_.reserve(capacity.minima);
   kept_minima_ = capacity.kept_minima;

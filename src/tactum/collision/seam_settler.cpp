@@ -25,7 +25,7 @@ class TwoBodies {
 
   void settle() noexcept {
     for (SeamCandidate* candidate : candidates_)
-      if (!candidate->settled && !candidate->objected) lead(*candidate);
+      if (!candidate->settled && !candidate->internal) lead(*candidate);
     for (SeamCandidate* candidate : candidates_)
       if (!candidate->settled && !answered(*candidate)) tell_again(*candidate);
     while (SeamCandidate* nearest = shallowest())
@@ -56,13 +56,13 @@ class TwoBodies {
     return false;
   }
 
-  /// What is objected to, as what it is on the whole part. Where that is nothing it may still follow.
+  /// Finds an internal contact again on the whole part. Where there is none it may still follow.
   void tell_again(SeamCandidate& candidate) noexcept {
     candidate.on_pieces = candidate.found;
     const std::optional<PairDistance> depth = on_true_surface(candidate, 0.0);
     if (!depth || depth->distance >= candidate.reach) return;
     candidate.found = *depth;
-    candidate.objected = false;
+    candidate.internal = false;
   }
 
   /// What was told far deeper than it was found and than the leaders are, as the way through the whole piece,
@@ -85,9 +85,9 @@ class TwoBodies {
       }
     }
     // Apart, and beside the face.
-    candidate.objected = candidate.found.distance >= candidate.reach ||
+    candidate.internal = candidate.found.distance >= candidate.reach ||
                          (on_pieces.distance >= 0.0 && candidate.found.distance < 0.0);
-    return !candidate.objected;
+    return !candidate.internal;
   }
 
   std::optional<PairDistance> on_true_surface(const SeamCandidate& candidate, double beside) const noexcept {
@@ -101,7 +101,7 @@ class TwoBodies {
                            candidate.on_pieces, beside);
   }
 
-  /// Whether what is objected to for its closest points, which of a flat contact may be any, is a true
+  /// Whether a contact that is internal by its closest points, which of a flat contact may be any, is a true
   /// contact in the middle: in a corner that is entered both ways each wall is covered by the other at its
   /// edge.
   bool touches_in_the_middle(const SeamCandidate& candidate) const noexcept {
@@ -123,7 +123,7 @@ class TwoBodies {
   SeamCandidate* shallowest() noexcept {
     SeamCandidate* best = nullptr;
     for (SeamCandidate* candidate : candidates_)
-      if (!candidate->settled && !candidate->objected &&
+      if (!candidate->settled && !candidate->internal &&
           (best == nullptr || candidate->found.distance > best->found.distance))
         best = candidate;
     return best;
@@ -298,8 +298,8 @@ class TwoBodies {
 bool settle_seams(std::span<SeamCandidate*> candidates, std::span<const Pose> X_WB,
                   std::vector<ContactPatch>& patches) noexcept {
   std::sort(candidates.begin(), candidates.end(), [](const SeamCandidate* p, const SeamCandidate* q) {
-    return std::tie(p->body_a, p->body_b, p->objected, p->found.distance, p->piece_a, p->piece_b) <
-           std::tie(q->body_a, q->body_b, q->objected, q->found.distance, q->piece_a, q->piece_b);
+    return std::tie(p->body_a, p->body_b, p->internal, p->found.distance, p->piece_a, p->piece_b) <
+           std::tie(q->body_a, q->body_b, q->internal, q->found.distance, q->piece_a, q->piece_b);
   });
   bool complete = true;
   for (auto first = candidates.begin(); first != candidates.end();) {

@@ -4,12 +4,12 @@
 ///
 ///         ___A___              1  |: A's side and the wall between the pieces. No such contact exists on the
 ///        |       |                   part: at that point the normal is not one that all pieces there allow.
-///     ___|_1_____|___             It is *objected* to, and its neighbour answers for it.
+///     ___|_1_____|___             It is *internal*, and its neighbour stands for it.
 ///    |     |2    |   |         2  both pieces' tops belong to one true face: one contact, led by the
 ///    |     |     |   |            nearest; the other follows with its part of the face.
 ///    |_____|_____|___|
 ///
-/// What is objected to, and no neighbour answers for (a part deep in a small piece; a wall touched where it
+/// An internal contact that no neighbour stands for (a part deep in a small piece; a wall touched where it
 /// meets the floor), is told again on the true surface by the least depth. What is asked here is told by
 /// the pieces that touch each feature: geometry/true_surface.h. Features that no other piece touches cost one
 /// look-up.
