@@ -13,7 +13,7 @@
 /// the Minkowski difference; distance by support mapping [Gilbert 1988]; every pair of features of small
 /// pieces. The stop says which it was, and `error_bound` what is left.
 ///
-/// Overlapping pieces are told by a proof that they share a point (overlap.h, support_distance.h), and
+/// Overlapping pieces are recognised by a proof that they share a point (overlap.h, support_distance.h), and
 /// answered by penetration.h.
 /// Cost: see docs/algorithms/closest_features.md.
 

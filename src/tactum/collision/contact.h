@@ -1,5 +1,5 @@
 #pragma once
-/// The one convention of contact, and the numbers that name it. Everything is told in A's frame; A and B are
+/// The one convention of contact, and the numbers that name it. Everything is in A's frame; A and B are
 /// convex pieces, X_AB is B's pose in A.
 ///
 ///            A   /                     n (= n_BA_A): unit, from B to A

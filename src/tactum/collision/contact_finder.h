@@ -122,7 +122,7 @@ class ContactFinder {
   /// The exact signed distance of the pieces of every patch with the bodies at other poses, near those of
   /// the patches: what a step has to keep positive. `distance` has an entry per patch [m]. A distance that
   /// could not be certified counts as none. Between surfaces it is that of every local minimum there is at
-  /// the other poses, told by the patches of the same features; where there is none, by the nearest patch.
+  /// the other poses, given to the patches of the same features; where there is none, by the nearest patch.
   ///
   /// `asked` has an entry per patch and is answered in place. No test is made, when the budget is not ample,
   /// where what moved since the last one proves that the distance is at least `enough`, nor when only
@@ -138,7 +138,7 @@ class ContactFinder {
   struct Answer {
     PairDistance found;
     Pose X_AB;
-    bool certified = false;  ///< false: it tells nothing
+    bool certified = false;  ///< false: it proves nothing
   };
   struct Pair {
     std::int32_t body_a = -1, body_b = -1, piece_a = -1, piece_b = -1;

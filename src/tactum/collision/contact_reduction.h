@@ -27,7 +27,7 @@
 namespace tactum {
 
 struct ReductionBounds {
-  Vec3 center = Vec3::Zero();    ///< about which rotations are told, A's frame [m]
+  Vec3 center = Vec3::Zero();    ///< the centre of rotations, A's frame [m]
   double max_translation = 0.0;  ///< of a step [m]
   double max_rotation = 0.0;     ///< of a step [rad]
   double enough = 0.0;           ///< stop when no dropped minimum is overstepped by more [m]

@@ -1,6 +1,6 @@
 #pragma once
 /// The contact patch of two convex pieces: where, over a common tangent plane, both have surface and the gap
-/// is below the tolerance; told as a few weighted points.
+/// is below the tolerance; represented by a few weighted points.
 ///
 ///   1. On each side take the largest feature at the closest point that is square to the normal within
 ///      2 degrees.

@@ -51,12 +51,12 @@ struct PairView : PiecePair {
   }
 };
 
-/// A pose that nothing can be told of: not finite, or so far off that squares of lengths are not.
+/// A pose for which there is no answer: not finite, or so far off that squares of lengths are not.
 inline bool is_invalid_pose(const Pose& X) noexcept {
   return !X.R.allFinite() || !std::isfinite(X.p.squaredNorm());
 }
 
-/// What is told of it: a distance that is no number, and nothing proved.
+/// The answer for such a pose: the distance is not a number, and nothing is proved.
 inline PairDistance invalid_result() noexcept {
   PairDistance x;
   x.distance = std::numeric_limits<double>::quiet_NaN();

@@ -27,9 +27,9 @@ class TwoBodies {
     for (SeamCandidate* candidate : candidates_)
       if (!candidate->settled && !candidate->internal) lead(*candidate);
     for (SeamCandidate* candidate : candidates_)
-      if (!candidate->settled && !answered(*candidate)) tell_again(*candidate);
+      if (!candidate->settled && !answered(*candidate)) find_again(*candidate);
     while (SeamCandidate* nearest = shallowest())
-      if (!answered(*nearest) && tell_beside_leaders(*nearest)) lead(*nearest);
+      if (!answered(*nearest) && find_beside_leaders(*nearest)) lead(*nearest);
     for (SeamCandidate* candidate : candidates_)
       if (!candidate->settled) *candidate->shown = {};
   }
@@ -57,7 +57,7 @@ class TwoBodies {
   }
 
   /// Finds an internal contact again on the whole part. Where there is none it may still follow.
-  void tell_again(SeamCandidate& candidate) noexcept {
+  void find_again(SeamCandidate& candidate) noexcept {
     candidate.on_pieces = candidate.found;
     const std::optional<PairDistance> depth = on_true_surface(candidate, 0.0);
     if (!depth || depth->distance >= candidate.reach) return;
@@ -69,7 +69,7 @@ class TwoBodies {
   /// is judged anew. In a corner the deepest point of a contact lies in the neighbour, as deep as that is
   /// entered: it is looked for beside the covered place. Where rounding leaves no true face or edge there
   /// that has it, or the contact is true in its middle, it is what was found. False when it is nothing.
-  bool tell_beside_leaders(SeamCandidate& candidate) noexcept {
+  bool find_beside_leaders(SeamCandidate& candidate) noexcept {
     const PairDistance& on_pieces = candidate.on_pieces;
     const double entered = deepest_leader();
     const double beside = candidate.reach + entered;

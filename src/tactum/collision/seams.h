@@ -10,8 +10,8 @@
 ///    |_____|_____|___|
 ///
 /// An internal contact that no neighbour stands for (a part deep in a small piece; a wall touched where it
-/// meets the floor), is told again on the true surface by the least depth. What is asked here is told by
-/// the pieces that touch each feature: geometry/true_surface.h. Features that no other piece touches cost one
+/// meets the floor) is found again on the true surface by the least depth. The answers follow from the
+/// pieces that touch each feature: geometry/true_surface.h. Features that no other piece touches cost one
 /// look-up.
 
 #include <optional>

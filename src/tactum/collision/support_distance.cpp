@@ -121,7 +121,7 @@ Corner support(const PairView& pair, const Vec3& toward, const Corner* warm) noe
   return c;
 }
 
-void tell(const PairView& pair, const Simplex& simplex, PairDistance& x) noexcept {
+void set_answer(const PairView& pair, const Simplex& simplex, PairDistance& x) noexcept {
   x.p_a.setZero();
   x.p_b.setZero();
   std::array<int, 4> a{};
@@ -179,7 +179,7 @@ FeatureWalk closest_by_supports(const PairView& pair, OverlapProof& proof, PairD
     }
     d = nearer;
   }
-  tell(pair, simplex, x);
+  set_answer(pair, simplex, x);
   return walk;
 }
 

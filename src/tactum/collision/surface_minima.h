@@ -21,7 +21,7 @@
 ///
 /// Cones are inflated by `cone_slack`, the largest rotation of a step. Without it only the lowest corner of a
 /// flat contact is a minimum, and the contact sticks; with it, all corners of either that face the other, and
-/// the crossings of their outlines. `strict` tells which minima hold without it: validate with those alone.
+/// the crossings of their outlines. `strict` marks minima that hold without it: validate with those alone.
 /// Outside its true cone the sign of an edge pair means nothing: one that is not strict is a constraint while
 /// it is apart, and none below zero.
 ///
@@ -72,7 +72,7 @@ struct MinimaWork {
 MinimaWork surface_minima(const SurfaceTree& a, const SurfaceTree& b, const Pose& X_AB,
                           const MinimaQuery& query, std::vector<SurfaceMinimum>& minima) noexcept;
 
-/// How far apart the surfaces are at least, not asked beyond the reach: their distance, told short by up to a
+/// How far apart the surfaces are at least, not asked beyond the reach: their distance, too short by up to a
 /// tenth, or the reach where that is nearer; 0 where there is a minimum below zero. Each minimum found
 /// narrows the search, so it costs about as much as the minima within the distance.
 double surface_clearance(const SurfaceTree& a, const SurfaceTree& b, const Pose& X_AB,

@@ -195,7 +195,7 @@ InCone FeatureComparison::in_edge_cone(const Side& side, const Edge& edge, const
   if (cone == InCone::kOutside) return cone;
   const std::int32_t beyond = side.tree.beyond(edge.corner);
   const bool wall = beyond == SurfaceTree::kWall;
-  if (!wall) cone = worst(cone, face_falls(side.told(beyond) - edge.from));
+  if (!wall) cone = worst(cone, face_falls(side.position(beyond) - edge.from));
   if (cone == InCone::kOutside || !(wall || side.tree.narrow_edge(edge.corner))) return cone;
   return worst(cone, falls_away(-side.normal(edge.corner).dot(u), 1.0));
 }

@@ -16,7 +16,7 @@ class FeatureComparison {
                     std::vector<SurfaceMinimum>& minima) noexcept;
 
   /// A vertex of the first with a feature of the second, the first being A unless `swapped`. Features are
-  /// told by corners, as in the leaves of a SurfaceTree.
+  /// named by corners, as in the leaves of a SurfaceTree.
   void vertex_face(bool swapped, std::int32_t vertex, std::int32_t face) noexcept;
   void vertex_edge(bool swapped, std::int32_t vertex, std::int32_t edge) noexcept;
   void vertex_vertex(std::int32_t a, std::int32_t b) noexcept;
@@ -37,12 +37,12 @@ class FeatureComparison {
     bool is_a;
     Mat3 R;
     Vec3 p;
-    Vec3 told(int vertex) const noexcept {
+    Vec3 position(int vertex) const noexcept {
       return is_a ? tree.vertex(vertex) : Vec3(rotated(R, tree.vertex(vertex)) + p);
     }
     /// The corner of a triangle that is so many after this one.
     Vec3 point(std::int32_t corner, std::size_t after) const noexcept {
-      return told(tree.triangle(corner / 3)[(std::size_t(corner) % 3 + after) % 3]);
+      return position(tree.triangle(corner / 3)[(std::size_t(corner) % 3 + after) % 3]);
     }
     /// Of the triangle, unit, outward [-].
     Vec3 normal(std::int32_t corner) const noexcept;

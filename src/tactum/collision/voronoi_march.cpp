@@ -51,7 +51,7 @@ Step edges_along(const PiecePair& pair, double slack, int a, int b, Place& at, P
   const double error_bound = reach_beyond(S.P, e, of_p.slope) + reach_beyond(S.Q, g, of_q.slope) +
                              std::abs(e.direction.dot(across.direction)) * S.P.size +
                              std::abs(w.dot(across.direction)) * S.Q.size + across.aside;
-  tell(at.p, -across.direction, at.gap, error_bound, x);
+  set_answer(at.p, -across.direction, at.gap, error_bound, x);
   return {Outcome::kClosest, edge(a), edge(b)};
 }
 
@@ -120,7 +120,7 @@ Step edge_face(const Polytope& Q, const Polytope::Edge& e, const Vec3& p0, const
   return {Outcome::kMoved, vertex(take_low ? e.tail : e.head), fq};
 }
 
-void tell_features(const PiecePair& pair, double slack, PairDistance& x) noexcept {
+void set_features(const PiecePair& pair, double slack, PairDistance& x) noexcept {
   FeaturePair at = {x.a, x.b};
   Place place;
   step_on(pair, slack, at, place, x);
@@ -129,13 +129,13 @@ void tell_features(const PiecePair& pair, double slack, PairDistance& x) noexcep
     place.p = pair.A.vertices[vertex_of(pair.A, x.a)];
     place.q = pair.B.vertices[vertex_of(pair.B, x.b)];
     place.gap = (S.in_Q(place.p) - place.q).norm();
-    tell_points(S, place, x);
+    set_points(S, place, x);
     return;
   }
   if (x.a.kind > x.b.kind)
-    tell_points(Sides<true>(pair, slack), place, x);
+    set_points(Sides<true>(pair, slack), place, x);
   else
-    tell_points(Sides<false>(pair, slack), place, x);
+    set_points(Sides<false>(pair, slack), place, x);
 }
 
 }  // namespace vclip

@@ -33,19 +33,19 @@ enum class FeatureWalkEnd : std::uint8_t {
   kClosest,  ///< no Voronoi plane is violated
   kOverlap,  ///< an edge goes through a face
   kBehind,   ///< a vertex is behind the face in whose column it is: overlapping, or far beyond the piece
-  kCircle,   ///< came back to a state: the nearest of the circle is told
+  kCircle,   ///< came back to a state: the nearest of the circle is returned
   kBounded,  ///< out of steps
 };
 
 struct FeatureWalk {
-  /// The signed distance of the pieces is above the one told less this [m]. Infinite when the walk proves
+  /// The signed distance of the pieces is above the returned one less this [m]. Infinite when the walk proves
   /// nothing: it did not end closest, or its points coincide and have no normal.
   double error_bound = std::numeric_limits<double>::infinity();
   FeatureWalkEnd end = FeatureWalkEnd::kBounded;
   int steps = 0;
 };
 
-/// Walks from the features `a`, `b` (which must exist) and tells in `x` the features where it ended, and
+/// Walks from the features `a`, `b` (which must exist) and sets in `x` the features where it ended, and
 /// their points, normal and distance when it ended kClosest, kCircle or kBounded (the normal only when
 /// closest); the stop and the steps of `x` are the caller's. `slack` [m] is how far a point must be outside a
 /// plane to cross it.

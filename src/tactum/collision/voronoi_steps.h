@@ -101,7 +101,8 @@ inline Feature face(int index) noexcept { return {FeatureKind::kFace, index}; }
 
 /// The end of a walk at the point `p_a` of A, across the normal `n` from B to A, in A's frame. Number by
 /// number: what is copied as a whole waits for parts that have just been written.
-inline void tell(const Vec3& p_a, const Vec3& n, double gap, double error_bound, PairDistance& x) noexcept {
+inline void set_answer(const Vec3& p_a, const Vec3& n, double gap, double error_bound,
+                       PairDistance& x) noexcept {
   x.p_a << p_a.x(), p_a.y(), p_a.z();
   x.normal << n.x(), n.y(), n.z();
   x.p_b = x.p_a - x.normal * gap;
@@ -111,7 +112,7 @@ inline void tell(const Vec3& p_a, const Vec3& n, double gap, double error_bound,
 
 /// The points of a place that proves nothing.
 template <bool Swapped>
-void tell_points(const Sides<Swapped>& S, const Place& at, PairDistance& x) noexcept {
+void set_points(const Sides<Swapped>& S, const Place& at, PairDistance& x) noexcept {
   x.p_a = Swapped ? at.q : at.p;
   x.p_b = S.X_AB * (Swapped ? at.p : at.q);
   x.normal.setZero();
@@ -145,11 +146,12 @@ Step vertex_vertex(const Sides<Swapped>& S, Feature fp, Feature fq, Place& at, P
   const Steepest at_q = steepest_edge(S.Q, fq.index, -d_Q);
   if (at_q.slope > S.slack) return {Outcome::kMoved, fp, edge(at_q.edge)};
   if (at.gap <= tolerances::kTouching * S.P.size) {
-    tell_points(S, at, x);
+    set_points(S, at, x);
   } else {
-    tell(S.of_A(at.p, at.q), S.normal(d_P, d_Q) / at.gap, at.gap,
-         reach_beyond(S.P, fp.index, at_p.slope / at.gap) + reach_beyond(S.Q, fq.index, at_q.slope / at.gap),
-         x);
+    set_answer(
+        S.of_A(at.p, at.q), S.normal(d_P, d_Q) / at.gap, at.gap,
+        reach_beyond(S.P, fp.index, at_p.slope / at.gap) + reach_beyond(S.Q, fq.index, at_q.slope / at.gap),
+        x);
   }
   return {Outcome::kClosest, fp, fq};
 }
@@ -172,14 +174,14 @@ Step vertex_edge(const Sides<Swapped>& S, Feature fp, Feature fq, Place& at, Pai
   const Steepest at_p = steepest_edge(S.P, fp.index, d_P);
   if (at_p.slope > S.slack) return {Outcome::kMoved, edge(at_p.edge), fq};
   if (at.gap <= tolerances::kTouching * S.P.size) {
-    tell_points(S, at, x);
+    set_points(S, at, x);
   } else {
     // The normal itself is judged: over a small gap it is off by more than the point is.
     const double rise = std::max(left.normal.dot(d_Q), right.normal.dot(d_Q));
     const double error_bound = reach_beyond(S.P, fp.index, at_p.slope / at.gap) +
                                reach_beyond(S.Q, g, rise / at.gap) +
                                std::abs(g.direction.dot(d_Q)) / at.gap * S.Q.size;
-    tell(S.of_A(at.p, at.q), S.normal(d_P, d_Q) / at.gap, at.gap, error_bound, x);
+    set_answer(S.of_A(at.p, at.q), S.normal(d_P, d_Q) / at.gap, at.gap, error_bound, x);
   }
   return {Outcome::kClosest, fp, fq};
 }
@@ -230,8 +232,8 @@ Step vertex_face(const Sides<Swapped>& S, Feature fp, Feature fq, Place& at, Pai
     }
     return {Outcome::kMoved, edge(at_p.edge), fq};
   }
-  tell(S.of_A(p, p_Q - f.normal * height), S.normal(outward_P, -f.normal), std::abs(height),
-       reach_beyond(S.P, fp.index, at_p.slope), x);
+  set_answer(S.of_A(p, p_Q - f.normal * height), S.normal(outward_P, -f.normal), std::abs(height),
+             reach_beyond(S.P, fp.index, at_p.slope), x);
   return {Outcome::kClosest, fp, fq};
 }
 
@@ -336,7 +338,7 @@ inline Step edge_edge(const PiecePair& pair, const Sides<false>& S, Feature fp, 
   const double error_bound = (tolerances::kCrossingRounding * lengths + S.slack) * per_square;
   if (error_bound > tolerances::kCertificate * pair.size)
     return edges_along(pair, S.slack, fp.index, fq.index, at, x);
-  tell(p, c * (-sign * per_sine), gap, error_bound, x);
+  set_answer(p, c * (-sign * per_sine), gap, error_bound, x);
   return {Outcome::kClosest, fp, fq};
 }
 
@@ -377,7 +379,7 @@ inline Outcome step_on(const PiecePair& pair, double slack, FeaturePair& at, Pla
 }
 
 /// The end of a walk that proves nothing: where the features `x.a`, `x.b` are nearest.
-[[gnu::noinline]] void tell_features(const PiecePair& pair, double slack, PairDistance& x) noexcept;
+[[gnu::noinline]] void set_features(const PiecePair& pair, double slack, PairDistance& x) noexcept;
 
 /// What feature_walk() does, inline.
 inline FeatureWalk walk_features(const PiecePair& pair, FeaturePair at, double slack,
@@ -418,7 +420,7 @@ inline FeatureWalk walk_features(const PiecePair& pair, FeaturePair at, double s
   }
   x.a = nearest.a;
   x.b = nearest.b;
-  tell_features(pair, slack, x);
+  set_features(pair, slack, x);
   return walk;
 }
 

@@ -160,15 +160,15 @@ Result<void> add_pieces(const TriangleMesh& closed, bool convex, const PartOptio
   return {};
 }
 
-void tell_repairs(const WeldReport& weld_report, const MeshReport& report, Part& part) {
-  const auto tell = [&part](std::size_t count, const char* text) {
+void note_repairs(const WeldReport& weld_report, const MeshReport& report, Part& part) {
+  const auto note = [&part](std::size_t count, const char* text) {
     if (count > 0) part.remarks.push_back(fmt::format("{} {}.", count, text));
   };
-  tell(weld_report.index_degenerate.size(), "triangles with two equal corners were dropped");
-  tell(weld_report.zero_area.size(), "triangles without area were dropped");
-  tell(weld_report.duplicates.size(), "triangles that stood twice were dropped");
-  tell(static_cast<std::size_t>(report.boundary_edges), "edges are open: the surface has holes");
-  tell(static_cast<std::size_t>(report.misoriented_edges), "edges join triangles that face opposite ways");
+  note(weld_report.index_degenerate.size(), "triangles with two equal corners were dropped");
+  note(weld_report.zero_area.size(), "triangles without area were dropped");
+  note(weld_report.duplicates.size(), "triangles that stood twice were dropped");
+  note(static_cast<std::size_t>(report.boundary_edges), "edges are open: the surface has holes");
+  note(static_cast<std::size_t>(report.misoriented_edges), "edges join triangles that face opposite ways");
 }
 
 }  // namespace
@@ -235,7 +235,7 @@ Result<Part> part_from_mesh(const TriangleMesh& mesh, const PartOptions& options
   part.mass = mass_properties_or_hull(scaled, options.density_kg_per_m3);
   WeldedMesh welded = weld(scaled, {.drop_zero_area = true, .drop_duplicates = true});
   part.surface = std::move(welded.mesh);
-  tell_repairs(welded.report, report, part);
+  note_repairs(welded.report, report, part);
   const TriangleMesh closed =
       weld(scaled).mesh;  // where triangles without area still hold the surface together
   if (Result<void> made = add_pieces(closed, report.convex, options, part); !made) return made.error();

@@ -175,7 +175,7 @@ Result<void> verdict_on(const Verification& found, const std::string& name) {
 Result<PartFile> prepare_part(const ImportedMesh& imported, const PrepareOptions& options,
                               const PrepareProgress& progress) {
   const PrepareProgress silent = [](const char*, double) {};
-  const PrepareProgress& tell = progress ? progress : silent;
+  const PrepareProgress& show_progress = progress ? progress : silent;
   PrepareReport report;
   report.format = imported.report.format;
   Aabb box;
@@ -185,7 +185,7 @@ Result<PartFile> prepare_part(const ImportedMesh& imported, const PrepareOptions
   if (!unit) return unit.error();
   report.unit = *unit;
 
-  tell("repairing", 0.1);
+  show_progress("repairing", 0.1);
   ImportedMesh given = imported;
   for (Vec3& vertex : given.mesh.vertices) vertex *= report.unit.metres_per_unit;
   const RepairedMesh repaired = repair_mesh(given.mesh, {.close_holes = options.close_holes});
@@ -201,13 +201,14 @@ Result<PartFile> prepare_part(const ImportedMesh& imported, const PrepareOptions
   file.density_kg_per_m3 = options.density_kg_per_m3;
   const PiecesInput input{given, repaired.mesh, report.mesh, part_options};
   const TriangleMesh reference = reference_of(given.mesh, repaired);
-  if (Result<void> made = make_pieces({input, reference, tell, options.area_samples}, options, file, report);
+  if (Result<void> made =
+          make_pieces({input, reference, show_progress, options.area_samples}, options, file, report);
       !made)
     return made.error();
   for (const RepairNote& note : repaired.notes)
     if (!note.mended) file.part.remarks.push_back(note.sentence());
   file.report = to_json(report, file.part);
-  tell("writing", 0.95);
+  show_progress("writing", 0.95);
   return file;
 }
 
