@@ -90,17 +90,17 @@ int expect_as_referee(const TriangleMesh& mesh_a, const TriangleMesh& mesh_b, co
   return static_cast<int>(found.size());
 }
 
-/// B moved along `way` until the surfaces are `gap` apart.
-Pose approached(const TriangleMesh& mesh_a, const TriangleMesh& mesh_b, const Mat3& R, const Vec3& way,
+/// B moved along `direction` until the surfaces are `gap` apart.
+Pose approached(const TriangleMesh& mesh_a, const TriangleMesh& mesh_b, const Mat3& R, const Vec3& direction,
                 double gap) {
   const Surface a(mesh_a);
   const Surface b(mesh_b);
   SurfacePairCache cache;
-  Pose X{R, (a.size() + b.size()) * way};
+  Pose X{R, (a.size() + b.size()) * direction};
   for (int step = 0; step < 200; ++step) {
     const double left = surface_distance(a, b, X, cache).distance - gap;
     if (left < 0.01 * gap) break;
-    X.p -= left * way;
+    X.p -= left * direction;
   }
   return X;
 }
@@ -157,9 +157,9 @@ TEST(SurfaceMinima, OfCrossedSurfacesAreThoseOfEveryPairOfFeatures) {
     SCOPED_TRACE(pair.name);
     int negative = 0;
     for (int i = 0; i < std::max(2, cases::some_of(6)); ++i) {
-      const Vec3 way = cases::random_unit(random);
-      Pose X = approached(pair.a, pair.b, cases::random_rotation(random), way, 0.05 * pair.reach);
-      X.p -= 0.1 * pair.reach * way;
+      const Vec3 direction = cases::random_unit(random);
+      Pose X = approached(pair.a, pair.b, cases::random_rotation(random), direction, 0.05 * pair.reach);
+      X.p -= 0.1 * pair.reach * direction;
       const MinimaQuery what{pair.reach, 0.5 * pair.reach, 0.004};
       expect_as_referee(pair.a, pair.b, X, what);
       for (const SurfaceMinimum& m : query(SurfaceTree(pair.a), SurfaceTree(pair.b), X, what))

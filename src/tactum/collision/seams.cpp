@@ -157,9 +157,9 @@ bool allowed_by_neighbours(const Part& part, int piece, const Feature& feature, 
     for (const Polytope::Face& plane : part.pieces[Index(neighbour)].faces) {
       const Vec3 aside = plane.normal - outward * outward.dot(plane.normal);
       const double sine = aside.norm();
-      const double way = plane.offset + 3.0 * noise - plane.normal.dot(p);
-      if (!(way <= slack * sine)) continue;
-      const Vec3 beside = p + aside * (way / (sine * sine));
+      const double depth = plane.offset + 3.0 * noise - plane.normal.dot(p);
+      if (!(depth <= slack * sine)) continue;
+      const Vec3 beside = p + aside * (depth / (sine * sine));
       if (holds(part.pieces[Index(piece)], beside, noise) && is_open(beside)) return true;
     }
   }

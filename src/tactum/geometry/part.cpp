@@ -139,7 +139,7 @@ Result<void> add_pieces(const TriangleMesh& closed, bool convex, const PartOptio
     if (convex) {
       if (Result<Polytope> solid = convex_hull(part.surface.vertices); solid && !solid->flat) {
         add_solid_pieces({std::move(*solid)}, part);
-        part.way = "solid: convex as it is";
+        part.piece_report = "solid: convex as it is";
         return {};
       }
     }
@@ -147,15 +147,15 @@ Result<void> add_pieces(const TriangleMesh& closed, bool convex, const PartOptio
     Result<SolidPieces> solid =
         solid_pieces(closed, options.most_solid_pieces > 0 ? options.most_solid_pieces : few);
     if (solid) {
-      part.way = fmt::format("solid: {} convex pieces from {} reflex edges", solid->pieces.size(),
-                             solid->reflex_edges);
+      part.piece_report = fmt::format("solid: {} convex pieces from {} reflex edges", solid->pieces.size(),
+                                      solid->reflex_edges);
       add_solid_pieces(std::move(solid->pieces), part);
       return {};
     }
     if (!chosen_here) return unusable(options, solid.error().found, solid.error().expected);
-    part.way = fmt::format("surface: {} ({})", solid.error().what, solid.error().found);
+    part.piece_report = fmt::format("surface: {} ({})", solid.error().what, solid.error().found);
   } else {
-    part.way = "surface: asked for";
+    part.piece_report = "surface: asked for";
   }
   return {};
 }
@@ -200,7 +200,7 @@ Result<Part> part_from_clouds(const std::vector<std::vector<Vec3>>& clouds, cons
     append_faces(*piece, part.surface);
     pieces.push_back(std::move(*piece));
   }
-  part.way = fmt::format("given: {} convex pieces", pieces.size());
+  part.piece_report = fmt::format("given: {} convex pieces", pieces.size());
   add_solid_pieces(std::move(pieces), part);
   part.mass = joined(masses);
   complete(part);

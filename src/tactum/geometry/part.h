@@ -34,7 +34,8 @@ enum class PieceSource {
 
 struct Part {
   std::string name;
-  std::string way;  ///< how the pieces were made, and why so: "solid: 13 convex pieces from 8 reflex edges"
+  /// How the pieces were made, and why so: "solid: 13 convex pieces from 8 reflex edges".
+  std::string piece_report;
   TriangleMesh surface;            ///< welded, without degenerate triangles [m]
   std::vector<Polytope> pieces;    ///< in the part's frame
   std::vector<int> surface_group;  ///< of each piece: its contact patch, 0 .. group_count - 1

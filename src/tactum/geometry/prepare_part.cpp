@@ -69,22 +69,22 @@ struct Attempt {
   const PrepareProgress& progress;
   int area_samples;
 
-  Result<void> run(const PiecesWay& way, PartFile& file, PrepareReport& report) const {
+  Result<void> run(const PieceMethod& method, PartFile& file, PrepareReport& report) const {
     progress("cutting into pieces", 0.3);
-    const Result<Vec3> center = way.center(input);
+    const Result<Vec3> center = method.center(input);
     if (!center) return center.error();
-    Result<Part> part = way.make(input, *center);
+    Result<Part> part = method.make(input, *center);
     if (!part) return part.error();
     progress("verifying", 0.6);
     const bool solid = std::any_of(part->pieces.begin(), part->pieces.end(),
                                    [](const Polytope& piece) { return !piece.flat; });
     const double area = solid && part->pieces.size() > 1 ? -1.0 : input.report.area;
     report.verification =
-        verify_part(reference, *part, *center, solid ? way.volume(input) : -1.0, area, area_samples);
+        verify_part(reference, *part, *center, solid ? method.volume(input) : -1.0, area, area_samples);
     if (Result<void> passed = verdict_on(report.verification, input.options.name); !passed) return passed;
     file.part = std::move(*part);
     file.origin = *center;
-    report.pieces = way.name;
+    report.pieces = method.name;
     return {};
   }
 };
@@ -93,20 +93,20 @@ struct Attempt {
 Result<void> make_pieces(const Attempt& attempt, const PrepareOptions& options, PartFile& file,
                          PrepareReport& report) {
   std::string tried;
-  for (const PiecesWay& way : all_pieces_ways()) {
-    if (options.pieces != "auto" && options.pieces != way.name) continue;
-    const std::string reason = options.pieces == "auto" ? way.suits(attempt.input) : "as asked for";
+  for (const PieceMethod& method : all_piece_methods()) {
+    if (options.pieces != "auto" && options.pieces != method.name) continue;
+    const std::string reason = options.pieces == "auto" ? method.suits(attempt.input) : "as asked for";
     if (reason.empty()) continue;
-    const Result<void> done = attempt.run(way, file, report);
+    const Result<void> done = attempt.run(method, file, report);
     if (done) {
       report.pieces_reason = tried + reason;
       return {};
     }
-    if (options.pieces != "auto" || &way == &all_pieces_ways().back()) return done;
-    tried += fmt::format("not {}, since {}; ", way.name, done.error().message());
+    if (options.pieces != "auto" || &method == &all_piece_methods().back()) return done;
+    tried += fmt::format("not {}, since {}; ", method.name, done.error().message());
   }
   std::string known = "auto";
-  for (const PiecesWay& way : all_pieces_ways()) known += std::string(", ") + way.name;
+  for (const PieceMethod& method : all_piece_methods()) known += std::string(", ") + method.name;
   return refused("pieces \"" + options.pieces + "\"", known, options);
 }
 
@@ -114,7 +114,7 @@ Result<void> make_pieces(const Attempt& attempt, const PrepareOptions& options, 
 
 std::vector<std::string> pieces_ways() {
   std::vector<std::string> names;
-  for (const PiecesWay& way : all_pieces_ways()) names.emplace_back(way.name);
+  for (const PieceMethod& method : all_piece_methods()) names.emplace_back(method.name);
   return names;
 }
 

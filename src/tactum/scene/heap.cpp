@@ -100,10 +100,10 @@ Result<Part> make_jack(double width_m, double arm_m) {
   pieces.push_back(frustum(Vec3::UnitX(), -half, 0.0, width_m, width_m));
   pieces.push_back(frustum(Vec3::UnitX(), 0.0, half, width_m, width_m));
   for (int axis = 0; axis < 3; ++axis)
-    for (const double way : {-1.0, 1.0})
+    for (const double sign : {-1.0, 1.0})
       for (int k = 0; k < 3; ++k) {
         const double from = half + k * arm_m / 3.0;
-        pieces.push_back(frustum(way * Vec3::Unit(axis), from, from + arm_m / 3.0, width_m,
+        pieces.push_back(frustum(sign * Vec3::Unit(axis), from, from + arm_m / 3.0, width_m,
                                  k == 2 ? kTip * width_m : width_m));
       }
   return part_from_clouds(pieces);
