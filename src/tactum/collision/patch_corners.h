@@ -45,7 +45,8 @@ class CornerMemory {
                   PatchCorners& corners) noexcept;
 
  private:
-  /// All that the corners follow from, and them; of more than there is room for nothing is remembered.
+  /// The corners of one patch, with everything that they were computed from. A patch of more corners than
+  /// there is room for is not remembered.
   struct Slot {
     std::array<int, 4> pair{-1, -1, -1, -1};
     FeaturePair features;

@@ -12,8 +12,8 @@ namespace {
 
 using Index = std::size_t;
 
-/// What is told so many times deeper on the whole part than its piece and the leaders together are is looked
-/// at again.
+/// A contact whose depth on the whole part exceeds so many times the depth on its pieces and of the leaders
+/// together is looked for again: that depth is probably the way through the whole piece.
 constexpr double kFarDeeper = 2.0;
 
 /// The candidates of two bodies.
@@ -65,10 +65,11 @@ class TwoBodies {
     candidate.internal = false;
   }
 
-  /// What was told far deeper than it was found and than the leaders are, as the way through the whole piece,
-  /// is judged anew. In a corner the deepest point of a contact lies in the neighbour, as deep as that is
-  /// entered: it is looked for beside the covered place. Where rounding leaves no true face or edge there
-  /// that has it, or the contact is true in its middle, it is what was found. False when it is nothing.
+  /// Looks again for a contact whose depth on the true surface is far greater than on its pieces and than
+  /// that of the leaders. In a corner of two walls the deepest point of a contact with the one lies inside the
+  /// other, as deep as that one is entered, so the search goes that far beside the covered place. The depth on
+  /// the pieces is taken where rounding leaves no true face or edge there, or where the contact is true in its
+  /// middle. Returns false when nothing is in contact.
   bool find_beside_leaders(SeamCandidate& candidate) noexcept {
     const PairDistance& on_pieces = candidate.on_pieces;
     const double entered = deepest_leader();

@@ -61,14 +61,14 @@ inline double reach_beyond(const Polytope& P, const Polytope::Edge& e, double sl
   return cosine > -1.0 ? slope * P.size * std::sqrt(2.0 / (1.0 + cosine)) : kInfinity;
 }
 
-/// The edge at a vertex that rises most along a direction.
+/// The edge at a vertex that rises most along a direction, and the sine by which it rises.
 struct Steepest {
   int edge;
   double slope;
 };
 
-/// By a pointer that is chosen, not jumped for: which of the edges it is is new at every vertex, and a jump
-/// guessed wrong costs as much as looking at all of them.
+/// Selects without a branch: which edge it is cannot be predicted from vertex to vertex, and a branch that is
+/// predicted wrong costs as much as all the edges.
 inline Steepest steepest_edge(const Polytope& P, int v, const Vec3& d) noexcept {
   const std::span<const Polytope::Ray> rays = P.rays_at(v);
   const Polytope::Ray* steepest = rays.data();
