@@ -66,10 +66,10 @@ class TwoBodies {
   }
 
   /// Looks again for a contact whose depth on the true surface is far greater than on its pieces and than
-  /// that of the leaders. In a corner of two walls the deepest point of a contact with the one lies inside the
-  /// other, as deep as that one is entered, so the search goes that far beside the covered place. The depth on
-  /// the pieces is taken where rounding leaves no true face or edge there, or where the contact is true in its
-  /// middle. Returns false when nothing is in contact.
+  /// that of the leaders. In a corner of two walls the deepest point of a contact with the one lies inside
+  /// the other, as deep as that one is entered, so the search goes that far beside the covered place. The
+  /// depth on the pieces is taken where rounding leaves no true face or edge there, or where the contact is
+  /// true in its middle. Returns false when nothing is in contact.
   bool find_beside_leaders(SeamCandidate& candidate) noexcept {
     const PairDistance& on_pieces = candidate.on_pieces;
     const double entered = deepest_leader();

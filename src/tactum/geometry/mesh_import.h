@@ -53,7 +53,7 @@ struct ImportedMesh {
   ImportReport report;
 };
 
-/// The mesh of a file; its format is told by its content, helped by the ending of its name.
+/// The mesh of a file; its format follows from its content, helped by the ending of its name.
 Result<ImportedMesh> import_mesh(const std::string& path, const ImportOptions& options = {});
 
 /// The same from bytes in memory. `name` gives the ending and the place in errors; files that a glTF refers

@@ -40,7 +40,7 @@ class SurfaceTree {
   SurfaceTree() = default;
   /// Over a mesh whose triangles have three different corners and an area (weld() sees to it), outward.
   explicit SurfaceTree(const TriangleMesh& welded);
-  /// The same with the flat faces found already: `group` of each triangle, as coplanar_groups() tells them.
+  /// The same with the flat faces found already: `group` of each triangle, as coplanar_groups() numbers them.
   SurfaceTree(const TriangleMesh& welded, const std::vector<int>& group);
 
   bool empty() const noexcept { return triangles_.empty(); }
@@ -71,8 +71,8 @@ class SurfaceTree {
   struct Stand {
     Lanes3 up, center, along, across;  ///< axes are units [-], the center [m]
   };
-  /// Eight boxes, told from the mesh's center. `up` is the mean direction of the cones within; `cone` is the
-  /// largest angle from it to one of them.
+  /// Eight boxes, relative to the mesh's center. `up` is the mean direction of the cones within; `cone` is
+  /// the largest angle from it to one of them.
   struct Node {
     Stand at{};
     Lanes3 half{};    ///< half the sides along `along`, `across` and `up` [m]
