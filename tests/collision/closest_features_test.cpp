@@ -361,7 +361,7 @@ TEST(ClosestFeatures, RoundingAtASharpEdgeLeadsNobodyInCircles) {
     ASSERT_TRUE(piece) << piece.error().message();
     // Over the border from corner 0 to 1, whose outside is -y, as far out as is still held for the column.
     Vec3 over(random.uniform(0.2, 0.8) * flat[1].x(), 0.0, random.uniform(1e-5, 1e-3));
-    over.y() = -random.uniform(0.9, 1.2) * tolerances::kVoronoiSlack *
+    over.y() = -random.uniform(0.9, 1.2) * tolerances::kVoronoiTolerance *
                (over.lpNorm<1>() + tip.magnitude + piece->magnitude);
     Pose X_AB;  // the tip's axis up the triangle's normal, its point at `over`
     X_AB.R = turned.transpose();

@@ -312,7 +312,7 @@ class Search {
     const Vec3& p = of.points[corner.v];
     const double height = face.normal.dot(p - on.points[face.v[0]]);
     if (range_margin(height) < -error_bound_) return;
-    double margin = corner_margin(corner, -face.normal, query_.cone_slack);
+    double margin = corner_margin(corner, -face.normal, query_.cone_inflation);
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3& from = on.points[face.v[k]];
       const Vec3 along = on.points[face.v[(k + 1) % 3]] - from;
@@ -333,8 +333,8 @@ class Search {
     const double distance = (p - foot).norm();
     if (distance > 2.0 * query_.reach || distance < 1e-12) return;
     const Vec3 n = (p - foot) / distance;
-    const double margin = std::min(
-        {t, 1.0 - t, edge_margin(edge, n, query_.cone_slack), corner_margin(corner, -n, query_.cone_slack)});
+    const double margin = std::min({t, 1.0 - t, edge_margin(edge, n, query_.cone_inflation),
+                                    corner_margin(corner, -n, query_.cone_inflation)});
     take({corner.v}, {edge.v, edge.w}, distance, p, foot, n, margin, swapped);
   }
 
@@ -344,7 +344,8 @@ class Search {
     if (distance > 2.0 * query_.reach || distance < 1e-12) return;
     const Vec3 n = off / distance;
     take({x.v}, {y.v}, distance, a_.points[x.v], b_.points[y.v], n,
-         std::min(corner_margin(x, -n, query_.cone_slack), corner_margin(y, n, query_.cone_slack)), false);
+         std::min(corner_margin(x, -n, query_.cone_inflation), corner_margin(y, n, query_.cone_inflation)),
+         false);
   }
 
   void edge_edge(const Edge& e, const Edge& f) {
@@ -354,7 +355,7 @@ class Search {
     const Vec3 w = b_.points[f.w] - q;
     const Vec3 c = u.cross(w);
     const double sine = c.norm() / (u.norm() * w.norm());
-    if (sine <= query_.cone_slack + error_bound_) parallel(e, f, query_.cone_slack - sine);
+    if (sine <= query_.cone_inflation + error_bound_) parallel(e, f, query_.cone_inflation - sine);
     if (sine < 1e-8) return;
     const Vec3 n = c.normalized();
     const double height = n.dot(p - q);
@@ -367,8 +368,8 @@ class Search {
     const double on_both = std::min({s, 1.0 - s, t, 1.0 - t});
     if (on_both < -error_bound_) return;
     for (double sign : {1.0, -1.0}) {
-      const double margin = std::min({on_both, edge_margin(f, sign * n, query_.cone_slack),
-                                      edge_margin(e, -sign * n, query_.cone_slack)});
+      const double margin = std::min({on_both, edge_margin(f, sign * n, query_.cone_inflation),
+                                      edge_margin(e, -sign * n, query_.cone_inflation)});
       take({e.v, e.w}, {f.v, f.w}, sign * height, p + s * u, q + t * w, sign * n, margin, false);
     }
   }
@@ -392,8 +393,8 @@ class Search {
       const Vec3 n = (p_a - p_b) / distance;
       for (double sign : {1.0, -1.0}) {
         take({e.v, e.w}, {f.v, f.w}, sign * distance, p_a, p_b, sign * n,
-             std::min({margin, to - from, edge_margin(f, sign * n, query_.cone_slack),
-                       edge_margin(e, -sign * n, query_.cone_slack)}),
+             std::min({margin, to - from, edge_margin(f, sign * n, query_.cone_inflation),
+                       edge_margin(e, -sign * n, query_.cone_inflation)}),
              false);
       }
     }

@@ -21,7 +21,7 @@ inline constexpr double kCertificate = 1e-9;
 /// Voronoi planes are crossed only when a point is beyond them by this much of the size, so that a point on
 /// a plane does not walk to and fro. A few roundings: at 1e-13 the walk stopped short beside gaps of 1e-8,
 /// where a point 1e-13 off its region means a normal 1e-5 off.
-inline constexpr double kVoronoiSlack = 1e-15;
+inline constexpr double kVoronoiTolerance = 1e-15;
 
 /// Below this share of the size a vector between witness points no longer has a direction of its own.
 inline constexpr double kTouching = 1e-12;
@@ -114,7 +114,7 @@ inline constexpr double kPenetrating = 1e-9;
 /// The normal cones of features are widened by this angle [rad] when contacts are looked for, the most a part
 /// turns in a step: with the true cones only the lowest corner of a flat contact counts, and sliding over a
 /// plane of many pieces sticks.
-inline constexpr double kConeSlack = 0.004;
+inline constexpr double kConeInflation = 0.004;
 
 /// Unit normals that differ by less than this are one: a corner's mean normal is then the face's own, to the
 /// bit.
@@ -152,7 +152,7 @@ inline constexpr double kStoredNoise = 1.2e-7;
 
 /// Box tests grow the boxes by this share of their size, so that rounding of the rotated axes never parts
 /// boxes that touch.
-inline constexpr double kBoxSlack = 1e-14;
+inline constexpr double kBoxMargin = 1e-14;
 
 /// What rounding to single precision may do to bounds kept in it (6e-8 a number, a few in a row), as a share
 /// of the size for lengths and in radians for angles: such bounds are grown by this, so that no pair is lost.

@@ -28,7 +28,7 @@ namespace {
   if (cache.overlap.known && still_inside(PairView(pair), cache, x)) return x;
   const bool tracked = valid_feature(A, cache.a) && valid_feature(B, cache.b);
   const FeaturePair seed = tracked ? FeaturePair{cache.a, cache.b} : first_seed(pair);
-  const FeatureWalk walk = vclip::walk_features(pair, seed, tolerances::kVoronoiSlack * pair.scale, x);
+  const FeatureWalk walk = vclip::walk_features(pair, seed, tolerances::kVoronoiTolerance * pair.scale, x);
   if (!(walk.error_bound <= certificate(pair) && std::abs(x.distance) < vclip::kInfinity)) {
     x = resolve_uncertified(PairView(pair), cache, walk, x);
     return x;

@@ -9,9 +9,9 @@
 /// The points lie on the pieces, so d is an upper bound: where both agree the answer is right, however the
 /// walk came to it. Where they do not, true supports along n are the lower bound, and the points are sought
 /// in this order: the normal put back into its features' cones (gaps so small that the points' difference has
-/// lost its direction); the walk again from the supports just found, with wider Voronoi slack; the walk on
-/// the Minkowski difference; distance by support mapping [Gilbert 1988]; every pair of features of small
-/// pieces. The stop says which it was, and `error_bound` what is left.
+/// lost its direction); the walk again from the supports just found, with a wider crossing
+/// tolerance; the walk on the Minkowski difference; distance by support mapping [Gilbert 1988]; brute force
+/// for small pieces. The stop says which it was, and `error_bound` what is left.
 ///
 /// Overlapping pieces are recognised by a proof that they share a point (overlap.h, support_distance.h), and
 /// answered by penetration.h.

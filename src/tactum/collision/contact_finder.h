@@ -201,8 +201,8 @@ class ContactFinder {
   std::vector<CollisionBody> bodies_;
   std::vector<Aabb> part_box_;  // of the part, in its own frame
   std::vector<double> radius_;
-  std::vector<Aabb> fat_box_;  // in the world, grown by slack
-  std::vector<double> slack_;  // how far boxes and lists are grown
+  std::vector<Aabb> fat_box_;       // in the world, grown
+  std::vector<double> box_growth_;  // how far boxes and lists are grown
   std::vector<double> travel_;
   std::vector<Pose> last_X_WB_;
   SweepAndPrune sweep_;

@@ -111,18 +111,19 @@ class Query {
   }
 
  private:
-  /// Judges the walk, and walks again from the supports with wider slack. True when certified or overlapping.
+  /// Judges the walk, and walks again from the supports with a wider crossing tolerance. True when certified
+  /// or overlapping.
   bool walked(FeatureWalk walk, PairDistance at) noexcept {
-    double slack = tolerances::kVoronoiSlack * pair_.scale;
+    double crossing_tolerance = tolerances::kVoronoiTolerance * pair_.scale;
     for (int attempt = 0; attempt < kAttempts; ++attempt) {
       steps_ += walk.steps;
       if (walk.end == FeatureWalkEnd::kOverlap) return overlapping();
       if (walk.end == FeatureWalkEnd::kBehind) return by_supports();
       const bool straight = attempt == 0 && walk.end == FeatureWalkEnd::kClosest;
       if (certified(at, straight ? Stop::kCertified : Stop::kFallback)) return true;
-      slack *= kWiderSlack;
-      walk =
-          feature_walk(pair_, {Kind::kVertex, last_.support_a}, {Kind::kVertex, last_.support_b}, slack, at);
+      crossing_tolerance *= kWiderTolerance;
+      walk = feature_walk(pair_, {Kind::kVertex, last_.support_a}, {Kind::kVertex, last_.support_b},
+                          crossing_tolerance, at);
     }
     return false;
   }
@@ -160,7 +161,7 @@ class Query {
     if (supports.end == FeatureWalkEnd::kOverlap) return overlapping();
     PairDistance polished;
     const FeatureWalk walk =
-        feature_walk(pair_, at.a, at.b, tolerances::kVoronoiSlack * pair_.scale, polished);
+        feature_walk(pair_, at.a, at.b, tolerances::kVoronoiTolerance * pair_.scale, polished);
     steps_ += walk.steps;
     if (walk.end == FeatureWalkEnd::kOverlap) return overlapping();
     if (walk.end == FeatureWalkEnd::kClosest && certified(polished, Stop::kFallback)) return true;
@@ -199,7 +200,7 @@ class Query {
   }
 
   static constexpr int kAttempts = 4;
-  static constexpr double kWiderSlack = 32.0;
+  static constexpr double kWiderTolerance = 32.0;
   static constexpr std::size_t kSmallEdgePairs = 4096;  ///< every feature is tried up to here: 40 us
 
   const PairView& pair_;

@@ -14,7 +14,7 @@ using Index = std::size_t;
 
 /// Boxes and lists of near pairs are grown by this share of the smaller body's radius beyond the tolerance:
 /// more means they are renewed less often but hold more pairs.
-constexpr double kSlack = 0.05;
+constexpr double kBoxGrowth = 0.05;
 
 /// The axis-aligned box around a turned box.
 Aabb turned(const Aabb& box, const Pose& X, double grown) {
@@ -42,8 +42,8 @@ ContactFinder::ContactFinder(std::vector<CollisionBody> bodies, std::span<const 
           }
           radius_.push_back(radius);
           part_box_.push_back(box);
-          slack_.push_back(kSlack * radius);
-          fat_box_.push_back(turned(box, X_WB[i], slack_.back()));
+          box_growth_.push_back(kBoxGrowth * radius);
+          fat_box_.push_back(turned(box, X_WB[i], box_growth_.back()));
         }
         return SweepAndPrune(fat_box_);
       }()) {
@@ -90,7 +90,7 @@ void ContactFinder::move_boxes(std::span<const Pose> X_WB) noexcept {
     const double needed = std::max(reach_[i], min_tolerance_);
     const Aabb tight = turned(part_box_[i], X_WB[i], needed);
     if (inside(tight, fat_box_[i])) continue;
-    fat_box_[i] = turned(part_box_[i], X_WB[i], needed + slack_[i]);
+    fat_box_[i] = turned(part_box_[i], X_WB[i], needed + box_growth_[i]);
     sweep_.move(static_cast<int>(i), fat_box_[i]);
     moved = true;
   }
@@ -120,7 +120,8 @@ void ContactFinder::renew_lists(std::span<const Pose> X_WB) noexcept {
     } else {
       const BodyPair old = list;
       list.accumulated_motion = accumulated_motion(near.a, near.b);
-      list.reach = tolerance(near.a, near.b) + std::min(slack_[Index(near.a)], slack_[Index(near.b)]);
+      list.reach =
+          tolerance(near.a, near.b) + std::min(box_growth_[Index(near.a)], box_growth_[Index(near.b)]);
       list.cut_short =
           !collect(near.a, near.b, relative_pose(X_WB[Index(near.a)], X_WB[Index(near.b)]), list.reach);
       append_pairs(near.a, near.b, old);

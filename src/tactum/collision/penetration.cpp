@@ -105,10 +105,10 @@ class Shallowest {
   void take(const MinkowskiWalk& walk) noexcept {
     steps_ += walk.steps;
     const PairDistance next = answer(pair_, walk, 0);
-    const double slack = tolerances::kCertificate * pair_.size;
+    const double tolerance = tolerances::kCertificate * pair_.size;
     const bool better = next.certified() == best_.certified() ? next.distance > best_.distance
-                        : next.certified()                    ? next.distance > best_.distance - slack
-                                                              : next.distance > best_.distance + slack;
+                        : next.certified()                    ? next.distance > best_.distance - tolerance
+                                                              : next.distance > best_.distance + tolerance;
     if (!any_ || better) best_ = next;
     any_ = true;
   }

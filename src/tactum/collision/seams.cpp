@@ -19,17 +19,17 @@ int number_of(const Part& part, int piece, const Feature& feature) noexcept {
   return part.true_surface.number(piece, static_cast<int>(feature.kind), feature.index);
 }
 
-/// Whether `p` is in P, or no farther than `slack` beyond a face.
-bool holds(const Polytope& P, const Vec3& p, double slack) noexcept {
+/// Whether `p` is in P, or no farther than `margin` beyond a face.
+bool holds(const Polytope& P, const Vec3& p, double margin) noexcept {
   return std::all_of(P.faces.begin(), P.faces.end(), [&](const Polytope::Face& plane) {
-    return plane.normal.dot(p) <= plane.offset + slack;
+    return plane.normal.dot(p) <= plane.offset + margin;
   });
 }
 
-bool in_column(const Polytope& P, int face, const Vec3& p, double slack) noexcept {
+bool in_column(const Polytope& P, int face, const Vec3& p, double margin) noexcept {
   const Polytope::Face& loop = P.faces[face];
   for (int slot = loop.first; slot < loop.first + loop.count; ++slot)
-    if (P.sides[slot].normal.dot(p) > P.sides[slot].offset + slack) return false;
+    if (P.sides[slot].normal.dot(p) > P.sides[slot].offset + margin) return false;
   return true;
 }
 
@@ -136,7 +136,7 @@ std::optional<PairDistance> crossing_edges(const Polytope& A, int edge_a, const 
 }  // namespace
 
 bool allowed_by_neighbours(const Part& part, int piece, const Feature& feature, const Vec3& p,
-                           const Vec3& outward, double slack) noexcept {
+                           const Vec3& outward, double margin) noexcept {
   if (part.true_surface.single_piece()) return true;
   const double noise = noise_of(part);
   const auto neighbours = part.true_surface.neighbours(number_of(part, piece, feature));
@@ -150,7 +150,7 @@ bool allowed_by_neighbours(const Part& part, int piece, const Feature& feature, 
                         [&](int neighbour) { return covered_by(neighbour, at); });
   };
   if (is_open(p)) return true;
-  if (slack == 0.0) return false;
+  if (margin == 0.0) return false;
   // The nearest places beside p, square to `outward`, that some neighbour no longer covers.
   for (const int neighbour : neighbours) {
     if (!covered_by(neighbour, p)) continue;
@@ -158,7 +158,7 @@ bool allowed_by_neighbours(const Part& part, int piece, const Feature& feature, 
       const Vec3 aside = plane.normal - outward * outward.dot(plane.normal);
       const double sine = aside.norm();
       const double depth = plane.offset + 3.0 * noise - plane.normal.dot(p);
-      if (!(depth <= slack * sine)) continue;
+      if (!(depth <= margin * sine)) continue;
       const Vec3 beside = p + aside * (depth / (sine * sine));
       if (holds(part.pieces[Index(piece)], beside, noise) && is_open(beside)) return true;
     }
@@ -167,11 +167,11 @@ bool allowed_by_neighbours(const Part& part, int piece, const Feature& feature, 
 }
 
 bool is_true_contact(const Part& part_a, int piece_a, const Part& part_b, int piece_b, const Pose& X_AB,
-                     const PairDistance& found, double slack) noexcept {
-  return allowed_by_neighbours(part_a, piece_a, found.a, found.p_a, -found.normal, slack) &&
+                     const PairDistance& found, double margin) noexcept {
+  return allowed_by_neighbours(part_a, piece_a, found.a, found.p_a, -found.normal, margin) &&
          (part_b.true_surface.single_piece() ||
           allowed_by_neighbours(part_b, piece_b, found.b, rotated_back(X_AB.R, found.p_b - X_AB.p),
-                                rotated_back(X_AB.R, found.normal), slack));
+                                rotated_back(X_AB.R, found.normal), margin));
 }
 
 Feature true_feature(const Part& part, int piece, const Feature& feature, const Vec3& p) noexcept {
@@ -211,7 +211,7 @@ Feature same_feature(const Part& part, int of_piece, const Feature& feature, int
 
 std::optional<PairDistance> depth_on_true_surface(const Part& part_a, int piece_a, const Part& part_b,
                                                   int piece_b, const Pose& X_AB, const PairDistance& found,
-                                                  double slack, double beside) noexcept {
+                                                  double margin, double beside) noexcept {
   const Polytope& A = part_a.pieces[Index(piece_a)];
   const Polytope& B = part_b.pieces[Index(piece_b)];
   const Pose X_BA = X_AB.inverse();
@@ -223,7 +223,7 @@ std::optional<PairDistance> depth_on_true_surface(const Part& part_a, int piece_
   for_true_faces(part_b, piece_b, A, X_BA, vertex_of(A, found.a), [&](int face, int vertex, double distance) {
     const Vec3& normal = B.faces[face].normal;
     const Vec3 foot = X_BA * A.vertices[vertex] - normal * distance;
-    if (!nearer(distance) || !in_column(B, face, foot, slack + beside)) return;
+    if (!nearer(distance) || !in_column(B, face, foot, margin + beside)) return;
     take({.distance = distance,
           .p_a = A.vertices[vertex],
           .p_b = X_AB * foot,
@@ -236,7 +236,7 @@ std::optional<PairDistance> depth_on_true_surface(const Part& part_a, int piece_
     const Vec3& normal = A.faces[face].normal;
     const Vec3 deepest = X_AB * B.vertices[vertex];
     const Vec3 foot = deepest - normal * distance;
-    if (!nearer(distance) || !in_column(A, face, foot, slack + beside)) return;
+    if (!nearer(distance) || !in_column(A, face, foot, margin + beside)) return;
     take({.distance = distance,
           .p_a = foot,
           .p_b = deepest,

@@ -160,7 +160,7 @@ FeatureWalk closest_by_supports(const PairView& pair, OverlapProof& proof, PairD
   FeatureWalk walk;
   walk.end = FeatureWalkEnd::kClosest;
   for (walk.steps = 1; walk.steps < kSteps; ++walk.steps) {
-    if (simplex.count == 4 || d.norm() <= tolerances::kVoronoiSlack * pair.scale) {
+    if (simplex.count == 4 || d.norm() <= tolerances::kVoronoiTolerance * pair.scale) {
       proof = proof_of(simplex);
       walk.end = FeatureWalkEnd::kOverlap;
       break;
@@ -169,7 +169,7 @@ FeatureWalk closest_by_supports(const PairView& pair, OverlapProof& proof, PairD
     bool known = false;
     for (int i = 0; i < simplex.count; ++i)
       known |= simplex.corners[i].a == next.a && simplex.corners[i].b == next.b;
-    if (known || d.dot(d - next.d) <= tolerances::kVoronoiSlack * d.squaredNorm()) break;
+    if (known || d.dot(d - next.d) <= tolerances::kVoronoiTolerance * d.squaredNorm()) break;
     const Simplex before = simplex;
     simplex.corners[simplex.count++] = next;
     const Vec3 nearer = reduce(simplex);

@@ -38,7 +38,7 @@ void ContactFinder::test_surfaces(int a, int b, std::span<const Pose> X_WB) noex
   const MinimaQuery query{
       .reach = reach,
       .depth = may_cross ? kSurfaceDepth * std::min(part_a.size, part_b.size) : kWatched * reach,
-      .cone_slack = tolerances::kConeSlack};
+      .cone_inflation = tolerances::kConeInflation};
   const Pose X_AB = relative_pose(X_WB[Index(a)], X_WB[Index(b)]);
   if (list.apart) {
     MinimaQuery farther = query;
@@ -117,7 +117,8 @@ void ContactFinder::surface_distances_at(std::span<const ContactPatch> patches, 
   const ContactPatch& first = patches.front();
   const Part& part_a = *bodies_[Index(first.body_a)].part;
   const Part& part_b = *bodies_[Index(first.body_b)].part;
-  const MinimaQuery query{.reach = kWatched * first.tolerance, .depth = first.tolerance, .cone_slack = 0.0};
+  const MinimaQuery query{
+      .reach = kWatched * first.tolerance, .depth = first.tolerance, .cone_inflation = 0.0};
   const Pose X_AB = relative_pose(X_WB[Index(first.body_a)], X_WB[Index(first.body_b)]);
   surface_minima(part_a.tree, part_b.tree, X_AB, query, minima_);
   std::fill(distance.begin(), distance.end(), query.reach);

@@ -19,14 +19,14 @@
 /// do not cross, as long as they have moved by less than `depth` since they did not; `depth` must be smaller
 /// than the thinnest wall.
 ///
-/// Cones are inflated by `cone_slack`, the largest rotation of a step. Without it only the lowest corner of a
-/// flat contact is a minimum, and the contact sticks; with it, all corners of either that face the other, and
-/// the crossings of their outlines. `strict` marks minima that hold without it: validate with those alone.
-/// Outside its true cone the sign of an edge pair means nothing: one that is not strict is a constraint while
-/// it is apart, and none below zero.
+/// Cones are inflated by `cone_inflation`, the largest rotation of a step. Without it only the lowest corner
+/// of a flat contact is a minimum, and the contact sticks; with it, all corners of either that face the
+/// other, and the crossings of their outlines. `strict` marks minima that hold without it: validate with
+/// those alone. Outside its true cone the sign of an edge pair means nothing: one that is not strict is a
+/// constraint while it is apart, and none below zero.
 ///
-/// Edges parallel to within the slack touch along an interval: the two ends of it are two minima of the same
-/// features.
+/// Edges parallel to within the inflation touch along an interval: the two ends of it are two minima of the
+/// same features.
 ///
 /// Stateless: the same bits for the same poses whatever was asked before. No allocation, no locks. Cost and
 /// what was tried: docs/algorithms/surface_minima.md.
@@ -52,9 +52,9 @@ struct SurfaceMinimum {
 };
 
 struct MinimaQuery {
-  double reach = 0.0;       ///< minima up to this distance [m]
-  double depth = 0.0;       ///< ... and down to minus this one [m]
-  double cone_slack = 0.0;  ///< inflation of the cones, at most 0.1 [rad]
+  double reach = 0.0;           ///< minima up to this distance [m]
+  double depth = 0.0;           ///< ... and down to minus this one [m]
+  double cone_inflation = 0.0;  ///< inflation of the cones, at most 0.1 [rad]
 };
 
 /// Counted work of a query.

@@ -71,7 +71,7 @@ class FeatureComparison {
   InCone falls_away(double value, double length_sq) const noexcept;
   InCone in_edge_cone(const Side& side, const Edge& edge, const Vec3& u) const noexcept;
   InCone in_vertex_cone(const Side& side, std::int32_t corner, const Vec3& u) const noexcept;
-  /// Whether u is within the slack of the true cone.
+  /// Whether u is within the inflation of the true cone.
   bool near_vertex_cone(const SurfaceTree& tree, int vertex, const Vec3& u) const noexcept;
   /// What must fall away from a vertex at p, as SurfaceTree::around() names it.
   static Vec3 falling(const SurfaceTree& tree, const Vec3& p, std::int32_t w) noexcept;
@@ -84,7 +84,7 @@ class FeatureComparison {
   double reach_;
   double share_ = 0.0;
   double touching_;  // below this points have no direction between them [m]
-  double slack_sq_;
+  double inflation_sq_;
   double parallel_sq_;  // square of the sine below which edges touch along an interval
 };
 

@@ -28,7 +28,7 @@ using Three = std::array<float, 3>;
 /// What every quick test needs of the query, grown so that rounding loses nothing.
 struct Bounds {
   float reach, depth, far;  ///< far: the larger of the two [m]
-  float slack;              ///< of one cone [rad]
+  float inflation;          ///< of one cone [rad]
   float grown;              ///< by which lengths are grown [m]
 };
 

@@ -47,8 +47,9 @@ struct FeatureWalk {
 
 /// Walks from the features `a`, `b` (which must exist) and sets in `x` the features where it ended, and
 /// their points, normal and distance when it ended kClosest, kCircle or kBounded (the normal only when
-/// closest); the stop and the steps of `x` are the caller's. `slack` [m] is how far a point must be outside a
-/// plane to cross it.
-FeatureWalk feature_walk(const PiecePair& pair, Feature a, Feature b, double slack, PairDistance& x) noexcept;
+/// closest); the stop and the steps of `x` are the caller's. `crossing_tolerance` [m] is how far a point
+/// must be outside a plane to cross it.
+FeatureWalk feature_walk(const PiecePair& pair, Feature a, Feature b, double crossing_tolerance,
+                         PairDistance& x) noexcept;
 
 }  // namespace tactum

@@ -141,17 +141,17 @@ Verification verify_part(const TriangleMesh& reference, const Part& part, const 
 
 Result<void> verdict_on(const Verification& found, const std::string& name) {
   const Deviation& deviation = found.deviation;
-  const double slack = tolerances::kSurfaceDeviation * deviation.size;
+  const double tolerance = tolerances::kSurfaceDeviation * deviation.size;
   const auto differs = [&](std::string what, std::string expected) {
     return Error{"the pieces are not the mesh", std::move(what), std::move(expected), name};
   };
-  if (deviation.largest() > slack) {
+  if (deviation.largest() > tolerance) {
     const bool on_mesh = deviation.mesh_to_part > deviation.part_to_mesh;
     const Vec3& at = on_mesh ? deviation.worst_on_mesh : deviation.worst_on_part;
     return differs(fmt::format("{} {:.3g} m away at {:.6g} {:.6g} {:.6g}",
                                on_mesh ? "a point of the mesh" : "a point of the pieces", deviation.largest(),
                                at.x(), at.y(), at.z()),
-                   fmt::format("at most {:.3g}", slack));
+                   fmt::format("at most {:.3g}", tolerance));
   }
   if (found.overlaps.pairs > 0) {
     return differs(
@@ -160,12 +160,12 @@ Result<void> verdict_on(const Verification& found, const std::string& name) {
         "pieces that touch at most");
   }
   if (found.mesh_volume >= 0.0 &&
-      std::abs(found.pieces_volume - found.mesh_volume) > slack * found.pieces_area) {
+      std::abs(found.pieces_volume - found.mesh_volume) > tolerance * found.pieces_area) {
     return differs(fmt::format("a volume of {:.12g} m^3 in the pieces", found.pieces_volume),
                    fmt::format("{:.12g}, as the mesh encloses", found.mesh_volume));
   }
-  if (found.mesh_area >= 0.0 &&
-      std::abs(found.pieces_area - found.mesh_area) > slack * deviation.size + slack * found.mesh_area) {
+  if (found.mesh_area >= 0.0 && std::abs(found.pieces_area - found.mesh_area) >
+                                    tolerance * deviation.size + tolerance * found.mesh_area) {
     return differs(fmt::format("an area of {:.12g} m^2 in the pieces", found.pieces_area),
                    fmt::format("{:.12g}, as the mesh has", found.mesh_area));
   }
