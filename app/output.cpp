@@ -20,8 +20,8 @@ std::vector<std::string> frame_notes(const RunRecord& record) {
         "{} pair checks were left out, {} of them without a proof that nothing could touch; bodies waited "
         "{} times: raise max_exact_tests",
         record.unchecked, record.left_unproven, record.waiting));
-  if (record.flags & frame_flag::kRoomsFull)
-    notes.emplace_back("near pairs or patches were dropped: rooms are full");
+  if (record.flags & frame_flag::kCapacityReached)
+    notes.emplace_back("near pairs or patches were dropped: capacity reached");
   if (record.flags & frame_flag::kPointsFull)
     notes.emplace_back("contact points were dropped: raise max_contact_points");
   if (record.flags & frame_flag::kSolverBounded)

@@ -131,9 +131,9 @@ class Ledger {
  public:
   void add(const Run& run) {
     if (known_) {
-      const Vec3 way = run.X_WH.p - last_.p;
+      const Vec3 displacement = run.X_WH.p - last_.p;
       const Vec3 turn = log_rotation(run.X_WH.R * last_.R.transpose());
-      put_in_J -= 0.5 * ((run.felt.f + run.last.f).dot(way) + (run.felt.t + run.last.t).dot(turn));
+      put_in_J -= 0.5 * ((run.felt.f + run.last.f).dot(displacement) + (run.felt.t + run.last.t).dot(turn));
     }
     known_ = true;
     last_ = run.X_WH;

@@ -62,8 +62,8 @@ void press_and_release(FeelScene& scene, const Pose& start, const Pose& pressed)
   scene.judged_to_s = 1.0;
 }
 
-Wrench stretch(const Coupling& k, const Vec3& way, const Vec3& turn) {
-  return {k.stiffness_N_per_m * way, k.stiffness_Nm_per_rad * turn};
+Wrench stretch(const Coupling& k, const Vec3& displacement, const Vec3& turn) {
+  return {k.stiffness_N_per_m * displacement, k.stiffness_Nm_per_rad * turn};
 }
 
 FeelScene block_on_plane() {

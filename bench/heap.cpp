@@ -101,10 +101,10 @@ Result<Part> make_jack(double width_m, double arm_m) {
   pieces.push_back(frustum(Vec3::UnitX(), -half, 0.0, width_m, width_m));
   pieces.push_back(frustum(Vec3::UnitX(), 0.0, half, width_m, width_m));
   for (int axis = 0; axis < 3; ++axis)
-    for (const double way : {-1.0, 1.0})
+    for (const double sign : {-1.0, 1.0})
       for (int k = 0; k < 3; ++k) {
         const double from = half + k * arm_m / 3.0;
-        pieces.push_back(frustum(way * Vec3::Unit(axis), from, from + arm_m / 3.0, width_m,
+        pieces.push_back(frustum(sign * Vec3::Unit(axis), from, from + arm_m / 3.0, width_m,
                                  k == 2 ? kTip * width_m : width_m));
       }
   return part_from_clouds(pieces);
@@ -146,7 +146,7 @@ Result<Scene> heap_scene(const HeapOptions& options) {
   settings.shading.on = false;
   settings.friction = {std::vector<double>(world.bodies.size() * world.bodies.size(), kFriction), bodies};
   settings.budget.max_contact_points = 100 * bodies;
-  settings.budget.rooms = {.pairs = std::size_t(400 * bodies), .patches = std::size_t(100 * bodies)};
+  settings.budget.capacity = {.pairs = std::size_t(400 * bodies), .patches = std::size_t(100 * bodies)};
   scene.device = "premium-1.5-6dof";
   scene.grip = "medium";
   // So deep that the jack is covered by the heap's upper layers, and its arms stay off the floor.

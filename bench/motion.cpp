@@ -35,8 +35,8 @@ struct HandMotion {
   Vec3 turn = Vec3::Zero();  ///< [rad]
 
   void move(int frame, Pose& X, Random& random) {
-    constexpr int kFramesOneWay = 100;
-    if (frame % kFramesOneWay == 0) {
+    constexpr int kFramesOneDirection = 100;
+    if (frame % kFramesOneDirection == 0) {
       const double length_m = random.uniform(0.1e-3, 0.5e-3);
       step = length_m * random_direction(random);
       const double angle_rad = random.uniform(1e-3, 3e-3);
@@ -120,7 +120,7 @@ Recording record_deep(const Shape& a, const Shape& b, int frames, std::uint64_t 
 }
 
 Recording record_rest(const Shape& a, const Shape& b, Rest rest, int frames, std::uint64_t seed) {
-  constexpr int kFramesOneWay = 20;
+  constexpr int kFramesOneDirection = 20;
   constexpr double kShift_m = 0.03e-3, kTurn_rad = 1e-3, kMostTilt_rad = 10e-3, kMostOffset_m = 0.015;
   Random random(seed);
   Recording recording;
@@ -130,11 +130,11 @@ Recording record_rest(const Shape& a, const Shape& b, Rest rest, int frames, std
   Vec3 shift = Vec3::Zero();
   Vec3 turn = Vec3::Zero();
   for (int i = 0; i < frames; ++i) {
-    if (i % kFramesOneWay == 0) {
-      const Vec3 way = random_direction(random);
+    if (i % kFramesOneDirection == 0) {
+      const Vec3 direction = random_direction(random);
       const Vec3 axis = random_direction(random);
       const bool slides = rest == Rest::kSliding;
-      shift = kShift_m * (slides ? Vec3(way.x(), way.y(), 0.0).normalized() : way);
+      shift = kShift_m * (slides ? Vec3(direction.x(), direction.y(), 0.0).normalized() : direction);
       turn = kTurn_rad * (slides ? Vec3(0.0, 0.0, axis.z() < 0.0 ? -1.0 : 1.0) : axis);
     }
     const Vec3 tilt = X.R.col(2).cross(Vec3::UnitZ());  // what turns B back to flat

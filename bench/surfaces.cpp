@@ -12,7 +12,7 @@
 namespace tactum::bench {
 namespace {
 
-constexpr double kSlack_rad = 4e-3;
+constexpr double kConeInflation_rad = 4e-3;
 
 double ns_between(const FineClock& clock, std::uint64_t start) { return clock.ns(clock.stop() - start); }
 
@@ -42,7 +42,7 @@ void measure(const FineClock& clock, const SurfacePair& pair, int replays, Surfa
   std::vector<SurfaceMinimum> minima;
   minima.reserve(1 << 16);
   std::vector<double> fastest(pair.X_AB.size(), 1e18);
-  const MinimaQuery query{row.tolerance_m, 0.0, kSlack_rad};
+  const MinimaQuery query{row.tolerance_m, 0.0, kConeInflation_rad};
   for (int replay = 0; replay < replays; ++replay) {
     for (std::size_t i = 0; i < pair.X_AB.size(); ++i) {
       const std::uint64_t from = clock.start();
@@ -111,7 +111,7 @@ SurfacesReport bench_surfaces(const SurfacesOptions& options,
       "All minima within the tolerance, cones inflated by {} mrad; each pose counts with its fastest of {} "
       "replays. FCL: "
       "distance of two BVHModel<OBBRSS>, asked once a pose, mean. Clock: {}.",
-      1e3 * kSlack_rad, options.replays, clock.describe());
+      1e3 * kConeInflation_rad, options.replays, clock.describe());
   if (!absent.empty()) report.how += fmt::format(" Not measured, for the data is absent: {}.", absent);
   return report;
 }

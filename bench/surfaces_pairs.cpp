@@ -27,19 +27,19 @@ std::optional<TriangleMesh> real_mesh(const SurfacesOptions& options, const std:
   return weld(mesh->mesh, weld_options).mesh;
 }
 
-/// B moved along `way` until the surfaces are `gap_m` apart, to a tenth.
-Pose approached(const Surface& a, const Surface& b, Pose X, const Vec3& way, double gap_m,
+/// B moved along `direction` until the surfaces are `gap_m` apart, to a tenth.
+Pose approached(const Surface& a, const Surface& b, Pose X, const Vec3& direction, double gap_m,
                 SurfacePairCache& cache) {
   for (int step = 0; step < 100; ++step) {
     const double left_m = surface_distance(a, b, X, cache).distance - gap_m;
     if (left_m < 0.1 * gap_m) break;
-    X.p -= left_m * way;
+    X.p -= left_m * direction;
   }
   return X;
 }
 
 /// A hand that keeps B in contact from one side: wandering a little, 5 to 50 micrometres away.
-std::vector<Pose> near_contact(const TriangleMesh& mesh_a, const TriangleMesh& mesh_b, const Vec3& way,
+std::vector<Pose> near_contact(const TriangleMesh& mesh_a, const TriangleMesh& mesh_b, const Vec3& direction,
                                int frames) {
   const Surface a(mesh_a);
   const Surface b(mesh_b);
@@ -57,8 +57,8 @@ std::vector<Pose> near_contact(const TriangleMesh& mesh_a, const TriangleMesh& m
       aside[k] += random.uniform(-kShift_m, kShift_m);
     }
     R = exp_rotation(turn) * R;
-    poses.push_back(
-        approached(a, b, {R, aside + far_m * way}, way, random.uniform(kNearest_m, kFarthest_m), cache));
+    poses.push_back(approached(a, b, {R, aside + far_m * direction}, direction,
+                               random.uniform(kNearest_m, kFarthest_m), cache));
   }
   return poses;
 }
@@ -119,8 +119,8 @@ std::optional<SurfacePair> scans(const SurfacesOptions& options) {
   constexpr double kScale = 0.01;
   auto skull = real_mesh(options, "scans/skull.obj", kScale);
   if (!skull) return std::nullopt;
-  const Vec3 way = Vec3(1.0, 0.2, 0.1).normalized();
-  return SurfacePair{*skull, *skull, near_contact(*skull, *skull, way, frames_of(options))};
+  const Vec3 direction = Vec3(1.0, 0.2, 0.1).normalized();
+  return SurfacePair{*skull, *skull, near_contact(*skull, *skull, direction, frames_of(options))};
 }
 
 std::optional<SurfacePair> thread(const SurfacesOptions& options) {

@@ -2,7 +2,7 @@
 """Keeps the documents true:  tools/check_docs.py [ROOT]
 
 In every Markdown file: relative links resolve, and paths in backticks exist, seen from the file, from the root or from
-src/tactum. In Markdown, C++ and scene files: sources cited as [Name 1999] have their entry in docs/references.bib.
+src/tactum; programs under build/ are some that a CMakeLists.txt makes. In Markdown, C++ and scene files: sources cited as [Name 1999] have their entry in docs/references.bib.
 """
 import pathlib
 import re
@@ -18,6 +18,8 @@ BACKTICKS = re.compile(r"`([^`\n]+)`")
 # A path: no blanks, no wildcards or placeholders; it ends as a file of this project does, or starts in a known folder
 # (so that a unit such as N/m is none).
 PATH = re.compile(r"(?:\.{1,2}/)?[\w.+-]+(?:/[\w.+-]+)*/?")
+PROGRAM = re.compile(r"build/(?:[\w-]+/)+([\w-]+)")
+ADDED_PROGRAM = re.compile(r"^\s*add_executable\(([\w-]+)", re.MULTILINE)
 FILE_ENDING = re.compile(r"\.(?:md|h|cpp|py|sh|txt|toml|cmake|bib|json|csv)$")
 # [Gregory 2000, 4.1; Lin and Canny 1991]: a name or two, a year, perhaps a place.
 ONE_SOURCE = r"[A-Z][A-Za-z-]+(?: and [A-Z][A-Za-z-]+)? (?:19|20)\d\d[a-z]?(?:, [^\];]+)?"
@@ -58,9 +60,21 @@ def link_faults(text, path, root):
             yield f"{path.relative_to(root)}:{line_of(text, match.start())}: link to {target}, which is not there"
 
 
-def path_faults(text, path, root):
+def programs(root):
+    """The names of what is built; a folder of tests makes test_FOLDER."""
+    names = {f"test_{path.name}" for path in (root / "tests").glob("*") if path.is_dir()}
+    for folder in (path for path in root.iterdir() if path.is_dir() and path.name not in SKIPPED_FOLDERS):
+        for path in folder.rglob("CMakeLists.txt"):
+            names.update(ADDED_PROGRAM.findall(path.read_text()))
+    return names
+
+
+def path_faults(text, path, root, built):
     bases = (path.parent, root, root / "src/tactum")
     for match in BACKTICKS.finditer(without_fences(text)):
+        for program in PROGRAM.findall(match.group(1)):
+            if program not in built:
+                yield f"{path.relative_to(root)}:{line_of(text, match.start())}: names {program}, which nothing builds"
         word = match.group(1).split()[0]  # `./run --build-only` names ./run
         if not looks_like_path(word, bases) or word.startswith(MADE_BY_BUILDING):
             continue
@@ -82,11 +96,12 @@ def faults(root):
     """Everything that is wrong under `root`, a sentence each."""
     bib = root / "docs/references.bib"
     keys = set(BIB_KEY.findall(bib.read_text())) if bib.exists() else set()
+    built = programs(root)
     for path in texts(root):
         text = path.read_text()
         if path.suffix == ".md":
             yield from link_faults(text, path, root)
-            yield from path_faults(text, path, root)
+            yield from path_faults(text, path, root, built)
         yield from citation_faults(text, path, root, keys)
 
 

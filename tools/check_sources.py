@@ -5,6 +5,7 @@
   or less (1e-6), or with as many zeros (0.00001), is a fault, unless it has a unit: in the name it is given to
   (inertia_kg_m2 = 2e-5) or in a tag behind it (///< [N s/m]). A quantity that can have neither is written in thousandths
   (0.023e-3), a conversion as a division (nanoseconds / 1e9): none of them can be mistaken for a tolerance.
+- Comments are wrapped by hand, at most 110 columns: clang-format would break the drawings in them.
 - haptics/frame.cpp is read from top to bottom: at most 80 lines.
 - Nothing is left for later, no merge is left unfinished, and no file knows the folders of the machine it was written on.
 """
@@ -13,6 +14,7 @@ import re
 import sys
 
 FRAME_LINES = 80
+COMMENT_COLUMNS = 110
 LOOKED_AT = ("src", "app", "viewer/server", "viewer/web/src", "tests", "bench", "fuzz", "examples", "scenes", "docs", "cmake", "README.md", "CMakeLists.txt", "run",
              "test")
 SUFFIXES = (".h", ".cpp", ".md", ".toml", ".cmake", ".txt", ".bib", ".ts", ".mjs", ".css", "")
@@ -22,6 +24,7 @@ EPSILON = re.compile(r"(?<![\w.])(?:\d[\d']*\.?\d*|\.\d+)[eE]-0*(?:[4-9]|[1-9]\d
 UNIT = r"(?:kg|N|Nm|Ns|Nms|m|m2|m3|s|rad|J|W|Hz)(?:_(?:per_)?(?:kg|N|Nm|m|m2|m3|s|s2|rad|rad2))*"
 NAMED_QUANTITY = re.compile(rf"_{UNIT}\s*(?:=|\{{)\s*-?$")
 TAGGED_QUANTITY = re.compile(r"//.*\[(?:kg|N|m|s|rad|J|W|Hz)\b[^\]\n]*\]")
+LONG_COMMENT = re.compile(rf"^(?=[ \t]*//)[^\n]{{{COMMENT_COLUMNS + 1},}}$", re.MULTILINE)
 FOR_LATER = re.compile(r"\b(?:TODO|FIXME|XXX|HACK)\b")
 UNFINISHED_MERGE = re.compile(r"^(?:<{7}|>{7}) \S+", re.MULTILINE)
 MACHINE_PATH = re.compile(r"(?<![\w.~*-])/(?:home|root|work|Users|tmp)/\w")
@@ -61,6 +64,8 @@ def faults(root):
                 yield f"{name}:{line}: {word} was left by a merge"
             for line, word in places(MACHINE_PATH, text):
                 yield f"{name}:{line}: {word}... is a path of one machine"
+            for line, words in places(LONG_COMMENT, text) if path.suffix in (".h", ".cpp") else ():
+                yield f"{name}:{line}: a comment of {len(words)} columns; there is room for {COMMENT_COLUMNS}"
             if name.startswith("src/") and path.suffix in (".h", ".cpp") and name != "src/tactum/base/tolerances.h":
                 yield from epsilon_faults(text, name)
             if name == "src/tactum/haptics/frame.cpp" and text.count("\n") > FRAME_LINES:

@@ -79,7 +79,8 @@ struct HeapWatch {
     ASSERT_LE(report.tests(), budget) << "frame " << rig.frame;
     ASSERT_EQ(report.work.left_of_held, 0) << "frame " << rig.frame;
     ASSERT_FALSE(report.penetrating) << "frame " << rig.frame;
-    ASSERT_EQ(report.flags & (frame_flag::kRoomsFull | frame_flag::kPointsFull), 0u) << "frame " << rig.frame;
+    ASSERT_EQ(report.flags & (frame_flag::kCapacityReached | frame_flag::kPointsFull), 0u)
+        << "frame " << rig.frame;
     most_near = std::max(most_near, report.work.near_pairs);
     short_frames += report.work.unchecked > 0 ? 1 : 0;
     unproven += report.work.left_unproven;

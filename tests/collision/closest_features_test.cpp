@@ -41,14 +41,14 @@ bool nearly_touching(const Polytope& A, const Polytope& B, const PairDistance& a
   return std::abs(answer.distance) < 1e-6 * std::max(A.size, B.size);
 }
 
-/// Below a gap of 1e-6 of the size an answer need not be certified, but then its doubt must hold.
+/// Below a gap of 1e-6 of the size an answer need not be certified, but then its error bound must hold.
 std::string complaint_about(const Polytope& A, const Polytope& B, const Pose& X, const PairDistance& answer,
                             double tolerance) {
   if (answer.certified() || !nearly_touching(A, B, answer))
     return oracle::complaint(A, B, X, answer, tolerance);
-  if (!std::isfinite(answer.doubt)) return {};
-  const long double least = answer.distance - answer.doubt - 1e-6 * tolerance;
-  return oracle::support_gap(A, B, X, answer.normal) < least ? "the doubt told is too small" : "";
+  if (!std::isfinite(answer.error_bound)) return {};
+  const long double least = answer.distance - answer.error_bound - 1e-6 * tolerance;
+  return oracle::support_gap(A, B, X, answer.normal) < least ? "the error bound told is too small" : "";
 }
 
 /// Edges parallel to 1e-8 make no axis; nearly touching flat pieces then miss the shallowest by as much.
@@ -61,7 +61,7 @@ void complain(Tally& tally, const cases::Shape& a, const cases::Shape& b, const 
   ++tally.wrong;
   if (tally.wrong <= 10)
     ADD_FAILURE() << a.name << " / " << b.name << ", making " << making << ", distance " << answer.distance
-                  << " (doubt " << answer.doubt << ", stop " << int(answer.stop) << ", features "
+                  << " (error bound " << answer.error_bound << ", stop " << int(answer.stop) << ", features "
                   << int(answer.a.kind) << ' ' << answer.a.index << ", " << int(answer.b.kind) << ' '
                   << answer.b.index << "): " << why << " " << cases::describe(X);
 }
@@ -311,7 +311,7 @@ double off_line(const Polytope& P, int edge, const Pose& X, const Vec3& point) {
 
 /// Between edges that cross nothing is measured of what rounding leaves: the bound told must hold, of the
 /// support planes in long double and of the points on their edges, at any angle and from any place.
-TEST(ClosestFeatures, TheDoubtOfCrossingEdgesHolds) {
+TEST(ClosestFeatures, TheErrorBoundOfCrossingEdgesHolds) {
   Random random(20268);
   const auto shapes = cases::shapes(random, false);
   int crossing = 0;
@@ -329,10 +329,10 @@ TEST(ClosestFeatures, TheDoubtOfCrossingEdgesHolds) {
     if (across.norm() <= tolerances::kCrossingSine) continue;
     ++crossing;
     const double left = double(x.distance - oracle::support_gap(A, B, X, x.normal));
-    ASSERT_LE(left, x.doubt) << cases::describe(X);
-    ASSERT_LE((x.p_a - x.p_b - x.normal * x.distance).norm(), x.doubt);
-    ASSERT_LE(off_line(A, x.a.index, {}, x.p_a), x.doubt + 1e-15 * A.size);
-    ASSERT_LE(off_line(B, x.b.index, X, x.p_b), x.doubt + 1e-15 * (A.size + B.size));
+    ASSERT_LE(left, x.error_bound) << cases::describe(X);
+    ASSERT_LE((x.p_a - x.p_b - x.normal * x.distance).norm(), x.error_bound);
+    ASSERT_LE(off_line(A, x.a.index, {}, x.p_a), x.error_bound + 1e-15 * A.size);
+    ASSERT_LE(off_line(B, x.b.index, X, x.p_b), x.error_bound + 1e-15 * (A.size + B.size));
   }
   std::printf("  %d pairs of crossing edges\n", crossing);
   EXPECT_GT(crossing, cases::some_of(200000) / 20);
@@ -361,7 +361,7 @@ TEST(ClosestFeatures, RoundingAtASharpEdgeLeadsNobodyInCircles) {
     ASSERT_TRUE(piece) << piece.error().message();
     // Over the border from corner 0 to 1, whose outside is -y, as far out as is still held for the column.
     Vec3 over(random.uniform(0.2, 0.8) * flat[1].x(), 0.0, random.uniform(1e-5, 1e-3));
-    over.y() = -random.uniform(0.9, 1.2) * tolerances::kVoronoiSlack *
+    over.y() = -random.uniform(0.9, 1.2) * tolerances::kVoronoiTolerance *
                (over.lpNorm<1>() + tip.magnitude + piece->magnitude);
     Pose X_AB;  // the tip's axis up the triangle's normal, its point at `over`
     X_AB.R = turned.transpose();

@@ -8,8 +8,8 @@
 #include "collision/cases.h"
 #include "tactum/base/tolerances.h"
 #include "tactum/collision/closest_features.h"
-#include "tactum/collision/facing_feature.h"
 #include "tactum/collision/planar_patch.h"
+#include "tactum/collision/supporting_feature.h"
 
 namespace tactum {
 namespace {
@@ -154,8 +154,9 @@ struct EdgeAndFace {
 };
 
 /// The kept part of the edge, by steps along it.
-PatchInterval interval_by_steps(const EdgeAndFace& pair, const Facing& on_face, const Facing& on_edge,
-                                double closest, double tolerance, int steps) {
+PatchInterval interval_by_steps(const EdgeAndFace& pair, const SupportingFeature& on_face,
+                                const SupportingFeature& on_edge, double closest, double tolerance,
+                                int steps) {
   std::vector<double> kept;
   double least = closest;
   for (int k = 0; k <= steps; ++k)
@@ -211,10 +212,10 @@ TEST(Manifold, EdgeOverAFaceAgreesWithCounting) {
                                face_of_a ? c.patch.normal : Vec3(R * c.patch.normal),
                                face_of_a};
         const Vec3 out = face_of_a ? Vec3(-pair.n) : pair.n;  // of P
-        const Facing on_face =
-            facing_feature(P, face_of_a ? c.closest.a : c.closest.b, out, tolerances::kPatchAngle);
-        const Facing on_line = facing_feature(roof, face_of_a ? c.closest.b : c.closest.a,
-                                              -(R.transpose() * out), tolerances::kPatchAngle);
+        const SupportingFeature on_face =
+            supporting_feature(P, face_of_a ? c.closest.a : c.closest.b, out, tolerances::kPatchAngle);
+        const SupportingFeature on_line = supporting_feature(roof, face_of_a ? c.closest.b : c.closest.a,
+                                                             -(R.transpose() * out), tolerances::kPatchAngle);
         const PatchInterval expected =
             interval_by_steps(pair, on_face, on_line, c.closest.distance, kTolerance, kSteps);
         const auto place = [&](const ContactPoint& p) {

@@ -204,10 +204,10 @@ TEST(Penetration, AnyMemoryGivesADepth) {
     cache.a = anything();
     cache.b = anything();
     cache.normal_A = cases::random_unit(random);
-    for (FeaturePair* pair : {&cache.rivals[0], &cache.rivals[1], &cache.scout})
+    for (FeaturePair* pair : {&cache.candidate_minima[0], &cache.candidate_minima[1], &cache.explorer})
       *pair = {anything(), anything()};
     cache.turn = std::uint32_t(random.index(24));
-    cache.scouted = std::uint32_t(random.index(100));
+    cache.explorer_starts = std::uint32_t(random.index(100));
     const double size = std::max(a.polytope.size, b.polytope.size);
     const PairDistance fresh = penetration_exhaustive(a.polytope, b.polytope, X);
     if (!fresh.certified()) continue;  // flat pieces that do not overlap

@@ -133,7 +133,7 @@ TEST(ContactFinder, AsksSurfacesThatAreApartSeldom) {
     X[1] = pose(frame);
     finder.find_near_pairs(X, reach, tolerance);
     finder.find_patches(X, 1000, PatchPoints::kClosest);
-    surface_minima(ring->tree, ring->tree, X[1], {tolerance, 0.0, tolerances::kConeSlack}, minima);
+    surface_minima(ring->tree, ring->tree, X[1], {tolerance, 0.0, tolerances::kConeInflation}, minima);
     ASSERT_EQ(finder.patches().empty(), minima.empty()) << frame;
     const std::size_t near = minima.empty() ? 0 : 1;
     queries[near] += finder.work().surface_queries;
@@ -238,7 +238,7 @@ TEST(ContactFinder, WhatFoundNoRoomIsLookedForAgain) {
       finder.find_near_pairs(X, reach, 1e-3);
       finder.find_patches(X, 1 << 20, PatchPoints::kClosest);
       ASSERT_LE(finder.work().near_pairs, int(room));
-      if (finder.work().rooms_full) {
+      if (finder.work().capacity_reached) {
         ++short_of_room;
         continue;
       }

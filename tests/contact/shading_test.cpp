@@ -66,7 +66,7 @@ TEST(Shading, WallsBetweenPiecesBendNothing) {
   for (Vec3& p : clouds[1]) p.x() += 0.02;
   Result<Part> part = part_from_clouds(clouds);
   ASSERT_TRUE(part);
-  ASSERT_FALSE(part->true_surface.alone());
+  ASSERT_FALSE(part->true_surface.single_piece());
   const ShadingNormals shading(*part, 0.6);
   EXPECT_FALSE(shading.bends());
   for (std::size_t p = 0; p < part->pieces.size(); ++p) {

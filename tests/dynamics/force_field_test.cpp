@@ -390,18 +390,18 @@ TEST(FieldLoad, NoChangeOfTheLoadIsFasterThanItsStiffness) {
     const Pose X_WB = random_pose(random, 0.02);
     const Vec3 p_BH = random_point(random, 0.02);
     const FieldLoad load = field_load({&field, 1}, points, X_WB, p_BH);
-    const Vec3 way = random_point(random, 1e-6);
+    const Vec3 displacement = random_point(random, 1e-6);
     const Vec3 turn = random_point(random, 1e-4);
-    // The handle goes by `way` and turns.
+    // The handle goes by `displacement` and turns.
     const Pose X_WH{X_WB.R, X_WB * p_BH};
-    const Pose X_WB_then = advanced(X_WH, {way, turn}, 1.0) * Pose{Mat3::Identity(), -p_BH};
+    const Pose X_WB_then = advanced(X_WH, {displacement, turn}, 1.0) * Pose{Mat3::Identity(), -p_BH};
     const auto at_handle = [&](const Pose& X) {
       return moved(field_load({&field, 1}, points, X, p_BH).at_centre, X.R * p_BH);
     };
     const Wrench change = at_handle(X_WB_then) - at_handle(X_WB);
     // A moving point is pulled by at most sqrt(k) sqrt(energy) of each.
-    const double work = std::abs(change.f.dot(way) + change.t.dot(turn));
-    const double most = load.stiffness_N_per_m * 2.0 * way.squaredNorm() +
+    const double work = std::abs(change.f.dot(displacement) + change.t.dot(turn));
+    const double most = load.stiffness_N_per_m * 2.0 * displacement.squaredNorm() +
                         load.stiffness_Nm_per_rad * 2.0 * turn.squaredNorm();
     EXPECT_LE(work, most);
   }

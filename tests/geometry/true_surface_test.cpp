@@ -102,9 +102,9 @@ TEST(TrueSurface, AWallMayBeCoveredInPart) {
 }
 
 TEST(TrueSurface, PiecesApartAreAlone) {
-  EXPECT_TRUE(
-      part_of({box_corners({0, 0, 0}, {1, 1, 1}), box_corners({2, 0, 0}, {3, 1, 1})}).true_surface.alone());
-  EXPECT_TRUE(part_of({box_corners({0, 0, 0}, {1, 1, 1})}).true_surface.alone());
+  EXPECT_TRUE(part_of({box_corners({0, 0, 0}, {1, 1, 1}), box_corners({2, 0, 0}, {3, 1, 1})})
+                  .true_surface.single_piece());
+  EXPECT_TRUE(part_of({box_corners({0, 0, 0}, {1, 1, 1})}).true_surface.single_piece());
 }
 
 TEST(TrueSurface, OfADecompositionIsTheSurfaceGiven) {

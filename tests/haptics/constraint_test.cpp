@@ -83,12 +83,12 @@ TEST(Constraint, SlidingIsHeldBackByMuTimesTheLoad) {
       bench.settings.coupling.stiffness_Nm_per_rad = 3.0;
       bench.step({});
       bench.go(at(0, 0, -0.005), 100);
-      const Vec3 way(std::cos(heading), std::sin(heading), 0.0);
-      const Vec3 end = 0.02 * way;
+      const Vec3 direction(std::cos(heading), std::sin(heading), 0.0);
+      const Vec3 end = 0.02 * direction;
       const FrameReport& report = bench.go(at(end.x(), end.y(), -0.005), 400);
       const double load = report.coupling.f.z();
       EXPECT_GT(load, 1.0);
-      EXPECT_NEAR(-report.coupling.f.dot(way), mu * load, 0.01 * mu * load) << mu << " " << heading;
+      EXPECT_NEAR(-report.coupling.f.dot(direction), mu * load, 0.01 * mu * load) << mu << " " << heading;
     }
 }
 

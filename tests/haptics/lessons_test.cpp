@@ -14,8 +14,8 @@ constexpr double kPressed_m = 0.004;  // so far the hand is below where the bloc
 Pose clipped(const BlockRig& bench, const Pose& X, double most) {
   const Vec3 p_WD = bench.report.X_WH.p - bench.X_DH.p;
   const Vec3 proxy = bench.report.X_WH_proxy.p - p_WD;
-  const Vec3 way = X.p - proxy;
-  return {X.R, proxy + way * std::min(1.0, most / std::max(way.norm(), most))};
+  const Vec3 displacement = X.p - proxy;
+  return {X.R, proxy + displacement * std::min(1.0, most / std::max(displacement.norm(), most))};
 }
 
 TEST(Lessons, AClippedTargetNeverPushesHarderThanOneStepsSpring) {

@@ -83,7 +83,7 @@ struct Pull {
     slot.go(slot.X_DH, 500);
     EXPECT_EQ(slot.penetrating_frames, 0);
   }
-  double way() { return (slot.X_WB().p - p_jammed).norm(); }
+  double displacement() { return (slot.X_WB().p - p_jammed).norm(); }
 };
 
 TEST(Wedging, TheJammedPegHoldsAboveTheGeometricLimitAndComesOutBelow) {
@@ -94,7 +94,7 @@ TEST(Wedging, TheJammedPegHoldsAboveTheGeometricLimitAndComesOutBelow) {
         const double mu = 0.5 * (low + high);
         Pull pull(depth, mu, sense);
         limit = pull.limit;
-        (pull.way() < kStuck_m ? high : low) = mu;
+        (pull.displacement() < kStuck_m ? high : low) = mu;
       }
       std::printf("%g mm deep: wedged from friction %.4f, analytic %.4f\n", 1e3 * depth, high, limit);
       EXPECT_NEAR(high, limit, 0.05 * limit) << depth << " " << sense;
@@ -104,11 +104,11 @@ TEST(Wedging, TheJammedPegHoldsAboveTheGeometricLimitAndComesOutBelow) {
 TEST(Wedging, AJammedPegIsFreedByTurningItStraight) {
   const double depth = 0.006;
   Pull pull(depth, 1.3 * 0.5 * depth / (0.5 * kWidth), 1.0);
-  ASSERT_LT(pull.way(), kStuck_m);
+  ASSERT_LT(pull.displacement(), kStuck_m);
   // A still hand, and a pull twice as hard, do not help.
   pull.slot.go(turned(pull.angle, 2.0 * pull.slot.X_DH.p), 500);
   pull.slot.go(pull.slot.X_DH, 3000);
-  EXPECT_LT(pull.way(), kStuck_m);
+  EXPECT_LT(pull.displacement(), kStuck_m);
   // The hand lets go of the pull, turns the peg to the other side and back, and pulls a little.
   pull.slot.go(turned(pull.angle), 300);
   pull.slot.go(turned(-pull.angle), 300);
@@ -124,11 +124,11 @@ TEST(Wedging, AWedgeThatNoTurningSqueezesHoldsNothing) {
   for (const double mu_of_limit : {1.1, 1.3, 2.0}) {
     const double depth = 0.006;
     Pull pull(depth, mu_of_limit * 0.5 * depth / (0.5 * kWidth), 1.0);
-    ASSERT_LT(pull.way(), kStuck_m) << mu_of_limit;
+    ASSERT_LT(pull.displacement(), kStuck_m) << mu_of_limit;
     const Vec3 pulled = pull.slot.X_DH.p;
     pull.slot.go(turned(tilt_at(depth) + 0.2 * kSqueeze_rad, pulled), 500);
     pull.slot.go(pull.slot.X_DH, 500);
-    EXPECT_LT(pull.way(), kStuck_m) << "squeezed a fifth as hard it still holds, " << mu_of_limit;
+    EXPECT_LT(pull.displacement(), kStuck_m) << "squeezed a fifth as hard it still holds, " << mu_of_limit;
     pull.slot.go(turned(0.5 * tilt_at(depth), pulled), 500);
     EXPECT_GT(pull.slot.X_WB().p.z() - pull.p_jammed.z(), depth) << mu_of_limit;
     EXPECT_EQ(pull.slot.penetrating_frames, 0);

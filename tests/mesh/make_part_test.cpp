@@ -106,15 +106,16 @@ TEST(Part, SaysWhichWayItWentAndWhy) {
   const Result<Part> solid = part_from_mesh(star);
   ASSERT_TRUE(solid);
   EXPECT_FALSE(solid->is_surface());
-  EXPECT_EQ(solid->way, fmt::format("solid: {} convex pieces from 5 reflex edges", solid->pieces.size()));
+  EXPECT_EQ(solid->piece_report,
+            fmt::format("solid: {} convex pieces from 5 reflex edges", solid->pieces.size()));
   EXPECT_NEAR(solid->mass.volume, report_mesh(star).volume, 1e-12);
-  EXPECT_EQ(part_from_mesh(star, {.pieces = PieceSource::kSurface})->way, "surface: asked for");
-  EXPECT_EQ(part_from_mesh(box_mesh({1, 1, 1}))->way, "solid: convex as it is");
+  EXPECT_EQ(part_from_mesh(star, {.pieces = PieceSource::kSurface})->piece_report, "surface: asked for");
+  EXPECT_EQ(part_from_mesh(box_mesh({1, 1, 1}))->piece_report, "solid: convex as it is");
   const TriangleMesh gear = testing::extruded_mesh(testing::star(60, 0.04, 0.05), 0.0, 0.03);
   const Result<Part> many = part_from_mesh(gear);
   ASSERT_TRUE(many);
   EXPECT_TRUE(many->is_surface());
-  EXPECT_EQ(many->way, "surface: the solid does not fall into few convex pieces (60 reflex edges)");
+  EXPECT_EQ(many->piece_report, "surface: the solid does not fall into few convex pieces (60 reflex edges)");
   EXPECT_FALSE(part_from_mesh(gear, {.pieces = PieceSource::kSolid})->is_surface());
   TriangleMesh open = star;
   open.triangles.pop_back();

@@ -257,8 +257,8 @@ std::vector<Aabb> boxes_of(const Features& f, const List& list) {
 
 class Search {
  public:
-  Search(const Features& a, const Features& b, const MinimaQuery& query, double doubt)
-      : a_(a), b_(b), query_(query), doubt_(doubt) {}
+  Search(const Features& a, const Features& b, const MinimaQuery& query, double error_bound)
+      : a_(a), b_(b), query_(query), error_bound_(error_bound) {}
 
   std::vector<RefereeMinimum> run() {
     meet(a_, a_.corners, b_, b_.faces,
@@ -297,7 +297,7 @@ class Search {
   void take(std::vector<int> x, std::vector<int> y, double distance, const Vec3& p_x, const Vec3& p_y,
             const Vec3& n, double margin, bool swapped) {
     margin = std::min(margin, range_margin(distance));
-    if (margin < -doubt_) return;
+    if (margin < -error_bound_) return;
     std::sort(x.begin(), x.end());
     std::sort(y.begin(), y.end());
     if (swapped) {
@@ -311,8 +311,8 @@ class Search {
                    bool swapped) {
     const Vec3& p = of.points[corner.v];
     const double height = face.normal.dot(p - on.points[face.v[0]]);
-    if (range_margin(height) < -doubt_) return;
-    double margin = corner_margin(corner, -face.normal, query_.cone_slack);
+    if (range_margin(height) < -error_bound_) return;
+    double margin = corner_margin(corner, -face.normal, query_.cone_inflation);
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3& from = on.points[face.v[k]];
       const Vec3 along = on.points[face.v[(k + 1) % 3]] - from;
@@ -333,8 +333,8 @@ class Search {
     const double distance = (p - foot).norm();
     if (distance > 2.0 * query_.reach || distance < 1e-12) return;
     const Vec3 n = (p - foot) / distance;
-    const double margin = std::min(
-        {t, 1.0 - t, edge_margin(edge, n, query_.cone_slack), corner_margin(corner, -n, query_.cone_slack)});
+    const double margin = std::min({t, 1.0 - t, edge_margin(edge, n, query_.cone_inflation),
+                                    corner_margin(corner, -n, query_.cone_inflation)});
     take({corner.v}, {edge.v, edge.w}, distance, p, foot, n, margin, swapped);
   }
 
@@ -344,7 +344,8 @@ class Search {
     if (distance > 2.0 * query_.reach || distance < 1e-12) return;
     const Vec3 n = off / distance;
     take({x.v}, {y.v}, distance, a_.points[x.v], b_.points[y.v], n,
-         std::min(corner_margin(x, -n, query_.cone_slack), corner_margin(y, n, query_.cone_slack)), false);
+         std::min(corner_margin(x, -n, query_.cone_inflation), corner_margin(y, n, query_.cone_inflation)),
+         false);
   }
 
   void edge_edge(const Edge& e, const Edge& f) {
@@ -354,7 +355,7 @@ class Search {
     const Vec3 w = b_.points[f.w] - q;
     const Vec3 c = u.cross(w);
     const double sine = c.norm() / (u.norm() * w.norm());
-    if (sine <= query_.cone_slack + doubt_) parallel(e, f, query_.cone_slack - sine);
+    if (sine <= query_.cone_inflation + error_bound_) parallel(e, f, query_.cone_inflation - sine);
     if (sine < 1e-8) return;
     const Vec3 n = c.normalized();
     const double height = n.dot(p - q);
@@ -365,10 +366,10 @@ class Search {
     const Vec3 through_e = u.cross(n);
     const double t = through_e.dot(p - q) / through_e.dot(w);
     const double on_both = std::min({s, 1.0 - s, t, 1.0 - t});
-    if (on_both < -doubt_) return;
+    if (on_both < -error_bound_) return;
     for (double sign : {1.0, -1.0}) {
-      const double margin = std::min({on_both, edge_margin(f, sign * n, query_.cone_slack),
-                                      edge_margin(e, -sign * n, query_.cone_slack)});
+      const double margin = std::min({on_both, edge_margin(f, sign * n, query_.cone_inflation),
+                                      edge_margin(e, -sign * n, query_.cone_inflation)});
       take({e.v, e.w}, {f.v, f.w}, sign * height, p + s * u, q + t * w, sign * n, margin, false);
     }
   }
@@ -383,7 +384,7 @@ class Search {
     if (from > to) std::swap(from, to);
     from = std::max(from, 0.0);
     to = std::min(to, 1.0);
-    if (to - from < -doubt_) return;
+    if (to - from < -error_bound_) return;
     for (double s : {from, to}) {
       const Vec3 p_a = p + s * u;
       const Vec3 p_b = q + std::clamp(w.dot(p_a - q) / w.squaredNorm(), 0.0, 1.0) * w;
@@ -392,8 +393,8 @@ class Search {
       const Vec3 n = (p_a - p_b) / distance;
       for (double sign : {1.0, -1.0}) {
         take({e.v, e.w}, {f.v, f.w}, sign * distance, p_a, p_b, sign * n,
-             std::min({margin, to - from, edge_margin(f, sign * n, query_.cone_slack),
-                       edge_margin(e, -sign * n, query_.cone_slack)}),
+             std::min({margin, to - from, edge_margin(f, sign * n, query_.cone_inflation),
+                       edge_margin(e, -sign * n, query_.cone_inflation)}),
              false);
       }
     }
@@ -402,17 +403,17 @@ class Search {
   const Features& a_;
   const Features& b_;
   const MinimaQuery& query_;
-  double doubt_;
+  double error_bound_;
   std::vector<RefereeMinimum> found_;
 };
 
 }  // namespace
 
 std::vector<RefereeMinimum> every_minimum(const TriangleMesh& a, const TriangleMesh& b, const Pose& X_AB,
-                                          const MinimaQuery& query, double doubt) {
+                                          const MinimaQuery& query, double error_bound) {
   const Features features_a(a, Pose());
   const Features features_b(b, X_AB);
-  return Search(features_a, features_b, query, doubt).run();
+  return Search(features_a, features_b, query, error_bound).run();
 }
 
 }  // namespace tactum::oracles

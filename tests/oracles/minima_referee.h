@@ -19,8 +19,8 @@ struct RefereeMinimum {
   double margin = 0.0;
 };
 
-/// Minima whose margin is above -`doubt`.
+/// Minima whose margin is above -`error_bound`.
 std::vector<RefereeMinimum> every_minimum(const TriangleMesh& a, const TriangleMesh& b, const Pose& X_AB,
-                                          const MinimaQuery& query, double doubt);
+                                          const MinimaQuery& query, double error_bound);
 
 }  // namespace tactum::oracles

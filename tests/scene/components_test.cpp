@@ -67,7 +67,7 @@ part = { box = { size_m = [0.02, 0.02, 0.02] } }
 pos_m = [0.01, 0, 0]
 )");
   ASSERT_TRUE(scene) << scene.error().message();
-  EXPECT_FALSE(scene->world.bodies[0].part->true_surface.alone());
+  EXPECT_FALSE(scene->world.bodies[0].part->true_surface.single_piece());
 }
 
 TEST(Components, ThatOverlapAreRefusedWithHowFar) {

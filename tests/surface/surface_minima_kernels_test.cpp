@@ -219,9 +219,9 @@ TEST(SurfaceMinimaKernels, LayLeavesOutAsTheMeshSays) {
       lanes::VertexLeaf vertices;
       lanes::EdgeLeaf edges;
       lanes::FaceLeaf faces;
-      lanes::lay_out(tree, box, vertices);
-      lanes::lay_out(tree, box, lanes::kernels(), edges);
-      lanes::lay_out(tree, box, lanes::kernels(), 0.0F, faces);
+      lanes::gather_leaf(tree, box, vertices);
+      lanes::gather_leaf(tree, box, lanes::kernels(), edges);
+      lanes::gather_leaf(tree, box, lanes::kernels(), 0.0F, faces);
       for (std::size_t lane = 0; lane < lanes::kLanes; ++lane) {
         const std::int32_t c = tree.leaves()[lanes::leaf_under(box)][lane];
         ASSERT_EQ(vertices.corner[lane], c);

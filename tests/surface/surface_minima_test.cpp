@@ -21,7 +21,7 @@ namespace {
 
 using testing::box_mesh;
 
-constexpr double kDoubt = 1e-7;
+constexpr double kErrorBound = 1e-7;
 
 std::vector<int> corners_of(const SurfaceTree& tree, const Feature& feature) {
   std::vector<int> corners;
@@ -63,7 +63,7 @@ int expect_as_referee(const TriangleMesh& mesh_a, const TriangleMesh& mesh_b, co
   const SurfaceTree a(mesh_a);
   const SurfaceTree b(mesh_b);
   const std::vector<SurfaceMinimum> found = query(a, b, X_AB, what);
-  const auto truth = oracles::every_minimum(mesh_a, mesh_b, X_AB, what, kDoubt);
+  const auto truth = oracles::every_minimum(mesh_a, mesh_b, X_AB, what, kErrorBound);
   const double length = 1e-9 * std::max(a.size(), b.size());
   std::vector<int> claimed(truth.size(), 0);
   for (const SurfaceMinimum& m : found) {
@@ -73,7 +73,7 @@ int expect_as_referee(const TriangleMesh& mesh_a, const TriangleMesh& mesh_b, co
     for (std::size_t i = 0; i < truth.size() && !known; ++i) {
       known = truth[i].a == corners_a && truth[i].b == corners_b && claimed[i] == 0 &&
               std::abs(truth[i].distance - m.distance) < length && (truth[i].p_a - m.p_a).norm() < length &&
-              (truth[i].p_b - m.p_b).norm() < length && (truth[i].normal - m.normal).norm() < kDoubt;
+              (truth[i].p_b - m.p_b).norm() < length && (truth[i].normal - m.normal).norm() < kErrorBound;
       if (known) claimed[i] = 1;
     }
     EXPECT_TRUE(known) << "no minimum: kinds " << int(m.a.kind) << int(m.b.kind) << " at " << m.distance
@@ -83,24 +83,24 @@ int expect_as_referee(const TriangleMesh& mesh_a, const TriangleMesh& mesh_b, co
     if (!known) return static_cast<int>(found.size());
   }
   for (std::size_t i = 0; i < truth.size(); ++i) {
-    if (truth[i].margin < kDoubt || claimed[i] != 0) continue;
+    if (truth[i].margin < kErrorBound || claimed[i] != 0) continue;
     ADD_FAILURE() << "missed " << told(truth[i]) << ", " << cases::describe(X_AB);
     break;
   }
   return static_cast<int>(found.size());
 }
 
-/// B moved along `way` until the surfaces are `gap` apart.
-Pose approached(const TriangleMesh& mesh_a, const TriangleMesh& mesh_b, const Mat3& R, const Vec3& way,
+/// B moved along `direction` until the surfaces are `gap` apart.
+Pose approached(const TriangleMesh& mesh_a, const TriangleMesh& mesh_b, const Mat3& R, const Vec3& direction,
                 double gap) {
   const Surface a(mesh_a);
   const Surface b(mesh_b);
   SurfacePairCache cache;
-  Pose X{R, (a.size() + b.size()) * way};
+  Pose X{R, (a.size() + b.size()) * direction};
   for (int step = 0; step < 200; ++step) {
     const double left = surface_distance(a, b, X, cache).distance - gap;
     if (left < 0.01 * gap) break;
-    X.p -= left * way;
+    X.p -= left * direction;
   }
   return X;
 }
@@ -157,9 +157,9 @@ TEST(SurfaceMinima, OfCrossedSurfacesAreThoseOfEveryPairOfFeatures) {
     SCOPED_TRACE(pair.name);
     int negative = 0;
     for (int i = 0; i < std::max(2, cases::some_of(6)); ++i) {
-      const Vec3 way = cases::random_unit(random);
-      Pose X = approached(pair.a, pair.b, cases::random_rotation(random), way, 0.05 * pair.reach);
-      X.p -= 0.1 * pair.reach * way;
+      const Vec3 direction = cases::random_unit(random);
+      Pose X = approached(pair.a, pair.b, cases::random_rotation(random), direction, 0.05 * pair.reach);
+      X.p -= 0.1 * pair.reach * direction;
       const MinimaQuery what{pair.reach, 0.5 * pair.reach, 0.004};
       expect_as_referee(pair.a, pair.b, X, what);
       for (const SurfaceMinimum& m : query(SurfaceTree(pair.a), SurfaceTree(pair.b), X, what))

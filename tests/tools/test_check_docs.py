@@ -11,9 +11,11 @@ class Docs(TreeTest):
     def test_true_documents_pass(self):
         self.write("src/tactum/base/result.h")
         self.write("run")
+        self.write("app/CMakeLists.txt", "add_executable(tactum main.cpp)\n")
+        self.write("tests/math/x_test.cpp")
         self.write("docs/references.bib", "@article{Gregory2000,\n}\n@inproceedings{LinCanny1991,\n}\n")
         text = """See [the tour](page.md#one-frame), [outside](https://example.org/x) and `src/tactum/base/result.h`,
-            `base/result.h`, `./run --build-only`, `build/release/tactum`, `--json FILE`, `n . (a/b)`, `N/m`,
+            `base/result.h`, `./run --build-only`, `build/release/tactum`, `X=1 build/dev/tests/test_math -v`, `--json FILE`, `n . (a/b)`, `N/m`,
             [Gregory 2000, 4.1; Lin and Canny 1991]
             """
         self.assertEqual(list(self.says(text)), [])
@@ -25,6 +27,9 @@ class Docs(TreeTest):
         self.assert_one_fault(self.says("see `src/tactum/base/gone.h`"), "page.md:1", "gone.h")
         self.assert_one_fault(self.says("see `gone.md`"), "gone.md")
         self.assert_one_fault(self.says("type `./gone --now`"), "./gone")
+
+    def test_programs_that_nothing_builds_are_caught(self):
+        self.assert_one_fault(self.says("by `build/release/bench_pairs --all`"), "page.md:1", "bench_pairs")
 
     def test_code_blocks_are_left_alone(self):
         self.assertEqual(list(self.says("```\n`a/b.h` [x](y.md)\n```\n")), [])

@@ -35,6 +35,10 @@ class Sources(TreeTest):
     def test_tests_may_say_what_they_expect(self):
         self.assertEqual(self.code("double a = 1e-12;\n", "tests/math/x_test.cpp"), [])
 
+    def test_long_comments_are_caught(self):
+        self.assert_one_fault(self.code("int a;\n  /// " + "x" * 106 + "\n"), "x.h:2", "112 columns")
+        self.assertEqual(self.code("  /// " + "x" * 104 + "\nint a = 0;  // " + "y" * 99 + "\n"), [])
+
     def test_the_frame_stays_short(self):
         frame = "src/tactum/haptics/frame.cpp"
         self.assertEqual(self.code("x\n" * 80, frame), [])

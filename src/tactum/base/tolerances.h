@@ -21,7 +21,7 @@ inline constexpr double kCertificate = 1e-9;
 /// Voronoi planes are crossed only when a point is beyond them by this much of the size, so that a point on
 /// a plane does not walk to and fro. A few roundings: at 1e-13 the walk stopped short beside gaps of 1e-8,
 /// where a point 1e-13 off its region means a normal 1e-5 off.
-inline constexpr double kVoronoiSlack = 1e-15;
+inline constexpr double kVoronoiTolerance = 1e-15;
 
 /// Below this share of the size a vector between witness points no longer has a direction of its own.
 inline constexpr double kTouching = 1e-12;
@@ -32,7 +32,7 @@ inline constexpr double kParallelSine = 1e-8;
 
 /// Edges cross at an angle when its sine is above this: all that follows from their cross and dot products is
 /// then right to kCrossingRounding of the lengths over the sine squared, a thousandth of the certificate.
-/// Lower, and doubt grows that careful means would not leave.
+/// Lower, and the error bound grows beyond what careful means would leave.
 inline constexpr double kCrossingSine = 0.1;
 /// ... as a cross product of unit vectors has an error of some 4 roundings (1.1e-16), the places along the
 /// edges one of some 16 of what they are made of.
@@ -103,18 +103,18 @@ inline constexpr double kDependentRow = 1e-7;
 inline constexpr double kRowKept_m = 1e-12;
 
 /// The gap at which the constraint response holds contacts apart, a share of the largest moving part's size.
-/// Some thousand times the certificate, so that a validated pose is open beyond doubt; a tenth of the
-/// tightest fit of engineering.
+/// Some thousand times the certificate, so that a validated pose is open beyond any error bound; a tenth of
+/// the tightest fit of engineering.
 inline constexpr double kSkin = 5e-6;
 
-/// A pair overlaps when its depth exceeds this share of the pieces' size: below it is the certificate's own
-/// doubt.
+/// A pair overlaps when its depth exceeds this share of the pieces' size: what is less
+/// the certificate leaves open.
 inline constexpr double kPenetrating = 1e-9;
 
 /// The normal cones of features are widened by this angle [rad] when contacts are looked for, the most a part
 /// turns in a step: with the true cones only the lowest corner of a flat contact counts, and sliding over a
 /// plane of many pieces sticks.
-inline constexpr double kConeSlack = 0.004;
+inline constexpr double kConeInflation = 0.004;
 
 /// Unit normals that differ by less than this are one: a corner's mean normal is then the face's own, to the
 /// bit.
@@ -130,7 +130,7 @@ inline constexpr double kPointArea_m2 = 1e-14;
 inline constexpr double kLineWidth_m = 1e-10;
 
 /// ... and what a segment without length counts for, so that shares can always be told [m^2].
-inline constexpr double kLeastClaim_m2 = 1e-24;
+inline constexpr double kLeastWeight_m2 = 1e-24;
 
 /// A corner of a polygon face turns the wrong way only beyond this (cross product over the square of the
 /// polygon's extent): single-precision corners on a straight side turn by 1e-7 either way, and a fan over
@@ -152,7 +152,7 @@ inline constexpr double kStoredNoise = 1.2e-7;
 
 /// Box tests grow the boxes by this share of their size, so that rounding of the rotated axes never parts
 /// boxes that touch.
-inline constexpr double kBoxSlack = 1e-14;
+inline constexpr double kBoxMargin = 1e-14;
 
 /// What rounding to single precision may do to bounds kept in it (6e-8 a number, a few in a row), as a share
 /// of the size for lengths and in radians for angles: such bounds are grown by this, so that no pair is lost.

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "tactum/collision/doubtful_pair.h"
-#include "tactum/collision/voronoi_steps.h"
+#include "tactum/collision/distance_fallback.h"
+#include "tactum/collision/vclip_steps.h"
 
 namespace tactum {
 namespace {
@@ -13,8 +13,8 @@ namespace {
 [[gnu::noinline]] FeaturePair first_seed(const PiecePair& pair) noexcept {
   Vec3 toward_b = pair.X_AB * pair.B.center - pair.A.center;
   if (toward_b.isZero()) toward_b = Vec3::UnitX();
-  return {march::vertex(support_vertex(pair.A, toward_b)),
-          march::vertex(support_vertex(pair.B, -rotated_back(pair.X_AB.R, toward_b)))};
+  return {vclip::vertex(support_vertex(pair.A, toward_b)),
+          vclip::vertex(support_vertex(pair.B, -rotated_back(pair.X_AB.R, toward_b)))};
 }
 
 }  // namespace
@@ -28,13 +28,13 @@ namespace {
   if (cache.overlap.known && still_inside(PairView(pair), cache, x)) return x;
   const bool tracked = valid_feature(A, cache.a) && valid_feature(B, cache.b);
   const FeaturePair seed = tracked ? FeaturePair{cache.a, cache.b} : first_seed(pair);
-  const March march = march::walk(pair, seed, tolerances::kVoronoiSlack * pair.scale, x);
-  if (!(march.doubt <= certificate(pair) && std::abs(x.distance) < march::kInfinity)) {
-    x = settle_doubt(PairView(pair), cache, march, x);
+  const FeatureWalk walk = vclip::walk_features(pair, seed, tolerances::kVoronoiTolerance * pair.scale, x);
+  if (!(walk.error_bound <= certificate(pair) && std::abs(x.distance) < vclip::kInfinity)) {
+    x = resolve_uncertified(PairView(pair), cache, walk, x);
     return x;
   }
   x.stop = Stop::kCertified;  // the walk proved it itself
-  x.steps = march.steps;
+  x.steps = walk.steps;
   cache.a = x.a;
   cache.b = x.b;
   cache.normal_A = x.normal;

@@ -2,18 +2,18 @@
 /// Signed distance, normal and closest features of two convex pieces, tracked from frame to frame and
 /// certified.
 ///
-///      walk (voronoi_march.h)  ->  closest points, distance d, normal n of their features, and a lower
-///                                  bound d - doubt from the walk's own last tests
-///      doubt <= 1e-9 size      ->  certified
+///      walk (vclip.h)    ->  closest points, distance d, normal n of their features, and a lower
+///                                    bound d - error_bound from the walk's own last tests
+///      error_bound <= 1e-9 size  ->  certified
 ///
 /// The points lie on the pieces, so d is an upper bound: where both agree the answer is right, however the
 /// walk came to it. Where they do not, true supports along n are the lower bound, and the points are sought
 /// in this order: the normal put back into its features' cones (gaps so small that the points' difference has
-/// lost its direction); the walk again from the supports just found, with wider Voronoi slack; the walk on
-/// the Minkowski difference; distance by support mapping [Gilbert 1988]; every pair of features of small
-/// pieces. The stop says which it was, and `doubt` what is left.
+/// lost its direction); the walk again from the supports just found, with a wider crossing
+/// tolerance; the walk on the Minkowski difference; distance by support mapping [Gilbert 1988]; brute force
+/// for small pieces. The stop says which it was, and `error_bound` what is left.
 ///
-/// Overlapping pieces are told by a proof that they share a point (overlap.h, support_distance.h), and
+/// Overlapping pieces are recognised by a proof that they share a point (overlap.h, support_distance.h), and
 /// answered by penetration.h.
 /// Cost: see docs/algorithms/closest_features.md.
 

@@ -1,5 +1,5 @@
 #pragma once
-/// The one convention of contact, and the numbers that name it. Everything is told in A's frame; A and B are
+/// The one convention of contact, and the numbers that name it. Everything is in A's frame; A and B are
 /// convex pieces, X_AB is B's pose in A.
 ///
 ///            A   /                     n (= n_BA_A): unit, from B to A
@@ -40,11 +40,11 @@ struct PairCache {
   Vec3 normal_A = Vec3::Zero();  ///< last normal from B to A, unit, or zero when there was none [-]
   OverlapProof overlap;          ///< known when they overlapped in the last frame
   // Of an overlapping pair: the next best ways out, and the walk that looks for others (penetration.h).
-  std::array<FeaturePair, 2> rivals{};
-  FeaturePair scout;
-  std::uint32_t turn = 0;         ///< frames tracked inside
-  std::uint32_t scouted = 0;      ///< starts looked at for a scout
-  std::uint32_t scout_turns = 0;  ///< that the scout has walked
+  std::array<FeaturePair, 2> candidate_minima{};
+  FeaturePair explorer;
+  std::uint32_t turn = 0;             ///< frames tracked inside
+  std::uint32_t explorer_starts = 0;  ///< starts looked at for an explorer
+  std::uint32_t explorer_turns = 0;   ///< that the explorer has walked
 };
 
 /// Why a query stopped.
@@ -63,7 +63,7 @@ struct PairDistance {
   Feature a, b;                ///< the features the witness points lie on
   /// How much less than `distance` the signed distance can be at most [m]: below 1e-9 of the size when
   /// certified, infinite when nothing is known.
-  double doubt = 0.0;
+  double error_bound = 0.0;
   Stop stop = Stop::kBounded;
   int steps = 0;  ///< feature pairs visited
   bool certified() const { return stop != Stop::kBounded; }

@@ -1,5 +1,5 @@
 #pragma once
-/// Points and faces of a piece in the two coordinates of a plane that a contact patch is told in.
+/// Points and faces of a piece in the two coordinates of a plane of a contact patch.
 
 #include "tactum/collision/contact.h"
 #include "tactum/collision/planar_patch.h"

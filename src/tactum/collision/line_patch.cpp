@@ -203,7 +203,7 @@ struct EdgeAndFace {
 template <bool kFaceIsA>
 void edge_over_face(const PatchWork& w) noexcept {
   const Vec3& n = w.closest.normal;
-  const Facing& facing = kFaceIsA ? w.a : w.b;
+  const SupportingFeature& supporting = kFaceIsA ? w.a : w.b;
   const int edge = (kFaceIsA ? w.b : w.a).feature.index;
   const auto ends_of = [&](const Polytope& A, const Polytope& B, int e) {
     return kFaceIsA ? ends_of_b(w, B, e) : ends_of_a(A, e);
@@ -211,7 +211,7 @@ void edge_over_face(const PatchWork& w) noexcept {
   const auto to_face = [&](const Vec3& p) -> Vec3 {
     return kFaceIsA ? p : rotated_back(w.X_AB.R, p - w.X_AB.p);
   };
-  const FaceView view(kFaceIsA ? w.A : w.B, facing.feature.index, kFaceIsA ? n : w.n_B);
+  const FaceView view(kFaceIsA ? w.A : w.B, supporting.feature.index, kFaceIsA ? n : w.n_B);
   const EdgeAndFace own(ends_of(w.A, w.B, edge), view, n, to_face);
   Intervals kept(own.inside);
   if (!w.others.empty()) {
@@ -223,12 +223,12 @@ void edge_over_face(const PatchWork& w) noexcept {
     }
   }
   StripCut cut;
-  if (facing.face_share < 1.0) {
-    const Polytope::Edge& from = view.F.edges[facing.edge];
+  if (supporting.face_share < 1.0) {
+    const Polytope::Edge& from = view.F.edges[supporting.edge];
     const Vec3& tail = view.F.vertices[from.tail];
     // A's face rises away from the contact along the normal, B's against it.
     const Vec3 rise = view.rise_from(tail, view.F.vertices[from.head]) * (kFaceIsA ? 1.0 : -1.0);
-    cut = {rise.dot(own.face_0 - tail), rise.dot(own.face_1 - tail), facing.face_share};
+    cut = {rise.dot(own.face_0 - tail), rise.dot(own.face_1 - tail), supporting.face_share};
   }
   const EdgeEnds& a = kFaceIsA ? own.face : own.edge;
   const EdgeEnds& b = kFaceIsA ? own.edge : own.face;
@@ -260,7 +260,7 @@ void edge_edge_contact(const PatchWork& w) noexcept {
   about.high = std::numeric_limits<double>::infinity();
   if (std::abs(rate) > tolerances::kSamePlane) {
     const double crossing = s0 - side0 / rate;
-    const double apart = std::max(w.tolerance, 0.0) / line.length() * share_kept(std::abs(rate), w.angle);
+    const double apart = std::max(w.tolerance, 0.0) / line.length() * lean_falloff(std::abs(rate), w.angle);
     about = {crossing - apart / std::abs(rate), crossing + apart / std::abs(rate)};
   }
   const auto common = [&](const PatchInterval& of_a, double b0, double b1) -> PatchInterval {

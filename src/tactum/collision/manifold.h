@@ -1,9 +1,9 @@
 #pragma once
 /// The contact patch of two convex pieces: where, over a common tangent plane, both have surface and the gap
-/// is below the tolerance; told as a few weighted points.
+/// is below the tolerance; represented by a few weighted points.
 ///
-///   1. On each side take the largest feature at the closest point that is square to the normal within 2
-///   degrees.
+///   1. On each side take the largest feature at the closest point that is square to the normal within
+///      2 degrees.
 ///   2. Look along the normal: both are flat figures in one plane (of two faces, B's), the gap is linear.
 ///
 ///          A \ B      vertex     edge                     face
@@ -12,12 +12,11 @@
 ///          face       point      edge clipped by the face polygon clipped by polygon
 ///
 ///   3. Cut off where the gap exceeds the tolerance, and as a feature leans toward the limit of 1., toward
-///   its edge and
-///      its vertex: as the pieces tilt the patch shrinks, it does not jump.
+///      its edge and its vertex: as the pieces tilt the patch shrinks, it does not jump.
 ///   4. Replace the patch by points with the same area, centroid and second moments C: a polygon by four,
-///   c +- u and c +- v, with u and v the columns of the symmetric root of 2 C; an interval by its two Gauss
-///   points. Any force that is linear in the gap, and its torque, is then the exact integral over the patch.
-///   Points keep their identities while the features stay.
+///      c +- u and c +- v, with u and v the columns of the symmetric root of 2 C; an interval by its two
+///      Gauss points. Any force that is linear in the gap, and its torque, is then the exact integral over
+///      the patch. Points keep their identities while the features stay.
 ///
 /// The figures are cut along the contact normal, by the borders of the face they are cut with. Departs from
 /// [Gregory 2000, 4.1] in 3 and 4: the bare corners of the clipped polygon come and go, and their mean with

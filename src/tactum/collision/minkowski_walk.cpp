@@ -256,10 +256,10 @@ struct Measure {
 
 /// Across the worst border, or where rounding has bent the facets the next worst, whose plane is not farther.
 bool leads_outward(const PairView& pair, const Measure& measure, Crossing crossing, double limit,
-                   double slack, const MinkowskiFacet& from, MinkowskiFacet& next) noexcept {
+                   double crossing_tolerance, const MinkowskiFacet& from, MinkowskiFacet& next) noexcept {
   const Vec3 target = measure.target(from);
   MinkowskiWalk again;
-  while (crossing.outside > slack) {
+  while (crossing.outside > crossing_tolerance) {
     next = facet_behind(pair, across(pair, from, crossing));
     if (measure(next) <= limit) return true;
     crossing = place(pair, from, target, crossing.outside, again).first;
@@ -298,7 +298,7 @@ MinkowskiWalk walk(const PairView& pair, const MinkowskiFacet& start, const Vec3
                    int most_moves) noexcept {
   constexpr int kLevelSteps = 16;  // between facets of one plane, while nothing gets better
   const Measure measure{ray};
-  const double slack = tolerances::kVoronoiSlack * pair.scale;
+  const double crossing_tolerance = tolerances::kVoronoiTolerance * pair.scale;
   const double level = tolerances::kCoplanar * pair.scale;  // facets of one plane, by rounding this far apart
   const int bound = 32 + static_cast<int>(pair.A.edges.size() + pair.B.edges.size()) / 2;
   const auto place_feet = [&](MinkowskiWalk& at) {
@@ -332,10 +332,10 @@ MinkowskiWalk walk(const PairView& pair, const MinkowskiFacet& start, const Vec3
       best.steps = step;
       break;
     }
-    const bool inside = on->outside <= slack;
+    const bool inside = on->outside <= crossing_tolerance;
     const bool leads_on = inside ? past_ridges && leads_past_ridge(pair, worst, level, on->facet, next)
                                  : leads_outward(pair, measure, worst.first, measure(best.facet) + level,
-                                                 slack, on->facet, next);
+                                                 crossing_tolerance, on->facet, next);
     if (!leads_on) {
       best.settled = true;
       break;

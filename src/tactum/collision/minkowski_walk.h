@@ -1,5 +1,5 @@
 #pragma once
-/// The walk over the facets of the Minkowski difference N = { b - a : a in A, b in B }, told in A's frame.
+/// The walk over the facets of the Minkowski difference N = { b - a : a in A, b in B }, in A's frame.
 ///
 /// N is never built. Its facets are pairs of features whose normals meet when both Gauss maps are laid over
 /// each other:
@@ -62,7 +62,7 @@ MinkowskiFacet facet_near(const PairView& pair, const Vec3& n) noexcept;
 /// The same, climbing from vertices that are near.
 MinkowskiFacet facet_near(const PairView& pair, const Vec3& n, int from_a, int from_b) noexcept;
 
-/// Less near, with one climb instead of three: the best aligned face at the vertices that the table tells.
+/// Less near, with one climb instead of three: the best aligned face at the vertices in the direction table.
 MinkowskiFacet facet_toward(const PairView& pair, const Vec3& n) noexcept;
 
 /// The witness points on a facet itself, without walking.

@@ -2,9 +2,9 @@
 /// Two convex pieces and where they are, as every query of this folder looks at them: B's pose in A, its
 /// inverse, and the lengths that tolerances are measured by. Both live for one query.
 ///
-///   separation(n) = min_A n.a - max_B n.b     the gap between the two support planes across n (unit, from B
-///   to A):
-///                                             a rigorous lower bound on the signed distance, whatever n is.
+///   separation(n) = min_A n.a - max_B n.b     the gap between the two support planes across n (unit, from
+///                                             B to A): a rigorous lower bound on the signed distance,
+///                                             whatever n is.
 
 #include <algorithm>
 #include <cmath>
@@ -51,16 +51,16 @@ struct PairView : PiecePair {
   }
 };
 
-/// A pose that nothing can be told of: not finite, or so far off that squares of lengths are not.
-inline bool is_no_pose(const Pose& X) noexcept {
+/// A pose for which there is no answer: not finite, or so far off that squares of lengths are not.
+inline bool is_invalid_pose(const Pose& X) noexcept {
   return !X.R.allFinite() || !std::isfinite(X.p.squaredNorm());
 }
 
-/// What is told of it: a distance that is no number, and nothing proved.
-inline PairDistance of_no_pose() noexcept {
+/// The answer for such a pose: the distance is not a number, and nothing is proved.
+inline PairDistance invalid_result() noexcept {
   PairDistance x;
   x.distance = std::numeric_limits<double>::quiet_NaN();
-  x.doubt = std::numeric_limits<double>::infinity();
+  x.error_bound = std::numeric_limits<double>::infinity();
   x.a = x.b = {FeatureKind::kVertex, 0};
   return x;
 }

@@ -6,9 +6,9 @@
 #include <span>
 
 #include "tactum/collision/face_projection.h"
-#include "tactum/collision/facing_feature.h"
 #include "tactum/collision/pair_view.h"
 #include "tactum/collision/stretch.h"
+#include "tactum/collision/supporting_feature.h"
 
 namespace tactum::detail {
 
@@ -22,7 +22,7 @@ struct PatchWork {
   double tolerance;
   double angle;
   Vec3 n_B;  ///< the normal in B's frame
-  Facing a, b;
+  SupportingFeature a, b;
   std::span<const Stretch> others;  ///< of the same kinds as a and b
   Manifold& out;
 
@@ -35,8 +35,8 @@ struct PatchWork {
         tolerance(below),
         angle(within),
         n_B(rotated_back(X.R, at.normal)),
-        a(facing_feature(A, at.a, -at.normal, angle)),
-        b(facing_feature(B, at.b, n_B, angle)),
+        a(supporting_feature(A, at.a, -at.normal, angle)),
+        b(supporting_feature(B, at.b, n_B, angle)),
         others(stretches),
         out(patch) {}
 
@@ -52,7 +52,7 @@ struct Strip {
 
 /// How much of the gap's range is kept as the features lean.
 inline double gap_share(const PatchWork& w) noexcept {
-  const auto share_of = [](const Facing& f) {
+  const auto share_of = [](const SupportingFeature& f) {
     return f.feature.kind == FeatureKind::kFace ? std::max(f.face_share, f.along_share) : f.along_share;
   };
   return std::min(share_of(w.a), share_of(w.b));

@@ -105,10 +105,10 @@ class Shallowest {
   void take(const MinkowskiWalk& walk) noexcept {
     steps_ += walk.steps;
     const PairDistance next = answer(pair_, walk, 0);
-    const double slack = tolerances::kCertificate * pair_.size;
+    const double tolerance = tolerances::kCertificate * pair_.size;
     const bool better = next.certified() == best_.certified() ? next.distance > best_.distance
-                        : next.certified()                    ? next.distance > best_.distance - slack
-                                                              : next.distance > best_.distance + slack;
+                        : next.certified()                    ? next.distance > best_.distance - tolerance
+                                                              : next.distance > best_.distance + tolerance;
     if (!any_ || better) best_ = next;
     any_ = true;
   }
@@ -193,8 +193,8 @@ void remember(const PairDistance& result, PairCache& cache) noexcept {
 }
 
 /// The warm query: the last frame's minimum followed, and beside it a search for a better one that costs a
-/// few facets a frame. Walks wait in the cache: the rivals, the best other minima known, and the scout, on
-/// its way from one of many directions.
+/// few facets a frame. Walks are kept in the cache from frame to frame: the candidate minima, which are the
+/// best other minima known, and the explorer, a walk that began in one of many directions.
 class Tracker {
  public:
   Tracker(const PairView& pair, PairCache& cache) noexcept
@@ -209,22 +209,23 @@ class Tracker {
     const bool moved_on = !same({cache_.a, cache_.b}, features(current_.facet));
     const std::uint32_t frame = cache_.turn++;
     const bool looks = frame % kLook == 0;
-    const bool rivals_are_due = looks && frame / kLook % kDue == kDue - 1;
-    if (moved_on) {  // a long frame already: it remembers what it left and does not send out the scout
+    const bool candidates_are_due = looks && frame / kLook % kDue == kDue - 1;
+    if (moved_on) {  // a long frame already: it remembers what it left and does not send out the explorer
       keep_last();
-    } else if (looks && !rivals_are_due) {
-      scout();
+    } else if (looks && !candidates_are_due) {
+      explore();
     }
-    watch(lower_rival(), rivals_are_due);
-    if (looks) watch(upper_rival(), rivals_are_due);
-    if (lower_rival().empty() || (rivals_are_due && height(upper_rival()) < height(lower_rival())))
-      std::swap(lower_rival(), upper_rival());
+    watch(lower_candidate(), candidates_are_due);
+    if (looks) watch(upper_candidate(), candidates_are_due);
+    if (lower_candidate().empty() ||
+        (candidates_are_due && height(upper_candidate()) < height(lower_candidate())))
+      std::swap(lower_candidate(), upper_candidate());
     return answer(pair_, current_, steps_);
   }
 
  private:
   static constexpr std::uint32_t kLook = 3;  ///< of so many frames one looks around
-  static constexpr std::uint32_t kDue = 4;   ///< of so many of those, one for the rivals instead of the scout
+  static constexpr std::uint32_t kDue = 4;   ///< of so many of those, one is for the candidates
   static constexpr int kMoves = 2;           ///< from facet to facet, of a walk whose turn it is
 
   static bool same(const FeaturePair& f, const FeaturePair& g) noexcept { return f.a == g.a && f.b == g.b; }
@@ -257,63 +258,65 @@ class Tracker {
     return facet.height > kFar * current_.facet.height;
   }
 
-  /// The scout sets out, or walks on and arrives, or waits for its next turn. While it is far it holds up
+  /// The explorer sets out, or walks on and arrives, or waits for its next turn. While it is far it holds up
   /// those that might set out from nearer, so not for long.
-  void scout() noexcept {
+  void explore() noexcept {
     constexpr std::uint32_t kPatience = 4;  // turns
-    if (cache_.scout.empty() && !set_out()) return;
-    const MinkowskiWalk walk = go_on(cache_.scout);
-    cache_.scout = {};
+    if (cache_.explorer.empty() && !start_explorer()) return;
+    const MinkowskiWalk walk = go_on(cache_.explorer);
+    cache_.explorer = {};
     if (lower(walk.facet)) {
       take(walk);
     } else if (walk.settled) {
       keep(features(walk.facet), walk.facet.height);
-    } else if (++cache_.scout_turns <= kPatience || !far(walk.facet)) {
-      cache_.scout = features(walk.facet);
+    } else if (++cache_.explorer_turns <= kPatience || !far(walk.facet)) {
+      cache_.explorer = features(walk.facet);
     }
   }
 
-  /// A start for the scout, in turn from all around; from near; and, every other time, from beside. Needles
-  /// and plates have nearly all of theirs far away, and some lead to the lowest minimum: only those from near
-  /// and beside must not be far. True when it is lower than the tracked minimum: to be followed at once.
-  bool set_out() noexcept {
-    const std::uint32_t turn = cache_.scouted++;
+  /// A start for the explorer, in turn from all around, from near, and, every other time, from a face beside
+  /// what touches. Of needles and plates nearly all starts are far away, and some of those lead to the lowest
+  /// minimum: only starts from near and beside must not be far. Returns true when the start is lower than the
+  /// tracked minimum, and so to be followed at once.
+  bool start_explorer() noexcept {
+    const std::uint32_t turn = cache_.explorer_starts++;
     const bool around = turn % 4 == 0;
     const MinkowskiFacet start = around          ? lowest_around(turn / 4)
                                  : turn % 2 == 0 ? one_near(turn / 4)
                                                  : one_beside(turn / 2);
     if (!around && far(start)) return false;
-    cache_.scout = features(start);
-    cache_.scout_turns = 0;
+    cache_.explorer = features(start);
+    cache_.explorer_turns = 0;
     return lower(start);
   }
 
-  FeaturePair& lower_rival() noexcept { return cache_.rivals[0]; }
-  FeaturePair& upper_rival() noexcept { return cache_.rivals[1]; }
+  FeaturePair& lower_candidate() noexcept { return cache_.candidate_minima[0]; }
+  FeaturePair& upper_candidate() noexcept { return cache_.candidate_minima[1]; }
 
   bool known(const FeaturePair& minimum) const noexcept {
-    return same(minimum, features(current_.facet)) || same(minimum, cache_.rivals[0]) ||
-           same(minimum, cache_.rivals[1]);
+    return same(minimum, features(current_.facet)) || same(minimum, cache_.candidate_minima[0]) ||
+           same(minimum, cache_.candidate_minima[1]);
   }
 
   void forget(const FeaturePair& minimum) noexcept {
-    for (FeaturePair& rival : cache_.rivals)
-      if (same(rival, minimum)) rival = {};
+    for (FeaturePair& candidate : cache_.candidate_minima)
+      if (same(candidate, minimum)) candidate = {};
   }
 
-  /// Another minimum becomes a rival, if it is lower than one.
+  /// Another minimum becomes a candidate, if it is lower than one.
   void keep(const FeaturePair& minimum, double at) noexcept {
     if (known(minimum)) return;
-    if (height(upper_rival()) < height(lower_rival())) std::swap(lower_rival(), upper_rival());
-    if (at < height(lower_rival())) {
-      upper_rival() = lower_rival();
-      lower_rival() = minimum;
-    } else if (at < height(upper_rival())) {
-      upper_rival() = minimum;
+    if (height(upper_candidate()) < height(lower_candidate()))
+      std::swap(lower_candidate(), upper_candidate());
+    if (at < height(lower_candidate())) {
+      upper_candidate() = lower_candidate();
+      lower_candidate() = minimum;
+    } else if (at < height(upper_candidate())) {
+      upper_candidate() = minimum;
     }
   }
 
-  /// A lower minimum, if it can be proved, becomes the tracked one, and that a rival.
+  /// A lower minimum, if it can be proved, becomes the tracked one, and that a candidate.
   void take(const MinkowskiWalk& walk) noexcept {
     if (!answer(pair_, walk, 0).certified()) return;
     const MinkowskiFacet last = current_.facet;
@@ -322,15 +325,15 @@ class Tracker {
     keep(features(last), last.height);
   }
 
-  /// A rival walks on when it is due, or found to be lower than the tracked minimum.
-  void watch(FeaturePair& rival, bool due) noexcept {
-    if (rival.empty() || (!due && !(height(rival) < current_.facet.height))) return;
-    const MinkowskiWalk walk = go_on(rival);
-    rival = {};
+  /// A candidate walks on when it is due, or found to be lower than the tracked minimum.
+  void watch(FeaturePair& candidate, bool due) noexcept {
+    if (candidate.empty() || (!due && !(height(candidate) < current_.facet.height))) return;
+    const MinkowskiWalk walk = go_on(candidate);
+    candidate = {};
     if (lower(walk.facet)) {
       take(walk);
     } else if (!known(features(walk.facet))) {
-      rival = features(walk.facet);
+      candidate = features(walk.facet);
     }
   }
 
@@ -425,8 +428,8 @@ PairDistance penetration_depth(const Polytope& A, const Polytope& B, const Pose&
     x = tracked_depth(pair, cache);
     if (x.certified()) return x;
   }
-  if (is_no_pose(X_AB)) {
-    x = of_no_pose();
+  if (is_invalid_pose(X_AB)) {
+    x = invalid_result();
     return x;
   }
   Shallowest shallowest(pair);
@@ -449,7 +452,7 @@ PairDistance penetration_exhaustive(const Polytope& A, const Polytope& B, const 
 
 PairDistance depth_along(const Polytope& A, const Polytope& B, const Pose& X_AB,
                          const Vec3& direction) noexcept {
-  if (is_no_pose(X_AB) || !direction.allFinite()) return of_no_pose();
+  if (is_invalid_pose(X_AB) || !direction.allFinite()) return invalid_result();
   const PairView pair(A, B, X_AB);
   const MinkowskiWalk walk = walk_along_ray(pair, facet_near(pair, direction), direction);
   PairDistance result = answer(pair, walk, walk.steps);

@@ -1,6 +1,6 @@
 #pragma once
 /// How far two overlapping convex pieces are inside each other: the shortest translation of A that clears it,
-/// told as a negative distance along the contact normal (contact.h). Found by the walk of minkowski_walk.h.
+/// given as a negative distance along the contact normal (contact.h). Found by the walk of minkowski_walk.h.
 ///
 /// Every depth is that of true support planes along the unit normal, so moving A by it always separates.
 /// `certified` says that the facet of the Minkowski difference is real and holds its own foot: a local

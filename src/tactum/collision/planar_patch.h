@@ -38,7 +38,8 @@ void clip_polygon(PatchPolygon& polygon, const PatchBox& box, double size) noexc
 /// Twice the signed area: positive when counter-clockwise.
 double twice_area(const PatchPolygon& polygon) noexcept;
 
-/// Quotients are waited for: the second moments are left for spread_of to divide, when its roots are drawn.
+/// Area, centroid and second moments of a polygon. The second moments are not divided by 4 area^2: spread_of
+/// divides them, so that the latency of the division overlaps that of its square roots.
 struct PatchMoments {
   double area = 0.0;                    ///< [m^2]
   Vec2 centroid = Vec2::Zero();         ///< [m]

@@ -121,7 +121,7 @@ Corner support(const PairView& pair, const Vec3& toward, const Corner* warm) noe
   return c;
 }
 
-void tell(const PairView& pair, const Simplex& simplex, PairDistance& x) noexcept {
+void set_answer(const PairView& pair, const Simplex& simplex, PairDistance& x) noexcept {
   x.p_a.setZero();
   x.p_b.setZero();
   std::array<int, 4> a{};
@@ -149,7 +149,7 @@ OverlapProof proof_of(const Simplex& simplex) noexcept {
 
 }  // namespace
 
-March closest_by_supports(const PairView& pair, OverlapProof& proof, PairDistance& x) noexcept {
+FeatureWalk closest_by_supports(const PairView& pair, OverlapProof& proof, PairDistance& x) noexcept {
   constexpr int kSteps = 100;
   Simplex simplex;
   Vec3 d = pair.A.center - pair.X_AB * pair.B.center;
@@ -157,19 +157,19 @@ March closest_by_supports(const PairView& pair, OverlapProof& proof, PairDistanc
   simplex.corners[0] = support(pair, d, nullptr);
   simplex.count = 1;
   d = reduce(simplex);
-  March march;
-  march.end = MarchEnd::kClosest;
-  for (march.steps = 1; march.steps < kSteps; ++march.steps) {
-    if (simplex.count == 4 || d.norm() <= tolerances::kVoronoiSlack * pair.scale) {
+  FeatureWalk walk;
+  walk.end = FeatureWalkEnd::kClosest;
+  for (walk.steps = 1; walk.steps < kSteps; ++walk.steps) {
+    if (simplex.count == 4 || d.norm() <= tolerances::kVoronoiTolerance * pair.scale) {
       proof = proof_of(simplex);
-      march.end = MarchEnd::kOverlap;
+      walk.end = FeatureWalkEnd::kOverlap;
       break;
     }
     const Corner next = support(pair, d, &simplex.corners[0]);
     bool known = false;
     for (int i = 0; i < simplex.count; ++i)
       known |= simplex.corners[i].a == next.a && simplex.corners[i].b == next.b;
-    if (known || d.dot(d - next.d) <= tolerances::kVoronoiSlack * d.squaredNorm()) break;
+    if (known || d.dot(d - next.d) <= tolerances::kVoronoiTolerance * d.squaredNorm()) break;
     const Simplex before = simplex;
     simplex.corners[simplex.count++] = next;
     const Vec3 nearer = reduce(simplex);
@@ -179,8 +179,8 @@ March closest_by_supports(const PairView& pair, OverlapProof& proof, PairDistanc
     }
     d = nearer;
   }
-  tell(pair, simplex, x);
-  return march;
+  set_answer(pair, simplex, x);
+  return walk;
 }
 
 }  // namespace tactum

@@ -5,13 +5,13 @@
 /// judges it. A fallback. The nearest point of the simplex is taken over all its corners, edges and faces:
 /// slower than the usual recursion, and without its cases. Cost: about 0.3 us a step, 3-15 steps.
 
-#include "tactum/collision/march.h"
+#include "tactum/collision/feature_walk.h"
 #include "tactum/collision/pair_view.h"
 
 namespace tactum {
 
 /// Closest points in `x`, with the lowest features they lie on; or kOverlap and a common point, and then in
 /// `proof` what shows it.
-March closest_by_supports(const PairView& pair, OverlapProof& proof, PairDistance& x) noexcept;
+FeatureWalk closest_by_supports(const PairView& pair, OverlapProof& proof, PairDistance& x) noexcept;
 
 }  // namespace tactum

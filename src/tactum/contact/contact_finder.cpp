@@ -14,7 +14,7 @@ namespace {
 
 using Index = std::size_t;
 
-/// Below every odometer reading less a tolerance.
+/// Below every accumulated motion less a tolerance.
 constexpr double kAlwaysDue = -1e300;
 
 /// A budget is ample when every due pair can be tested so often: once when it is found, and at the poses on
@@ -34,13 +34,14 @@ void ContactFinder::find_patches(std::span<const Pose> X_WB, int budget, PatchPo
   tests_left_ = budget;
   patches_.clear();
   candidates_.clear();
-  objected_.clear();
+  internal_contacts_.clear();
   due_.clear();
-  handed_on_.clear();
+  emitted_.clear();
   std::fill(blocked_.begin(), blocked_.end(), 0);
   for (Index i = 0; i < pairs_.size(); ++i) {
     Pair& pair = pairs_[i];
-    if (pair.free_until - odometers(pair.body_a, pair.body_b) > tolerance(pair.body_a, pair.body_b)) {
+    if (pair.free_until - accumulated_motion(pair.body_a, pair.body_b) >
+        tolerance(pair.body_a, pair.body_b)) {
       pair.in_contact = false;
     } else {
       due_.push_back({static_cast<std::int32_t>(i), urgency_of(pair.body_a, pair.body_b), pair.in_contact,
@@ -48,8 +49,8 @@ void ContactFinder::find_patches(std::span<const Pose> X_WB, int budget, PatchPo
     }
   }
   budget_limited_ = kAmple * due_.size() > static_cast<Index>(std::max(budget, 0));
-  // Before the list is handed over: what is known leaves it.
-  const int may_test = budget_limited_ ? leave_known(X_WB) : budget;
+  // Pairs whose answer still holds leave the list before it is put in order.
+  const int may_test = budget_limited_ ? skip_still_valid(X_WB) : budget;
   const int checked = prioritise(due_, may_test);
   work_.due = static_cast<int>(due_.size());
   for (int i = 0; i < work_.due; ++i) {
@@ -58,15 +59,15 @@ void ContactFinder::find_patches(std::span<const Pose> X_WB, int budget, PatchPo
     if (i < checked) {
       pair.last_checked = frame_;
     } else {
-      const double until = pair.free_until - odometers(pair.body_a, pair.body_b);
-      leave(pair.body_a, pair.body_b, until, pair.last_checked);
+      const double until = pair.free_until - accumulated_motion(pair.body_a, pair.body_b);
+      skip(pair.body_a, pair.body_b, until, pair.last_checked);
       if (!pair.in_contact || !pair.last.certified) continue;
     }
-    handed_on_.push_back(number);
+    emitted_.push_back(number);
   }
   // In the order of the pairs, which is that of the last frame's patches.
-  if (budget_limited_) std::sort(handed_on_.begin(), handed_on_.end());
-  for (const std::int32_t number : handed_on_) {
+  if (budget_limited_) std::sort(emitted_.begin(), emitted_.end());
+  for (const std::int32_t number : emitted_) {
     Pair& pair = pairs_[Index(number)];
     const Pose X_AB = relative_pose(X_WB[Index(pair.body_a)], X_WB[Index(pair.body_b)]);
     if (pair.last_checked == frame_) {
@@ -74,15 +75,15 @@ void ContactFinder::find_patches(std::span<const Pose> X_WB, int budget, PatchPo
     } else {
       PairDistance last = pair.last.found;
       // Of what was apart only a bound is known, and that it is apart.
-      const double bound = pair.free_until - odometers(pair.body_a, pair.body_b);
+      const double bound = pair.free_until - accumulated_motion(pair.body_a, pair.body_b);
       last.distance = last.distance > 0.0 ? std::max(bound, 0.0) : std::min(bound, last.distance);
-      hand_on(pair, last, X_AB);
+      emit_patch(pair, last, X_AB);
     }
   }
-  for (const int number : objected_) settle_objected(patches_[Index(number)], X_WB);
+  for (const int number : internal_contacts_) settle_internal_contact(patches_[Index(number)], X_WB);
   candidate_order_.clear();
   for (SeamCandidate& candidate : candidates_) candidate_order_.push_back(&candidate);
-  work_.rooms_full |= !settle_seams(candidate_order_, X_WB, patches_);
+  work_.capacity_reached |= !settle_seams(candidate_order_, X_WB, patches_);
   for (const bool held : {true, false})
     for (const SweepAndPrune::Pair& near : sweep_.pairs())
       if (meet_by_surfaces(near.a, near.b) && of_held(near.a, near.b) == held)
@@ -90,16 +91,16 @@ void ContactFinder::find_patches(std::span<const Pose> X_WB, int budget, PatchPo
   work_.patches = static_cast<int>(patches_.size());
 }
 
-void ContactFinder::settle_objected(ContactPatch& patch, std::span<const Pose> X_WB) const noexcept {
+void ContactFinder::settle_internal_contact(ContactPatch& patch, std::span<const Pose> X_WB) const noexcept {
   const Part& part_a = *bodies_[Index(patch.body_a)].part;
   const Part& part_b = *bodies_[Index(patch.body_b)].part;
   const Pose X_AB = relative_pose(X_WB[Index(patch.body_a)], X_WB[Index(patch.body_b)]);
   const PairView pair(part_a.pieces[Index(patch.piece_a)], part_b.pieces[Index(patch.piece_b)], X_AB);
   const PairDistance found{.a = patch.manifold.a, .b = patch.manifold.b};
-  auto objected = objected_.begin();  // rising, as the patches
+  auto internal = internal_contacts_.begin();  // rising, as the patches
   const auto leader = std::find_if(patches_.begin(), patches_.end(), [&](const ContactPatch& other) {
-    if (objected != objected_.end() && &other == &patches_[Index(*objected)]) {
-      ++objected;
+    if (internal != internal_contacts_.end() && &other == &patches_[Index(*internal)]) {
+      ++internal;
       return false;
     }
     return other.body_a == patch.body_a && other.body_b == patch.body_b &&
@@ -114,13 +115,13 @@ void ContactFinder::settle_objected(ContactPatch& patch, std::span<const Pose> X
     const Feature same = same_feature(part, of_piece, feature, piece);
     if (same.index >= 0 || feature.kind == FeatureKind::kFace) return same;
     beside = true;
-    const int face = level_face(part.pieces[Index(of_piece)], feature, outward);
+    const int face = reference_face(part.pieces[Index(of_piece)], feature, outward);
     return same_feature(part, of_piece, {FeatureKind::kFace, face}, piece);
   };
   patch.manifold.a =
-      stretch(part_a, leader->piece_a, leading.a, -leading.normal, patch.piece_a, patch.beside_a);
+      stretch(part_a, leader->piece_a, leading.a, -leading.normal, patch.piece_a, patch.neighbour_face_a);
   patch.manifold.b = stretch(part_b, leader->piece_b, leading.b, rotated_back(X_AB.R, leading.normal),
-                             patch.piece_b, patch.beside_b);
+                             patch.piece_b, patch.neighbour_face_b);
 }
 
 std::uint8_t ContactFinder::urgency_of(int a, int b) const noexcept {
@@ -138,8 +139,9 @@ double ContactFinder::bound_at(const Pair& pair, const Answer& answer, const Pos
   return answer.found.distance - moved;
 }
 
-/// Takes the pairs whose answer holds from those that are due; returns how many of the others may be tested.
-int ContactFinder::leave_known(std::span<const Pose> X_WB) noexcept {
+/// Removes the pairs whose last answer still holds from those that are due. Returns how many of the others
+/// may be tested.
+int ContactFinder::skip_still_valid(std::span<const Pose> X_WB) noexcept {
   int held = 0;
   const auto needs_no_test = [&](const DuePair& due) {
     Pair& pair = pairs_[Index(due.pair)];
@@ -149,8 +151,8 @@ int ContactFinder::leave_known(std::span<const Pose> X_WB) noexcept {
       pair.last = pair.trial;
       bound = on_trial;
     }
-    // Measured between the two, the motion is less than what both odometers say.
-    const double here = odometers(pair.body_a, pair.body_b);
+    // Measured between the two poses, the motion is less than the accumulated one.
+    const double here = accumulated_motion(pair.body_a, pair.body_b);
     pair.free_until = std::max(pair.free_until, here + bound);
     if (pair.free_until - here > tolerance(pair.body_a, pair.body_b)) {
       pair.in_contact = false;
@@ -158,19 +160,19 @@ int ContactFinder::leave_known(std::span<const Pose> X_WB) noexcept {
     }
     const double found = pair.last.found.distance;
     if (pair.last.certified && bound >= found - kKnownShare * std::max(found, 0.0)) {
-      handed_on_.push_back(due.pair);
+      emitted_.push_back(due.pair);
       return true;
     }
     held += due.urgency == urgency::kHeld ? 1 : 0;
     return false;
   };
   due_.erase(std::remove_if(due_.begin(), due_.end(), needs_no_test), due_.end());
-  work_.known = static_cast<int>(handed_on_.size());
+  work_.known = static_cast<int>(emitted_.size());
   return std::min(tests_left_, held + std::max(0, tests_left_ - held) / 2);
 }
 
-/// Counts a pair that is not tested in this frame, and tells whether that is safe.
-void ContactFinder::leave(int a, int b, double gap, std::int64_t last_checked) noexcept {
+/// Counts a pair that is not tested in this frame, and blocks its bodies where that is not safe.
+void ContactFinder::skip(int a, int b, double gap, std::int64_t last_checked) noexcept {
   const auto moves_by = [&](int body) { return bodies_[Index(body)].moves ? reach_[Index(body)] : 0.0; };
   ++work_.unchecked;
   if (gap > moves_by(a) + moves_by(b)) return;
@@ -202,13 +204,14 @@ void ContactFinder::test(Pair& pair, const Pose& X_AB) noexcept {
   work_.feature_steps += pair.last.found.steps;
   if (!pair.last.certified) ++work_.uncertified;
   // What is not certified proves nothing: the pair is due again in the next frame.
-  pair.free_until =
-      pair.last.certified ? odometers(pair.body_a, pair.body_b) + pair.last.found.distance : kAlwaysDue;
-  hand_on(pair, pair.last.found, X_AB);
+  pair.free_until = pair.last.certified
+                        ? accumulated_motion(pair.body_a, pair.body_b) + pair.last.found.distance
+                        : kAlwaysDue;
+  emit_patch(pair, pair.last.found, X_AB);
 }
 
 /// Makes a patch of what was found, when it is within the tolerance.
-void ContactFinder::hand_on(Pair& pair, const PairDistance& found, const Pose& X_AB) noexcept {
+void ContactFinder::emit_patch(Pair& pair, const PairDistance& found, const Pose& X_AB) noexcept {
   const Part& part_a = *bodies_[Index(pair.body_a)].part;
   const Part& part_b = *bodies_[Index(pair.body_b)].part;
   const Polytope& A = part_a.pieces[Index(pair.piece_a)];
@@ -220,11 +223,11 @@ void ContactFinder::hand_on(Pair& pair, const PairDistance& found, const Pose& X
     return;
   }
   if (patches_.size() + candidates_.size() >= patches_.capacity()) {
-    work_.rooms_full = true;
+    work_.capacity_reached = true;
     return;
   }
-  const bool seams = !part_a.true_surface.alone() || !part_b.true_surface.alone();
-  const bool objected = seams && !is_true_contact(part_a, pair.piece_a, part_b, pair.piece_b, X_AB, found);
+  const bool seams = !part_a.true_surface.single_piece() || !part_b.true_surface.single_piece();
+  const bool internal = seams && !is_true_contact(part_a, pair.piece_a, part_b, pair.piece_b, X_AB, found);
   if (seams && points_ == PatchPoints::kQuadrature) {
     SeamCandidate& candidate = candidates_.emplace_back();
     candidate.body_a = pair.body_a;
@@ -237,7 +240,7 @@ void ContactFinder::hand_on(Pair& pair, const PairDistance& found, const Pose& X
     candidate.shown = &pair.shown;
     candidate.reach = reach;
     candidate.found = found;
-    candidate.objected = objected;
+    candidate.internal = internal;
     return;
   }
   ContactPatch& patch = patches_.emplace_back();
@@ -255,7 +258,7 @@ void ContactFinder::hand_on(Pair& pair, const PairDistance& found, const Pose& X
     patch.manifold.a = found.a;
     patch.manifold.b = found.b;
     patch.manifold.points.push_back({found.p_a, found.p_b, found.distance, 1.0, 0});
-    if (objected && found.distance > 0.0) objected_.push_back(static_cast<int>(patches_.size()) - 1);
+    if (internal && found.distance > 0.0) internal_contacts_.push_back(static_cast<int>(patches_.size()) - 1);
     return;
   }
   const PairDistance shown = steady_depth(A, B, X_AB, found, pair.shown);

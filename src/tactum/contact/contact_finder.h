@@ -1,18 +1,17 @@
 #pragma once
 /// Where do the bodies touch? The first half of a frame, from poses to contact patches, in three steps:
 ///
-///   bodies  --- sweep and prune --->  near bodies  --- hierarchies --->  near pieces  --- exact tests --->
-///   patches
+///   bodies -- sweep and prune --> near bodies -- hierarchies --> near pieces -- exact tests --> patches
 ///
 /// Bodies made of convex pieces meet piece by piece, by tracked pairs. Where either has none, both meet by
 /// their surfaces: every local minimum of distance is a patch of one point (surface_minima.h).
 ///
 /// What holds from frame to frame is kept: no step is repeated while a bound on the motion proves that its
-/// answer cannot have changed. Every body carries an odometer, `travel`: no point of it has moved farther
-/// than that since the start. A list of pairs made with reach R at the odometers' sum S0 holds all pairs
-/// within `tolerance` while  (S - S0) + tolerance <= R;  a pair found d apart at S0 needs no test while  d -
-/// (S - S0) > tolerance. Both are proofs, not guesses; they are what makes a frame with coherent motion
-/// cheap.
+/// answer cannot have changed. For every body the accumulated motion `travel` is kept: no point of it has
+/// moved farther than that since the start. With S the sum of two bodies' accumulated motions, a list of
+/// their pairs made with reach R at S0 holds all pairs within `tolerance` while  (S - S0) + tolerance <= R;
+/// a pair found d apart at S0 needs no test while  d - (S - S0) > tolerance. Both are proofs, not guesses;
+/// they are what makes a frame with coherent motion cheap.
 ///
 /// Exact tests are bounded by a budget (schedule.h). While it is ample, every pair that may be within its
 /// tolerance is tested. Where it is not, answers are kept as long as they hold, and what is left over is
@@ -20,8 +19,7 @@
 ///
 ///   found d apart at X_AB, moved by m since    known, when m is a small share of d: no test is needed
 ///   d - m > what both may move in the frame    left safely: they cannot touch, and their patch is not missed
-///   else                                       left unproven: neither body may move in this frame, see
-///   blocked()
+///   else                                       left unproven: neither body may move, see blocked()
 ///
 /// Pieces of one part share walls that nobody can touch, and true faces that were cut; what pairs of pieces
 /// answer is settled between them before it is handed on (seam_settler.h).
@@ -63,7 +61,7 @@ enum class PatchPoints {
 class ContactFinder final : public GapOracle {
  public:
   ContactFinder(std::vector<CollisionBody> bodies, std::span<const Pose> X_WB,
-                const ContactFinderRooms& rooms = {});
+                const ContactFinderCapacity& capacity = {});
 
   /// Renews what the motion since the last frame has made stale. `reach[i]` [m] bounds how far any point of
   /// body i moves in this frame; the tolerance of a pair is the sum of its reaches, at least `min_tolerance`
@@ -93,7 +91,7 @@ class ContactFinder final : public GapOracle {
   struct Answer {
     PairDistance found;
     Pose X_AB;
-    bool certified = false;  ///< false: it tells nothing
+    bool certified = false;  ///< false: it proves nothing
   };
   struct Pair {
     std::int32_t body_a = -1, body_b = -1, piece_a = -1, piece_b = -1;
@@ -101,19 +99,19 @@ class ContactFinder final : public GapOracle {
     SteadyContact shown;
     Answer last;                     ///< where the pair is, or was not long ago
     Answer trial;                    ///< where it was on trial; nothing says that it went there
-    double free_until = -1e300;      ///< odometer sum at which the distance may have shrunk to zero
+    double free_until = -1e300;      ///< accumulated motion at which the distance may have shrunk to zero
     std::int64_t last_checked = -1;  ///< frame
     bool in_contact = false;
   };
   /// The pieces of two near bodies: pairs_[first, first + count), sorted by piece.
   struct BodyPair {
     std::int32_t first = 0, count = 0;
-    double odometers = 0.0;      ///< S0
-    double reach = 0.0;          ///< R
-    bool cut_short = false;      ///< the room was full: pairs are missing
-    std::int64_t renewal = -1;   ///< the renewal it was last part of
-    double free_until = -1e300;  ///< of two surfaces: as in Pair
-    bool apart = false;          ///< ... and nothing was within the tolerance when last asked
+    double accumulated_motion = 0.0;  ///< S0
+    double reach = 0.0;               ///< R
+    bool cut_short = false;           ///< the room was full: pairs are missing
+    std::int64_t renewal = -1;        ///< the renewal it was last part of
+    double free_until = -1e300;       ///< of two surfaces: as in Pair
+    bool apart = false;               ///< ... and nothing was within the tolerance when last asked
   };
 
   void move_boxes(std::span<const Pose> X_WB) noexcept;
@@ -123,18 +121,19 @@ class ContactFinder final : public GapOracle {
   void append_pairs(int a, int b, const BodyPair& old) noexcept;
   double bound_at(const Pair& pair, const Answer& answer, const Pose& X_AB) const noexcept;
   void answer(Pair& pair, const Pose& X_AB, Answer& into) noexcept;
-  int leave_known(std::span<const Pose> X_WB) noexcept;
-  void leave(int a, int b, double gap, std::int64_t last_checked) noexcept;
+  int skip_still_valid(std::span<const Pose> X_WB) noexcept;
+  void skip(int a, int b, double gap, std::int64_t last_checked) noexcept;
   bool of_held(int a, int b) const noexcept { return urgency_of(a, b) == urgency::kHeld; }
   std::uint8_t urgency_of(int a, int b) const noexcept;
   void test(Pair& pair, const Pose& X_AB) noexcept;
-  void hand_on(Pair& pair, const PairDistance& found, const Pose& X_AB) noexcept;
-  /// A neighbour across the seam is nearer than what is objected to. Where its normal parts these pieces as
-  /// well it leads: of this patch, without a point, only the stretch of the same true faces counts, along the
-  /// leader's normal, of an edge or corner that of its most level face; where there is none it has no
-  /// features, and is only watched. Where no neighbour leads, as between the walls of a corner, it is a
-  /// contact of its own.
-  void settle_objected(ContactPatch& patch, std::span<const Pose> X_WB) const noexcept;
+  void emit_patch(Pair& pair, const PairDistance& found, const Pose& X_AB) noexcept;
+  /// Settles an internal contact, `patch`. The leader is the neighbour across the seam that is nearer and
+  /// whose normal separates these two pieces as well. With a leader the patch loses its point and takes the
+  /// leader's normal; what counts of it is its stretch of the same true faces, or, where the leader touches
+  /// with an edge or corner, of the reference face there. Where there is no such stretch the patch keeps no
+  /// features, and only its distance is watched. Without a leader, as in the corner of two walls, the patch
+  /// is a contact of its own.
+  void settle_internal_contact(ContactPatch& patch, std::span<const Pose> X_WB) const noexcept;
   GapAnswer distance_at(const ContactPatch& patch, std::span<const Pose> X_WB, double enough, int keep_back,
                         double& distance) noexcept;
   bool meet_by_surfaces(int a, int b) const noexcept {
@@ -144,7 +143,9 @@ class ContactFinder final : public GapOracle {
   void add_surface_patch(int a, int b, const SurfaceMinimum& minimum, bool second_end, double reach) noexcept;
   void surface_distances_at(std::span<const ContactPatch> patches, std::span<const Pose> X_WB,
                             std::span<double> distance, std::span<GapAnswer> asked, int keep_back) noexcept;
-  double odometers(int a, int b) const noexcept { return travel_[std::size_t(a)] + travel_[std::size_t(b)]; }
+  double accumulated_motion(int a, int b) const noexcept {
+    return travel_[std::size_t(a)] + travel_[std::size_t(b)];
+  }
   double tolerance(int a, int b) const noexcept;
   BodyPair& list_of(int a, int b) noexcept {
     return lists_[std::size_t(a) * bodies_.size() + std::size_t(b)];
@@ -153,8 +154,8 @@ class ContactFinder final : public GapOracle {
   std::vector<CollisionBody> bodies_;
   std::vector<Aabb> part_box_;  // of the part, in its own frame
   std::vector<double> radius_;
-  std::vector<Aabb> fat_box_;  // in the world, grown by slack
-  std::vector<double> slack_;  // how far boxes and lists are grown
+  std::vector<Aabb> fat_box_;       // in the world, grown
+  std::vector<double> box_growth_;  // how far boxes and lists are grown
   std::vector<double> travel_;
   std::vector<Pose> last_X_WB_;
   SweepAndPrune sweep_;
@@ -162,13 +163,14 @@ class ContactFinder final : public GapOracle {
   std::vector<Pair> pairs_, renewed_;
   std::vector<std::pair<std::int32_t, std::int32_t>> near_pieces_;  // of the two bodies in work
   std::vector<DuePair> due_;
-  std::vector<std::int32_t> handed_on_;  // pairs with an answer, or that had one
-  std::vector<char> blocked_;            // by body
-  std::vector<std::uint8_t> urgency_;    // by body; empty: all alike
+  std::vector<std::int32_t> emitted_;  // pairs with an answer, or that had one
+  std::vector<char> blocked_;          // by body
+  std::span<const std::uint8_t> urgency_;
   bool budget_limited_ = false;
   int tests_left_ = 0;
   std::vector<ContactPatch> patches_;
-  std::vector<int> objected_;  // patches of pieces that are apart, of points that are no contact of the parts
+  std::vector<int>
+      internal_contacts_;  // patches of pieces that are apart, of points that are no contact of the parts
   std::vector<SeamCandidate> candidates_;
   std::vector<SeamCandidate*> candidate_order_;
   std::vector<SurfaceMinimum> minima_;

@@ -17,7 +17,7 @@ struct ContactPatch {
   bool of_surfaces = false;        ///< the features of the manifold are those of SurfaceTree
   /// An edge or corner of A (of B) touches on another piece; the feature, if any, is the face beside it on
   /// this one.
-  bool beside_a = false, beside_b = false;
+  bool neighbour_face_a = false, neighbour_face_b = false;
   /// Patches of the same bodies and facets share one stiffness: they touch on the same two flat walls.
   int facet_a = -1, facet_b = -1;
   double distance = 0.0;   ///< of the pieces, negative when they overlap [m]
@@ -25,13 +25,13 @@ struct ContactPatch {
   Manifold manifold;
 };
 
-/// A patch's claim on its facet's stiffness: its area; for a segment, next to that, its length times a
+/// A patch's weight in its facet's stiffness: its area; for a segment, next to that, its length times a
 /// hair's breadth; for a point next to nothing [m^2].
-inline double stiffness_claim(const Manifold& manifold) noexcept {
+inline double patch_weight(const Manifold& manifold) noexcept {
   if (manifold.area > 0.0) return manifold.area;
   if (manifold.points.size() < 2) return tolerances::kPointArea_m2;
   const double length = (manifold.points[1].p_a - manifold.points[0].p_a).norm();
-  return std::max(length * tolerances::kLineWidth_m, tolerances::kLeastClaim_m2);
+  return std::max(length * tolerances::kLineWidth_m, tolerances::kLeastWeight_m2);
 }
 
 }  // namespace tactum

@@ -8,8 +8,8 @@
 /// that is a point (n, r x n, distance) in seven dimensions. A minimum may be left out where a kept one says
 /// nearly the same: for all steps within the bounds, it is overstepped by no more than
 ///
-///      error = max(0, distance_kept - distance) + |n - n_kept| max_translation + |r x n - (r x n)_kept|
-///      max_rotation
+///      error = max(0, distance_kept - distance)
+///              + |n - n_kept| max_translation + |r x n - (r x n)_kept| max_rotation
 ///
 /// Kept first is the nearest, then again and again the one with the largest error, until none is above
 /// `enough` or the room is full: farthest-first, which is within twice the best possible choice of as many
@@ -27,7 +27,7 @@
 namespace tactum {
 
 struct ReductionBounds {
-  Vec3 center = Vec3::Zero();    ///< about which rotations are told, A's frame [m]
+  Vec3 center = Vec3::Zero();    ///< the centre of rotations, A's frame [m]
   double max_translation = 0.0;  ///< of a step [m]
   double max_rotation = 0.0;     ///< of a step [rad]
   double enough = 0.0;           ///< stop when no dropped minimum is overstepped by more [m]

@@ -6,8 +6,8 @@
 
 namespace tactum {
 
-/// Rooms reserved at load time; a full one sets a flag and drops the rest of that step.
-struct ContactFinderRooms {
+/// Room reserved at load time; a full one sets a flag and drops the rest of that step.
+struct ContactFinderCapacity {
   std::size_t pairs = 1 << 16;     ///< near piece pairs
   std::size_t patches = 4096;      ///< contact patches of a frame
   std::size_t minima = 8192;       ///< local minima of two surfaces
@@ -32,8 +32,8 @@ struct ContactWork {
   int unchecked = 0;      ///< due pairs beyond the budget
   int left_unproven = 0;  ///< ... that no bound proves to stay apart in this frame
   int left_of_held = 0;   ///< ... of these, pairs of the held part
-  int longest_unchecked = 0;  ///< frames since the last check of a pair that was left unproven
-  bool rooms_full = false;    ///< something was dropped: raise the rooms
+  int longest_unchecked = 0;      ///< frames since the last check of a pair that was left unproven
+  bool capacity_reached = false;  ///< something was dropped: raise the capacity
 };
 
 }  // namespace tactum

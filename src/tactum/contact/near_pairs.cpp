@@ -14,7 +14,7 @@ using Index = std::size_t;
 
 /// Boxes and lists of near pairs are grown by this share of the smaller body's radius beyond the tolerance:
 /// more means they are renewed less often but hold more pairs.
-constexpr double kSlack = 0.05;
+constexpr double kBoxGrowth = 0.05;
 
 /// The axis-aligned box around a turned box.
 Aabb turned(const Aabb& box, const Pose& X, double grown) {
@@ -30,7 +30,7 @@ bool inside(const Aabb& small, const Aabb& large) {
 }  // namespace
 
 ContactFinder::ContactFinder(std::vector<CollisionBody> bodies, std::span<const Pose> X_WB,
-                             const ContactFinderRooms& rooms)
+                             const ContactFinderCapacity& capacity)
     : bodies_(std::move(bodies)), last_X_WB_(X_WB.begin(), X_WB.end()), sweep_([&] {
         for (Index i = 0; i < bodies_.size(); ++i) {
           const Part& part = *bodies_[i].part;
@@ -42,28 +42,26 @@ ContactFinder::ContactFinder(std::vector<CollisionBody> bodies, std::span<const 
           }
           radius_.push_back(radius);
           part_box_.push_back(box);
-          slack_.push_back(kSlack * radius);
-          fat_box_.push_back(turned(box, X_WB[i], slack_.back()));
+          box_growth_.push_back(kBoxGrowth * radius);
+          fat_box_.push_back(turned(box, X_WB[i], box_growth_.back()));
         }
         return SweepAndPrune(fat_box_);
       }()) {
   travel_.assign(bodies_.size(), 0.0);
   lists_.resize(bodies_.size() * bodies_.size());
-  pairs_.reserve(rooms.pairs);
-  renewed_.reserve(rooms.pairs);
-  near_pieces_.reserve(rooms.pairs);
-  urgency_.reserve(bodies_.size());
-  reach_.reserve(bodies_.size());
-  due_.reserve(rooms.pairs);
-  handed_on_.reserve(rooms.pairs);
+  pairs_.reserve(capacity.pairs);
+  renewed_.reserve(capacity.pairs);
+  near_pieces_.reserve(capacity.pairs);
+  due_.reserve(capacity.pairs);
+  emitted_.reserve(capacity.pairs);
   blocked_.assign(bodies_.size(), 0);
-  patches_.reserve(rooms.patches);
-  candidates_.reserve(rooms.patches);
-  candidate_order_.reserve(rooms.patches);
-  objected_.reserve(rooms.patches);
-  minima_.reserve(rooms.minima);
-  reduction_scratch_.reserve(rooms.minima);
-  kept_minima_ = rooms.kept_minima;
+  patches_.reserve(capacity.patches);
+  candidates_.reserve(capacity.patches);
+  candidate_order_.reserve(capacity.patches);
+  internal_contacts_.reserve(capacity.patches);
+  minima_.reserve(capacity.minima);
+  reduction_scratch_.reserve(capacity.minima);
+  kept_minima_ = capacity.kept_minima;
 }
 
 void ContactFinder::find_near_pairs(std::span<const Pose> X_WB, std::span<const double> reach,
@@ -79,7 +77,7 @@ void ContactFinder::find_near_pairs(std::span<const Pose> X_WB, std::span<const 
   });
   if (!lists_hold) renew_lists(X_WB);
   for (const SweepAndPrune::Pair& near : sweep_.pairs())
-    work_.rooms_full |= list_of(near.a, near.b).cut_short;
+    work_.capacity_reached |= list_of(near.a, near.b).cut_short;
   work_.near_pairs = static_cast<int>(pairs_.size());
 }
 
@@ -92,7 +90,7 @@ void ContactFinder::move_boxes(std::span<const Pose> X_WB) noexcept {
     const double needed = std::max(reach_[i], min_tolerance_);
     const Aabb tight = turned(part_box_[i], X_WB[i], needed);
     if (inside(tight, fat_box_[i])) continue;
-    fat_box_[i] = turned(part_box_[i], X_WB[i], needed + slack_[i]);
+    fat_box_[i] = turned(part_box_[i], X_WB[i], needed + box_growth_[i]);
     sweep_.move(static_cast<int>(i), fat_box_[i]);
     moved = true;
   }
@@ -103,7 +101,8 @@ void ContactFinder::move_boxes(std::span<const Pose> X_WB) noexcept {
 
 bool ContactFinder::list_holds(const BodyPair& list, int a, int b) const noexcept {
   if (!bodies_[Index(a)].moves && !bodies_[Index(b)].moves) return true;
-  return list.renewal == renewal_ && odometers(a, b) - list.odometers + tolerance(a, b) <= list.reach;
+  return list.renewal == renewal_ &&
+         accumulated_motion(a, b) - list.accumulated_motion + tolerance(a, b) <= list.reach;
 }
 
 void ContactFinder::renew_lists(std::span<const Pose> X_WB) noexcept {
@@ -120,8 +119,9 @@ void ContactFinder::renew_lists(std::span<const Pose> X_WB) noexcept {
         renewed_.push_back(pairs_[Index(list.first) + i]);
     } else {
       const BodyPair old = list;
-      list.odometers = odometers(near.a, near.b);
-      list.reach = tolerance(near.a, near.b) + std::min(slack_[Index(near.a)], slack_[Index(near.b)]);
+      list.accumulated_motion = accumulated_motion(near.a, near.b);
+      list.reach =
+          tolerance(near.a, near.b) + std::min(box_growth_[Index(near.a)], box_growth_[Index(near.b)]);
       list.cut_short =
           !collect(near.a, near.b, relative_pose(X_WB[Index(near.a)], X_WB[Index(near.b)]), list.reach);
       append_pairs(near.a, near.b, old);
@@ -168,7 +168,7 @@ void ContactFinder::append_pairs(int a, int b, const BodyPair& old) noexcept {
     pair.body_b = b;
     pair.piece_a = pieces.first;
     pair.piece_b = pieces.second;
-    if (known && !old.cut_short) pair.free_until = old.odometers + old.reach;
+    if (known && !old.cut_short) pair.free_until = old.accumulated_motion + old.reach;
   }
 }
 

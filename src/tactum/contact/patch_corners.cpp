@@ -66,7 +66,7 @@ void corners_of_faces(const Polytope& A, int face_a, const Polytope& B, int face
 
 }  // namespace
 
-int level_face(const Polytope& P, const Feature& f, const Vec3& n) noexcept {
+int reference_face(const Polytope& P, const Feature& f, const Vec3& n) noexcept {
   int best = -1;
   double cosine = -2.0;
   const auto consider = [&](int face) {
@@ -92,8 +92,8 @@ bool patch_corners(const Polytope& A, const Polytope& B, const Pose& X_AB, const
                    double distance, double tolerance, PatchCorners& corners) noexcept {
   corners.clear();
   const Vec3 normal_B = rotated_back(X_AB.R, patch.normal);
-  const int face_a = level_face(A, patch.a, -patch.normal);
-  const int face_b = level_face(B, patch.b, normal_B);
+  const int face_a = reference_face(A, patch.a, -patch.normal);
+  const int face_b = reference_face(B, patch.b, normal_B);
   if (-A.faces[face_a].normal.dot(patch.normal) > kSteep && B.faces[face_b].normal.dot(normal_B) > kSteep)
     corners_of_faces(A, face_a, B, face_b, X_AB, patch, tolerance, corners);
   double least = tolerance;

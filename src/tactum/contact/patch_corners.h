@@ -27,8 +27,9 @@ struct PatchCorner {
 
 using PatchCorners = StaticVector<PatchCorner, PatchPolygon::capacity() + 4>;
 
-/// The face at feature `f` that looks most along `n` (unit, P's frame): that whose corners count.
-int level_face(const Polytope& P, const Feature& f, const Vec3& n) noexcept;
+/// The reference face at feature `f`: the one whose normal is nearest to `n` (unit, P's frame). Its corners
+/// count.
+int reference_face(const Polytope& P, const Feature& f, const Vec3& n) noexcept;
 
 /// The corners of `patch`, found at distance `distance` [m], whose gap is at most `tolerance` [m]. The least
 /// gap is among them. False when the manifold's own points stand in.
@@ -44,7 +45,8 @@ class CornerMemory {
                   PatchCorners& corners) noexcept;
 
  private:
-  /// All that the corners follow from, and them; of more than there is room for nothing is remembered.
+  /// The corners of one patch, with everything that they were computed from. A patch of more corners than
+  /// there is room for is not remembered.
   struct Slot {
     std::array<int, 4> pair{-1, -1, -1, -1};
     FeaturePair features;

@@ -12,8 +12,8 @@ namespace {
 
 using Index = std::size_t;
 
-/// What is told so many times deeper on the whole part than its piece and the leaders together are is looked
-/// at again.
+/// A contact whose depth on the whole part exceeds so many times the depth on its pieces and of the leaders
+/// together is looked for again: that depth is probably the way through the whole piece.
 constexpr double kFarDeeper = 2.0;
 
 /// The candidates of two bodies.
@@ -25,11 +25,11 @@ class TwoBodies {
 
   void settle() noexcept {
     for (SeamCandidate* candidate : candidates_)
-      if (!candidate->settled && !candidate->objected) lead(*candidate);
+      if (!candidate->settled && !candidate->internal) lead(*candidate);
     for (SeamCandidate* candidate : candidates_)
-      if (!candidate->settled && !answered(*candidate)) tell_again(*candidate);
+      if (!candidate->settled && !answered(*candidate)) find_again(*candidate);
     while (SeamCandidate* nearest = shallowest())
-      if (!answered(*nearest) && tell_beside_leaders(*nearest)) lead(*nearest);
+      if (!answered(*nearest) && find_beside_leaders(*nearest)) lead(*nearest);
     for (SeamCandidate* candidate : candidates_)
       if (!candidate->settled) *candidate->shown = {};
   }
@@ -56,20 +56,21 @@ class TwoBodies {
     return false;
   }
 
-  /// What is objected to, as what it is on the whole part. Where that is nothing it may still follow.
-  void tell_again(SeamCandidate& candidate) noexcept {
+  /// Finds an internal contact again on the whole part. Where there is none it may still follow.
+  void find_again(SeamCandidate& candidate) noexcept {
     candidate.on_pieces = candidate.found;
     const std::optional<PairDistance> depth = on_true_surface(candidate, 0.0);
     if (!depth || depth->distance >= candidate.reach) return;
     candidate.found = *depth;
-    candidate.objected = false;
+    candidate.internal = false;
   }
 
-  /// What was told far deeper than it was found and than the leaders are, as the way through the whole piece,
-  /// is judged anew. In a corner the deepest point of a contact lies in the neighbour, as deep as that is
-  /// entered: it is looked for beside the covered place. Where rounding leaves no true face or edge there
-  /// that has it, or the contact is true in its middle, it is what was found. False when it is nothing.
-  bool tell_beside_leaders(SeamCandidate& candidate) noexcept {
+  /// Looks again for a contact whose depth on the true surface is far greater than on its pieces and than
+  /// that of the leaders. In a corner of two walls the deepest point of a contact with the one lies inside
+  /// the other, as deep as that one is entered, so the search goes that far beside the covered place. The
+  /// depth on the pieces is taken where rounding leaves no true face or edge there, or where the contact is
+  /// true in its middle. Returns false when nothing is in contact.
+  bool find_beside_leaders(SeamCandidate& candidate) noexcept {
     const PairDistance& on_pieces = candidate.on_pieces;
     const double entered = deepest_leader();
     const double beside = candidate.reach + entered;
@@ -85,9 +86,9 @@ class TwoBodies {
       }
     }
     // Apart, and beside the face.
-    candidate.objected = candidate.found.distance >= candidate.reach ||
+    candidate.internal = candidate.found.distance >= candidate.reach ||
                          (on_pieces.distance >= 0.0 && candidate.found.distance < 0.0);
-    return !candidate.objected;
+    return !candidate.internal;
   }
 
   std::optional<PairDistance> on_true_surface(const SeamCandidate& candidate, double beside) const noexcept {
@@ -101,7 +102,7 @@ class TwoBodies {
                            candidate.on_pieces, beside);
   }
 
-  /// Whether what is objected to for its closest points, which of a flat contact may be any, is a true
+  /// Whether a contact that is internal by its closest points, which of a flat contact may be any, is a true
   /// contact in the middle: in a corner that is entered both ways each wall is covered by the other at its
   /// edge.
   bool touches_in_the_middle(const SeamCandidate& candidate) const noexcept {
@@ -123,7 +124,7 @@ class TwoBodies {
   SeamCandidate* shallowest() noexcept {
     SeamCandidate* best = nullptr;
     for (SeamCandidate* candidate : candidates_)
-      if (!candidate->settled && !candidate->objected &&
+      if (!candidate->settled && !candidate->internal &&
           (best == nullptr || candidate->found.distance > best->found.distance))
         best = candidate;
     return best;
@@ -298,8 +299,8 @@ class TwoBodies {
 bool settle_seams(std::span<SeamCandidate*> candidates, std::span<const Pose> X_WB,
                   std::vector<ContactPatch>& patches) noexcept {
   std::sort(candidates.begin(), candidates.end(), [](const SeamCandidate* p, const SeamCandidate* q) {
-    return std::tie(p->body_a, p->body_b, p->objected, p->found.distance, p->piece_a, p->piece_b) <
-           std::tie(q->body_a, q->body_b, q->objected, q->found.distance, q->piece_a, q->piece_b);
+    return std::tie(p->body_a, p->body_b, p->internal, p->found.distance, p->piece_a, p->piece_b) <
+           std::tie(q->body_a, q->body_b, q->internal, q->found.distance, q->piece_a, q->piece_b);
   });
   bool complete = true;
   for (auto first = candidates.begin(); first != candidates.end();) {

@@ -5,7 +5,7 @@
 ///   for each two bodies, nearest first:  a true contact leads. Every other pair with a stretch of the same
 ///                                        true faces (or edges) follows: its stretch goes into the leader's
 ///                                        patch, which is then that of the uncut part (manifold.h).
-///   then the objected:                   dropped when they are apart or a leader answers for them; else they
+///   then internal contacts:              dropped when they are apart or a leader stands for them; else they
 ///                                        lead by the least depth on the true surface, or in a corner by that
 ///                                        beside it, or as they were found.
 ///
@@ -31,8 +31,8 @@ struct SeamCandidate {
   SteadyContact* shown = nullptr;  ///< the pair's memory
   double reach = 0.0;              ///< tolerance of the pair [m]
   PairDistance found;
-  PairDistance on_pieces;  ///< of what was objected to and told again: what was found before
-  bool objected = false;
+  PairDistance on_pieces;  ///< of an internal contact that was found again: what was found before
+  bool internal = false;
   bool settled = false;
   int patch = -1;   ///< of a leader
   int led_by = -1;  ///< a leader's patch

@@ -19,17 +19,17 @@ int number_of(const Part& part, int piece, const Feature& feature) noexcept {
   return part.true_surface.number(piece, static_cast<int>(feature.kind), feature.index);
 }
 
-/// Whether `p` is in P, or no farther than `slack` beyond a face.
-bool holds(const Polytope& P, const Vec3& p, double slack) noexcept {
+/// Whether `p` is in P, or no farther than `margin` beyond a face.
+bool holds(const Polytope& P, const Vec3& p, double margin) noexcept {
   return std::all_of(P.faces.begin(), P.faces.end(), [&](const Polytope::Face& plane) {
-    return plane.normal.dot(p) <= plane.offset + slack;
+    return plane.normal.dot(p) <= plane.offset + margin;
   });
 }
 
-bool in_column(const Polytope& P, int face, const Vec3& p, double slack) noexcept {
+bool in_column(const Polytope& P, int face, const Vec3& p, double margin) noexcept {
   const Polytope::Face& loop = P.faces[face];
   for (int slot = loop.first; slot < loop.first + loop.count; ++slot)
-    if (P.sides[slot].normal.dot(p) > P.sides[slot].offset + slack) return false;
+    if (P.sides[slot].normal.dot(p) > P.sides[slot].offset + margin) return false;
   return true;
 }
 
@@ -42,7 +42,7 @@ void for_true_faces(const Part& part, int piece, const Polytope& S, const Pose& 
   int vertex = start;
   for (int face = 0; face < F.counts[2]; ++face) {
     const bool covered =
-        !part.true_surface.alone() &&
+        !part.true_surface.single_piece() &&
         part.true_surface.group[Index(number_of(part, piece, {FeatureKind::kFace, face}))] < 0;
     if (covered) continue;
     const Vec3& normal = F.faces[face].normal;
@@ -87,7 +87,8 @@ void true_edges(const Part& part, int piece, EdgeList& edges) noexcept {
   for (int e = 0; e < P.counts[1]; ++e) {
     const Feature edge{FeatureKind::kEdge, e};
     const bool bends =
-        part.true_surface.alone() || part.true_surface.neighbours(number_of(part, piece, edge)).empty() ||
+        part.true_surface.single_piece() ||
+        part.true_surface.neighbours(number_of(part, piece, edge)).empty() ||
         is_true_edge(part, piece, e, edge, 0.5 * (P.vertices[P.edges[e].tail] + P.vertices[P.edges[e].head]));
     if (bends && !edges.push_back(e)) return;
   }
@@ -135,8 +136,8 @@ std::optional<PairDistance> crossing_edges(const Polytope& A, int edge_a, const 
 }  // namespace
 
 bool allowed_by_neighbours(const Part& part, int piece, const Feature& feature, const Vec3& p,
-                           const Vec3& outward, double slack) noexcept {
-  if (part.true_surface.alone()) return true;
+                           const Vec3& outward, double margin) noexcept {
+  if (part.true_surface.single_piece()) return true;
   const double noise = noise_of(part);
   const auto neighbours = part.true_surface.neighbours(number_of(part, piece, feature));
   const auto covered_by = [&](int neighbour, const Vec3& at) {
@@ -149,16 +150,16 @@ bool allowed_by_neighbours(const Part& part, int piece, const Feature& feature, 
                         [&](int neighbour) { return covered_by(neighbour, at); });
   };
   if (is_open(p)) return true;
-  if (slack == 0.0) return false;
+  if (margin == 0.0) return false;
   // The nearest places beside p, square to `outward`, that some neighbour no longer covers.
   for (const int neighbour : neighbours) {
     if (!covered_by(neighbour, p)) continue;
     for (const Polytope::Face& plane : part.pieces[Index(neighbour)].faces) {
       const Vec3 aside = plane.normal - outward * outward.dot(plane.normal);
       const double sine = aside.norm();
-      const double way = plane.offset + 3.0 * noise - plane.normal.dot(p);
-      if (!(way <= slack * sine)) continue;
-      const Vec3 beside = p + aside * (way / (sine * sine));
+      const double depth = plane.offset + 3.0 * noise - plane.normal.dot(p);
+      if (!(depth <= margin * sine)) continue;
+      const Vec3 beside = p + aside * (depth / (sine * sine));
       if (holds(part.pieces[Index(piece)], beside, noise) && is_open(beside)) return true;
     }
   }
@@ -166,15 +167,15 @@ bool allowed_by_neighbours(const Part& part, int piece, const Feature& feature, 
 }
 
 bool is_true_contact(const Part& part_a, int piece_a, const Part& part_b, int piece_b, const Pose& X_AB,
-                     const PairDistance& found, double slack) noexcept {
-  return allowed_by_neighbours(part_a, piece_a, found.a, found.p_a, -found.normal, slack) &&
-         (part_b.true_surface.alone() ||
+                     const PairDistance& found, double margin) noexcept {
+  return allowed_by_neighbours(part_a, piece_a, found.a, found.p_a, -found.normal, margin) &&
+         (part_b.true_surface.single_piece() ||
           allowed_by_neighbours(part_b, piece_b, found.b, rotated_back(X_AB.R, found.p_b - X_AB.p),
-                                rotated_back(X_AB.R, found.normal), slack));
+                                rotated_back(X_AB.R, found.normal), margin));
 }
 
 Feature true_feature(const Part& part, int piece, const Feature& feature, const Vec3& p) noexcept {
-  if (feature.kind == FeatureKind::kFace || part.true_surface.alone() ||
+  if (feature.kind == FeatureKind::kFace || part.true_surface.single_piece() ||
       part.true_surface.neighbours(number_of(part, piece, feature)).empty())
     return feature;
   const Polytope& P = part.pieces[Index(piece)];
@@ -199,7 +200,7 @@ Feature true_feature(const Part& part, int piece, const Feature& feature, const 
 
 Feature same_feature(const Part& part, int of_piece, const Feature& feature, int piece) noexcept {
   if (piece == of_piece) return feature;
-  if (part.true_surface.alone() || feature.kind == FeatureKind::kVertex) return {feature.kind, -1};
+  if (part.true_surface.single_piece() || feature.kind == FeatureKind::kVertex) return {feature.kind, -1};
   const int group = part.true_surface.group[Index(number_of(part, of_piece, feature))];
   if (group < 0) return {feature.kind, -1};
   const auto members = part.true_surface.members_of(group);
@@ -210,7 +211,7 @@ Feature same_feature(const Part& part, int of_piece, const Feature& feature, int
 
 std::optional<PairDistance> depth_on_true_surface(const Part& part_a, int piece_a, const Part& part_b,
                                                   int piece_b, const Pose& X_AB, const PairDistance& found,
-                                                  double slack, double beside) noexcept {
+                                                  double margin, double beside) noexcept {
   const Polytope& A = part_a.pieces[Index(piece_a)];
   const Polytope& B = part_b.pieces[Index(piece_b)];
   const Pose X_BA = X_AB.inverse();
@@ -222,7 +223,7 @@ std::optional<PairDistance> depth_on_true_surface(const Part& part_a, int piece_
   for_true_faces(part_b, piece_b, A, X_BA, vertex_of(A, found.a), [&](int face, int vertex, double distance) {
     const Vec3& normal = B.faces[face].normal;
     const Vec3 foot = X_BA * A.vertices[vertex] - normal * distance;
-    if (!nearer(distance) || !in_column(B, face, foot, slack + beside)) return;
+    if (!nearer(distance) || !in_column(B, face, foot, margin + beside)) return;
     take({.distance = distance,
           .p_a = A.vertices[vertex],
           .p_b = X_AB * foot,
@@ -235,7 +236,7 @@ std::optional<PairDistance> depth_on_true_surface(const Part& part_a, int piece_
     const Vec3& normal = A.faces[face].normal;
     const Vec3 deepest = X_AB * B.vertices[vertex];
     const Vec3 foot = deepest - normal * distance;
-    if (!nearer(distance) || !in_column(A, face, foot, slack + beside)) return;
+    if (!nearer(distance) || !in_column(A, face, foot, margin + beside)) return;
     take({.distance = distance,
           .p_a = foot,
           .p_b = deepest,

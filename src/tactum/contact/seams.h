@@ -4,14 +4,14 @@
 ///
 ///         ___A___              1  |: A's side and the wall between the pieces. No such contact exists on the
 ///        |       |                   part: at that point the normal is not one that all pieces there allow.
-///     ___|_1_____|___             It is *objected* to, and its neighbour answers for it.
+///     ___|_1_____|___             It is *internal*, and its neighbour stands for it.
 ///    |     |2    |   |         2  both pieces' tops belong to one true face: one contact, led by the
-///    nearest; |     |     |   |            the other follows with its part of the face.
+///    |     |     |   |            nearest; the other follows with its part of the face.
 ///    |_____|_____|___|
 ///
-/// What is objected to, and no neighbour answers for (a part deep in a small piece; a wall touched where it
-/// meets the floor), is told again on the true surface by the least depth. What is asked here is told by
-/// the pieces that touch each feature: geometry/true_surface.h. Features that no other piece touches cost one
+/// An internal contact that no neighbour stands for (a part deep in a small piece; a wall touched where it
+/// meets the floor) is found again on the true surface by the least depth. The answers follow from the
+/// pieces that touch each feature: geometry/true_surface.h. Features that no other piece touches cost one
 /// look-up.
 
 #include <optional>
@@ -22,15 +22,15 @@
 
 namespace tactum {
 
-/// Whether the whole part could be touched at `p` on `feature` of `piece`, or on the piece within `slack` [m]
-/// of it, outward along unit `outward`; both in the part's frame. Cost: 2 ns, and 30-60 ns for each piece
-/// that touches the feature; with slack ten times as much where p is covered.
+/// Whether the whole part could be touched at `p` on `feature` of `piece`, or on the piece within `margin`
+/// [m] of it, outward along unit `outward`; both in the part's frame. Cost: 2 ns, and 30-60 ns for each piece
+/// that touches the feature; with a margin ten times as much where p is covered.
 bool allowed_by_neighbours(const Part& part, int piece, const Feature& feature, const Vec3& p,
-                           const Vec3& outward, double slack = 0.0) noexcept;
+                           const Vec3& outward, double margin = 0.0) noexcept;
 
 /// Whether the whole parts could touch as two of their pieces do.
 bool is_true_contact(const Part& part_a, int piece_a, const Part& part_b, int piece_b, const Pose& X_AB,
-                     const PairDistance& found, double slack = 0.0) noexcept;
+                     const PairDistance& found, double margin = 0.0) noexcept;
 
 /// The feature of the whole part that `p` (part's frame) on `feature` of `piece` is in the middle of, by its
 /// name on the piece: a corner that cuts made is in the middle of an edge or of a face. Cost: as above, for
@@ -42,13 +42,13 @@ Feature true_feature(const Part& part, int piece, const Feature& feature, const 
 Feature same_feature(const Part& part, int of_piece, const Feature& feature, int piece) noexcept;
 
 /// The least depth (or distance) on the true surface: along the normal of a true face that has the other
-/// piece's deepest point under it, within `slack` [m], since the point may lie in a neighbour, as in the
+/// piece's deepest point under it, within `margin` [m], since the point may lie in a neighbour, as in the
 /// corner of a floor and a wall; or square to two true edges that cross. Where such a place is covered, the
 /// open one within `beside` [m] counts. None when there is none. Pieces with more than 16384 pairs of true
 /// edges are asked for faces alone. Cost: the faces and pairs of edges, 10 ns each.
 std::optional<PairDistance> depth_on_true_surface(const Part& part_a, int piece_a, const Part& part_b,
                                                   int piece_b, const Pose& X_AB, const PairDistance& found,
-                                                  double slack, double beside) noexcept;
+                                                  double margin, double beside) noexcept;
 
 /// Whether moving A along unit `n` by -`distance` would part these pieces too: another contact, with this
 /// normal and distance, answers for them.

@@ -76,7 +76,7 @@ class NormalsAround {
       for (int face : {P.edges[Index(ray.edge)].left, P.edges[Index(ray.edge)].right})
         add(corner.piece, face);
     const TrueSurface& surface = part_.true_surface;
-    if (surface.alone()) return normals_;
+    if (surface.single_piece()) return normals_;
     const double noise = tolerances::kCoplanarMeshOffset * part_.size;
     const Vec3& p = P.vertices[Index(corner.vertex)];
     for (int neighbour : surface.neighbours(surface.number(corner.piece, 0, corner.vertex))) {
@@ -92,7 +92,7 @@ class NormalsAround {
  private:
   void add(int piece, int face) {
     const TrueSurface& surface = part_.true_surface;
-    const int name = surface.alone() ? face : surface.group_of(piece, 2, face);
+    const int name = surface.single_piece() ? face : surface.group_of(piece, 2, face);
     if (name < 0 || std::find(known_.begin(), known_.end(), name) != known_.end()) return;
     known_.push_back(name);
     normals_.push_back(part_.pieces[Index(piece)].faces[Index(face)].normal);
@@ -208,12 +208,12 @@ void ShadingNormals::shade_pieces(double cosine) {
     const int piece = static_cast<int>(p);
     first_face_.push_back(static_cast<int>(face_of_.size()));
     for (int face = 0; face < part.pieces[p].counts[2]; ++face) {
-      const bool alone = part.true_surface.alone();
-      const int group = alone ? 0 : part.true_surface.group_of(piece, 2, face);
+      const bool single_piece = part.true_surface.single_piece();
+      const int group = single_piece ? 0 : part.true_surface.group_of(piece, 2, face);
       const bool covered = group < 0;  // by other pieces: nothing there is curved
       face_of_.push_back(add_face(covered ? std::vector<CornerName>{} : corners_of(part, piece, face),
                                   part.pieces[p].faces[Index(face)].normal));
-      if (!alone && !covered) groups[group].emplace_back(piece, face);
+      if (!single_piece && !covered) groups[group].emplace_back(piece, face);
     }
   }
   for (const auto& [group, faces] : groups) {

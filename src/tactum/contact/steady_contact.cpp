@@ -49,8 +49,8 @@ void steady_centroid(const Pose& X_AB, Manifold& patch, SteadyContact& last) noe
   Vec3 centroid = Vec3::Zero();
   for (const ContactPoint& point : patch.points) centroid += 0.5 * point.weight * (point.p_a + point.p_b);
   if (last.has_centroid) {
-    const Vec3 way = 0.5 * (last.centroid_A + X_AB * last.centroid_B) - centroid;
-    const Vec3 back = way - patch.normal * patch.normal.dot(way);
+    const Vec3 displacement = 0.5 * (last.centroid_A + X_AB * last.centroid_B) - centroid;
+    const Vec3 back = displacement - patch.normal * patch.normal.dot(displacement);
     const double length = back.norm();
     if (length > kCentroidStep) {
       const Vec3 shift = back * (1.0 - kCentroidStep / length);

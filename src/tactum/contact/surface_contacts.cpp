@@ -27,8 +27,8 @@ void ContactFinder::test_surfaces(int a, int b, std::span<const Pose> X_WB) noex
   if (!bodies_[Index(a)].moves && !bodies_[Index(b)].moves) return;
   const double reach = tolerance(a, b);
   BodyPair& list = list_of(a, b);
-  if (list.free_until - odometers(a, b) > reach) return;
-  if (tests_left_ <= 0) return leave(a, b, list.free_until - odometers(a, b), frame_);
+  if (list.free_until - accumulated_motion(a, b) > reach) return;
+  if (tests_left_ <= 0) return skip(a, b, list.free_until - accumulated_motion(a, b), frame_);
   --tests_left_;
   ++work_.exact_tests;
   const Part& part_a = *bodies_[Index(a)].part;
@@ -38,7 +38,7 @@ void ContactFinder::test_surfaces(int a, int b, std::span<const Pose> X_WB) noex
   const MinimaQuery query{
       .reach = reach,
       .depth = may_cross ? kSurfaceDepth * std::min(part_a.size, part_b.size) : kWatched * reach,
-      .cone_slack = tolerances::kConeSlack};
+      .cone_inflation = tolerances::kConeInflation};
   const Pose X_AB = relative_pose(X_WB[Index(a)], X_WB[Index(b)]);
   if (list.apart) {
     MinimaQuery farther = query;
@@ -47,16 +47,16 @@ void ContactFinder::test_surfaces(int a, int b, std::span<const Pose> X_WB) noex
     const double clearance = surface_clearance(part_a.tree, part_b.tree, X_AB, farther, work);
     ++work_.surface_queries;
     work_.feature_steps += work.feature_pairs;
-    list.free_until = odometers(a, b) + clearance;
+    list.free_until = accumulated_motion(a, b) + clearance;
     if (clearance > reach) return;
   }
   const MinimaWork found = surface_minima(part_a.tree, part_b.tree, X_AB, query, minima_);
   ++work_.surface_queries;
   work_.minima += found.minima;
   work_.feature_steps += found.feature_pairs;
-  work_.rooms_full |= found.full;
+  work_.capacity_reached |= found.full;
   list.apart = minima_.empty();
-  list.free_until = odometers(a, b) + (list.apart ? reach : 0.0);
+  list.free_until = accumulated_motion(a, b) + (list.apart ? reach : 0.0);
   Index kept = minima_.size();
   if (kept > kept_minima_) {
     reduction_scratch_.resize(kept);  // within what was reserved
@@ -84,7 +84,7 @@ void ContactFinder::test_surfaces(int a, int b, std::span<const Pose> X_WB) noex
 void ContactFinder::add_surface_patch(int a, int b, const SurfaceMinimum& minimum, bool second_end,
                                       double reach) noexcept {
   if (patches_.size() == patches_.capacity()) {
-    work_.rooms_full = true;
+    work_.capacity_reached = true;
     return;
   }
   ContactPatch& patch = patches_.emplace_back();
@@ -117,7 +117,8 @@ void ContactFinder::surface_distances_at(std::span<const ContactPatch> patches, 
   const ContactPatch& first = patches.front();
   const Part& part_a = *bodies_[Index(first.body_a)].part;
   const Part& part_b = *bodies_[Index(first.body_b)].part;
-  const MinimaQuery query{.reach = kWatched * first.tolerance, .depth = first.tolerance, .cone_slack = 0.0};
+  const MinimaQuery query{
+      .reach = kWatched * first.tolerance, .depth = first.tolerance, .cone_inflation = 0.0};
   const Pose X_AB = relative_pose(X_WB[Index(first.body_a)], X_WB[Index(first.body_b)]);
   surface_minima(part_a.tree, part_b.tree, X_AB, query, minima_);
   std::fill(distance.begin(), distance.end(), query.reach);

@@ -5,9 +5,8 @@
 ///
 ///     dipole   U = M z / rho^3,  rho^2 = r^2 + a^2          in at one end, out at the other
 ///     well     U = - D exp(- r^2 / (2 w^2))                 to the middle
-///     vortex   F = C / (2 pi) (z x p) / (d^2 + a^2)         round the axis, d from it; curl C / pi a^2 /
-///     (d^2
-///     + a^2)^2
+///     vortex   F = C / (2 pi) (z x p) / (d^2 + a^2)         round the axis at the distance d from it;
+///                                                           its curl is  C / pi a^2 / (d^2 + a^2)^2
 
 #include "tactum/math/types.h"
 

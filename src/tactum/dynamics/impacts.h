@@ -1,8 +1,8 @@
 #pragma once
-/// Impacts: what bodies do to each other in no time at all [Mirtich 1996]. One pair of bodies after the
-/// other, the fastest approach first, until none approaches faster than what rests does. So a blow travels
-/// through a row of touching balls as it does through Newton's cradle, where all contacts at once would share
-/// it.
+/// Impacts: what bodies do to each other in no time at all [Mirtich 1996b]. One pair of bodies after
+/// the other, the fastest approach first, until none approaches faster than what rests does. So an impact
+/// travels through a row of touching balls as it does through Newton's cradle, where all contacts at once
+/// would share it.
 ///
 /// Within a pair all its corners are hit together:  vn after >= -e vn before,  impulses >= 0, with Coulomb's
 /// friction at each; a box that falls flat on its face leaves flat.

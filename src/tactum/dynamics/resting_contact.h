@@ -9,11 +9,11 @@
 /// impulse acts on both bodies, so momentum is kept to rounding however few sweeps there were; what sweeps
 /// are for is that no contact closes too far. A heap at rest begins at its answer and stays there.
 ///
-/// A gap below nothing is asked to open. What is wedged has no room to, and its rows no answer: each sweep
-/// would press it together by as much more. An island whose sweeps have not ended after a third of their
-/// number is therefore set back to where it began and only kept from closing further, and so are its contacts
-/// for some frames. What friction presses together ever harder finds an end where, in the last sweeps,
-/// friction may only be what it was.
+/// Contacts that overlap get a velocity of separation. If a body is wedged, that makes the rows infeasible,
+/// and each sweep would add as much to the impulses as the one before. An island whose sweeps have not
+/// converged after a third of their number is therefore set back to the impulses it began with; from then on,
+/// and for some frames after, its contacts are only kept from closing further. Impulses that friction makes
+/// grow from sweep to sweep are bounded in the last sweeps, in which friction may not exceed what it was.
 ///
 /// Springs, damping, friction and limits of joints are rows of the same kind.
 

@@ -53,7 +53,7 @@ class Builder {
   /// Half the sides, grown so that center +- half holds the box in spite of rounding.
   static Vec3 outer_half(const Aabb& box) {
     const Vec3 scale = box.min.cwiseAbs().cwiseMax(box.max.cwiseAbs());
-    return box.half() + tolerances::kBoxSlack * scale;
+    return box.half() + tolerances::kBoxMargin * scale;
   }
 
   /// The place that parts the range at the bin border of least cost, or `first` when there is none.

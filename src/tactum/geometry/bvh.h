@@ -53,7 +53,7 @@ struct BoxPairFrame {
   Mat3 abs_R = Mat3::Identity();
   explicit BoxPairFrame(const Pose& X) noexcept : X_AB(X) {
     abs_R = X.R.cwiseAbs();
-    abs_R.array() += tolerances::kBoxSlack;
+    abs_R.array() += tolerances::kBoxMargin;
   }
 };
 

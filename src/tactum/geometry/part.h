@@ -18,13 +18,14 @@ namespace tactum {
 
 struct Part {
   std::string name;
-  std::string way;  ///< how the pieces were made, and why so: "solid: 13 convex pieces from 8 reflex edges"
+  /// How the pieces were made, and why so: "solid: 13 convex pieces from 8 reflex edges".
+  std::string piece_report;
   TriangleMesh surface;            ///< welded, without degenerate triangles [m]
   std::vector<Polytope> pieces;    ///< in the part's frame
   std::vector<int> surface_group;  ///< of each piece: its contact patch, 0 .. group_count - 1
   int group_count = 0;
   Bvh hierarchy;             ///< over the pieces
-  TrueSurface true_surface;  ///< what of solid pieces can be touched; alone() for surfaces
+  TrueSurface true_surface;  ///< what of solid pieces can be touched; single_piece() for surfaces
   SurfaceTree tree;          ///< over the surface
   MassProperties mass;
   double radius = 0.0;               ///< largest distance of a vertex from the centre of mass [m]

@@ -179,13 +179,14 @@ SurfaceBoxes::Span SurfaceBoxes::span(Range range) const {
   Vec3 high = Vec3::Constant(-1e300);
   for (std::size_t i = first; i < last; ++i) {
     const Vec3 p = at(i);
-    const Vec3 told(box.axis[0].dot(p), box.axis[1].dot(p), box.axis[2].dot(p));
-    low = low.cwiseMin(told);
-    high = high.cwiseMax(told);
+    const Vec3 in_box(box.axis[0].dot(p), box.axis[1].dot(p), box.axis[2].dot(p));
+    low = low.cwiseMin(in_box);
+    high = high.cwiseMax(in_box);
   }
   box.half = 0.5 * (high - low);
-  const Vec3 middle_told = 0.5 * (low + high);
-  box.center = box.axis[0] * middle_told[0] + box.axis[1] * middle_told[1] + box.axis[2] * middle_told[2];
+  const Vec3 middle_in_box = 0.5 * (low + high);
+  box.center =
+      box.axis[0] * middle_in_box[0] + box.axis[1] * middle_in_box[1] + box.axis[2] * middle_in_box[2];
   return box;
 }
 

@@ -41,7 +41,7 @@ class SurfaceTree : public SurfaceLayout {
   SurfaceTree() = default;
   /// Over a mesh whose triangles have three different corners and an area (weld() sees to it), outward.
   explicit SurfaceTree(const TriangleMesh& welded);
-  /// The same with the flat faces found already: `group` of each triangle, as coplanar_groups() tells them.
+  /// The same with the flat faces found already: `group` of each triangle, as coplanar_groups() numbers them.
   SurfaceTree(const TriangleMesh& welded, const std::vector<int>& group);
 
   bool empty() const noexcept { return triangles_.empty(); }

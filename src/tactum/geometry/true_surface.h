@@ -2,8 +2,7 @@
 /// What of the pieces' own surfaces is the part's true surface. Pieces that share walls have faces, edges and
 /// corners that nobody can touch, and true faces that were cut into several:
 ///
-///      ____________            a  the corner is in the middle of a true face: outward is up, and nothing
-///      else
+///      ____________            a  the corner is in the middle of a true face: its only normal is up
 ///     |     a|     |           b  the face is covered by the neighbour: nothing can touch it
 ///     |     b|     |           c  two faces in one plane: one true face, one group
 ///     |__c___|__c__|           d  a corner of both
@@ -41,7 +40,7 @@ struct TrueSurface {
   double exposed_area = 0.0;  ///< of all faces, without what is covered [m^2]
 
   /// No two pieces touch: every feature is true as it is.
-  bool alone() const noexcept { return first.empty(); }
+  bool single_piece() const noexcept { return first.empty(); }
   /// The number of a vertex (kind 0), edge (1) or face (2) of a piece.
   int number(int piece, int kind, int index) const noexcept {
     return first[static_cast<std::size_t>(piece)][static_cast<std::size_t>(kind)] + index;

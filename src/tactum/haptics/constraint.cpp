@@ -331,7 +331,7 @@ ConstraintState::ConstraintState(const World& world, const FrameSettings& settin
     : problem(static_cast<Index>(settings.budget.max_contact_points)),
       way(static_cast<Index>(settings.budget.max_contact_points)),
       trust_m(settings.constraint.least_step_m),
-      corner_memory(settings.budget.rooms.patches / 4 + 1),
+      corner_memory(settings.budget.capacity.patches / 4 + 1),
       X_WB_trial(world.bodies.size()) {
   double size = 0.0;
   for (const Body& body : world.bodies)
@@ -341,10 +341,10 @@ ConstraintState::ConstraintState(const World& world, const FrameSettings& settin
   names.reserve(rows);
   feedback.reserve(rows);
   shaded.reserve(rows);
-  gap.reserve(settings.budget.rooms.patches);
-  gap_trial.reserve(settings.budget.rooms.patches);
-  gap_least.reserve(settings.budget.rooms.patches);
-  gap_answer.reserve(settings.budget.rooms.patches);
+  gap.reserve(settings.budget.capacity.patches);
+  gap_trial.reserve(settings.budget.capacity.patches);
+  gap_least.reserve(settings.budget.capacity.patches);
+  gap_answer.reserve(settings.budget.capacity.patches);
 }
 
 void trusted_reach(const MotionInput& input, const WorldState& bodies, ConstraintResponse& own) noexcept {

@@ -2,10 +2,9 @@
 /// The `constraint` response: the held part is a god-object with six degrees of freedom that goes where the
 /// hand wants it as far as nothing is entered [Zilles 1995; Ortega 2007].
 ///
-///     rows: every corner of every patch   ->   nearest displacement   ->   scaled to the trusted length
-///        ^                                                                        |
-///        '--- exact gaps at the new pose are fed back, the step halved  <---  is every gap open there?  -->
-///        go
+///     rows: every corner of every patch  ->  nearest displacement  ->  scaled to the trusted length
+///        ^                                                                       |
+///        '-- exact gaps at the new pose are fed back, the step halved <-- is every gap open there? --> go
 ///
 /// A pose is only taken when the exact distance of every near pair of pieces has been computed there and is
 /// open: linear rows alone would let a turning part in. Each remedy here was a failure first, see

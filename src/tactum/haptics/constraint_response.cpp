@@ -9,7 +9,7 @@ ConstraintResponse::ConstraintResponse(const World& world, const FrameSettings& 
       free(world, settings),
       waiting(world, settings),
       sleep(world),
-      contact_rows(settings.budget.rooms.patches,
+      contact_rows(settings.budget.capacity.patches,
                    static_cast<std::size_t>(settings.budget.max_contact_points)),
       mobility(world.bodies.size(), Mobility::Zero()),
       reach(world.bodies.size(), 0.0) {
@@ -25,8 +25,8 @@ std::span<const double> ConstraintResponse::bound_motion(const MotionInput& inpu
 
 void ConstraintResponse::step(const StepInput& input, GapOracle& gaps, WorldState& bodies,
                               FrameReport& report) noexcept {
-  if (input.held.body != held_last) constraint.felt = {};
-  held_last = input.held.body;
+  if (input.held.body != grasped_last) constraint.felt = {};
+  grasped_last = input.held.body;
   ConstraintStep step{input, gaps, bodies, *this, report};
   respond_constrained(step);
 }

@@ -49,7 +49,7 @@ class ConstraintResponse {
   ImpulseDisplay impulses;         ///< blows on the held part that are being felt
   std::vector<Mobility> mobility;  ///< by body; scratch of one frame
   std::vector<double> reach;       ///< by body: how far it may move [m]
-  int held_last = -1;              ///< the body that was held in the last frame
+  int grasped_last = -1;           ///< the body that was held in the last frame
 };
 
 }  // namespace tactum

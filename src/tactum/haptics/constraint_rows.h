@@ -3,8 +3,7 @@
 ///
 ///        |  true normal: what must not be entered, which way the part may go
 ///     ---c---
-///       /   shaded normal, over facets of a curved surface: which way the force acts, where the part wants
-///       to
+///       /   shaded normal, over facets of a curved surface: which way the force acts
 ///
 /// Forces are found with the shaded normals, the way with the true ones; a faceted cylinder so feels round
 /// and is never entered [Ruspini 1997].

@@ -43,11 +43,11 @@ struct BodyPoses {
 void gather_points(const Source& from, const BodyPoses& poses, std::span<const Facet> facet,
                    std::vector<FacetPoint>& points) {
   points.clear();
-  double claims = 0.0;
-  for (const Facet& f : facet) claims += stiffness_claim(from.patches[Index(f.patch)].manifold);
+  double weights = 0.0;
+  for (const Facet& f : facet) weights += patch_weight(from.patches[Index(f.patch)].manifold);
   for (const Facet& f : facet) {
     const ContactPatch& patch = from.patches[Index(f.patch)];
-    const double share = stiffness_claim(patch.manifold) / claims;
+    const double share = patch_weight(patch.manifold) / weights;
     std::array<Vec3, Manifold::kMostPoints> normals_A;
     const Index count = patch.manifold.points.size();
     if (from.shading.empty())

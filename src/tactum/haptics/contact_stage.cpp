@@ -40,14 +40,14 @@ void report_distances(const World& world, std::span<const ContactPatch> patches,
 
 std::uint32_t flags_of(const ContactWork& work) {
   return (work.unchecked > 0 ? frame_flag::kBudgetShort : 0u) |
-         (work.rooms_full ? frame_flag::kRoomsFull : 0u) |
+         (work.capacity_reached ? frame_flag::kCapacityReached : 0u) |
          (work.uncertified > 0 ? frame_flag::kUncertified : 0u);
 }
 
 }  // namespace
 
 ContactStage::ContactStage(const World& world, const FrameSettings& settings, std::span<const Pose> X_WB)
-    : finder(collision_bodies(world), X_WB, settings.budget.rooms),
+    : finder(collision_bodies(world), X_WB, settings.budget.capacity),
       urgency(world.bodies.size(), urgency::kOther) {
   if (!settings.shading.on) return;
   bool some_bend = false;

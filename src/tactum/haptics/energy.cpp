@@ -22,7 +22,7 @@ double bodies_energy(const World& world, const WorldState& bodies, int held) noe
   return energy_J;
 }
 
-void add_stored_energy(const World& world, const Coupling& coupling, const HeldPart& held,
+void add_stored_energy(const World& world, const Coupling& coupling, const GraspedPart& held,
                        const WorldState& bodies, double field_work_J, double pending_J,
                        PortInput& port) noexcept {
   // What a field gives the held part is its own, as a falling weight's is; a vortex gives without end.

@@ -13,7 +13,7 @@ double bodies_energy(const World& world, const WorldState& bodies, int held) noe
 /// Fills the energies of the port's input, after the response: of the bodies, of the coupling's stretch, and
 /// of the impulses that are still to be felt (`pending_J`). `field_work_J` is what force fields have given
 /// the held part.
-void add_stored_energy(const World& world, const Coupling& coupling, const HeldPart& held,
+void add_stored_energy(const World& world, const Coupling& coupling, const GraspedPart& held,
                        const WorldState& bodies, double field_work_J, double pending_J,
                        PortInput& port) noexcept;
 

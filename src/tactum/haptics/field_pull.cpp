@@ -29,7 +29,7 @@ double stiffness_beside(const Coupling& coupling, const FieldLoad& load) {
 
 }  // namespace
 
-void find_field_load(const World& world, std::span<const Pose> X_WB, HeldPart& held,
+void find_field_load(const World& world, std::span<const Pose> X_WB, GraspedPart& held,
                      FieldPull& pull) noexcept {
   if (world.fields.empty()) return;
   const FieldLoad before = pull.load;
@@ -50,19 +50,19 @@ void add_field_work(std::span<const Pose> X_WB, FieldPull& pull) noexcept {
   if (pull.body >= 0) pull.given_J += work_over_step(pull.load.at_centre, X_WB, pull);
 }
 
-Wrench field_at_handle(const HeldPart& held, std::span<const Pose> X_WB) noexcept {
+Wrench field_at_handle(const GraspedPart& held, std::span<const Pose> X_WB) noexcept {
   if (!held.in_field) return {};
   return moved(held.field.at_centre, X_WB[Index(held.body)].R * held.X_BH.p);
 }
 
-HeldMetric step_metric(const Coupling& coupling, const HeldPart& held, double dt_s) noexcept {
+HeldMetric step_metric(const Coupling& coupling, const GraspedPart& held, double dt_s) noexcept {
   const HeldMetric metric = held_metric(coupling, dt_s);
   const double needed = (1.0 + stiffness_beside(coupling, held.field)) / kOvershoot;
   return {std::max(metric.stiffness_N_per_m, coupling.stiffness_N_per_m * needed),
           std::max(metric.stiffness_Nm_per_rad, coupling.stiffness_Nm_per_rad * needed)};
 }
 
-Pose loaded_hand(const Coupling& coupling, const HeldPart& held, const Pose& X_WB) noexcept {
+Pose loaded_hand(const Coupling& coupling, const GraspedPart& held, const Pose& X_WB) noexcept {
   if (!held.in_field) return held.X_WH;
   const double stiffer = std::max(1.0, (1.0 + stiffness_beside(coupling, held.field)) / kOvershoot);
   const Pose X_WH_proxy = X_WB * held.X_BH;

@@ -5,7 +5,7 @@
 namespace tactum {
 namespace {
 
-void report_held(const HeldPart& held, const WorldState& bodies, FrameReport& report) {
+void report_grasp(const GraspedPart& held, const WorldState& bodies, FrameReport& report) {
   report.X_WH = held.X_WH;
   if (held.body < 0) return;
   report.X_WH_proxy = bodies.X_WB[static_cast<std::size_t>(held.body)] * held.X_BH;
@@ -22,7 +22,7 @@ Wrench haptic_frame(const World& world, const FrameSettings& settings, const Dev
   ContactStage& contacts = state.contacts;
   Wrench felt;
   // Where is the hand, what does it hold, and what do force fields do to that?
-  const HeldPart held = track_hand(world, settings, sample, bodies.X_WB, state.hand);
+  const GraspedPart held = track_hand(world, settings, sample, bodies.X_WB, state.hand);
   report.held = held.body;
   if (!held.hand_known) report.flags |= frame_flag::kNoHand;
   state.ended(Stage::kHand);
@@ -48,7 +48,7 @@ Wrench haptic_frame(const World& world, const FrameSettings& settings, const Dev
     state.ended(Stage::kResponse);
 
     // What does the hand feel?
-    report_held(held, bodies, report);
+    report_grasp(held, bodies, report);
     felt = state.response.felt(step, bodies);
   }
   report.coupling = felt;

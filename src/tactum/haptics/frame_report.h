@@ -15,7 +15,7 @@ namespace tactum {
 /// What the frame could not do in full, each with the setting to raise. A frame never stops for these.
 namespace frame_flag {
 inline constexpr std::uint32_t kBudgetShort = 1u << 0;  ///< pairs left unchecked: WorkBudget::max_exact_tests
-inline constexpr std::uint32_t kRoomsFull = 1u << 1;    ///< pairs or patches dropped: WorkBudget::rooms
+inline constexpr std::uint32_t kCapacityReached = 1u << 1;  ///< pairs or patches dropped: WorkBudget
 inline constexpr std::uint32_t kPointsFull =
     1u << 2;  ///< contact points dropped: WorkBudget::max_contact_points
 inline constexpr std::uint32_t kSolverBounded = 1u << 3;  ///< not converged: WorkBudget::solver_iterations
@@ -49,7 +49,7 @@ struct FrameReport {
   Wrench shown;     ///< after safety, device axes: what was sent [N, N m]
   double tolerance_m = 0.0;     ///< largest delta of a pair in contact; 0 without contact [m]
   double min_distance_m = 0.0;  ///< smallest signed distance of the pairs in contact; 0 without contact [m]
-  bool penetrating = false;     ///< some pair overlaps by more than its certificate could doubt
+  bool penetrating = false;     ///< some pair overlaps by more than its error bound
   double time_of_impact_s =
       0.0;                      ///< smallest, from the start of the frame; the whole step without impact [s]
   int contact_points = 0;       ///< rows of the contact problem

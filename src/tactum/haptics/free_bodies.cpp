@@ -268,8 +268,8 @@ FreeBodies::FreeBodies(const World& world, const FrameSettings& settings)
       share(world.bodies.size(), 1.0),
       cut(world.bodies.size(), 0),
       settled(world.bodies.size(), 0) {
-  patch_asked.reserve(settings.budget.rooms.patches);
-  patch_closed.reserve(settings.budget.rooms.patches);
+  patch_asked.reserve(settings.budget.capacity.patches);
+  patch_closed.reserve(settings.budget.capacity.patches);
 }
 
 void begin_midway(const World& world, double dt_s, WorldState& state) noexcept {

@@ -1,8 +1,7 @@
 #pragma once
 /// Where is the hand? The device's handle told in the world: workspace scale and clutch.
 ///
-///   X_WH.p = X_WD (scale p_DH)        X_WH.R = R_WD R_DH        a force in the world acts unscaled on the
-///   hand
+///   X_WH.p = X_WD (scale p_DH)     X_WH.R = R_WD R_DH     a force in the world acts unscaled on the hand
 ///
 /// While the clutch button is pressed the handle may be moved back to the middle of the device: the hand's
 /// place in the world stays, and the mapping X_WD follows.

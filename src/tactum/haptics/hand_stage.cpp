@@ -9,10 +9,10 @@ using Index = std::size_t;
 /// turned.
 void take_first(const Vec3& p_BH, std::span<const Pose> X_WB, HandStage& hand) {
   if (hand.grasp.body < 0) return;
-  const Pose& X_WB_held = X_WB[Index(hand.grasp.body)];
-  hand.X_WD.p += X_WB_held * p_BH - hand.X_WH.p;
-  hand.X_WH.p = X_WB_held * p_BH;
-  hand.grasp.X_BH.R = X_WB_held.R.transpose() * hand.X_WH.R;
+  const Pose& X_WB_grasped = X_WB[Index(hand.grasp.body)];
+  hand.X_WD.p += X_WB_grasped * p_BH - hand.X_WH.p;
+  hand.X_WH.p = X_WB_grasped * p_BH;
+  hand.grasp.X_BH.R = X_WB_grasped.R.transpose() * hand.X_WH.R;
 }
 
 }  // namespace
@@ -25,19 +25,19 @@ HandStage begin_hand(const FrameSettings& settings) {
   return hand;
 }
 
-HeldPart track_hand(const World& world, const FrameSettings& settings, const DeviceSample& sample,
-                    std::span<const Pose> X_WB, HandStage& hand) noexcept {
+GraspedPart track_hand(const World& world, const FrameSettings& settings, const DeviceSample& sample,
+                       std::span<const Pose> X_WB, HandStage& hand) noexcept {
   const bool was_known = hand.known;
   follow_hand(settings.workspace, sample, settings.dt_s, hand);
   if (!was_known && hand.known) take_first(settings.tool.X_BH.p, X_WB, hand);
   if (sample.valid) pick_or_let_go(world, X_WB, settings.tool, hand.X_WH, sample.buttons, hand.grasp);
-  HeldPart held{.hand_known = hand.known,
-                .body = hand.grasp.body,
-                .X_BH = hand.grasp.X_BH,
-                .X_WH = hand.X_WH,
-                .V_WH = hand.V_WH,
-                .in_field = false,
-                .field = {}};
+  GraspedPart held{.hand_known = hand.known,
+                   .body = hand.grasp.body,
+                   .X_BH = hand.grasp.X_BH,
+                   .X_WH = hand.X_WH,
+                   .V_WH = hand.V_WH,
+                   .in_field = false,
+                   .field = {}};
   if (held.hand_known) find_field_load(world, X_WB, held, hand.field);
   return held;
 }

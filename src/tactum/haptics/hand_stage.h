@@ -18,7 +18,7 @@ HandStage begin_hand(const FrameSettings& settings);
 
 /// Takes a sample in. The first time the hand is known, the device is mapped so that the handle stands at the
 /// tool's grasp point and the part is grasped in the orientation it has: nothing is pulled.
-HeldPart track_hand(const World& world, const FrameSettings& settings, const DeviceSample& sample,
-                    std::span<const Pose> X_WB, HandStage& hand) noexcept;
+GraspedPart track_hand(const World& world, const FrameSettings& settings, const DeviceSample& sample,
+                       std::span<const Pose> X_WB, HandStage& hand) noexcept;
 
 }  // namespace tactum

@@ -20,7 +20,7 @@ Resistance resistance_of(const MotionInput& input, const Pose& X_WB, Index body,
 }
 
 /// The velocity that takes the held body in `h_s` to where the hand at X_WH has it.
-Twist velocity_to_hand(const HeldPart& held, const Pose& X_WB, const Pose& X_WH, double h_s) {
+Twist velocity_to_hand(const GraspedPart& held, const Pose& X_WB, const Pose& X_WH, double h_s) {
   return twist_between(X_WB, X_WH * held.X_BH.inverse(), h_s);
 }
 
@@ -42,7 +42,7 @@ void limit_held(const MotionInput& input, WorldState& bodies) {
 }  // namespace
 
 PenaltyResponse::PenaltyResponse(const World& world, const FrameSettings& settings)
-    : contacts_(settings.budget.rooms.patches, Index(settings.budget.max_contact_points)),
+    : contacts_(settings.budget.capacity.patches, Index(settings.budget.max_contact_points)),
       resistance_(world.bodies.size(), Resistance::Zero()),
       mobility_(world.bodies.size(), Mobility::Zero()),
       reach_(world.bodies.size(), 0.0) {}
@@ -130,7 +130,7 @@ void PenaltyResponse::step(const StepInput& input, GapOracle& /*gaps*/, WorldSta
 }
 
 Wrench PenaltyResponse::felt(const StepInput& input, const WorldState& bodies) const noexcept {
-  const HeldPart& held = input.held;
+  const GraspedPart& held = input.held;
   if (held.body < 0) return {};
   // The velocity that counts is that of the whole frame's displacement, not the last part's after an impact.
   const Pose X_WH_before = input.X_WB_start[Index(held.body)] * held.X_BH;

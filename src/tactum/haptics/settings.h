@@ -85,11 +85,11 @@ struct Shading {
 
 /// What the frame may spend; part of the recorded input, never a clock reading.
 struct WorkBudget {
-  int max_exact_tests = 4096;     ///< exact tests a frame (paper 4.2: the array of fixed length) [-]
-  int max_contact_points = 2048;  ///< contact points a frame [-]
-  ContactFinderRooms rooms;       ///< near pairs and patches there is memory for
-  int solver_iterations = 120;    ///< sweeps of the contact solver, or rows taken in and let go, at most [-]
-  bool sleep = true;              ///< what rests is not looked at, where nobody could tell (sleep.h)
+  int max_exact_tests = 4096;      ///< exact tests a frame (paper 4.2: the array of fixed length) [-]
+  int max_contact_points = 2048;   ///< contact points a frame [-]
+  ContactFinderCapacity capacity;  ///< near pairs and patches there is memory for
+  int solver_iterations = 120;     ///< sweeps of the contact solver, or rows taken in and let go, at most [-]
+  bool sleep = true;               ///< what rests is not looked at, where nobody could tell (sleep.h)
 };
 
 /// All of it.

@@ -13,7 +13,7 @@
 namespace tactum {
 
 /// The part that the hand holds, where the hand is, and what force fields do to the part.
-struct HeldPart {
+struct GraspedPart {
   bool hand_known = false;  ///< false until the first valid sample: nothing may move
   int body = -1;            ///< index into World::bodies; -1: nothing is held
   Pose X_BH;                ///< the handle in the held body's frame [m]
@@ -27,7 +27,7 @@ struct HeldPart {
 struct MotionInput {
   const World& world;
   const FrameSettings& settings;
-  const HeldPart& held;
+  const GraspedPart& held;
   std::span<const double> radius_m;  ///< of each body: farthest point from its origin [m]
   double dt_s;                       ///< time from frame to frame [s]
 };

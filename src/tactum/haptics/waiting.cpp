@@ -125,8 +125,8 @@ Waiting::Waiting(const World& world, const FrameSettings& settings)
       contacts(world.bodies.size(), 0),
       hit(world.bodies.size(), 0) {
   order.reserve(world.bodies.size());
-  patch_of.reserve(2 * settings.budget.rooms.patches);
-  counted.reserve(settings.budget.rooms.patches);
+  patch_of.reserve(2 * settings.budget.capacity.patches);
+  counted.reserve(settings.budget.capacity.patches);
 }
 
 void let_wait(ConstraintStep& step) noexcept {

@@ -4,7 +4,7 @@
 ///   magic 8 | version 4 | byte order 4 | whole size 8 | checksum 8          the checksum is of all the rest
 ///   name 24 | element size 4 | zero 4 | count 8 | elements, filled up to 8  ... once for each array
 ///
-/// Numbers stand as the machine has them (little-endian, told by the byte order), so an array is copied out
+/// Numbers stand as the machine has them (little-endian, as the byte order says), so an array is copied out
 /// of the mapped file in one piece. Writer and reader are called with the same fields in the same order; one
 /// function serves both:
 ///

@@ -2,12 +2,10 @@
 /// A solid cut into convex pieces along its reflex edges [Bajaj and Dey 1992]: exact to the surface given.
 ///
 ///      _____                 _____         Coplanar triangles are one face, so only true edges are left.
-///      While
-///     |     |               |     |        a body has a reflex edge, it is cut by the plane through one that
-///     |     |____    -->    |- - -|____    frees the most reflex edges and crosses the fewest. Bodies that
-///     come |          |          |          |   apart go on alone; what has no reflex edge is convex. At
-///     last pieces
-///     |__________|          |__________|   that are convex together are joined.
+///     |     |               |     |        While a body has a reflex edge, it is cut by the plane through
+///     |     |____    -->    |- - -|____    one that frees the most reflex edges and crosses the fewest.
+///     |          |          |          |   Bodies that come apart go on alone; what has no reflex edge is
+///     |__________|          |__________|   convex. At last, pieces that are convex together are joined.
 ///
 /// Departs from the source: cuts go through the whole body rather than the one cross-section that holds the
 /// edge, and what was cut in vain is joined again; the plane is chosen by count, where the source takes any.

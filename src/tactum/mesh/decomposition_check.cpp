@@ -135,7 +135,8 @@ bool overlap_deeper(const Polytope& a, const Polytope& b, double depth) {
   return false;
 }
 
-Result<void> check_pieces(const std::vector<Polytope>& pieces, double volume, double noise, double slack) {
+Result<void> check_pieces(const std::vector<Polytope>& pieces, double volume, double noise,
+                          double tolerance) {
   for (std::size_t i = 0; i < pieces.size(); ++i)
     for (std::size_t j = i + 1; j < pieces.size(); ++j)
       if (overlap_deeper(pieces[i], pieces[j], kSureOverlap * noise))
@@ -144,7 +145,7 @@ Result<void> check_pieces(const std::vector<Polytope>& pieces, double volume, do
                      "pieces that do not overlap", ""};
   double sum = 0.0;
   for (const Polytope& piece : pieces) sum += volume_of(piece);
-  if (std::abs(sum - volume) > slack)
+  if (std::abs(sum - volume) > tolerance)
     return Error{"the decomposition is not the solid", fmt::format("pieces of {:.9g} m^3", sum),
                  fmt::format("{:.9g} m^3", volume), ""};
   return {};

@@ -17,9 +17,9 @@ Result<Polytope> convex_piece(const std::vector<Vec3>& corners, const Solid& bod
 /// either holds the other. Returns how many pieces went.
 int join_convex(std::vector<Polytope>& pieces, double noise);
 
-/// Whether the volumes add up to `volume` within `slack` [m^3] and no two pieces overlap by more than `noise`
-/// [m].
-Result<void> check_pieces(const std::vector<Polytope>& pieces, double volume, double noise, double slack);
+/// Whether the volumes add up to `volume` within `tolerance` [m^3] and no two pieces overlap by more than
+/// `noise` [m].
+Result<void> check_pieces(const std::vector<Polytope>& pieces, double volume, double noise, double tolerance);
 
 /// Whether the pieces share a point that is deeper than `depth` [m] in both.
 bool overlap_deeper(const Polytope& a, const Polytope& b, double depth);

@@ -72,7 +72,7 @@ Error crossed(const Vec3& p) {
 /// Cuts one face, whose sides no longer cross.
 Result<void> cut_face(const Corners& corners, const CutPlane& plane, const SolidFace& face,
                       const std::vector<SolidSide>& sides, Halves& halves) {
-  SolidFace below{face.normal, face.offset, face.doubt, {}};
+  SolidFace below{face.normal, face.offset, face.error_bound, {}};
   SolidFace above = below;
   std::map<int, LineCorner> on_line;
   const Vec3 direction = plane.normal.cross(face.normal);
@@ -100,7 +100,7 @@ Result<void> cut_face(const Corners& corners, const CutPlane& plane, const Solid
   if (below.sides.empty() || above.sides.empty()) {  // not cut: whole on one side, or in the plane
     const bool in_plane = below.sides.empty() && above.sides.empty();
     const bool up = in_plane ? face.normal.dot(plane.normal) < 0.0 : below.sides.empty();
-    (up ? halves.above : halves.below).push_back({face.normal, face.offset, face.doubt, sides});
+    (up ? halves.above : halves.below).push_back({face.normal, face.offset, face.error_bound, sides});
     return {};
   }
   std::vector<LineCorner> line;

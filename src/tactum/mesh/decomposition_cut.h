@@ -1,15 +1,13 @@
 #pragma once
 /// A solid cut in two by a plane.
 ///
-///        ______                Corners within the noise of the plane are on it, once and for all faces; an
-///        edge
-///       |      |               that crosses gets one new corner, shared by all that have the edge. Each face
-///       is
-///   - - x - - -x- - -          then cut along a line: between neighbouring corners on the line the face has
-///       |    __|               interior above it or not, and below it or not, told by counting the sides
-///       that
-///       |___|                  arrive from there. No coordinate decides anything but the order on the line.
-///                              The cap is what is left open: the same sides for both halves, turned round.
+///        ______                Corners within the noise of the plane are on it, once and for all faces. An
+///       |      |               edge that crosses gets one new corner, shared by all faces at the edge. Each
+///   - - x - - -x- - -          face is then cut along a line: between neighbouring corners on the line the
+///       |    __|               face has interior above it or not, and below it or not, which is found by
+///       |___|                  counting the sides that arrive from there. No coordinate decides anything
+///                              but the order on the line. The cap is what is left open: the same sides for
+///                              both halves, turned round.
 
 #include "tactum/mesh/decomposition_solid.h"
 

@@ -166,7 +166,7 @@ bool append_patches(const std::vector<Vec3>& corners, const SolidFace& face, Sol
   std::vector<const Loop*> outline;
   for (const Loop& loop : loops) {
     if (loop.area <= 0.0) continue;
-    out.push_back({face.normal, face.offset, face.doubt, {}});
+    out.push_back({face.normal, face.offset, face.error_bound, {}});
     add(out.back(), loop);
     outline.push_back(&loop);
   }
@@ -240,7 +240,7 @@ Result<Solid> solid_of_mesh(const TriangleMesh& mesh, double noise) {
       face.offset += face.normal.dot(mesh.vertices[side[0]]);
       longest = std::max(longest, (mesh.vertices[side[0]] - mesh.vertices[face.sides[0][0]]).norm());
     }
-    face.doubt = std::max(tolerances::kCoplanarMeshSine, noise * longest / twice_area);
+    face.error_bound = std::max(tolerances::kCoplanarMeshSine, noise * longest / twice_area);
     face.offset /= static_cast<double>(face.sides.size());
   }
   const Result<std::vector<SolidEdge>> edges = edges_of(mesh.vertices, solid);
@@ -278,7 +278,7 @@ Result<std::vector<SolidEdge>> edges_of(const std::vector<Vec3>& corners, const 
         edge.wedge = wedge;
         edge.right = sides[b].face;
       }
-      edge.reflex = edge.wedge > kPi + solid[edge.left].doubt + solid[edge.right].doubt;
+      edge.reflex = edge.wedge > kPi + solid[edge.left].error_bound + solid[edge.right].error_bound;
       edges.push_back(edge);
     }
     first = last;

@@ -26,7 +26,7 @@ using SolidSide = std::array<int, 2>;
 struct SolidFace {
   Vec3 normal = Vec3::Zero();  ///< unit, outward
   double offset = 0.0;         ///< normal . x [m]
-  double doubt = 0.0;          ///< how far the normal may be off: large for slivers of the input [rad]
+  double error_bound = 0.0;    ///< how far the normal may be off: large for slivers of the input [rad]
   std::vector<SolidSide> sides;
 };
 
@@ -37,7 +37,7 @@ struct SolidEdge {
   int tail = 0, head = 0;
   int left = 0, right = 0;
   double wedge = 0.0;   ///< angle through the solid, 0 .. 2 pi [rad]
-  bool reflex = false;  ///< above pi by more than both faces' doubt
+  bool reflex = false;  ///< above pi by more than both faces' error bounds
 };
 
 /// The solid of a closed, oriented, manifold mesh; coplanar triangles make one face. `noise` [m]: heights

@@ -51,14 +51,14 @@ void for_each_sample(const TriangleMesh& mesh, int area_samples, Visitor&& visit
 }
 
 /// Whether the point lies on or in a solid piece other than `own`.
-bool in_other_piece(const Part& part, int own, const Vec3& point, double slack) {
+bool in_other_piece(const Part& part, int own, const Vec3& point, double tolerance) {
   const std::vector<Bvh::Node>& nodes = part.hierarchy.nodes();
   std::vector<int> stack = {0};
   while (!stack.empty()) {
     const int at = stack.back();
     stack.pop_back();
     const Bvh::Node& node = nodes[at];
-    if (((point - node.center).cwiseAbs() - node.half).maxCoeff() > slack) continue;
+    if (((point - node.center).cwiseAbs() - node.half).maxCoeff() > tolerance) continue;
     if (!node.leaf()) {
       stack.push_back(node.second);
       stack.push_back(at + 1);
@@ -69,7 +69,7 @@ bool in_other_piece(const Part& part, int own, const Vec3& point, double slack) 
       const Polytope& piece = part.pieces[other];
       if (other == own || piece.flat) continue;
       const auto below = [&](const Polytope::Face& face) {
-        return face.normal.dot(point) <= face.offset + slack;
+        return face.normal.dot(point) <= face.offset + tolerance;
       };
       if (std::all_of(piece.faces.begin(), piece.faces.end(), below)) return true;
     }
@@ -174,13 +174,13 @@ Deviation surface_deviation(const TriangleMesh& mesh, const Part& part, const Ve
     out.worst_on_mesh = point;
   });
   NearestOnMesh on_mesh(mesh);
-  const double slack = tolerances::kSurfaceDeviation * out.size;
+  const double tolerance = tolerances::kSurfaceDeviation * out.size;
   for_each_sample(faces, area_samples, [&](int triangle, const Vec3& point) {
     ++out.part_samples;
     const double distance = on_mesh.distance(point);
     if (distance <= out.part_to_mesh) return;
-    if (distance > slack && part.pieces.size() > 1 &&
-        in_other_piece(part, piece[triangle], point - origin, slack)) {
+    if (distance > tolerance && part.pieces.size() > 1 &&
+        in_other_piece(part, piece[triangle], point - origin, tolerance)) {
       ++out.inner_samples;
       return;
     }

@@ -49,8 +49,8 @@ struct Deviation {
   double largest() const { return mesh_to_part > part_to_mesh ? mesh_to_part : part_to_mesh; }
 };
 
-/// The faces of a part's pieces as triangles, told from `origin` in the mesh's frame; the surface itself when
-/// it has no pieces. `piece` gets the piece of each triangle.
+/// The faces of a part's pieces as triangles, relative to `origin` in the mesh's frame; the surface itself
+/// when it has no pieces. `piece` gets the piece of each triangle.
 TriangleMesh faces_of(const Part& part, const Vec3& origin, std::vector<int>& piece);
 
 /// `origin`: where the part's frame stands in the mesh's [m].

@@ -2,11 +2,9 @@
 /// Holes of a surface closed with triangles between the corners of their rims; no new vertex.
 ///
 ///     o-----o          The rim is a loop of open edges. Among all its triangulations the one of least area
-///     is
-///    / hole  \         taken [Barequet and Sharir 1995]: exact for flat holes, sensible for bent ones, and a
-///    crack
-///   o         o        (a rim that encloses nothing) gets triangles without area, which repair then gives
-///    \-------/         to their neighbours. O(n^3) for a rim of n edges.
+///    / hole  \         is taken [Barequet and Sharir 1995]: exact for flat holes, sensible for bent ones;
+///   o         o        a crack (a rim that encloses nothing) gets triangles without area, which repair
+///    \-------/         then gives to their neighbours. O(n^3) for a rim of n edges.
 ///
 /// A rim that touches itself, or that no triangulation closes without an edge that is there already, is left
 /// open.

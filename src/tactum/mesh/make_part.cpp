@@ -140,7 +140,7 @@ Result<void> add_pieces(const TriangleMesh& closed, bool convex, const PartOptio
     if (convex) {
       if (Result<Polytope> solid = convex_hull(part.surface.vertices); solid && !solid->flat) {
         add_solid_pieces({std::move(*solid)}, part);
-        part.way = "solid: convex as it is";
+        part.piece_report = "solid: convex as it is";
         return {};
       }
     }
@@ -148,28 +148,28 @@ Result<void> add_pieces(const TriangleMesh& closed, bool convex, const PartOptio
     Result<SolidPieces> solid =
         solid_pieces(closed, options.most_solid_pieces > 0 ? options.most_solid_pieces : few);
     if (solid) {
-      part.way = fmt::format("solid: {} convex pieces from {} reflex edges", solid->pieces.size(),
-                             solid->reflex_edges);
+      part.piece_report = fmt::format("solid: {} convex pieces from {} reflex edges", solid->pieces.size(),
+                                      solid->reflex_edges);
       add_solid_pieces(std::move(solid->pieces), part);
       return {};
     }
     if (!chosen_here) return unusable(options, solid.error().found, solid.error().expected);
-    part.way = fmt::format("surface: {} ({})", solid.error().what, solid.error().found);
+    part.piece_report = fmt::format("surface: {} ({})", solid.error().what, solid.error().found);
   } else {
-    part.way = "surface: asked for";
+    part.piece_report = "surface: asked for";
   }
   return {};
 }
 
-void tell_repairs(const WeldReport& weld_report, const MeshReport& report, Part& part) {
-  const auto tell = [&part](std::size_t count, const char* text) {
+void note_repairs(const WeldReport& weld_report, const MeshReport& report, Part& part) {
+  const auto note = [&part](std::size_t count, const char* text) {
     if (count > 0) part.remarks.push_back(fmt::format("{} {}.", count, text));
   };
-  tell(weld_report.index_degenerate.size(), "triangles with two equal corners were dropped");
-  tell(weld_report.zero_area.size(), "triangles without area were dropped");
-  tell(weld_report.duplicates.size(), "triangles that stood twice were dropped");
-  tell(static_cast<std::size_t>(report.boundary_edges), "edges are open: the surface has holes");
-  tell(static_cast<std::size_t>(report.misoriented_edges), "edges join triangles that face opposite ways");
+  note(weld_report.index_degenerate.size(), "triangles with two equal corners were dropped");
+  note(weld_report.zero_area.size(), "triangles without area were dropped");
+  note(weld_report.duplicates.size(), "triangles that stood twice were dropped");
+  note(static_cast<std::size_t>(report.boundary_edges), "edges are open: the surface has holes");
+  note(static_cast<std::size_t>(report.misoriented_edges), "edges join triangles that face opposite ways");
 }
 
 }  // namespace
@@ -197,7 +197,7 @@ Result<Part> part_from_clouds(const std::vector<std::vector<Vec3>>& clouds, cons
     append_faces(*piece, part.surface);
     pieces.push_back(std::move(*piece));
   }
-  part.way = fmt::format("given: {} convex pieces", pieces.size());
+  part.piece_report = fmt::format("given: {} convex pieces", pieces.size());
   add_solid_pieces(std::move(pieces), part);
   part.mass = joined(masses);
   complete(part);
@@ -232,7 +232,7 @@ Result<Part> part_from_mesh(const TriangleMesh& mesh, const PartOptions& options
   part.mass = mass_properties_or_hull(scaled, options.density_kg_per_m3);
   WeldedMesh welded = weld(scaled, {.drop_zero_area = true, .drop_duplicates = true});
   part.surface = std::move(welded.mesh);
-  tell_repairs(welded.report, report, part);
+  note_repairs(welded.report, report, part);
   const TriangleMesh closed =
       weld(scaled).mesh;  // where triangles without area still hold the surface together
   if (Result<void> made = add_pieces(closed, report.convex, options, part); !made) return made.error();

@@ -55,7 +55,7 @@ std::vector<bool> flood(const std::vector<Neighbour>& neighbours, OrientedMesh& 
 }
 
 /// Closed: at every edge an even number of the component's triangles. Twisted: two that cannot agree.
-void tell_edges(const std::vector<HalfEdge>& sides, const std::vector<bool>& turned, OrientedMesh& out) {
+void report_edges(const std::vector<HalfEdge>& sides, const std::vector<bool>& turned, OrientedMesh& out) {
   for (MeshComponent& component : out.components) component.closed = true;
   std::vector<int> at_edge;
   for_each_edge(sides, [&](const HalfEdge* first, const HalfEdge* last) {
@@ -149,7 +149,7 @@ OrientedMesh orient_components(TriangleMesh& mesh) {
   out.component.assign(mesh.triangles.size(), -1);
   const std::vector<HalfEdge> sides = sorted_half_edges(mesh);
   std::vector<bool> turned = flood(neighbours_of(sides, mesh.triangles.size()), out);
-  tell_edges(sides, turned, out);
+  report_edges(sides, turned, out);
   for (std::size_t t = 0; t < turned.size(); ++t)
     if (turned[t]) turn(mesh.triangles[t]);
   const std::vector<double> turned_area = measure(mesh, turned, out);

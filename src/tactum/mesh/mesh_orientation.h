@@ -10,11 +10,11 @@
 ///        |  | depth |  |              others it is a cavity and faces inward, so that the solid is always
 ///        |  |   1   |  |              behind the triangles
 ///        |  +-------+  |     open:    as most of its area faced in the file
-///        |   depth 0   |     one-sided bands (Moebius) cannot be set right; they are told
+///        |   depth 0   |     one-sided bands (Moebius) cannot be set right; they are reported
 ///        +-------------+
 ///
 /// Inside is asked by winding numbers along rays of a tree of boxes (surface_crossings.h). Components that
-/// cut through each other are left facing outward, and told. n log n.
+/// cut through each other are left facing outward, and reported. n log n.
 
 #include <vector>
 
@@ -29,7 +29,7 @@ struct MeshComponent {
   int twisted_edges = 0;    ///< edges where its triangles cannot agree
   int depth = 0;            ///< closed components around it, when closed
   bool cuts_other = false;  ///< it lies partly inside another closed component
-  bool turned = false;      ///< as a whole, against most of it in the file (told by repair_mesh)
+  bool turned = false;      ///< as a whole, against most of it in the file (set by repair_mesh)
   double volume = 0.0;      ///< signed, as it faces at last; of closed ones [m^3]
   double area = 0.0;        ///< [m^2]
   Aabb box;                 ///< [m]

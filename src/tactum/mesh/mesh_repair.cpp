@@ -18,7 +18,7 @@ class Notes {
  public:
   Notes(const TriangleMesh& given, std::vector<RepairNote>& notes) : given_(given), notes_(notes) {}
 
-  void tell(bool mended, const char* kind, const std::string& text, int count, int triangle = -1) {
+  void add(bool mended, const char* kind, const std::string& text, int count, int triangle = -1) {
     if (count == 0) return;
     RepairNote note{kind, text, count, triangle, Vec3::Zero(), mended};
     if (triangle >= 0) {
@@ -26,8 +26,8 @@ class Notes {
     }
     notes_.push_back(std::move(note));
   }
-  void tell(bool mended, const char* kind, const std::string& text, const std::vector<int>& triangles) {
-    tell(mended, kind, text, static_cast<int>(triangles.size()), triangles.empty() ? -1 : triangles.front());
+  void add(bool mended, const char* kind, const std::string& text, const std::vector<int>& triangles) {
+    add(mended, kind, text, static_cast<int>(triangles.size()), triangles.empty() ? -1 : triangles.front());
   }
 
  private:
@@ -87,15 +87,15 @@ std::vector<int> pinched_at(const TriangleMesh& mesh, const std::vector<HalfEdge
     }
   });
   std::vector<int> fan_of(mesh.vertices.size(), -1);
-  std::vector<bool> told(mesh.vertices.size(), false);
+  std::vector<bool> noted(mesh.vertices.size(), false);
   std::vector<int> triangles;
   for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
     for (int corner = 0; corner < 3; ++corner) {
       const int vertex = mesh.triangles[t][corner];
       const int fan = fans.find(3 * t + corner);
       if (fan_of[vertex] < 0) fan_of[vertex] = fan;
-      if (fan_of[vertex] == fan || told[vertex]) continue;
-      told[vertex] = true;
+      if (fan_of[vertex] == fan || noted[vertex]) continue;
+      noted[vertex] = true;
       triangles.push_back(t);
     }
   }
@@ -103,8 +103,8 @@ std::vector<int> pinched_at(const TriangleMesh& mesh, const std::vector<HalfEdge
 }
 
 /// Holes, and what is wrong at edges and vertices; `filled` are the rims that were closed.
-void tell_topology(const RepairedMesh& out, const std::vector<int>& filled, Notes& notes) {
-  notes.tell(true, "closed_holes", "holes were closed", filled);
+void note_topology(const RepairedMesh& out, const std::vector<int>& filled, Notes& notes) {
+  notes.add(true, "closed_holes", "holes were closed", filled);
   std::vector<int> open;
   std::size_t shortest = out.mesh.triangles.size() * 3;
   std::size_t longest = 0;
@@ -113,20 +113,20 @@ void tell_topology(const RepairedMesh& out, const std::vector<int>& filled, Note
     shortest = std::min(shortest, rim.vertices.size());
     longest = std::max(longest, rim.vertices.size());
   }
-  notes.tell(false, "holes", fmt::format("holes are open, with rims of {} to {} edges", shortest, longest),
-             open);
+  notes.add(false, "holes", fmt::format("holes are open, with rims of {} to {} edges", shortest, longest),
+            open);
   std::vector<int> crowded;  // edges of more than two triangles
   const std::vector<HalfEdge> sides = sorted_half_edges(out.mesh);
   for_each_edge(sides, [&](const HalfEdge* first, const HalfEdge* last) {
     if (last - first > 2) crowded.push_back(out.source[first->triangle]);
   });
-  notes.tell(false, "non_manifold_edges", "edges have more than two triangles", crowded);
+  notes.add(false, "non_manifold_edges", "edges have more than two triangles", crowded);
   std::vector<int> pinched = pinched_at(out.mesh, sides);
   for (int& triangle : pinched) triangle = out.source[triangle];
-  notes.tell(false, "pinched_vertices", "vertices join fans of triangles that share no edge", pinched);
+  notes.add(false, "pinched_vertices", "vertices join fans of triangles that share no edge", pinched);
 }
 
-void tell_components(const RepairedMesh& out, Notes& notes) {
+void note_components(const RepairedMesh& out, Notes& notes) {
   struct Kind {
     const char* kind;
     const char* text;
@@ -148,7 +148,7 @@ void tell_components(const RepairedMesh& out, Notes& notes) {
     std::vector<int> first;
     for (const MeshComponent& component : out.components)
       if (kind.holds(component)) first.push_back(out.source[component.first_triangle]);
-    notes.tell(kind.mended, kind.kind, kind.text, first);
+    notes.add(kind.mended, kind.kind, kind.text, first);
   }
 }
 
@@ -182,15 +182,15 @@ RepairedMesh repair_mesh(const TriangleMesh& mesh, const RepairOptions& options)
   WeldedMesh welded = weld(mesh);
   out.mesh = std::move(welded.mesh);
   out.source = std::move(welded.source);
-  notes.tell(true, "joined_vertices", "vertices stood at the place of another and were joined",
-             welded.report.vertices_joined);
-  notes.tell(true, "degenerate_triangles", "triangles had two equal corners and were dropped",
-             welded.report.index_degenerate);
+  notes.add(true, "joined_vertices", "vertices stood at the place of another and were joined",
+            welded.report.vertices_joined);
+  notes.add(true, "degenerate_triangles", "triangles had two equal corners and were dropped",
+            welded.report.index_degenerate);
   std::vector<int> dropped;
   std::vector<int> back_to_back;
   drop_duplicates(out, dropped, back_to_back);
-  notes.tell(true, "duplicate_triangles", "triangles stood twice and were dropped", dropped);
-  notes.tell(false, "back_to_back_triangles", "triangles stand back to back with another", back_to_back);
+  notes.add(true, "duplicate_triangles", "triangles stood twice and were dropped", dropped);
+  notes.add(false, "back_to_back_triangles", "triangles stand back to back with another", back_to_back);
 
   std::vector<bool> turned(mesh.triangles.size(), false);  // of the triangles given
   orient(out, turned);
@@ -200,16 +200,16 @@ RepairedMesh repair_mesh(const TriangleMesh& mesh, const RepairOptions& options)
   out.source.resize(out.mesh.triangles.size(), -1);
   CapReport caps = mend_caps(out.mesh, out.source);
   std::erase_if(caps.mended, [](int triangle) { return triangle < 0; });  // within a hole just closed
-  notes.tell(true, "zero_area_mended", "triangles without area were given to their neighbours", caps.mended);
-  notes.tell(false, "zero_area_left", "triangles without area are left", caps.left);
+  notes.add(true, "zero_area_mended", "triangles without area were given to their neighbours", caps.mended);
+  notes.add(false, "zero_area_left", "triangles without area are left", caps.left);
   orient(out, turned);
   std::vector<int> flipped;
   for (std::size_t t = 0; t < turned.size(); ++t)
     if (turned[t]) flipped.push_back(static_cast<int>(t));
-  notes.tell(true, "flipped_triangles", "triangles faced the wrong way and were turned round", flipped);
+  notes.add(true, "flipped_triangles", "triangles faced the wrong way and were turned round", flipped);
   drop_unused_vertices(out.mesh);
-  tell_topology(out, filled, notes);
-  tell_components(out, notes);
+  note_topology(out, filled, notes);
+  note_components(out, notes);
   return out;
 }
 

@@ -23,7 +23,7 @@ void fields(Archive& archive, File& file) {
   archive("origin", file.origin);
   archive("density", file.density_kg_per_m3);
   archive("name", part.name);
-  archive("way", part.way);
+  archive("way", part.piece_report);
   archive("remarks", part.remarks);
   archive("surface.vertices", part.surface.vertices);
   archive("surface.triangles", part.surface.triangles);

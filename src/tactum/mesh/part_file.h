@@ -5,7 +5,7 @@
 /// from its centre of mass, as bodies want it, and where that was in the mesh, so loading computes nothing
 /// anew but what follows exactly from the arrays: the pieces' planes and the tree over them.
 ///
-/// Loading survives any bytes: sizes, indices and numbers are checked; what is wrong is told in a sentence.
+/// Loading survives any bytes: sizes, indices and numbers are checked; a sentence says what is wrong.
 
 #include <string>
 #include <string_view>
@@ -19,7 +19,7 @@ namespace tactum {
 inline constexpr std::uint32_t kPartFileVersion = 4;
 
 struct PartFile {
-  Part part;                          ///< told from its centre of mass
+  Part part;                          ///< relative to its centre of mass
   Vec3 origin = Vec3::Zero();         ///< that centre, in the frame of the mesh [m]
   double density_kg_per_m3 = 1000.0;  ///< that mass and inertia are for
   std::string report;                 ///< what was found and done, as JSON (prepare_part.h)

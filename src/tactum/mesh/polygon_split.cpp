@@ -41,7 +41,7 @@ std::vector<Vec2> flattened(const std::vector<Vec3>& vertices, const std::vector
 }
 
 /// Every corner turns left (or not at all), and once round in all: a star polygon turns more than once.
-bool is_convex(const std::vector<Vec2>& points, double slack) {
+bool is_convex(const std::vector<Vec2>& points, double tolerance) {
   const std::size_t n = points.size();
   double total = 0.0;
   for (std::size_t i = 0; i < n; ++i) {
@@ -49,7 +49,7 @@ bool is_convex(const std::vector<Vec2>& points, double slack) {
     const Vec2& b = points[(i + 1) % n];
     const Vec2& c = points[(i + 2) % n];
     const double t = turn(a, b, c);
-    if (t < -slack) return false;
+    if (t < -tolerance) return false;
     total += std::atan2(t, (b - a).dot(c - b));
   }
   return total < 3.0 * kPi;

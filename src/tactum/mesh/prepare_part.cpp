@@ -70,22 +70,22 @@ struct Attempt {
   const PrepareProgress& progress;
   int area_samples;
 
-  Result<void> run(const PiecesWay& way, PartFile& file, PrepareReport& report) const {
+  Result<void> run(const PieceMethod& method, PartFile& file, PrepareReport& report) const {
     progress("cutting into pieces", 0.3);
-    const Result<Vec3> center = way.center(input);
+    const Result<Vec3> center = method.center(input);
     if (!center) return center.error();
-    Result<Part> part = way.make(input, *center);
+    Result<Part> part = method.make(input, *center);
     if (!part) return part.error();
     progress("verifying", 0.6);
     const bool solid = std::any_of(part->pieces.begin(), part->pieces.end(),
                                    [](const Polytope& piece) { return !piece.flat; });
     const double area = solid && part->pieces.size() > 1 ? -1.0 : input.report.area;
     report.verification =
-        verify_part(reference, *part, *center, solid ? way.volume(input) : -1.0, area, area_samples);
+        verify_part(reference, *part, *center, solid ? method.volume(input) : -1.0, area, area_samples);
     if (Result<void> passed = verdict_on(report.verification, input.options.name); !passed) return passed;
     file.part = std::move(*part);
     file.origin = *center;
-    report.pieces = way.name;
+    report.pieces = method.name;
     return {};
   }
 };
@@ -94,20 +94,20 @@ struct Attempt {
 Result<void> make_pieces(const Attempt& attempt, const PrepareOptions& options, PartFile& file,
                          PrepareReport& report) {
   std::string tried;
-  for (const PiecesWay& way : all_pieces_ways()) {
-    if (options.pieces != "auto" && options.pieces != way.name) continue;
-    const std::string reason = options.pieces == "auto" ? way.suits(attempt.input) : "as asked for";
+  for (const PieceMethod& method : all_piece_methods()) {
+    if (options.pieces != "auto" && options.pieces != method.name) continue;
+    const std::string reason = options.pieces == "auto" ? method.suits(attempt.input) : "as asked for";
     if (reason.empty()) continue;
-    const Result<void> done = attempt.run(way, file, report);
+    const Result<void> done = attempt.run(method, file, report);
     if (done) {
       report.pieces_reason = tried + reason;
       return {};
     }
-    if (options.pieces != "auto" || &way == &all_pieces_ways().back()) return done;
-    tried += fmt::format("not {}, since {}; ", way.name, done.error().message());
+    if (options.pieces != "auto" || &method == &all_piece_methods().back()) return done;
+    tried += fmt::format("not {}, since {}; ", method.name, done.error().message());
   }
   std::string known = "auto";
-  for (const PiecesWay& way : all_pieces_ways()) known += std::string(", ") + way.name;
+  for (const PieceMethod& method : all_piece_methods()) known += std::string(", ") + method.name;
   return refused("pieces \"" + options.pieces + "\"", known, options);
 }
 
@@ -115,7 +115,7 @@ Result<void> make_pieces(const Attempt& attempt, const PrepareOptions& options, 
 
 std::vector<std::string> pieces_ways() {
   std::vector<std::string> names;
-  for (const PiecesWay& way : all_pieces_ways()) names.emplace_back(way.name);
+  for (const PieceMethod& method : all_piece_methods()) names.emplace_back(method.name);
   return names;
 }
 
@@ -142,17 +142,17 @@ Verification verify_part(const TriangleMesh& reference, const Part& part, const 
 
 Result<void> verdict_on(const Verification& found, const std::string& name) {
   const Deviation& deviation = found.deviation;
-  const double slack = tolerances::kSurfaceDeviation * deviation.size;
+  const double tolerance = tolerances::kSurfaceDeviation * deviation.size;
   const auto differs = [&](std::string what, std::string expected) {
     return Error{"the pieces are not the mesh", std::move(what), std::move(expected), name};
   };
-  if (deviation.largest() > slack) {
+  if (deviation.largest() > tolerance) {
     const bool on_mesh = deviation.mesh_to_part > deviation.part_to_mesh;
     const Vec3& at = on_mesh ? deviation.worst_on_mesh : deviation.worst_on_part;
     return differs(fmt::format("{} {:.3g} m away at {:.6g} {:.6g} {:.6g}",
                                on_mesh ? "a point of the mesh" : "a point of the pieces", deviation.largest(),
                                at.x(), at.y(), at.z()),
-                   fmt::format("at most {:.3g}", slack));
+                   fmt::format("at most {:.3g}", tolerance));
   }
   if (found.overlaps.pairs > 0) {
     return differs(
@@ -161,12 +161,12 @@ Result<void> verdict_on(const Verification& found, const std::string& name) {
         "pieces that touch at most");
   }
   if (found.mesh_volume >= 0.0 &&
-      std::abs(found.pieces_volume - found.mesh_volume) > slack * found.pieces_area) {
+      std::abs(found.pieces_volume - found.mesh_volume) > tolerance * found.pieces_area) {
     return differs(fmt::format("a volume of {:.12g} m^3 in the pieces", found.pieces_volume),
                    fmt::format("{:.12g}, as the mesh encloses", found.mesh_volume));
   }
-  if (found.mesh_area >= 0.0 &&
-      std::abs(found.pieces_area - found.mesh_area) > slack * deviation.size + slack * found.mesh_area) {
+  if (found.mesh_area >= 0.0 && std::abs(found.pieces_area - found.mesh_area) >
+                                    tolerance * deviation.size + tolerance * found.mesh_area) {
     return differs(fmt::format("an area of {:.12g} m^2 in the pieces", found.pieces_area),
                    fmt::format("{:.12g}, as the mesh has", found.mesh_area));
   }
@@ -176,7 +176,7 @@ Result<void> verdict_on(const Verification& found, const std::string& name) {
 Result<PartFile> prepare_part(const ImportedMesh& imported, const PrepareOptions& options,
                               const PrepareProgress& progress) {
   const PrepareProgress silent = [](const char*, double) {};
-  const PrepareProgress& tell = progress ? progress : silent;
+  const PrepareProgress& show_progress = progress ? progress : silent;
   PrepareReport report;
   report.format = imported.report.format;
   Aabb box;
@@ -186,7 +186,7 @@ Result<PartFile> prepare_part(const ImportedMesh& imported, const PrepareOptions
   if (!unit) return unit.error();
   report.unit = *unit;
 
-  tell("repairing", 0.1);
+  show_progress("repairing", 0.1);
   ImportedMesh given = imported;
   for (Vec3& vertex : given.mesh.vertices) vertex *= report.unit.metres_per_unit;
   const RepairedMesh repaired = repair_mesh(given.mesh, {.close_holes = options.close_holes});
@@ -202,13 +202,14 @@ Result<PartFile> prepare_part(const ImportedMesh& imported, const PrepareOptions
   file.density_kg_per_m3 = options.density_kg_per_m3;
   const PiecesInput input{given, repaired.mesh, report.mesh, part_options};
   const TriangleMesh reference = reference_of(given.mesh, repaired);
-  if (Result<void> made = make_pieces({input, reference, tell, options.area_samples}, options, file, report);
+  if (Result<void> made =
+          make_pieces({input, reference, show_progress, options.area_samples}, options, file, report);
       !made)
     return made.error();
   for (const RepairNote& note : repaired.notes)
     if (!note.mended) file.part.remarks.push_back(note.sentence());
   file.report = to_json(report, file.part);
-  tell("writing", 0.95);
+  show_progress("writing", 0.95);
   return file;
 }
 

@@ -3,7 +3,7 @@
 ///
 ///   mesh -> unit -> repair -> mass -> pieces -> verification -> part file
 ///
-/// Each stage tells what it found and did. Verification is code of its own (deviation.h, piece_overlap.h):
+/// Each stage reports what it found and did. Verification is code of its own (deviation.h, piece_overlap.h):
 /// the surface must agree both ways to kSurfaceDeviation, volumes and areas must add up, no two solid pieces
 /// may overlap. A part that fails is not written; when the choice of pieces was ours, the next way is tried.
 ///

@@ -100,12 +100,12 @@ Result<Part> part_from_surface(const PiecesInput& input, const Vec3& origin) {
 
 }  // namespace
 
-const std::vector<PiecesWay>& all_pieces_ways() {
-  static const std::vector<PiecesWay> ways = {
+const std::vector<PieceMethod>& all_piece_methods() {
+  static const std::vector<PieceMethod> methods = {
       {"given", groups_suit, center_of_groups, volume_of_groups, part_from_groups},
       {"solid", solid_suits, center_of_mesh, volume_of_mesh, part_from_solid},
       {"surface", surface_suits, center_of_mesh, volume_of_mesh, part_from_surface}};
-  return ways;
+  return methods;
 }
 
 }  // namespace tactum

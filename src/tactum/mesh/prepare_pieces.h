@@ -20,7 +20,7 @@ struct PiecesInput {
   const PartOptions& options;
 };
 
-struct PiecesWay {
+struct PieceMethod {
   const char* name;
   /// Why "auto" may take it; empty when it is not for this mesh.
   std::string (*suits)(const PiecesInput& input);
@@ -33,6 +33,6 @@ struct PiecesWay {
 };
 
 /// In the order they are tried.
-const std::vector<PiecesWay>& all_pieces_ways();
+const std::vector<PieceMethod>& all_piece_methods();
 
 }  // namespace tactum

@@ -46,7 +46,8 @@ int SurfaceCrossings::crossing(int triangle, const Vec3& point) const {
   for (int i = 0; i < 3; ++i) {
     const Vec3& a = mesh_.vertices[t[i]];
     const Vec3& b = mesh_.vertices[t[(i + 1) % 3]];
-    if (const int way = passes_height(a, b, point.z()); way != 0 && beyond_in_y(a, b, point)) turns += way;
+    if (const int winding = passes_height(a, b, point.z()); winding != 0 && beyond_in_y(a, b, point))
+      turns += winding;
   }
   if (turns == 0) return 0;
   const Vec3& a = mesh_.vertices[t[0]];
@@ -75,14 +76,15 @@ std::vector<std::pair<int, int>> SurfaceCrossings::windings(const Vec3& point) c
     }
     for (int i = node.second; i < node.second + node.count; ++i) {
       const int triangle = taken_[tree_.order()[i]];
-      if (const int way = crossing(triangle, point); way != 0) hits.emplace_back(surface_[triangle], way);
+      if (const int winding = crossing(triangle, point); winding != 0)
+        hits.emplace_back(surface_[triangle], winding);
     }
   }
   std::sort(hits.begin(), hits.end());
   std::vector<std::pair<int, int>> sums;
-  for (const auto& [surface, way] : hits) {
+  for (const auto& [surface, winding] : hits) {
     if (sums.empty() || sums.back().first != surface) sums.emplace_back(surface, 0);
-    sums.back().second += way;
+    sums.back().second += winding;
   }
   std::erase_if(sums, [](const auto& sum) { return sum.second == 0; });
   return sums;

@@ -2,9 +2,8 @@
 /// A hexagon bolt and its nut with a real right-hand thread, as closed triangle meshes.
 ///
 ///      ___________         z = length     The bolt stands on its head, thread up; the nut's lower face lies
-///      on
-///     /___________/  tip                  z = 0. Equal poses seat the nut on the head, in the middle of its
-///     \___________\                       play; turned by an angle t (counter-clockwise from above) and
+///     /___________/  tip                  on z = 0. Equal poses seat the nut on the head, in the middle of
+///     \___________\                       its play; turned by an angle t (counter-clockwise from above) and
 ///     /___________/  ridge, P a turn      raised by P t / (2 pi) it is in the thread again. Axis z, two
 ///   __\___________\__      z = 0          corners of the hexagons on the x axis.
 ///  |      head       |

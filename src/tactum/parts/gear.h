@@ -3,12 +3,10 @@
 /// teeth has 19 pieces and about 430 faces [Gregory 2000, 6.2].
 ///
 ///          tip            Where a circle of radius R cuts it, half a tooth spans, seen from the axis, the
-///          angle
-///        ______
-///       /      \          psi(R) = s / (2 r) + inv(alpha) - inv(acos(r_b / R)),   inv(x) = tan(x) - x
+///        ______           angle
+///       /      \              psi(R) = s / (2 r) + inv(alpha) - inv(acos(r_b / R)),   inv(x) = tan(x) - x
 ///      | tooth  |         with r the pitch radius, r_b = r cos(alpha) the base radius, s the tooth's
-///      thickness
-///      |________|         on the pitch circle. Below the base circle the flank is radial.
+///      |________|         thickness on the pitch circle. Below the base circle the flank is radial.
 ///    --/  hub   \--
 ///
 /// A tooth widens along its radial feet and narrows along its involutes, tangent where they meet: its outline

@@ -2,12 +2,10 @@
 /// Parts made by rule for scenes, each as convex pieces that share faces and overlap nowhere.
 ///
 ///        ____peg____  z = length        A peg stands with its tip on z = 0; a hole block's floor, where it
-///        has
-///   ____  |       |  ____ z = depth     one, lies below z = 0. So equal poses put the peg into the hole, on
-///   its
-///  |    | |       | |    |              floor. Both are centred on the z axis; everything else (box, sphere,
-///  |____| \_______/ |____|              ellipsoid, prism: geometry/primitives.h) is centred on the origin.
-///  |____________________| z = 0
+///   ____  |       |  ____ z = depth     has one, lies below z = 0. So equal poses put the peg into the hole,
+///  |    | |       | |    |              on its floor. Both are centred on the z axis; everything else (box,
+///  |____| \_______/ |____|              sphere, ellipsoid, prism: geometry/primitives.h) is centred on the
+///  |____________________| z = 0         origin.
 ///          floor
 
 #include <vector>

@@ -3,9 +3,8 @@
 ///
 ///         ___________ long arm        The key's short arm stands on z = 0, its long arm lies along +x; the
 ///        /___________|                socket's floor, where it has one, lies below z = 0: equal poses put
-///        the
-///   ____| |____                       key into the socket, on its floor. Both have two flats across y. The
-///  |    | |    | z = depth            arms are hexagonal prisms that meet on the plane halfway between them.
+///   ____| |____                       the key into the socket, on its floor. Both have two flats across y.
+///  |    | |    | z = depth            The arms are hexagonal prisms that meet on the plane halfway between.
 ///  |    |_|    |
 ///  |___________| z = 0
 ///      floor

@@ -3,10 +3,9 @@
 /// bolt_and_nut.cpp.
 ///
 ///   column k     column k+1      Corners of one helix carry one number, `line`; a line that both columns
-///   have
-///      |    2 _____ |            is an edge of the sheet, and two of them bound a square, split along the
-///      |_____/      | 2          diagonal that leaves less material. Where a line begins or ends, its corner
-///    2 |    1 _____ |            is joined to the neighbour below by a triangle.
+///      |    2 _____ |            have is an edge of the sheet, and two of them bound a square, split along
+///      |_____/      | 2          the diagonal that leaves less material. Where a line begins or ends, its
+///    2 |    1 _____ |            corner is joined to the neighbour below by a triangle.
 ///      |_____/      | 1
 ///    1 |____________|            Going once round, a line's number has grown by `lines_per_turn`.
 

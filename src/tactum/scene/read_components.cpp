@@ -32,7 +32,7 @@ Result<Pieces> pieces_of(const Shape& shape) {
   const Result<std::shared_ptr<const Part>> part = part_about(*center, shape, 1.0);
   if (!part) return part.error();
   if ((*part)->is_surface())
-    return Error{"a component that is felt by its surface", (*part)->way,
+    return Error{"a component that is felt by its surface", (*part)->piece_report,
                  "convex pieces: a shape made of them, or a mesh with pieces = \"solid\" or \"given\"", ""};
   Pieces pieces;
   for (const Polytope& piece : (*part)->pieces) {

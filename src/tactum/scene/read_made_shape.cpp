@@ -28,7 +28,7 @@ Made shape_of(Result<TriangleMesh> mesh) {
   if (!mesh) return mesh.error();
   Shape shape;
   shape.mesh.mesh = std::move(*mesh);
-  shape.way = PieceSource::kSurface;
+  shape.piece_source = PieceSource::kSurface;
   return shape;
 }
 

@@ -31,9 +31,9 @@ void read_mesh(const TomlReader& part, const SearchFolders& folders, Shape& shap
   options.scale = part.number("scale", 1.0, kPositive);
   const std::string pieces = part.choice("pieces", "auto", {"auto", "given", "solid", "surface"});
   shape.given = pieces == "given";
-  shape.way = pieces == "solid"     ? PieceSource::kSolid
-              : pieces == "surface" ? PieceSource::kSurface
-                                    : PieceSource::kAuto;
+  shape.piece_source = pieces == "solid"     ? PieceSource::kSolid
+                       : pieces == "surface" ? PieceSource::kSurface
+                                             : PieceSource::kAuto;
   if (part.errors()) return;
   const Result<std::string> found = found_file(name, folders);
   if (!found)

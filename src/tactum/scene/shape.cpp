@@ -20,7 +20,7 @@ Result<Part> built(const Vec3& origin, const Shape& shape, double density_kg_per
     }
     return part_from_clouds(clouds, options);
   }
-  options.pieces = shape.way;
+  options.pieces = shape.piece_source;
   ImportedMesh moved = shape.mesh;
   for (Vec3& vertex : moved.mesh.vertices) vertex -= origin;
   return shape.given ? part_from_convex_groups(moved, options) : part_from_mesh(moved.mesh, options);

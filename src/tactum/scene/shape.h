@@ -17,12 +17,12 @@
 namespace tactum {
 
 struct Shape {
-  std::vector<Polytope> pieces;              ///< made by rule; empty for a mesh
-  std::string file;                          ///< where the mesh came from; empty when made by rule
-  ImportedMesh mesh;                         ///< in metres
-  bool given = false;                        ///< the mesh's groups are the convex pieces
-  PieceSource way = PieceSource::kAuto;      ///< from a mesh that is not given in pieces
-  std::shared_ptr<const PartFile> prepared;  ///< instead of a mesh
+  std::vector<Polytope> pieces;                   ///< made by rule; empty for a mesh
+  std::string file;                               ///< where the mesh came from; empty when made by rule
+  ImportedMesh mesh;                              ///< in metres
+  bool given = false;                             ///< the mesh's groups are the convex pieces
+  PieceSource piece_source = PieceSource::kAuto;  ///< from a mesh that is not given in pieces
+  std::shared_ptr<const PartFile> prepared;       ///< instead of a mesh
 };
 
 /// In P [m].

@@ -5,8 +5,7 @@
 ///
 ///   const TomlReader hand = scene.table("hand", {"grip", "tremor", "step"});
 ///   const std::string grip = hand.text("grip", "medium");
-///   if (errors) ...                                                 the first error is kept, later ones are
-///   not
+///   if (errors) ...                                   the first error is kept, later ones are not
 ///
 /// A reader given a wrong value remembers the first error and goes on with the fallback, so that a section
 /// reads as a list of its keys. For src/tactum/scene/*.cpp only: it shows toml++, which the layer uses

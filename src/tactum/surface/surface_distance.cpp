@@ -129,10 +129,10 @@ class DistanceQuery {
       const Vec3 lowest_of_difference = lowest(a, x) - lowest(b, -x);
       const double apart = x.dot(lowest_of_difference);
       if (apart > 0.0 && apart * apart > near_sq) return true;
-      const Vec3 way = lowest_of_difference - x;
-      const double share = std::min(1.0, -x.dot(way) / way.squaredNorm());
+      const Vec3 direction = lowest_of_difference - x;
+      const double share = std::min(1.0, -x.dot(direction) / direction.squaredNorm());
       if (!(share > 0.0)) return false;
-      x += share * way;
+      x += share * direction;
     }
     return false;
   }

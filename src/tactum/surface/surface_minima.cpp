@@ -17,8 +17,8 @@ lanes::Bounds bounds_of(const MinimaQuery& query, double size) noexcept {
   q.reach = static_cast<float>(query.reach + grown);
   q.depth = static_cast<float>(query.depth + grown);
   q.far = std::max(q.reach, q.depth);
-  // The normal of parallel edges may leave an edge's cone by the slack to two sides at once.
-  q.slack = static_cast<float>(kDiagonal * query.cone_slack + tolerances::kSingle);
+  // The normal of parallel edges may leave an edge's cone by the inflation to two sides at once.
+  q.inflation = static_cast<float>(kDiagonal * query.cone_inflation + tolerances::kSingle);
   return q;
 }
 

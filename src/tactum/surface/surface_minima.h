@@ -19,14 +19,14 @@
 /// do not cross, as long as they have moved by less than `depth` since they did not; `depth` must be smaller
 /// than the thinnest wall.
 ///
-/// Cones are inflated by `cone_slack`, the largest rotation of a step. Without it only the lowest corner of a
-/// flat contact is a minimum, and the contact sticks; with it, all corners of either that face the other, and
-/// the crossings of their outlines. `strict` tells which minima hold without it: validate with those alone.
-/// Outside its true cone the sign of an edge pair means nothing: one that is not strict is a constraint while
-/// it is apart, and none below zero.
+/// Cones are inflated by `cone_inflation`, the largest rotation of a step. Without it only the lowest corner
+/// of a flat contact is a minimum, and the contact sticks; with it, all corners of either that face the
+/// other, and the crossings of their outlines. `strict` marks minima that hold without it: validate with
+/// those alone. Outside its true cone the sign of an edge pair means nothing: one that is not strict is a
+/// constraint while it is apart, and none below zero.
 ///
-/// Edges parallel to within the slack touch along an interval: the two ends of it are two minima of the same
-/// features.
+/// Edges parallel to within the inflation touch along an interval: the two ends of it are two minima of the
+/// same features.
 ///
 /// Stateless: the same bits for the same poses whatever was asked before. No allocation, no locks. Cost and
 /// what was tried: docs/algorithms/surface_minima.md.
@@ -45,7 +45,7 @@ namespace tactum {
 MinimaWork surface_minima(const SurfaceTree& a, const SurfaceTree& b, const Pose& X_AB,
                           const MinimaQuery& query, std::vector<SurfaceMinimum>& minima) noexcept;
 
-/// How far apart the surfaces are at least, not asked beyond the reach: their distance, told short by up to a
+/// How far apart the surfaces are at least, not asked beyond the reach: their distance, too short by up to a
 /// tenth, or the reach where that is nearer; 0 where there is a minimum below zero. Each minimum found
 /// narrows the search, so it costs about as much as the minima within the distance.
 double surface_clearance(const SurfaceTree& a, const SurfaceTree& b, const Pose& X_AB,

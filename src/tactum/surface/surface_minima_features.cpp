@@ -39,8 +39,8 @@ FeatureComparison::FeatureComparison(const SurfaceTree& a, const SurfaceTree& b,
       minima_(minima),
       reach_(query.reach),
       touching_(tolerances::kTouching * std::max(a.size(), b.size())),
-      slack_sq_(query.cone_slack * query.cone_slack),
-      parallel_sq_(std::max(slack_sq_, tolerances::kParallelSine * tolerances::kParallelSine)) {
+      inflation_sq_(query.cone_inflation * query.cone_inflation),
+      parallel_sq_(std::max(inflation_sq_, tolerances::kParallelSine * tolerances::kParallelSine)) {
   minima_.clear();
 }
 
@@ -177,11 +177,11 @@ InCone FeatureComparison::falls_away(double value, double length_sq) const noexc
   if (value <= 0.0) return InCone::kStrict;
   constexpr double kRounding = tolerances::kSameNormal * tolerances::kSameNormal;
   if (value * value <= kRounding * length_sq) return InCone::kStrict;
-  return value * value <= slack_sq_ * length_sq ? InCone::kInflated : InCone::kOutside;
+  return value * value <= inflation_sq_ * length_sq ? InCone::kInflated : InCone::kOutside;
 }
 
-/// u is unit and square to the edge, to within the slack where edges are parallel. The neighbours first: they
-/// turn most away and cost least.
+/// u is unit and square to the edge, to within the inflation where edges are parallel. The neighbours come
+/// first: they turn most away and cost least.
 InCone FeatureComparison::in_edge_cone(const Side& side, const Edge& edge, const Vec3& u) const noexcept {
   // What counts is a face's direction square to the edge. Along it a sliver's other corner may be a hundred
   // times as far as across, so that the little by which u leans would decide.
@@ -195,7 +195,7 @@ InCone FeatureComparison::in_edge_cone(const Side& side, const Edge& edge, const
   if (cone == InCone::kOutside) return cone;
   const std::int32_t beyond = side.tree.beyond(edge.corner);
   const bool wall = beyond == SurfaceTree::kWall;
-  if (!wall) cone = worst(cone, face_falls(side.told(beyond) - edge.from));
+  if (!wall) cone = worst(cone, face_falls(side.position(beyond) - edge.from));
   if (cone == InCone::kOutside || !(wall || side.tree.narrow_edge(edge.corner))) return cone;
   return worst(cone, falls_away(-side.normal(edge.corner).dot(u), 1.0));
 }
@@ -244,7 +244,7 @@ bool FeatureComparison::near_vertex_cone(const SurfaceTree& tree, int vertex, co
       const double length_sq = ray.squaredNorm();
       if (!(length_sq > 0.0)) continue;
       const double along = ray.dot(u);
-      if ((u - ray * (along / length_sq)).squaredNorm() > slack_sq_) continue;
+      if ((u - ray * (along / length_sq)).squaredNorm() > inflation_sq_) continue;
       if (in_cone(ray * ((along < 0.0 ? -1.0 : 1.0) / std::sqrt(length_sq)))) return true;
     }
   }

@@ -18,7 +18,7 @@ class FeatureComparison {
                     std::vector<SurfaceMinimum>& minima) noexcept;
 
   /// A vertex of the first with a feature of the second, the first being A unless `swapped`. Features are
-  /// told by corners, as in the leaves of a SurfaceTree.
+  /// named by corners, as in the leaves of a SurfaceTree.
   void vertex_face(bool swapped, std::int32_t vertex, std::int32_t face) noexcept;
   void vertex_edge(bool swapped, std::int32_t vertex, std::int32_t edge) noexcept;
   void vertex_vertex(std::int32_t a, std::int32_t b) noexcept;
@@ -39,12 +39,12 @@ class FeatureComparison {
     bool is_a;
     Mat3 R;
     Vec3 p;
-    Vec3 told(int vertex) const noexcept {
+    Vec3 position(int vertex) const noexcept {
       return is_a ? tree.vertex(vertex) : Vec3(rotated(R, tree.vertex(vertex)) + p);
     }
     /// The corner of a triangle that is so many after this one.
     Vec3 point(std::int32_t corner, std::size_t after) const noexcept {
-      return told(tree.triangle(corner / 3)[(std::size_t(corner) % 3 + after) % 3]);
+      return position(tree.triangle(corner / 3)[(std::size_t(corner) % 3 + after) % 3]);
     }
     /// Of the triangle, unit, outward [-].
     Vec3 normal(std::int32_t corner) const noexcept;
@@ -73,7 +73,7 @@ class FeatureComparison {
   InCone falls_away(double value, double length_sq) const noexcept;
   InCone in_edge_cone(const Side& side, const Edge& edge, const Vec3& u) const noexcept;
   InCone in_vertex_cone(const Side& side, std::int32_t corner, const Vec3& u) const noexcept;
-  /// Whether u is within the slack of the true cone.
+  /// Whether u is within the inflation of the true cone.
   bool near_vertex_cone(const SurfaceTree& tree, int vertex, const Vec3& u) const noexcept;
   /// What must fall away from a vertex at p, as SurfaceTree::around() names it.
   static Vec3 falling(const SurfaceTree& tree, const Vec3& p, std::int32_t w) noexcept;
@@ -86,7 +86,7 @@ class FeatureComparison {
   double reach_;
   double share_ = 0.0;
   double touching_;  // below this points have no direction between them [m]
-  double slack_sq_;
+  double inflation_sq_;
   double parallel_sq_;  // square of the sine below which edges touch along an interval
 };
 

@@ -143,7 +143,7 @@ class KernelsOf {
     float above, below;  ///< before and behind the surface [m]
   };
   static Pad pad_of(float cone, const Bounds& q) noexcept {
-    const float width = cone + q.slack;
+    const float width = cone + q.inflation;
     const bool leans = width < kRightAngle;
     return {(width < 1.0F ? width : 1.0F) * q.far, leans ? q.reach : q.far, leans ? q.depth : q.far};
   }
@@ -167,7 +167,7 @@ class KernelsOf {
     const Vector up = load(at.up, first);
     const Float cone = load(node.cone, first);
     const Float opposite = dot(own_up, up);
-    const Float sum = cone + (box_cone + 2.0F * q.slack);
+    const Float sum = cone + (box_cone + 2.0F * q.inflation);
     Int child;
     std::memcpy(&child, &node.child[first], sizeof child);
     Int fine = (child != 0) & (2.0F + 2.0F * opposite <= sum * sum + float(tolerances::kSingle));
@@ -181,7 +181,7 @@ class KernelsOf {
       return absolute(x) * half.x + absolute(y) * half.y + absolute(z) * half.z;
     };
     const Vector off = spread(box.at->center, box.lane) - load(at.center, first);
-    const Float width = cone + q.slack;
+    const Float width = cone + q.inflation;
     const Int leans = width < kRightAngle;
     const Float along_up = dot(own_along, up);
     const Float across_up = dot(own_across, up);
@@ -334,8 +334,8 @@ class KernelsOf {
   }
 
   /// How far a face may lean up towards a direction of its edge's cone [rad]: what single precision cannot
-  /// tell comes on top of the slack.
-  static float lean(const Bounds& q) noexcept { return q.slack + 1e-4F; }
+  /// tell comes on top of the inflation.
+  static float lean(const Bounds& q) noexcept { return q.inflation + 1e-4F; }
 
   static Int near_vertex(const Vector& p, const FaceLeaf& many, std::size_t first, const Bounds& q) noexcept {
     const Float height = dot(p, load(many.normal, first)) - load(many.level, first);
@@ -352,8 +352,8 @@ class KernelsOf {
 
   static std::uint32_t near_edge(const Edge& one, const Edge& other, const Bounds& q) noexcept {
     // Below this sine single precision cannot tell where lines come nearest; their distance alone is asked.
-    const float slack = 1.01F * q.slack;
-    const float parallel = slack > 0.01F ? slack : 0.01F;
+    const float inflation = 1.01F * q.inflation;
+    const float parallel = inflation > 0.01F ? inflation : 0.01F;
     const Vector& u = one.along;
     const Vector& w = other.along;
     const Vector r = other.point - one.point;

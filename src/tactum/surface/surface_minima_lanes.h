@@ -7,7 +7,7 @@
 ///     leaf of one        box of the other's leaf         leaf of the other
 ///     eight features ──► which are near it? ──► these against eight: a bit for a pair that may be a minimum
 ///
-/// Everything is told in the frame of the other tree, from its center. Nodes and leaves of the one are turned
+/// Everything is in the frame of the other tree, from its center. Nodes and leaves of the one are turned
 /// into it eight lanes at a time. Trees store of a leaf only which features it holds; where they are is laid
 /// out in lanes when a leaf is first asked for.
 
@@ -28,7 +28,7 @@ using Three = std::array<float, 3>;
 /// What every quick test needs of the query, grown so that rounding loses nothing.
 struct Bounds {
   float reach, depth, far;  ///< far: the larger of the two [m]
-  float slack;              ///< of one cone [rad]
+  float inflation;          ///< of one cone [rad]
   float grown;              ///< by which lengths are grown [m]
 };
 
@@ -51,7 +51,7 @@ struct Box {
   std::size_t lane;
 };
 
-/// Leaves laid out: eight features of one kind, told from the middle of the leaf's box. Lanes whose corner is
+/// A gathered leaf: eight features of one kind, from the middle of the leaf's box. Lanes whose corner is
 /// -1 hold no feature but numbers all the same.
 struct VertexLeaf {
   Lanes3 point;  ///< [m]
@@ -98,7 +98,7 @@ struct Kernels {
   /// The same of edges, with some of the other leaf, from the side that has fewer.
   Matches (*edge_edge)(const EdgeLeaf& ones, std::uint32_t some, const Three& off, const EdgeLeaf& others,
                        std::uint32_t some_others, const Bounds& q) noexcept;
-  /// Into the other tree's frame; leaves keep the middle they are told from.
+  /// Into the other tree's frame; leaves keep the middle they start from.
   void (*turn_stand)(const SurfaceTree::Stand& at, const Frame& frame, SurfaceTree::Stand& turned) noexcept;
   void (*turn_vertices)(const Frame& frame, VertexLeaf& leaf) noexcept;
   void (*turn_edges)(const Frame& frame, EdgeLeaf& leaf) noexcept;

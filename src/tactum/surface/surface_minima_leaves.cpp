@@ -40,13 +40,13 @@ void put(const Vec3& v, std::array<std::array<Number, kLanes>, 3>& to, std::size
 
 }  // namespace
 
-void lay_out(const SurfaceTree& tree, const Box& box, VertexLeaf& leaf) noexcept {
+void gather_leaf(const SurfaceTree& tree, const Box& box, VertexLeaf& leaf) noexcept {
   const Corner corner(tree, box);
   leaf.corner = corner.all();
   for (std::size_t lane = 0; lane < kLanes; ++lane) put(corner.point(lane, 0), leaf.point, lane);
 }
 
-void lay_out(const SurfaceTree& tree, const Box& box, const Kernels& kernels, EdgeLeaf& leaf) noexcept {
+void gather_leaf(const SurfaceTree& tree, const Box& box, const Kernels& kernels, EdgeLeaf& leaf) noexcept {
   const Corner corner(tree, box);
   leaf.corner = corner.all();
   std::array<Points, 4> points{};
@@ -57,8 +57,8 @@ void lay_out(const SurfaceTree& tree, const Box& box, const Kernels& kernels, Ed
   kernels.lay_edges(points, leaf);
 }
 
-void lay_out(const SurfaceTree& tree, const Box& box, const Kernels& kernels, float grown,
-             FaceLeaf& leaf) noexcept {
+void gather_leaf(const SurfaceTree& tree, const Box& box, const Kernels& kernels, float grown,
+                 FaceLeaf& leaf) noexcept {
   const Corner corner(tree, box);
   leaf.corner = corner.all();
   std::array<Points, 3> points{};

@@ -13,10 +13,10 @@ inline std::uint32_t leaf_under(const Box& box) noexcept {
 }
 
 /// In the frame of the leaf's own tree.
-void lay_out(const SurfaceTree& tree, const Box& box, VertexLeaf& leaf) noexcept;
-void lay_out(const SurfaceTree& tree, const Box& box, const Kernels& kernels, EdgeLeaf& leaf) noexcept;
+void gather_leaf(const SurfaceTree& tree, const Box& box, VertexLeaf& leaf) noexcept;
+void gather_leaf(const SurfaceTree& tree, const Box& box, const Kernels& kernels, EdgeLeaf& leaf) noexcept;
 /// Limits grown by that length [m].
-void lay_out(const SurfaceTree& tree, const Box& box, const Kernels& kernels, float grown,
-             FaceLeaf& leaf) noexcept;
+void gather_leaf(const SurfaceTree& tree, const Box& box, const Kernels& kernels, float grown,
+                 FaceLeaf& leaf) noexcept;
 
 }  // namespace tactum::lanes

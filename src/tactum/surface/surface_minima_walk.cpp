@@ -76,12 +76,12 @@ template <Tree::Kind Kind>
 const auto& SurfaceWalk::leaf_of_one(const lanes::Box& box) noexcept {
   if constexpr (Kind == Tree::kEdges) {
     return edges_of_one_.get(lanes::leaf_under(box), [&](lanes::EdgeLeaf& leaf) {
-      lanes::lay_out(one_, box, kernels_, leaf);
+      lanes::gather_leaf(one_, box, kernels_, leaf);
       kernels_.turn_edges(frame_, leaf);
     });
   } else {
     return vertices_of_one_.get(lanes::leaf_under(box), [&](lanes::VertexLeaf& leaf) {
-      lanes::lay_out(one_, box, leaf);
+      lanes::gather_leaf(one_, box, leaf);
       kernels_.turn_vertices(frame_, leaf);
     });
   }
@@ -91,13 +91,15 @@ template <Tree::Kind Kind>
 const auto& SurfaceWalk::leaf_of_other(const lanes::Box& box) noexcept {
   const std::uint32_t index = lanes::leaf_under(box);
   if constexpr (Kind == Tree::kFaces) {
-    return faces_of_other_.get(
-        index, [&](lanes::FaceLeaf& leaf) { lanes::lay_out(other_, box, kernels_, bounds_.grown, leaf); });
+    return faces_of_other_.get(index, [&](lanes::FaceLeaf& leaf) {
+      lanes::gather_leaf(other_, box, kernels_, bounds_.grown, leaf);
+    });
   } else if constexpr (Kind == Tree::kEdges) {
-    return edges_of_other_.get(index,
-                               [&](lanes::EdgeLeaf& leaf) { lanes::lay_out(other_, box, kernels_, leaf); });
+    return edges_of_other_.get(
+        index, [&](lanes::EdgeLeaf& leaf) { lanes::gather_leaf(other_, box, kernels_, leaf); });
   } else {
-    return vertices_of_other_.get(index, [&](lanes::VertexLeaf& leaf) { lanes::lay_out(other_, box, leaf); });
+    return vertices_of_other_.get(index,
+                                  [&](lanes::VertexLeaf& leaf) { lanes::gather_leaf(other_, box, leaf); });
   }
 }
 

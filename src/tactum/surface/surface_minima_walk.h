@@ -31,7 +31,7 @@ class Kept {
   std::array<Value, Room> value_;
 };
 
-/// Everything is told in the frame of the other surface, from its center.
+/// Everything is in the frame of the other surface, from its center.
 class SurfaceWalk {
  public:
   /// One surface and the other with the one at X_OtherOne. `swapped`: the one is B.

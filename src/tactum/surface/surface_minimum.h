@@ -19,9 +19,9 @@ struct SurfaceMinimum {
 };
 
 struct MinimaQuery {
-  double reach = 0.0;       ///< minima up to this distance [m]
-  double depth = 0.0;       ///< ... and down to minus this one [m]
-  double cone_slack = 0.0;  ///< inflation of the cones, at most 0.1 [rad]
+  double reach = 0.0;           ///< minima up to this distance [m]
+  double depth = 0.0;           ///< ... and down to minus this one [m]
+  double cone_inflation = 0.0;  ///< inflation of the cones, at most 0.1 [rad]
 };
 
 /// Counted work of a query.

@@ -4,7 +4,7 @@
 ///
 /// Triangles that do not cross are nearest at a corner of one over the inside of the other, or between two
 /// sides: the distance is the least of 6 corner-inside and 9 side-side cases, each solved in closed form.
-/// They cross when a side of one passes through the other, told by the signs of five volumes. The volumes are
+/// They cross when a side of one passes through the other, as the signs of five volumes show. The volumes are
 /// antisymmetric bit for bit in the ends of a triangle's sides, so no line slips between two triangles that
 /// share a side. Touching counts as crossing.
 

@@ -1,4 +1,4 @@
-#include "tactum/collision/every_feature.h"
+#include "tactum/collision/brute_force_distance.h"
 
 #include <limits>
 
@@ -40,7 +40,7 @@ bool foot_on_face(const Polytope& Q, int face_index, const Vec3& p, Vec3& foot) 
 
 }  // namespace
 
-void closest_of_every_feature(const PairView& pair, PairDistance& x) noexcept {
+void brute_force_distance(const PairView& pair, PairDistance& x) noexcept {
   Nearest nearest{x};
   const int faces_a = static_cast<int>(pair.A.faces.size());
   const int faces_b = static_cast<int>(pair.B.faces.size());

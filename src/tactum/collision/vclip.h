@@ -20,18 +20,19 @@
 /// The walk's last tests are a proof. A vertex all of whose edges fall away from a plane is the support
 /// vertex of a convex piece, an edge square to the plane whose two faces fall away is its support edge, a
 /// face is its own: so the planes through the answer's features, square to its normal, separate the pieces by
-/// the answer's distance. What rounding leaves of this is `doubt`. Cost: 15-25 ns a step; one step when the
-/// features of the last frame still hold.
+/// the answer's distance. What rounding leaves open is added up in `error_bound`. Cost: 15-25 ns a step; one
+/// step when the features of the last frame still hold.
 
-#include "tactum/collision/march.h"
+#include "tactum/collision/feature_walk.h"
 #include "tactum/collision/pair_view.h"
 
 namespace tactum {
 
-/// Walks from the features `a`, `b` (which must exist) and tells in `x` the features where it ended, and
+/// Walks from the features `a`, `b` (which must exist) and sets in `x` the features where it ended, and
 /// their points, normal and distance when it ended kClosest, kCircle or kBounded (the normal only when
-/// closest); the stop and the steps of `x` are the caller's. `slack` [m] is how far a point must be outside a
-/// plane to cross it.
-March voronoi_march(const PiecePair& pair, Feature a, Feature b, double slack, PairDistance& x) noexcept;
+/// closest); the stop and the steps of `x` are the caller's. `crossing_tolerance` [m] is how far a point
+/// must be outside a plane to cross it.
+FeatureWalk feature_walk(const PiecePair& pair, Feature a, Feature b, double crossing_tolerance,
+                         PairDistance& x) noexcept;
 
 }  // namespace tactum

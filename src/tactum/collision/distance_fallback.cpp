@@ -1,20 +1,20 @@
-#include "tactum/collision/doubtful_pair.h"
+#include "tactum/collision/distance_fallback.h"
 
 #include <cmath>
 #include <limits>
 
-#include "tactum/collision/every_feature.h"
+#include "tactum/collision/brute_force_distance.h"
 #include "tactum/collision/overlap.h"
 #include "tactum/collision/penetration.h"
 #include "tactum/collision/support_distance.h"
-#include "tactum/collision/voronoi_march.h"
+#include "tactum/collision/vclip.h"
 
 namespace tactum {
 namespace {
 
 using Kind = FeatureKind;
 
-/// Distance and normal as the features give them, with the doubt that the support planes leave.
+/// Distance and normal as the features give them, with the error bound that the support planes leave.
 struct Judged {
   PairDistance answer = {};
   int support_a = 0, support_b = 0;
@@ -64,14 +64,14 @@ Judged judge(const PairView& pair, const PairDistance& at, const Vec3& normal) n
   x.distance = normal.dot(at.p_a - at.p_b);
   judged.support_a = vertex_of(pair.A, at.a);
   judged.support_b = vertex_of(pair.B, at.b);
-  x.doubt = std::numeric_limits<double>::infinity();
+  x.error_bound = std::numeric_limits<double>::infinity();
   if (normal.isZero()) return judged;
   const double gap = pair.separation(normal, judged.support_a, judged.support_b);
   // The points' whole distance counts, and that they lie on one normal.
   const Vec3 d = at.p_a - at.p_b;
   const double over = d.norm() - gap;
   // Below the lower bound no points lie: these are not known, or the planes are lost in rounding.
-  if (over >= -certificate(pair)) x.doubt = std::max(over, (d - normal * x.distance).norm());
+  if (over >= -certificate(pair)) x.error_bound = std::max(over, (d - normal * x.distance).norm());
   return judged;
 }
 
@@ -106,24 +106,25 @@ class Query {
   Query(const PairView& pair, PairCache& cache) noexcept : pair_(pair), cache_(cache) {}
 
   /// From a first walk, which ended at `at` and did not prove itself.
-  PairDistance run(const March& first, const PairDistance& at) noexcept {
-    if (walked(first, at) || on_planes() || by_supports() || by_every_feature()) return result_;
+  PairDistance run(const FeatureWalk& first, const PairDistance& at) noexcept {
+    if (walked(first, at) || on_planes() || by_supports() || by_brute_force()) return result_;
     return done(best_.answer, Stop::kBounded);
   }
 
  private:
-  /// Judges the walk, and walks again from the supports with wider slack. True when certified or overlapping.
-  bool walked(March march, PairDistance at) noexcept {
-    double slack = tolerances::kVoronoiSlack * pair_.scale;
+  /// Judges the walk, and walks again from the supports with a wider crossing tolerance. True when certified
+  /// or overlapping.
+  bool walked(FeatureWalk walk, PairDistance at) noexcept {
+    double crossing_tolerance = tolerances::kVoronoiTolerance * pair_.scale;
     for (int attempt = 0; attempt < kAttempts; ++attempt) {
-      steps_ += march.steps;
-      if (march.end == MarchEnd::kOverlap) return overlapping();
-      if (march.end == MarchEnd::kBehind) return by_supports();
-      const bool straight = attempt == 0 && march.end == MarchEnd::kClosest;
+      steps_ += walk.steps;
+      if (walk.end == FeatureWalkEnd::kOverlap) return overlapping();
+      if (walk.end == FeatureWalkEnd::kBehind) return by_supports();
+      const bool straight = attempt == 0 && walk.end == FeatureWalkEnd::kClosest;
       if (certified(at, straight ? Stop::kCertified : Stop::kFallback)) return true;
-      slack *= kWiderSlack;
-      march =
-          voronoi_march(pair_, {Kind::kVertex, last_.support_a}, {Kind::kVertex, last_.support_b}, slack, at);
+      crossing_tolerance *= kWiderTolerance;
+      walk = feature_walk(pair_, {Kind::kVertex, last_.support_a}, {Kind::kVertex, last_.support_b},
+                          crossing_tolerance, at);
     }
     return false;
   }
@@ -131,16 +132,16 @@ class Query {
   /// Judges the points `at`, with their features' normal or that normal healed.
   bool certified(const PairDistance& at, Stop stop) noexcept {
     last_ = judge(pair_, at, features_normal(pair_, at));
-    if (last_.answer.doubt > certificate(pair_) && std::isfinite(last_.answer.doubt)) {
+    if (last_.answer.error_bound > certificate(pair_) && std::isfinite(last_.answer.error_bound)) {
       const Judged healed = judge(pair_, at, inside_cones(pair_, at.a, at.b, last_.answer.normal));
-      if (healed.answer.doubt < last_.answer.doubt) last_ = healed;
+      if (healed.answer.error_bound < last_.answer.error_bound) last_ = healed;
     }
     const double gap = (at.p_a - at.p_b).norm();
     if (gap < least_gap_) {
       least_gap_ = gap;
       best_ = last_;
     }
-    if (last_.answer.doubt > certificate(pair_)) return false;
+    if (last_.answer.error_bound > certificate(pair_)) return false;
     done(last_.answer, stop);
     return true;
   }
@@ -156,21 +157,22 @@ class Query {
   /// What no walk can lead astray, and then a walk from there for the last digits.
   bool by_supports() noexcept {
     PairDistance at;
-    const March supports = closest_by_supports(pair_, cache_.overlap, at);
+    const FeatureWalk supports = closest_by_supports(pair_, cache_.overlap, at);
     steps_ += supports.steps;
-    if (supports.end == MarchEnd::kOverlap) return overlapping();
+    if (supports.end == FeatureWalkEnd::kOverlap) return overlapping();
     PairDistance polished;
-    const March march = voronoi_march(pair_, at.a, at.b, tolerances::kVoronoiSlack * pair_.scale, polished);
-    steps_ += march.steps;
-    if (march.end == MarchEnd::kOverlap) return overlapping();
-    if (march.end == MarchEnd::kClosest && certified(polished, Stop::kFallback)) return true;
+    const FeatureWalk walk =
+        feature_walk(pair_, at.a, at.b, tolerances::kVoronoiTolerance * pair_.scale, polished);
+    steps_ += walk.steps;
+    if (walk.end == FeatureWalkEnd::kOverlap) return overlapping();
+    if (walk.end == FeatureWalkEnd::kClosest && certified(polished, Stop::kFallback)) return true;
     return certified(at, Stop::kFallback) || on_planes();
   }
 
-  bool by_every_feature() noexcept {
+  bool by_brute_force() noexcept {
     if (pair_.A.edges.size() * pair_.B.edges.size() > kSmallEdgePairs) return false;
     PairDistance at;
-    closest_of_every_feature(pair_, at);
+    brute_force_distance(pair_, at);
     return certified(at, Stop::kFallback) || on_planes();
   }
 
@@ -199,12 +201,12 @@ class Query {
   }
 
   static constexpr int kAttempts = 4;
-  static constexpr double kWiderSlack = 32.0;
+  static constexpr double kWiderTolerance = 32.0;
   static constexpr std::size_t kSmallEdgePairs = 4096;  ///< every feature is tried up to here: 40 us
 
   const PairView& pair_;
   PairCache& cache_;
-  Judged last_, best_{of_no_pose()};
+  Judged last_, best_{invalid_result()};
   double least_gap_ = std::numeric_limits<double>::infinity();
   PairDistance result_;
   int steps_ = 0;
@@ -212,9 +214,9 @@ class Query {
 
 }  // namespace
 
-PairDistance settle_doubt(const PairView& pair, PairCache& cache, const March& first,
-                          const PairDistance& at) noexcept {
-  if (is_no_pose(pair.X_AB)) return of_no_pose();
+PairDistance resolve_uncertified(const PairView& pair, PairCache& cache, const FeatureWalk& first,
+                                 const PairDistance& at) noexcept {
+  if (is_invalid_pose(pair.X_AB)) return invalid_result();
   return Query(pair, cache).run(first, at);
 }
 

@@ -12,13 +12,13 @@ namespace tactum {
 
 /// How much of the patch is kept when a feature leans by `lean` out of `most`: all up to half, then less, to
 /// none.
-inline double share_kept(double lean, double most) noexcept {
+inline double lean_falloff(double lean, double most) noexcept {
   return std::clamp(2.0 * (most - lean) / most, 0.0, 1.0);
 }
 
 /// The feature of one piece that takes part, and how its leaning shrinks the patch: a face toward its edge,
 /// and where that leans too much itself, toward the nearest point.
-struct Facing {
+struct SupportingFeature {
   Feature feature;
   int edge = -1;             ///< the edge a leaning face shrinks to; -1: none, the face does not lean
   double face_share = 1.0;   ///< how much of its rise from that edge is kept
@@ -28,6 +28,7 @@ struct Facing {
 /// The largest feature at `f` square to `outward` (unit, P's frame) within `angle` [rad]. Beside a face that
 /// leans as little the patch shrinks too, so that rolling from one face to the next passes through their
 /// edge. Cost: the edges at `f`.
-Facing facing_feature(const Polytope& P, const Feature& f, const Vec3& outward, double angle) noexcept;
+SupportingFeature supporting_feature(const Polytope& P, const Feature& f, const Vec3& outward,
+                                     double angle) noexcept;
 
 }  // namespace tactum

@@ -1,4 +1,4 @@
-#include "tactum/collision/facing_feature.h"
+#include "tactum/collision/supporting_feature.h"
 
 #include <cmath>
 #include <limits>
@@ -70,25 +70,26 @@ int level_edge(const Polytope& P, const Feature& f, int face, const Vec3& outwar
 }
 
 /// Of a face that leans by `lean` from square, or has a neighbour that leans by little more, `next`.
-[[gnu::noinline]] Facing shrunk(const Polytope& P, const Feature& f, int face, double lean, double next,
-                                const Vec3& outward, double angle) noexcept {
-  Facing facing;
-  facing.feature = {Kind::kFace, face};
+[[gnu::noinline]] SupportingFeature shrunk(const Polytope& P, const Feature& f, int face, double lean,
+                                           double next, const Vec3& outward, double angle) noexcept {
+  SupportingFeature supporting;
+  supporting.feature = {Kind::kFace, face};
   double slope = 0.0;
-  facing.edge = level_edge(P, f, face, outward, slope);
+  supporting.edge = level_edge(P, f, face, outward, slope);
   // An edge shrinks at a quarter of the angle: where two edges of a leaning face slope alike, both are points
   // by then.
-  facing.along_share = share_kept(slope, 0.25 * angle);
+  supporting.along_share = lean_falloff(slope, 0.25 * angle);
   const double lead = next > lean ? 2.0 * (next - lean) / (next + lean) : 0.0;
-  facing.face_share = share_kept(lean, angle) * std::min(1.0, lead);
-  if (facing.face_share > 0.0) return facing;
-  facing.feature = facing.along_share > 0.0 ? Feature{Kind::kEdge, facing.edge} : f;
-  return facing;
+  supporting.face_share = lean_falloff(lean, angle) * std::min(1.0, lead);
+  if (supporting.face_share > 0.0) return supporting;
+  supporting.feature = supporting.along_share > 0.0 ? Feature{Kind::kEdge, supporting.edge} : f;
+  return supporting;
 }
 
 }  // namespace
 
-Facing facing_feature(const Polytope& P, const Feature& f, const Vec3& outward, double angle) noexcept {
+SupportingFeature supporting_feature(const Polytope& P, const Feature& f, const Vec3& outward,
+                                     double angle) noexcept {
   const auto [face, lean, next] = most_square(P, f, outward);
   if (f.kind == Kind::kFace) {
     // Square to the normal; where it is not (an answer that is none of the queries'), a point.

@@ -1,14 +1,14 @@
 #pragma once
-/// The steps of the walk of voronoi_march.h, inline: under haptic motion nearly every query is one step, and
+/// The steps of the walk of vclip.h, inline: under haptic motion nearly every query is one step, and
 /// what calls and copies of answers around it take would be half of its time.
 
 #include <cmath>
 #include <limits>
 
-#include "tactum/collision/march.h"
+#include "tactum/collision/feature_walk.h"
 #include "tactum/collision/pair_view.h"
 
-namespace tactum::march {
+namespace tactum::vclip {
 
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -19,10 +19,13 @@ struct Sides {
   const Polytope& P;
   const Polytope& Q;
   const Pose& X_AB;
-  double slack;
+  double crossing_tolerance;
 
-  explicit Sides(const PiecePair& pair, double crossing_slack) noexcept
-      : P(Swapped ? pair.B : pair.A), Q(Swapped ? pair.A : pair.B), X_AB(pair.X_AB), slack(crossing_slack) {}
+  explicit Sides(const PiecePair& pair, double given_tolerance) noexcept
+      : P(Swapped ? pair.B : pair.A),
+        Q(Swapped ? pair.A : pair.B),
+        X_AB(pair.X_AB),
+        crossing_tolerance(given_tolerance) {}
 
   /// A point of P, in Q's frame.
   Vec3 in_Q(const Vec3& p) const noexcept { return Swapped ? X_AB * p : rotated_back(X_AB.R, p - X_AB.p); }
@@ -61,14 +64,14 @@ inline double reach_beyond(const Polytope& P, const Polytope::Edge& e, double sl
   return cosine > -1.0 ? slope * P.size * std::sqrt(2.0 / (1.0 + cosine)) : kInfinity;
 }
 
-/// The edge at a vertex that rises most along a direction.
+/// The edge at a vertex that rises most along a direction, and the sine by which it rises.
 struct Steepest {
   int edge;
   double slope;
 };
 
-/// By a pointer that is chosen, not jumped for: which of the edges it is is new at every vertex, and a jump
-/// guessed wrong costs as much as looking at all of them.
+/// Selects without a branch: which edge it is cannot be predicted from vertex to vertex, and a branch that is
+/// predicted wrong costs as much as all the edges.
 inline Steepest steepest_edge(const Polytope& P, int v, const Vec3& d) noexcept {
   const std::span<const Polytope::Ray> rays = P.rays_at(v);
   const Polytope::Ray* steepest = rays.data();
@@ -101,35 +104,36 @@ inline Feature face(int index) noexcept { return {FeatureKind::kFace, index}; }
 
 /// The end of a walk at the point `p_a` of A, across the normal `n` from B to A, in A's frame. Number by
 /// number: what is copied as a whole waits for parts that have just been written.
-inline void tell(const Vec3& p_a, const Vec3& n, double gap, double doubt, PairDistance& x) noexcept {
+inline void set_answer(const Vec3& p_a, const Vec3& n, double gap, double error_bound,
+                       PairDistance& x) noexcept {
   x.p_a << p_a.x(), p_a.y(), p_a.z();
   x.normal << n.x(), n.y(), n.z();
   x.p_b = x.p_a - x.normal * gap;
   x.distance = gap;
-  x.doubt = doubt;
+  x.error_bound = error_bound;
 }
 
 /// The points of a place that proves nothing.
 template <bool Swapped>
-void tell_points(const Sides<Swapped>& S, const Place& at, PairDistance& x) noexcept {
+void set_points(const Sides<Swapped>& S, const Place& at, PairDistance& x) noexcept {
   x.p_a = Swapped ? at.q : at.p;
   x.p_b = S.X_AB * (Swapped ? at.p : at.q);
   x.normal.setZero();
   x.distance = at.gap;
-  x.doubt = kInfinity;
+  x.error_bound = kInfinity;
 }
 
 /// Which of an edge, its ends and its faces a point leads to from the edge.
-inline Feature beside_edge(const Polytope& Q, int index, const Vec3& p, double slack) noexcept {
+inline Feature beside_edge(const Polytope& Q, int index, const Vec3& p, double crossing_tolerance) noexcept {
   const Polytope::Edge& g = Q.edges[index];
   const double along = g.direction.dot(p - Q.vertices[g.tail]);
-  if (along < -slack) return vertex(g.tail);
-  if (along > g.length + slack) return vertex(g.head);
+  if (along < -crossing_tolerance) return vertex(g.tail);
+  if (along > g.length + crossing_tolerance) return vertex(g.head);
   const Polytope::Side& left = Q.sides[g.left_slot];
   const Polytope::Side& right = Q.sides[g.right_slot];
   const double above_left = left.normal.dot(p) - left.offset;
   const double above_right = right.normal.dot(p) - right.offset;
-  if (std::min(above_left, above_right) >= -slack) return edge(index);
+  if (std::min(above_left, above_right) >= -crossing_tolerance) return edge(index);
   return face(above_left < above_right ? g.left : g.right);
 }
 
@@ -141,15 +145,16 @@ Step vertex_vertex(const Sides<Swapped>& S, Feature fp, Feature fq, Place& at, P
   const Vec3 d_P = S.turned_to_P(d_Q);
   at.gap = d_Q.norm();
   const Steepest at_p = steepest_edge(S.P, fp.index, d_P);
-  if (at_p.slope > S.slack) return {Outcome::kMoved, edge(at_p.edge), fq};
+  if (at_p.slope > S.crossing_tolerance) return {Outcome::kMoved, edge(at_p.edge), fq};
   const Steepest at_q = steepest_edge(S.Q, fq.index, -d_Q);
-  if (at_q.slope > S.slack) return {Outcome::kMoved, fp, edge(at_q.edge)};
+  if (at_q.slope > S.crossing_tolerance) return {Outcome::kMoved, fp, edge(at_q.edge)};
   if (at.gap <= tolerances::kTouching * S.P.size) {
-    tell_points(S, at, x);
+    set_points(S, at, x);
   } else {
-    tell(S.of_A(at.p, at.q), S.normal(d_P, d_Q) / at.gap, at.gap,
-         reach_beyond(S.P, fp.index, at_p.slope / at.gap) + reach_beyond(S.Q, fq.index, at_q.slope / at.gap),
-         x);
+    set_answer(
+        S.of_A(at.p, at.q), S.normal(d_P, d_Q) / at.gap, at.gap,
+        reach_beyond(S.P, fp.index, at_p.slope / at.gap) + reach_beyond(S.Q, fq.index, at_q.slope / at.gap),
+        x);
   }
   return {Outcome::kClosest, fp, fq};
 }
@@ -164,34 +169,34 @@ Step vertex_edge(const Sides<Swapped>& S, Feature fp, Feature fq, Place& at, Pai
   at.q = tail + g.direction * std::clamp(along, 0.0, g.length);
   const Vec3 d_Q = at.q - p_Q;
   at.gap = d_Q.norm();
-  if (const Feature next = beside_edge(S.Q, fq.index, p_Q, S.slack); next != fq)
+  if (const Feature next = beside_edge(S.Q, fq.index, p_Q, S.crossing_tolerance); next != fq)
     return {Outcome::kMoved, fp, next};
   const Polytope::Side& left = S.Q.sides[g.left_slot];
   const Polytope::Side& right = S.Q.sides[g.right_slot];
   const Vec3 d_P = S.turned_to_P(d_Q);
   const Steepest at_p = steepest_edge(S.P, fp.index, d_P);
-  if (at_p.slope > S.slack) return {Outcome::kMoved, edge(at_p.edge), fq};
+  if (at_p.slope > S.crossing_tolerance) return {Outcome::kMoved, edge(at_p.edge), fq};
   if (at.gap <= tolerances::kTouching * S.P.size) {
-    tell_points(S, at, x);
+    set_points(S, at, x);
   } else {
     // The normal itself is judged: over a small gap it is off by more than the point is.
     const double rise = std::max(left.normal.dot(d_Q), right.normal.dot(d_Q));
-    const double doubt = reach_beyond(S.P, fp.index, at_p.slope / at.gap) +
-                         reach_beyond(S.Q, g, rise / at.gap) +
-                         std::abs(g.direction.dot(d_Q)) / at.gap * S.Q.size;
-    tell(S.of_A(at.p, at.q), S.normal(d_P, d_Q) / at.gap, at.gap, doubt, x);
+    const double error_bound = reach_beyond(S.P, fp.index, at_p.slope / at.gap) +
+                               reach_beyond(S.Q, g, rise / at.gap) +
+                               std::abs(g.direction.dot(d_Q)) / at.gap * S.Q.size;
+    set_answer(S.of_A(at.p, at.q), S.normal(d_P, d_Q) / at.gap, at.gap, error_bound, x);
   }
   return {Outcome::kClosest, fp, fq};
 }
 
-/// The slot of the side plane that `p` is farthest outside of, beyond `slack`; -1 inside the column of the
-/// face with this loop.
-inline int slot_outside(const Polytope& Q, int first, int count, const Vec3& p, double slack) noexcept {
+/// The slot of the side plane that `p` is farthest outside of, and by more than `most`; -1 inside the column
+/// of the face with this loop.
+inline int slot_outside(const Polytope& Q, int first, int count, const Vec3& p, double most) noexcept {
   int best = -1;
   for (int slot = first; slot < first + count; ++slot) {
     const double out = Q.sides[slot].normal.dot(p) - Q.sides[slot].offset;
-    if (out > slack) {
-      slack = out;
+    if (out > most) {
+      most = out;
       best = slot;
     }
   }
@@ -204,25 +209,26 @@ Step vertex_face(const Sides<Swapped>& S, Feature fp, Feature fq, Place& at, Pai
   const Vec3 p_Q = S.in_Q(p);
   const int began_at = fq.index;
   const Polytope::Face* at_face = &S.Q.faces[fq.index];
-  if (const int slot = slot_outside(S.Q, at_face->first, at_face->count, p_Q, S.slack); slot >= 0) {
+  if (const int slot = slot_outside(S.Q, at_face->first, at_face->count, p_Q, S.crossing_tolerance);
+      slot >= 0) {
     // Mostly above the next face: one step to there, whose loop is told beside the side. Below it is no
     // place to go on to: at a sharp edge rounding alone leads there, and from there back.
     const Polytope::Side& side = S.Q.sides[slot];
     at_face = &S.Q.faces[side.across];
-    if (slot_outside(S.Q, side.first, side.count, p_Q, S.slack) >= 0 ||
-        at_face->normal.dot(p_Q) - at_face->offset < -S.slack)
-      return {Outcome::kMoved, fp, beside_edge(S.Q, side.edge, p_Q, S.slack)};
+    if (slot_outside(S.Q, side.first, side.count, p_Q, S.crossing_tolerance) >= 0 ||
+        at_face->normal.dot(p_Q) - at_face->offset < -S.crossing_tolerance)
+      return {Outcome::kMoved, fp, beside_edge(S.Q, side.edge, p_Q, S.crossing_tolerance)};
     fq.index = side.across;
   }
   const Polytope::Face& f = *at_face;
   const double height = f.normal.dot(p_Q) - f.offset;
-  if (height < -S.slack) {
+  if (height < -S.crossing_tolerance) {
     if (!S.Q.flat) return {Outcome::kBehind, fp, fq};
     return {Outcome::kMoved, fp, face(1 - fq.index)};
   }
   const Vec3 outward_P = S.turned_to_P(-f.normal);
   const Steepest at_p = steepest_edge(S.P, fp.index, outward_P);
-  if (at_p.slope > tolerances::kVoronoiSlack) {
+  if (at_p.slope > tolerances::kVoronoiTolerance) {
     if (fq.index == began_at) {
       at.gap = std::abs(height);
       at.p = p;
@@ -230,8 +236,8 @@ Step vertex_face(const Sides<Swapped>& S, Feature fp, Feature fq, Place& at, Pai
     }
     return {Outcome::kMoved, edge(at_p.edge), fq};
   }
-  tell(S.of_A(p, p_Q - f.normal * height), S.normal(outward_P, -f.normal), std::abs(height),
-       reach_beyond(S.P, fp.index, at_p.slope), x);
+  set_answer(S.of_A(p, p_Q - f.normal * height), S.normal(outward_P, -f.normal), std::abs(height),
+             reach_beyond(S.P, fp.index, at_p.slope), x);
   return {Outcome::kClosest, fp, fq};
 }
 
@@ -260,7 +266,7 @@ inline Toward face_toward(const Polytope::Edge& e, const OutOfColumns& out) noex
 
 /// Edges of any kind: alike, nearest at an end, far off, level with a face. Out of line and from the start,
 /// so that nothing is kept at hand for it where edges cross.
-[[gnu::noinline]] Step edges_along(const PiecePair& pair, double slack, int a, int b, Place& at,
+[[gnu::noinline]] Step edges_along(const PiecePair& pair, double crossing_tolerance, int a, int b, Place& at,
                                    PairDistance& x) noexcept;
 
 /// Of a place along an edge, the end it lies beyond; else the edge.
@@ -311,7 +317,7 @@ inline Step edge_edge(const PiecePair& pair, const Sides<false>& S, Feature fp, 
   const bool between = s > 0.0 && s < e.length * sine_sq && t > 0.0 && t < g.length * sine_sq;
   const bool crossing = sine_sq >= tolerances::kCrossingSine * tolerances::kCrossingSine;
   if (!between && crossing) return past_an_end(e, g, fp, fq, {cosine, sine_sq, r_e, r_g, s, t});
-  if (!crossing) return edges_along(pair, S.slack, fp.index, fq.index, at, x);
+  if (!crossing) return edges_along(pair, S.crossing_tolerance, fp.index, fq.index, at, x);
 
   const double along = r.dot(c);
   const double sign = std::copysign(1.0, along + 0.0);  // of the outward direction as c tells it; -0 is +0
@@ -324,26 +330,26 @@ inline Step edge_edge(const PiecePair& pair, const Sides<false>& S, Feature fp, 
   if (out_p.left < 0.0 || out_p.right < 0.0 || out_q.left < 0.0 || out_q.right < 0.0) {
     const Toward of_p = face_toward(e, out_p);
     const Toward of_q = face_toward(g, out_q);
-    if (std::max(of_p.slope, of_q.slope) * S.P.size <= S.slack)
-      return edges_along(pair, S.slack, fp.index, fq.index, at, x);
+    if (std::max(of_p.slope, of_q.slope) * S.P.size <= S.crossing_tolerance)
+      return edges_along(pair, S.crossing_tolerance, fp.index, fq.index, at, x);
     at.gap = gap;
     at.p = p;
     at.q = g_tail + g.direction * (t * per_square);
-    if (of_p.slope * S.P.size > S.slack) return {Outcome::kMoved, face(of_p.face), fq};
+    if (of_p.slope * S.P.size > S.crossing_tolerance) return {Outcome::kMoved, face(of_p.face), fq};
     return {Outcome::kMoved, fp, face(of_q.face)};
   }
   const double lengths = S.P.size + S.Q.size + r.lpNorm<1>();
-  const double doubt = (tolerances::kCrossingRounding * lengths + S.slack) * per_square;
-  if (doubt > tolerances::kCertificate * pair.size)
-    return edges_along(pair, S.slack, fp.index, fq.index, at, x);
-  tell(p, c * (-sign * per_sine), gap, doubt, x);
+  const double error_bound = (tolerances::kCrossingRounding * lengths + S.crossing_tolerance) * per_square;
+  if (error_bound > tolerances::kCertificate * pair.size)
+    return edges_along(pair, S.crossing_tolerance, fp.index, fq.index, at, x);
+  set_answer(p, c * (-sign * per_sine), gap, error_bound, x);
   return {Outcome::kClosest, fp, fq};
 }
 
 /// P has the edge, Q the face. Never the end of the walk: the nearer end of the clipped edge is a vertex or
 /// on an edge.
 [[gnu::noinline]] Step edge_face(const Polytope& Q, const Polytope::Edge& e, const Vec3& p0, const Vec3& u,
-                                 double slack, Feature fp, Feature fq) noexcept;
+                                 double crossing_tolerance, Feature fp, Feature fq) noexcept;
 
 /// Dispatch on the kinds, P owning the lower one. Tells `x` where the features are closest, and the place
 /// where it moved on, if it came to know it. Two faces, from which only a caller starts, go on from a vertex
@@ -360,65 +366,68 @@ Step step(const PiecePair& pair, const Sides<Swapped>& S, Feature fp, Feature fq
     if (fp.kind == FeatureKind::kFace) return {Outcome::kMoved, fp, vertex(vertex_of(S.Q, fq))};
   }
   const Polytope::Edge& e = S.P.edges[fp.index];
-  return edge_face(S.Q, e, S.in_Q(S.P.vertices[e.tail]), S.turned_to_Q(e.direction), S.slack, fp, fq);
+  return edge_face(S.Q, e, S.in_Q(S.P.vertices[e.tail]), S.turned_to_Q(e.direction), S.crossing_tolerance, fp,
+                   fq);
 }
 
 /// A step from the features `at` of A and B, which become those of its end.
-inline Outcome step_on(const PiecePair& pair, double slack, FeaturePair& at, Place& place,
+inline Outcome step_on(const PiecePair& pair, double crossing_tolerance, FeaturePair& at, Place& place,
                        PairDistance& x) noexcept {
   if (at.a.kind > at.b.kind) {
-    const Step next = step(pair, Sides<true>(pair, slack), at.b, at.a, place, x);
+    const Step next = step(pair, Sides<true>(pair, crossing_tolerance), at.b, at.a, place, x);
     at = {next.q, next.p};
     return next.outcome;
   }
-  const Step next = step(pair, Sides<false>(pair, slack), at.a, at.b, place, x);
+  const Step next = step(pair, Sides<false>(pair, crossing_tolerance), at.a, at.b, place, x);
   at = {next.p, next.q};
   return next.outcome;
 }
 
 /// The end of a walk that proves nothing: where the features `x.a`, `x.b` are nearest.
-[[gnu::noinline]] void tell_features(const PiecePair& pair, double slack, PairDistance& x) noexcept;
+[[gnu::noinline]] void set_features(const PiecePair& pair, double crossing_tolerance,
+                                    PairDistance& x) noexcept;
 
-/// voronoi_march, to be made part of its caller.
-inline March walk(const PiecePair& pair, FeaturePair at, double slack, PairDistance& x) noexcept {
+/// What feature_walk() does, inline.
+inline FeatureWalk walk_features(const PiecePair& pair, FeaturePair at, double crossing_tolerance,
+                                 PairDistance& x) noexcept {
   double least = kInfinity;
   FeaturePair nearest = at;
   FeaturePair mark;  // a state to be met again, if the walk goes in circles [Brent 1980]
   int next_mark = 8;
   const auto bound = [&] { return 64 + static_cast<int>(pair.A.edges.size() + pair.B.edges.size()) / 4; };
-  March march;
-  while (march.steps < 64 || march.steps < bound()) {
+  FeatureWalk walk;
+  while (walk.steps < 64 || walk.steps < bound()) {
     const FeaturePair was = at;
     Place place;
-    const Outcome outcome = step_on(pair, slack, at, place, x);
-    ++march.steps;
+    const Outcome outcome = step_on(pair, crossing_tolerance, at, place, x);
+    ++walk.steps;
     if (outcome != Outcome::kMoved) {
       x.a = at.a;
       x.b = at.b;
       if (outcome == Outcome::kClosest) {
-        x.doubt += slack;  // of the numbers that were added up
-        return {x.doubt, MarchEnd::kClosest, march.steps};
+        x.error_bound += crossing_tolerance;  // of the numbers that were added up
+        return {x.error_bound, FeatureWalkEnd::kClosest, walk.steps};
       }
-      march.end = outcome == Outcome::kOverlap ? MarchEnd::kOverlap : MarchEnd::kBehind;
-      return march;
+      walk.end = outcome == Outcome::kOverlap ? FeatureWalkEnd::kOverlap : FeatureWalkEnd::kBehind;
+      return walk;
     }
     if (place.gap < least) {
       least = place.gap;
       nearest = was;
     }
     if (at.a == mark.a && at.b == mark.b) {
-      march.end = MarchEnd::kCircle;
+      walk.end = FeatureWalkEnd::kCircle;
       break;
     }
-    if (march.steps == next_mark) {
+    if (walk.steps == next_mark) {
       mark = at;
       next_mark *= 2;
     }
   }
   x.a = nearest.a;
   x.b = nearest.b;
-  tell_features(pair, slack, x);
-  return march;
+  set_features(pair, crossing_tolerance, x);
+  return walk;
 }
 
-}  // namespace tactum::march
+}  // namespace tactum::vclip
