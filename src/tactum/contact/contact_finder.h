@@ -165,7 +165,7 @@ class ContactFinder final : public GapOracle {
   std::vector<DuePair> due_;
   std::vector<std::int32_t> emitted_;  // pairs with an answer, or that had one
   std::vector<char> blocked_;          // by body
-  std::span<const std::uint8_t> urgency_;
+  std::vector<std::uint8_t> urgency_;  // by body; empty: all alike
   bool budget_limited_ = false;
   int tests_left_ = 0;
   std::vector<ContactPatch> patches_;
