@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Holds that every build computes the same frames, to the last bit:  tools/same_bits.py TACTUM TACTUM...
+"""Holds that every build computes the same frames, to the last bit:  tools/same_bits.py BUILD BUILD...
 
-Each program runs, on the virtual clock, the gears once, the first seconds of thirteen moving bodies, and a heap with
-less budget than pairs, and names the hash of all their frames. One that was not built is
+The programs of each build folder run, on the virtual clock, the gears once, the first seconds of thirteen moving bodies,
+and a heap with less budget than pairs, and name the hash of all their frames. A folder where they were not built is
 left out and told, unless TACTUM_ALL_BUILDS=1 says that all must be there. Exit code 77 (skipped) when fewer than two
-programs are there to compare.
+folders are there to compare.
 """
 import json
 import os
@@ -16,21 +16,21 @@ import tempfile
 SKIPPED = 77
 
 RUNS = [
-    ("gears", ["bench", "table1", "--replays", "1"], lambda told: told["frame_hash"]),
-    ("moving-objects", ["feel", "moving-objects", "--virtual-clock", "--duration", "2.5"],
+    ("gears", "tactum", ["bench", "table1", "--replays", "1"], lambda told: told["frame_hash"]),
+    ("moving-objects", "tactum", ["feel", "moving-objects", "--virtual-clock", "--duration", "2.5"],
      lambda told: told["frame_hash"]),
-    ("heap", ["bench", "schedule", "--bodies", "6", "--seconds", "0.6", "--shares", "0.1", "--replays", "1"],
+    ("heap", "tactum-bench", ["schedule", "--bodies", "6", "--seconds", "0.6", "--shares", "0.1", "--replays", "1"],
      lambda told: told["budgets"][0]["frame_hash"]),
 ]
 
 
-def frame_hashes(program):
-    """The hashes the program names, by what was run."""
+def frame_hashes(build):
+    """The hashes that the programs of a build name, by what was run."""
     hashes = {}
     with tempfile.TemporaryDirectory() as folder:
-        for name, arguments, read in RUNS:
+        for name, program, arguments, read in RUNS:
             report = pathlib.Path(folder) / "report.json"
-            command = [str(program), *arguments, "--json", str(report)]
+            command = [str(build / program), *arguments, "--json", str(report)]
             done = subprocess.run(command, capture_output=True, text=True, stdin=subprocess.DEVNULL)
             if done.returncode != 0:
                 raise RuntimeError(f"{' '.join(command)}: exit code {done.returncode}\n{done.stdout}{done.stderr}")
@@ -39,21 +39,22 @@ def frame_hashes(program):
 
 
 def main(arguments):
-    programs = [pathlib.Path(argument) for argument in arguments]
-    absent = [program for program in programs if not program.exists()]
-    for program in absent:
-        print(f"not built: {program}")
+    builds = [pathlib.Path(argument) for argument in arguments]
+    needed = {program for _, program, _, _ in RUNS}
+    absent = [build for build in builds if not all((build / program).exists() for program in needed)]
+    for build in absent:
+        print(f"not built: {build}")
     if absent and os.environ.get("TACTUM_ALL_BUILDS") == "1":
         return 1
-    present = [program for program in programs if program.exists()]
+    present = [build for build in builds if build not in absent]
     if len(present) < 2:
         print("nothing to compare: build another preset, or run ./test, which builds them all")
         return SKIPPED
     told = {}
-    for program in present:
-        told[program] = frame_hashes(program)
-        print("  ".join(f"{name} {value}" for name, value in told[program].items()), "", program)
-    differ = [name for name, _, _ in RUNS if len({hashes[name] for hashes in told.values()}) != 1]
+    for build in present:
+        told[build] = frame_hashes(build)
+        print("  ".join(f"{name} {value}" for name, value in told[build].items()), "", build)
+    differ = [name for name, *_ in RUNS if len({hashes[name] for hashes in told.values()}) != 1]
     if differ:
         print(f"the builds differ in: {', '.join(differ)}")
         return 1
