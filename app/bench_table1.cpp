@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "bench_commands.h"
+#include "commands.h"
 #include "output.h"
 #include "tactum/scene/builtin_scenes.h"
 #include "tactum/session/session.h"
@@ -185,10 +185,12 @@ void bench_table1(const Table1Options& options) {
 
 }  // namespace
 
-void add_bench_table1(CLI::App& parent) {
+void add_bench(CLI::App& app) {
+  CLI::App* bench = app.add_subcommand("bench", "Measure the frame; tactum-bench measures the rest");
+  bench->require_subcommand(1);
   auto options = std::make_shared<Table1Options>();
   CLI::App* table1 =
-      parent.add_subcommand("table1", "The timing table of the paper, beside the published values");
+      bench->add_subcommand("table1", "The timing table of the paper, beside the published values");
   table1->add_option("--scene", options->scene, "another scene than the gears")->capture_default_str();
   table1->add_option("--updates", options->updates, "how many frames")
       ->check(CLI::Range(1, 100000000))

@@ -6,7 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "bench/distance_peer.h"
+#include "clearance_job.h"
 #include "commands.h"
 #include "tactum/devices/motion_file.h"
 #include "tactum/mesh/mesh_import.h"
@@ -19,10 +19,8 @@ namespace tactum {
 namespace {
 
 struct Options {
-  std::string mesh_a, mesh_b, motion;
+  ClearanceFiles files;
   std::string csv, json;  ///< files to write; both empty: CSV on stdout
-  double scale = 1.0;     ///< metres per unit of the files [m]
-  bool beside_fcl = false;
 };
 
 struct Row {
@@ -30,22 +28,8 @@ struct Row {
   double time_s = 0.0;
   double distance_m = 0.0;
   int touching_pairs = 0;
-  double took_ns = 0.0;      ///< the fastest of a few
-  double fcl_m = 0.0;        ///< FCL's distance, when asked for [m]
-  double fcl_took_ns = 0.0;  ///< ... and its time
+  double took_ns = 0.0;
 };
-
-TriangleMesh read_surface(const std::string& path, double scale) {
-  if (is_part_file(path)) {
-    const Result<PartFile> part = load_part(path);
-    if (!part) fail(part.error());
-    return surface_in_mesh_frame(*part);  // in metres, as prepared
-  }
-  const Result<ImportedMesh> mesh = import_mesh(path, {.scale = scale});
-  if (!mesh) fail(mesh.error());
-  for (const std::string& remark : mesh->report.remarks) fmt::print(stderr, "{}: {}\n", path, remark);
-  return mesh->mesh;
-}
 
 using Clock = std::chrono::steady_clock;
 
@@ -53,62 +37,24 @@ double ns_since(Clock::time_point start) {
   return std::chrono::duration<double, std::nano>(Clock::now() - start).count();
 }
 
-std::vector<Pose> relative_poses(const TwoBodyMotion& motion, double scale) {
-  std::vector<Pose> poses;
-  poses.reserve(motion.frame.size());
-  for (std::size_t i = 0; i < motion.frame.size(); ++i) {
-    poses.push_back(relative_pose(motion.X_WA[i], motion.X_WB[i]));
-    poses.back().p *= scale;
-  }
-  return poses;
-}
-
-std::vector<Row> distances(const TriangleMesh& mesh_a, const TriangleMesh& mesh_b,
-                           const TwoBodyMotion& motion, const std::vector<Pose>& poses) {
-  const Surface a(mesh_a), b(mesh_b);
+std::vector<Row> distances(const ClearanceJob& job) {
+  const Surface a(job.a), b(job.b);
   std::vector<Row> rows;
-  rows.reserve(poses.size());
+  rows.reserve(job.X_AB.size());
   SurfacePairCache cache;
-  for (std::size_t i = 0; i < poses.size(); ++i) {
+  for (std::size_t i = 0; i < job.X_AB.size(); ++i) {
     const Clock::time_point start = Clock::now();
-    const SurfaceDistance answer = surface_distance(a, b, poses[i], cache);
+    const SurfaceDistance answer = surface_distance(a, b, job.X_AB[i], cache);
     rows.push_back(
-        {motion.frame[i], motion.time_s[i], answer.distance, answer.touching_pairs, ns_since(start)});
+        {job.motion.frame[i], job.motion.time_s[i], answer.distance, answer.touching_pairs, ns_since(start)});
   }
   return rows;
 }
 
-/// Times ours and FCL, row after row in turn, so that what else the machine does strikes both; as FCL does,
-/// ours ends at the first touching pair. Each row counts with its fastest of three.
-void measure_beside_fcl(const TriangleMesh& mesh_a, const TriangleMesh& mesh_b,
-                        const std::vector<Pose>& poses, std::vector<Row>& rows) {
-  const std::unique_ptr<bench::DistancePeer> fcl = bench::distance_peer(mesh_a, mesh_b);
-  if (!fcl) fail(Error{"this build cannot stand beside FCL", "", "libfcl-dev when it was configured", ""});
-  const Surface a(mesh_a), b(mesh_b);
-  for (int replay = 0; replay < 3; ++replay) {
-    SurfacePairCache cache;
-    for (std::size_t i = 0; i < poses.size(); ++i) {
-      Clock::time_point start = Clock::now();
-      surface_distance(a, b, poses[i], cache, TouchingPairs::kFirst);
-      const double own = ns_since(start);
-      rows[i].took_ns = replay == 0 ? own : std::min(rows[i].took_ns, own);
-      start = Clock::now();
-      rows[i].fcl_m = fcl->distance(poses[i]);
-      const double took = ns_since(start);
-      rows[i].fcl_took_ns = replay == 0 ? took : std::min(rows[i].fcl_took_ns, took);
-    }
-  }
-}
-
-double mean_us(const std::vector<Row>& rows, double Row::*took) {
+double mean_us(const std::vector<Row>& rows) {
   double sum = 0.0;
-  for (const Row& row : rows) sum += row.*took;
+  for (const Row& row : rows) sum += row.took_ns;
   return sum * 1e-3 / static_cast<double>(rows.size());
-}
-
-std::ptrdiff_t slower_than_fcl(const std::vector<Row>& rows) {
-  return std::count_if(rows.begin(), rows.end(),
-                       [](const Row& row) { return row.took_ns > row.fcl_took_ns; });
 }
 
 std::string as_csv(const std::vector<Row>& rows) {
@@ -128,31 +74,20 @@ std::ptrdiff_t touching(const std::vector<Row>& rows) {
   return std::count_if(rows.begin(), rows.end(), [](const Row& row) { return row.touching_pairs > 0; });
 }
 
-std::string as_json(const Options& options, const TwoBodyMotion& motion, const std::vector<Row>& rows) {
-  nlohmann::json out = {{"a", options.mesh_a},
-                        {"b", options.mesh_b},
-                        {"motion", options.motion},
+std::string as_json(const Options& options, const ClearanceJob& job, const std::vector<Row>& rows) {
+  nlohmann::json out = {{"a", options.files.mesh_a},
+                        {"b", options.files.mesh_b},
+                        {"motion", options.files.motion},
                         {"min_distance_m", nearest(rows).distance_m},
                         {"min_distance_frame", nearest(rows).frame},
                         {"touching_rows", touching(rows)},
-                        {"orthonormalized_rows", motion.repairs.orthonormalized_rows},
+                        {"orthonormalized_rows", job.motion.repairs.orthonormalized_rows},
                         {"rows", nlohmann::json::array()}};
-  if (options.beside_fcl) {
-    out["mean_us"] = mean_us(rows, &Row::took_ns);
-    out["fcl_mean_us"] = mean_us(rows, &Row::fcl_took_ns);
-    out["rows_slower_than_fcl"] = slower_than_fcl(rows);
-  }
   for (const Row& row : rows) {
-    nlohmann::json one = {{"frame", row.frame},
-                          {"time_s", row.time_s},
-                          {"distance_m", row.distance_m},
-                          {"touching_pairs", row.touching_pairs}};
-    if (options.beside_fcl) {
-      one["us"] = row.took_ns * 1e-3;
-      one["fcl_us"] = row.fcl_took_ns * 1e-3;
-      one["fcl_distance_m"] = row.fcl_m;
-    }
-    out["rows"].push_back(std::move(one));
+    out["rows"].push_back({{"frame", row.frame},
+                           {"time_s", row.time_s},
+                           {"distance_m", row.distance_m},
+                           {"touching_pairs", row.touching_pairs}});
   }
   return out.dump(1) + "\n";
 }
@@ -168,28 +103,13 @@ void write_file(const std::string& path, const std::string& text) {
 }
 
 void run(const Options& options) {
-  const TriangleMesh a = read_surface(options.mesh_a, options.scale);
-  const TriangleMesh b = read_surface(options.mesh_b, options.scale);
-  const Result<TwoBodyMotion> motion = read_two_body_motion(options.motion);
-  if (!motion) fail(motion.error());
-  if (motion->frame.empty())
-    fail(Error{"the motion is empty", "no rows", "at least one row", options.motion});
-  const std::string repairs = motion->repairs.sentence(motion->frame.size());
-  if (!repairs.empty()) fmt::print(stderr, "{}: {}\n", options.motion, repairs);
-
-  const std::vector<Pose> poses = relative_poses(*motion, options.scale);
-  std::vector<Row> rows = distances(a, b, *motion, poses);
-  if (options.beside_fcl) measure_beside_fcl(a, b, poses, rows);
-
+  const ClearanceJob job = read_clearance_job(options.files);
+  const std::vector<Row> rows = distances(job);
   if (!options.csv.empty()) write_file(options.csv, as_csv(rows));
-  if (!options.json.empty()) write_file(options.json, as_json(options, *motion, rows));
+  if (!options.json.empty()) write_file(options.json, as_json(options, job, rows));
   if (options.csv.empty() && options.json.empty()) fmt::print("{}", as_csv(rows));
   fmt::print(stderr, "{} rows, {} touching; least distance {:.9g} m in frame {}; {:.3g} us a row\n",
-             rows.size(), touching(rows), nearest(rows).distance_m, nearest(rows).frame,
-             mean_us(rows, &Row::took_ns));
-  if (options.beside_fcl)
-    fmt::print(stderr, "FCL {:.3g} us a row; in {} rows it is the faster one\n",
-               mean_us(rows, &Row::fcl_took_ns), slower_than_fcl(rows));
+             rows.size(), touching(rows), nearest(rows).distance_m, nearest(rows).frame, mean_us(rows));
 }
 
 }  // namespace
@@ -197,15 +117,9 @@ void run(const Options& options) {
 void add_clearance(CLI::App& app) {
   CLI::App* command = app.add_subcommand("clearance", "Exact distance of two meshes along a motion of both.");
   auto options = std::make_shared<Options>();
-  command->add_option("A", options->mesh_a, "Mesh of the first body")->required();
-  command->add_option("B", options->mesh_b, "Mesh of the second body")->required();
-  command->add_option("MOTION", options->motion, "CSV with a pose of A and of B in every row")->required();
+  add_clearance_files(*command, options->files);
   command->add_option("--csv", options->csv, "Write frame,time_s,distance_m,touching_pairs to this file");
   command->add_option("--json", options->json, "Write rows and summary to this file");
-  command->add_option("--scale", options->scale, "Metres per unit of the meshes and of the motion")
-      ->check(CLI::PositiveNumber);
-  command->add_flag("--beside-fcl", options->beside_fcl,
-                    "time FCL's distance on the same poses, in a build that has it");
   command->callback([options] { run(*options); });
 }
 

@@ -3,9 +3,6 @@
 #include <fmt/format.h>
 
 #include <cstdio>
-#include <fstream>
-
-#include "commands.h"
 
 namespace tactum {
 namespace {
@@ -32,18 +29,6 @@ std::vector<std::string> frame_notes(const RunRecord& record) {
 }
 
 }  // namespace
-
-void write_json(const std::string& path, const nlohmann::ordered_json& json) {
-  const std::string text = json.dump(2) + "\n";
-  if (path == "-") {
-    std::fputs(text.c_str(), stdout);
-    return;
-  }
-  std::ofstream file(path);
-  file << text;
-  file.close();
-  if (!file) fail({"cannot write the file", "", "", path});
-}
 
 nlohmann::ordered_json summary_us(const Summary& summary) {
   return {{"mean", summary.mean_ns * 1e-3},

@@ -10,9 +10,6 @@
 
 namespace tactum {
 
-/// Writes to a file, or to standard output for "-". Ends the command when it cannot.
-void write_json(const std::string& path, const nlohmann::ordered_json& json);
-
 /// mean, p50, p99, p999, max in microseconds.
 nlohmann::ordered_json summary_us(const Summary& summary);
 

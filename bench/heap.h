@@ -1,7 +1,7 @@
 #pragma once
 /// A heap: jacks of twenty convex pieces each that fall into a bin, and a jack in the hand that is led down
 /// among them, drawn through them and out again. Made in code: the world of the scheduling tests and of
-/// `tactum bench schedule`, far more near pairs than a frame may check.
+/// `tactum-bench schedule`, far more near pairs than a frame may check.
 ///
 ///        []            a core of two half cubes, six arms of three pieces,
 ///     [][][][]         the last of each tapered

@@ -1,5 +1,5 @@
 #pragma once
-/// The picture of `tactum bench pairs`: cost against the number of vertices, both logarithmic, in the regime
+/// The picture of `tactum-bench pairs`: cost against the number of vertices, both logarithmic, in the regime
 /// "near", a box and then spheres; the median as a line, the 99.9th percentile dashed, ours and the peers'.
 /// Hollow dots are measurements in which a query was missed or wrong by more than a micrometre.
 

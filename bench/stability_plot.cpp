@@ -1,4 +1,4 @@
-/// The picture of `tactum bench stability`.
+/// The picture of `tactum-bench stability`.
 
 #include <fmt/format.h>
 

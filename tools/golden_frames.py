@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 """Compares the frames of every shipped scene with the committed ones:  tools/golden_frames.py TACTUM [OPTION...]
 
-Each scene runs with both responses for 5 000 frames on the virtual clock, and the heap with less budget than pairs. The
-hashes of all their frames must be those of tests/golden/frames.csv: a change of the code that is not meant to change
-behaviour keeps every line, and a commit that changes a line says which and why. Scenes of real meshes (NAME-file) run
-where the data is, in the folder named by TACTUM_DATA or in shared/data beside the checkout; the slow one of them only
-with TACTUM_FULL=1.
+Each scene runs with both responses for 5 000 frames on the virtual clock, and, by the tactum-bench that lies beside
+TACTUM, the heap with less budget than pairs. The hashes of all their frames must be those of tests/golden/frames.csv: a
+change of the code that is not meant to change behaviour keeps every line, and a commit that changes a line says which and
+why. Scenes of real meshes (NAME-file) run where the data is, in the folder named by TACTUM_DATA or in shared/data beside
+the checkout; the slow one of them only with TACTUM_FULL=1.
 
   --write         write the file instead of comparing with it
   --only NAME     this scene alone (may be repeated)
@@ -26,7 +26,7 @@ DATA = pathlib.Path(os.environ.get("TACTUM_DATA", ROOT.parent / "shared/data"))
 FULL = os.environ.get("TACTUM_FULL") == "1"
 SLOW = ("nut-bolt-file",)
 RESPONSES = ("constraint", "penalty")
-HEAP = ["bench", "schedule", "--bodies", "6", "--seconds", "0.6", "--shares", "0.1", "--replays", "1"]
+HEAP = ["schedule", "--bodies", "6", "--seconds", "0.6", "--shares", "0.1", "--replays", "1"]
 
 
 def report_of(program, arguments):
@@ -49,12 +49,12 @@ def is_left_out(scene):
 
 
 def runs(scenes):
-    """Every run by name: (scene, response) -> what the program is asked and where its hash stands."""
+    """Every run by name: (scene, response) -> the program, what it is asked, and where its hash stands."""
     for scene in scenes:
         for response in RESPONSES:
             arguments = ["feel", scene, "--response", response, "--virtual-clock", "--updates", str(FRAMES)]
-            yield (scene, response), arguments, lambda report: report["frame_hash"]
-    yield ("heap", "constraint"), HEAP, lambda report: report["budgets"][0]["frame_hash"]
+            yield (scene, response), "tactum", arguments, lambda report: report["frame_hash"]
+    yield ("heap", "constraint"), "tactum-bench", HEAP, lambda report: report["budgets"][0]["frame_hash"]
 
 
 def read_golden():
@@ -97,8 +97,8 @@ def main():
             print(f"left out: {scene}: {reason}")
         else:
             chosen.append(scene)
-    hashes = {run: str(read(report_of(options.program, arguments)))
-              for run, arguments, read in runs(scenes) if run[0] in chosen}
+    hashes = {run: str(read(report_of(options.program.with_name(name), arguments)))
+              for run, name, arguments, read in runs(scenes) if run[0] in chosen}
     golden = read_golden() if GOLDEN.exists() else {}
     if options.write:
         write_golden(dict(sorted((golden | hashes).items())))

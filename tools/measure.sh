@@ -4,14 +4,16 @@
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
-tactum="$root/build/release/tactum"
+configure release
+build release tactum-bench
+bench="$root/build/release/tactum-bench"
 page="$root/docs/benchmarks.md"
 mkdir -p "$root/out"
-"$tactum" bench pairs --json "$root/out/bench-pairs.json" --svg "$root/docs/pictures/pairs.svg" --markdown "$page"
-"$tactum" bench penetration --referee-seconds 4 --json "$root/out/bench-penetration.json" --markdown "$page"
-"$tactum" bench manifold --json "$root/out/bench-manifold.json" --markdown "$page"
-"$tactum" bench impact --json "$root/out/bench-impact.json" --markdown "$page"
-"$tactum" bench feel --json "$root/out/bench-feel.json" --svg "$root/docs/pictures/feel.svg" --markdown "$page"
+"$bench" pairs --json "$root/out/bench-pairs.json" --svg "$root/docs/pictures/pairs.svg" --markdown "$page"
+"$bench" penetration --referee-seconds 4 --json "$root/out/bench-penetration.json" --markdown "$page"
+"$bench" manifold --json "$root/out/bench-manifold.json" --markdown "$page"
+"$bench" impact --json "$root/out/bench-impact.json" --markdown "$page"
+"$bench" feel --json "$root/out/bench-feel.json" --svg "$root/docs/pictures/feel.svg" --markdown "$page"
 # Real parts, where they are: see tests/support/real_data.h.
 data="${TACTUM_DATA:-$root/../shared/data}"
-"$tactum" bench surfaces --data "$data" --json "$root/out/bench-surfaces.json" --markdown "$page"
+"$bench" surfaces --data "$data" --json "$root/out/bench-surfaces.json" --markdown "$page"

@@ -10,15 +10,14 @@ namespace tactum {
 namespace {
 
 using testing::ProgramRun;
-using testing::run_tactum;
+using testing::run_bench;
 using testing::ScratchFolder;
 using Json = nlohmann::json;
 
 /// The rows of a quick run, each with the keys that every bench writes and times in order.
 Json quick_rows(const std::string& arguments) {
   const ScratchFolder folder;
-  const ProgramRun run =
-      run_tactum("bench " + arguments + " --quick --replays 1 --json " + (folder / "rows.json"));
+  const ProgramRun run = run_bench(arguments + " --quick --replays 1 --json " + (folder / "rows.json"));
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_NE(run.out.find("fastest of 1 replays"), std::string::npos);
   EXPECT_NE(run.out.find("% of the queries had too few of those"), std::string::npos);
@@ -68,8 +67,8 @@ TEST(BenchCommand, PairsTakeOnlyWhatIsAskedForAndDrawIt) {
   EXPECT_EQ(rows[2]["shape_b"], "plate");
   EXPECT_EQ(testing::content(folder / "plot.svg").rfind("<svg", 0), 0u);
   EXPECT_EQ(testing::content(folder / "page.md").rfind("| pair |", 0), 0u);
-  EXPECT_EQ(run_tactum("bench pairs --shapes teapot/teapot").exit_code, 2);
-  EXPECT_EQ(run_tactum("bench pairs --engines abacus").exit_code, 2);
+  EXPECT_EQ(run_bench("pairs --shapes teapot/teapot").exit_code, 2);
+  EXPECT_EQ(run_bench("pairs --engines abacus").exit_code, 2);
 }
 
 TEST(BenchCommand, PenetrationCountsTheDepthsThatAreNotTheSmallest) {

@@ -62,5 +62,6 @@ inline ProgramRun run_program(const std::string& name, const std::string& argume
 }
 
 inline ProgramRun run_tactum(const std::string& arguments) { return run_program("tactum", arguments); }
+inline ProgramRun run_bench(const std::string& arguments) { return run_program("tactum-bench", arguments); }
 
 }  // namespace tactum::testing

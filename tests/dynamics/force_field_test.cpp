@@ -9,8 +9,9 @@
 #include <cmath>
 #include <functional>
 
-#include "support/pressed_block.h"
+#include "support/solid_box.h"
 #include "tactum/base/random.h"
+#include "tactum/math/screw.h"
 
 namespace tactum {
 namespace {

@@ -2,27 +2,15 @@
 /// A held block of 20 x 14 x 10 mm over a fixed plate, and a hand that brings it down and presses: a running
 /// loop with real contact force, for tests of what happens to it.
 
-#include <gtest/gtest.h>
-
 #include <memory>
-#include <vector>
 
+#include "support/solid_box.h"
 #include "tactum/devices/hand_motion.h"
 #include "tactum/haptics/frame.h"
 #include "tactum/math/screw.h"
 #include "tactum/mesh/make_part.h"
 
 namespace tactum {
-
-inline std::shared_ptr<const Part> solid_box(const Vec3& half) {
-  std::vector<Vec3> corners;
-  for (int i = 0; i < 8; ++i)
-    corners.emplace_back(i & 1 ? half.x() : -half.x(), i & 2 ? half.y() : -half.y(),
-                         i & 4 ? half.z() : -half.z());
-  Result<Part> part = part_from_clouds({corners});
-  EXPECT_TRUE(part);
-  return std::make_shared<const Part>(std::move(*part));
-}
 
 inline constexpr double kBlockGap_m = 0.003;  ///< between block and plate at the start [m]
 

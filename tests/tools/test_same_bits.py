@@ -8,19 +8,16 @@ from support import TreeTest
 import same_bits
 
 PROGRAM = """#!/bin/sh
-for report; do :; done
-case "$1 $2" in
-  "bench schedule") printf '{"budgets": [{"frame_hash": "%s"}]}' HEAP > "$report" ;;
-  "bench table1" | "feel moving-objects") printf '{"frame_hash": "%s"}' HASH > "$report" ;;
-  *) exit 3 ;;
-esac
+echo gears HASH
+echo heap HEAP
 exit CODE
 """
 
 
 class SameBits(TreeTest):
     def program(self, name, frame_hash, code=0, heap="2a"):
-        path = self.write(name, PROGRAM.replace("HASH", frame_hash).replace("HEAP", heap).replace("CODE", str(code)))
+        text = PROGRAM.replace("HASH", frame_hash).replace("HEAP", heap).replace("CODE", str(code))
+        path = self.write(name, text)
         path.chmod(0o755)
         return str(path)
 

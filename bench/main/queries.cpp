@@ -1,15 +1,14 @@
-/// tactum bench pairs, penetration, manifold, impact: the contact queries of one pair of convex pieces, the
+/// tactum-bench pairs, penetration, manifold, impact: the contact queries of one pair of convex pieces, the
 /// first two beside those of other libraries on the same poses. What is measured, and how, is in bench/.
 
 #include <fmt/format.h>
 
 #include "bench/impact.h"
+#include "bench/main/commands.h"
 #include "bench/manifold.h"
 #include "bench/pairs.h"
 #include "bench/pairs_plot.h"
 #include "bench/report.h"
-#include "bench_commands.h"
-#include "output.h"
 
 namespace tactum {
 namespace {

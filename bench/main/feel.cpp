@@ -1,12 +1,11 @@
-/// tactum bench feel: what is felt against analytic truth, beside rigid-body engines. What is measured, and
+/// tactum-bench feel: what is felt against analytic truth, beside rigid-body engines. What is measured, and
 /// how, is in bench/feel.h.
 
 #include <fmt/format.h>
 
 #include "bench/feel.h"
+#include "bench/main/commands.h"
 #include "bench/pairs_plot.h"
-#include "bench_commands.h"
-#include "output.h"
 
 namespace tactum {
 namespace {

@@ -1,12 +1,11 @@
-/// tactum bench schedule: what a work budget costs when more pairs are near than a frame may check. What is
+/// tactum-bench schedule: what a work budget costs when more pairs are near than a frame may check. What is
 /// measured, and how, is in bench/schedule.h.
 
 #include <fmt/format.h>
 
+#include "bench/main/commands.h"
 #include "bench/pairs_plot.h"
 #include "bench/schedule.h"
-#include "bench_commands.h"
-#include "output.h"
 
 namespace tactum {
 namespace {

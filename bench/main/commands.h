@@ -1,10 +1,11 @@
 #pragma once
-/// The subcommands of `tactum bench`.
+/// The subcommands of `tactum-bench`.
 
-#include "commands.h"
+#include "app/command_line.h"
 
 namespace tactum {
 
+void add_bench_clearance(CLI::App& parent);
 void add_bench_feel(CLI::App& parent);
 void add_bench_impact(CLI::App& parent);
 void add_bench_manifold(CLI::App& parent);
@@ -13,6 +14,5 @@ void add_bench_penetration(CLI::App& parent);
 void add_bench_schedule(CLI::App& parent);
 void add_bench_surfaces(CLI::App& parent);
 void add_bench_stability(CLI::App& parent);
-void add_bench_table1(CLI::App& parent);
 
 }  // namespace tactum

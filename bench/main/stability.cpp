@@ -1,13 +1,12 @@
-/// tactum bench stability: the stiffest walls that the simulated devices hold. What is measured, and how, is
+/// tactum-bench stability: the stiffest walls that the simulated devices hold. What is measured, and how, is
 /// in bench/stability.h.
 
 #include <fmt/format.h>
 
+#include "bench/main/commands.h"
 #include "bench/pairs_plot.h"
 #include "bench/report.h"
 #include "bench/stability.h"
-#include "bench_commands.h"
-#include "output.h"
 
 namespace tactum {
 namespace {

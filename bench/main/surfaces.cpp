@@ -1,4 +1,4 @@
-/// tactum bench surfaces: all minima of two surfaces, beside FCL's distance and Bullet's GImpact on the same
+/// tactum-bench surfaces: all minima of two surfaces, beside FCL's distance and Bullet's GImpact on the same
 /// poses. What is measured, and how, is in bench/surfaces.h.
 
 #include <fmt/format.h>
@@ -6,9 +6,8 @@
 #include <cstdlib>
 #include <memory>
 
+#include "bench/main/commands.h"
 #include "bench/surfaces.h"
-#include "bench_commands.h"
-#include "output.h"
 
 namespace tactum {
 namespace {
