@@ -1,5 +1,6 @@
-# The same bits everywhere: no fused multiply-add, no fast math, and Eigen's vector paths off, so that g++ and
-# clang++, debug and release, compute one and the same frame. Three-vectors gain nothing from them.
+# How the project's own files are compiled. The same bits everywhere: no fused multiply-add (layers.cmake), no fast math,
+# and Eigen's vector paths off (the math layer, in CMakeLists.txt), so that g++ and clang++, debug and release, compute one
+# and the same frame. Three-vectors gain nothing from them.
 set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
@@ -8,8 +9,6 @@ if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release)
 endif()
 set(CMAKE_CXX_FLAGS_RELEASE "-O2 -DNDEBUG")  # and -O3 for the layers of the frame: see layers.cmake
-add_compile_options(-ffp-contract=off)
-add_compile_definitions(EIGEN_DONT_VECTORIZE EIGEN_MPL2_ONLY)
 
 find_program(CCACHE ccache)
 if(CCACHE)
@@ -18,7 +17,11 @@ endif()
 
 add_library(tactum_warnings INTERFACE)
 target_compile_options(tactum_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
-  -Wnon-virtual-dtor -Wold-style-cast -Woverloaded-virtual -Werror)
+  -Wnon-virtual-dtor -Wold-style-cast -Woverloaded-virtual)
+option(TACTUM_WARNINGS_ARE_ERRORS "Stop at warnings of the project's own files" ${PROJECT_IS_TOP_LEVEL})
+if(TACTUM_WARNINGS_ARE_ERRORS)
+  target_compile_options(tactum_warnings INTERFACE -Werror)
+endif()
 
 # Sanitizers: -DTACTUM_SANITIZE=address,undefined or =thread (see CMakePresets.json).
 set(TACTUM_SANITIZE "" CACHE STRING "Comma-separated sanitizers")

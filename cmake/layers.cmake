@@ -2,20 +2,29 @@
 # PRIVATELY PRIVATE_DEPENDENCIES...). HOT: the frame runs there; -O3 inlines the small vector functions, which makes
 # the contact core a third faster; packing scalars of three-vectors into pairs costs a tenth of that again. Nobody reads
 # errno or the flags of floating-point exceptions, so choices may be computed instead of jumped to: a value never changes.
+# What the headers need of a program that includes them goes with the target: C++20, and no contraction of products and
+# sums, which would give their inline functions other bits there. Warnings stay here.
 function(tactum_layer name)
   cmake_parse_arguments(LAYER "HOT" "" "USES;PRIVATELY" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/tactum/${name}/*.cpp)
   if(sources)
     add_library(tactum_${name} STATIC ${sources})
-    target_include_directories(tactum_${name} PUBLIC ${PROJECT_SOURCE_DIR}/src)
-    target_link_libraries(tactum_${name} PUBLIC ${LAYER_USES} PRIVATE ${LAYER_PRIVATELY} tactum_warnings)
+    set(scope PUBLIC)
+    target_compile_options(tactum_${name} PUBLIC -ffp-contract=off)
+    target_link_libraries(tactum_${name} PUBLIC ${LAYER_USES}
+      PRIVATE ${LAYER_PRIVATELY} $<BUILD_INTERFACE:tactum_warnings>)
     if(LAYER_HOT)
       target_compile_options(tactum_${name} PRIVATE "$<$<CONFIG:Release>:-O3;-fno-tree-slp-vectorize;-fno-math-errno;-fno-trapping-math>")
     endif()
   else()  # a layer of headers only
+    set(scope INTERFACE)
     add_library(tactum_${name} INTERFACE)
-    target_include_directories(tactum_${name} INTERFACE ${PROJECT_SOURCE_DIR}/src)
+    target_compile_options(tactum_${name} INTERFACE -ffp-contract=off)
     target_link_libraries(tactum_${name} INTERFACE ${LAYER_USES})
   endif()
+  target_include_directories(tactum_${name} ${scope} $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src>)
+  target_compile_features(tactum_${name} ${scope} cxx_std_20)
+  set_target_properties(tactum_${name} PROPERTIES EXPORT_NAME ${name})
+  set_property(GLOBAL APPEND PROPERTY TACTUM_LAYERS tactum_${name})
   add_library(tactum::${name} ALIAS tactum_${name})
 endfunction()
