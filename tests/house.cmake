@@ -15,7 +15,8 @@ add_test(NAME house.tidy COMMAND ${PYTHON3} ${tools}/tidy.py ${PROJECT_BINARY_DI
 set_tests_properties(house.tidy PROPERTIES LABELS slow PROCESSORS 2 TIMEOUT 1500)
 
 # Every header compiles alone, and twice.
-file(GLOB headers RELATIVE ${PROJECT_SOURCE_DIR}/src CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/tactum/*/*.h)
+file(GLOB headers RELATIVE ${PROJECT_SOURCE_DIR}/src CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/tactum/*.h
+  ${PROJECT_SOURCE_DIR}/src/tactum/*/*.h)
 foreach(header IN LISTS headers)
   string(REGEX REPLACE "[/.]" "_" name ${header})
   set(text "#include \"${header}\"\n#include \"${header}\"\n")
