@@ -8,7 +8,8 @@
 ///   reflex edges
 ///   any other mesh            no pieces: the surface itself, felt from outside (surface_tree.h)
 ///
-/// Every part has the tree of its surface, so that solids can meet surfaces. The part's frame is the mesh's.
+/// Every part has the tree of its surface, so that solids can meet surfaces. The part's frame has the axes of
+/// the input, and its origin too, unless the part is made about its centre of mass, as bodies need it.
 
 #include <string>
 #include <vector>
@@ -43,6 +44,7 @@ struct Part {
   TrueSurface true_surface;  ///< what of solid pieces can be touched; alone() for surfaces
   SurfaceTree tree;          ///< over the surface
   MassProperties mass;
+  Vec3 origin = Vec3::Zero();        ///< the part's origin, in the frame of the input [m]
   double radius = 0.0;               ///< largest distance of a vertex from the centre of mass [m]
   double size = 0.0;                 ///< diagonal of the bounding box [m]
   std::vector<std::string> remarks;  ///< what was repaired or approximated, as sentences
@@ -56,6 +58,7 @@ struct PartOptions {
   double scale = 1.0;                 ///< metres per unit of the input [m]
   double density_kg_per_m3 = 1000.0;  ///< [kg/m^3]
   PieceSource pieces = PieceSource::kAuto;
+  bool about_center_of_mass = false;  ///< the part's origin is its centre of mass (Part::origin says where)
   int most_solid_pieces = 0;  ///< 0: 32 where the way is chosen by itself, 512 where solid is asked for
 };
 
