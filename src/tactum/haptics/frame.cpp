@@ -19,11 +19,10 @@ Wrench haptic_frame(const World& world, const FrameSettings& settings, const Dev
                     const FrameTick& tick, FrameState& state, FrameReport& report) noexcept {
   report = {};
   report.index = tick.index;
-  const double dt = settings.dt_s;
   Wrench raw;
   // Where is the hand?
   const bool was_known = state.hand.known;
-  follow_hand(settings.workspace, sample, dt, state.hand);
+  follow_hand(settings.workspace, sample, settings.dt_s, state.hand);
   if (!was_known && state.hand.known) grasp(settings, state);
   if (sample.valid) pick_or_let_go(world, settings.tool, sample.buttons, state);
   report.held = state.tool.body;
@@ -33,8 +32,8 @@ Wrench haptic_frame(const World& world, const FrameSettings& settings, const Dev
   if (state.hand.known) {
     // What do force fields do? How fast does everything move, and how far may it come: delta = v_c dt.
     pull_by_fields(world, state);
-    wanted_velocities(world, settings, dt, state);
-    tolerances_from_speed(world, settings, dt, state);
+    wanted_velocities(world, settings, settings.dt_s, state);
+    tolerances_from_speed(world, settings, settings.dt_s, state);
     set_urgency(state);
     state.ended(Stage::kVelocities);
 
@@ -48,7 +47,7 @@ Wrench haptic_frame(const World& world, const FrameSettings& settings, const Dev
     state.ended(Stage::kExactTests);
 
     // How do the proxy and the world answer?
-    respond(world, settings, dt, state, report);
+    respond(world, settings, settings.dt_s, state, report);
     state.ended(Stage::kResponse);
 
     // What does the hand feel?
@@ -58,7 +57,8 @@ Wrench haptic_frame(const World& world, const FrameSettings& settings, const Dev
   report.smoothed = smooth_wrench(settings.smoothing, state.smoothing, to_device(state.hand, raw));
 
   // Does it make energy? Is it safe to send?
-  const PortInput port = port_input(world, settings, state, report);
+  PortInput port = port_input(world, settings, state, report);
+  if (state.force_stage != nullptr) port.wanted = state.force_stage->apply(port.wanted, sample, report);
   const Wrench passive = passive_wrench(settings.port, state.port, sample, port, report.port);
   const SafetyInput input{.wanted = passive,
                           .X_DH = sample.X_DH,

@@ -7,6 +7,7 @@
 #include "tactum/haptics/constraint.h"
 #include "tactum/haptics/contact_force.h"
 #include "tactum/haptics/field_pull.h"
+#include "tactum/haptics/force_stage.h"
 #include "tactum/haptics/free_bodies.h"
 #include "tactum/haptics/hand.h"
 #include "tactum/haptics/impulse_display.h"
@@ -43,7 +44,8 @@ struct FrameState {
   ImpulseDisplay blows;
   PortState port;
   SafetyState safety;
-  StageObserver* observer;  ///< may be null
+  StageObserver* observer;            ///< may be null
+  ForceStage* force_stage = nullptr;  ///< of the caller's own; may be null
 
   // Scratch of one frame, one entry per body.
   std::vector<Resistance> resistance;
