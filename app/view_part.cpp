@@ -24,7 +24,6 @@ Scene scene_of(const Part& part) {
   scene.name = part.name;
   scene.description = "a part to be looked at";
   scene.world.bodies.push_back(std::move(body));
-  scene.p_BP.push_back(Vec3::Zero());
   scene.device = "premium-1.5-6dof";
   scene.grip = "medium";
   scene.hand = std::make_shared<StillHand>();

@@ -6,7 +6,7 @@
 #include "bench/clock.h"
 #include "bench/overlap.h"
 #include "bench/peers/feel_peers.h"
-#include "tactum/haptics/frame.h"
+#include "tactum/haptics/simulation.h"
 #include "tactum/math/screw.h"
 #include "tactum/mesh/make_part.h"
 
@@ -30,45 +30,34 @@ class Ours final : public FeelEngine {
  public:
   explicit Ours(const FeelScene& scene) {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    world_.bodies.resize(2);
-    world_.bodies[0].part = part_of(scene.held);
-    world_.bodies[0].mass_kg = kFeltMass_kg;
-    world_.bodies[0].inertia_B = kFeltInertia_kg_m2 * Mat3::Identity();
     X_start_ = scene.hand->at(0.0).X_DH;
-    world_.bodies[0].X_WB = X_start_;
-    world_.bodies[1].part = part_of(scene.fixed);
-    world_.bodies[1].joint.kind = JointKind::kFixed;
-    settings_.tool.body = 0;
-    settings_.coupling = scene.coupling;
-    settings_.coupling.damping_Ns_per_m = 0.0;
-    settings_.coupling.damping_Nms_per_rad = 0.0;
-    settings_.smoothing = {kInfinity, kInfinity};
-    settings_.workspace.X_WD.p = X_start_.p;
+    World world;
+    world.bodies.resize(2);
+    world.bodies[0].part = part_of(scene.held);
+    world.bodies[0].mass_kg = kFeltMass_kg;  // as every engine is given them, whatever the part
+    world.bodies[0].inertia_B = kFeltInertia_kg_m2 * Mat3::Identity();
+    world.bodies[0].X_WB = X_start_;
+    world.bodies[1].part = part_of(scene.fixed);
+    world.bodies[1].joint.kind = JointKind::kFixed;
+    FrameSettings settings;
+    settings.tool.body = 0;
+    settings.coupling = scene.coupling;
+    settings.coupling.damping_Ns_per_m = 0.0;
+    settings.coupling.damping_Nms_per_rad = 0.0;
+    settings.smoothing = {kInfinity, kInfinity};
+    settings.workspace.X_WD.p = X_start_.p;
     const double mu = scene.friction;
-    if (mu > 0.0) settings_.friction = {{0.0, mu, mu, 0.0}, 2};
-    state_ = std::make_unique<FrameState>(world_, settings_);
+    if (mu > 0.0) settings.friction = {{0.0, mu, mu, 0.0}, 2};
+    simulation_ = std::move(*Simulation::make(std::move(world), std::move(settings)));
   }
-  void step(const Pose& X_WH) override {
-    DeviceSample sample;
-    sample.valid = true;
-    sample.time_s = static_cast<double>(frame_) * kFeelStep_s;
-    sample.X_DH = {X_WH.R, X_WH.p - X_start_.p};
-    FrameTick tick;
-    tick.index = frame_++;
-    tick.now_s = sample.time_s;
-    haptic_frame(world_, settings_, sample, tick, *state_, report_);
-  }
-  Pose X_WB() const override { return state_->world.X_WB[0]; }
-  Wrench felt() const override { return report_.coupling; }
-  double skin_m() const override { return state_->response.constraint()->constraint.skin_m; }
+  void step(const Pose& X_WH) override { simulation_->step(Pose{X_WH.R, X_WH.p - X_start_.p}); }
+  Pose X_WB() const override { return simulation_->bodies().X_WB[0]; }
+  Wrench felt() const override { return simulation_->report().coupling; }
+  double skin_m() const override { return simulation_->state().response.constraint()->constraint.skin_m; }
 
  private:
-  World world_;
-  FrameSettings settings_;
-  std::unique_ptr<FrameState> state_;
-  FrameReport report_;
+  std::unique_ptr<Simulation> simulation_;
   Pose X_start_;
-  std::uint64_t frame_ = 0;
 };
 
 std::unique_ptr<FeelEngine> make_ours(const FeelScene& scene, const FeelSetup&) {

@@ -138,8 +138,6 @@ Result<Scene> heap_scene(const HeapOptions& options) {
   }
 
   const int bodies = static_cast<int>(world.bodies.size());
-  scene.p_BP.assign(world.bodies.size(), Vec3::Zero());
-  scene.materials.assign(world.bodies.size(), "");
   FrameSettings& settings = scene.settings;
   settings.tool.body = 0;
   settings.workspace.X_WD.p = world.bodies[0].X_WB.p;

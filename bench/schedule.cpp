@@ -10,7 +10,7 @@
 #include "bench/heap.h"
 #include "bench/overlap.h"
 #include "tactum/base/hash.h"
-#include "tactum/haptics/frame.h"
+#include "tactum/haptics/simulation.h"
 
 namespace tactum::bench {
 namespace {
@@ -27,51 +27,41 @@ constexpr double kModelSeconds = 0.6;
 /// A heap and an ideal device that follows its hand.
 class HeapRun {
  public:
-  HeapRun(const Scene& scene, int budget)
-      : world_(scene.world), settings_(scene.settings), hand_(scene.hand) {
-    settings_.budget.max_exact_tests = budget;
-    state_ = std::make_unique<FrameState>(world_, settings_);
+  HeapRun(const Scene& scene, int budget) : hand_(scene.hand) {
+    FrameSettings settings = scene.settings;
+    settings.budget.max_exact_tests = budget;
+    simulation_ = std::move(*Simulation::make(scene.world, std::move(settings)));
   }
   const FrameReport& step() {
-    const DeviceSample sample = next_sample();
+    const Pose X_DH = hand_->at(simulation_->time_s()).X_DH;
     const auto begin = std::chrono::steady_clock::now();
-    haptic_frame(world_, settings_, sample, tick_, *state_, report_);
+    simulation_->step(X_DH);
     frame_ns_ =
         static_cast<double>(std::chrono::nanoseconds(std::chrono::steady_clock::now() - begin).count());
-    ++tick_.index;
-    return report_;
+    return simulation_->report();
   }
   /// The raw wrench of the next frame, when nothing is left out.
   Wrench next_without_limit() {
-    FrameState copy(*state_);
-    FrameSettings settings = settings_;
+    FrameState copy(simulation_->state());
+    FrameSettings settings = simulation_->settings();
     settings.budget.max_exact_tests = kNoLimit;
+    FrameTick tick;
+    tick.index = simulation_->next_index();
+    tick.now_s = simulation_->time_s();
+    DeviceSample sample;
+    sample.valid = true;
+    sample.time_s = tick.now_s;
+    sample.X_DH = hand_->at(tick.now_s).X_DH;
     FrameReport report;
-    const FrameTick tick = tick_;
-    const DeviceSample sample = next_sample();
-    haptic_frame(world_, settings, sample, tick, copy, report);
-    tick_ = tick;
+    haptic_frame(simulation_->world(), settings, sample, tick, copy, report);
     return report.coupling;
   }
-  const WorldState& at() const { return state_->world; }
+  const WorldState& at() const { return simulation_->bodies(); }
   double frame_ns() const { return frame_ns_; }
 
  private:
-  DeviceSample next_sample() {
-    DeviceSample sample;
-    sample.valid = true;
-    sample.time_s = static_cast<double>(tick_.index) * settings_.dt_s;
-    sample.X_DH = hand_->at(sample.time_s).X_DH;
-    tick_.now_s = sample.time_s;
-    return sample;
-  }
-
-  const World& world_;
-  FrameSettings settings_;
   std::shared_ptr<const HandMotion> hand_;
-  std::unique_ptr<FrameState> state_;
-  FrameReport report_;
-  FrameTick tick_;
+  std::unique_ptr<Simulation> simulation_;
   double frame_ns_ = 0.0;
 };
 

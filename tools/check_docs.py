@@ -2,7 +2,9 @@
 """Keeps the documents true:  tools/check_docs.py [ROOT]
 
 In every Markdown file: relative links resolve, and paths in backticks exist, seen from the file, from the root or from
-src/tactum; programs under build/ are some that a CMakeLists.txt makes. In Markdown, C++ and scene files: sources cited as [Name 1999] have their entry in docs/references.bib.
+src/tactum; programs under build/ are some that a CMakeLists.txt makes. In Markdown, C++ and scene files: sources cited as
+[Name 1999] have their entry in docs/references.bib.
+A block that is opened with ```cpp PATH is the whole of that file, seen from the root, and every examples/*.cpp is quoted.
 """
 import pathlib
 import re
@@ -14,6 +16,7 @@ MADE_BY_BUILDING = ("build/", "out/")
 
 LINK = re.compile(r"\[[^\]]*\]\(([^)\s]+)\)")
 FENCE = re.compile(r"^(```|~~~).*?^\1\s*$", re.MULTILINE | re.DOTALL)
+QUOTE = re.compile(r"^```\w+ (\S+)\n(.*?)^```\s*$", re.MULTILINE | re.DOTALL)
 BACKTICKS = re.compile(r"`([^`\n]+)`")
 # A path: no blanks, no wildcards or placeholders; it ends as a file of this project does, or starts in a known folder
 # (so that a unit such as N/m is none).
@@ -92,6 +95,29 @@ def citation_faults(text, path, root, keys):
                 yield f"{place}: cites [{cited}], but docs/references.bib has no {key}"
 
 
+def quotes(text):
+    """Path, text and position of each file that the text quotes whole."""
+    for match in QUOTE.finditer(text):
+        yield match.group(1), match.group(2), match.start()
+
+
+def quote_faults(text, path, root):
+    for quoted, block, position in quotes(text):
+        place = f"{path.relative_to(root)}:{line_of(text, position)}"
+        if not (root / quoted).is_file():
+            yield f"{place}: quotes {quoted}, which is not there"
+        elif (root / quoted).read_text() != block:
+            yield f"{place}: quotes {quoted}, but not as it is"
+
+
+def unquoted_examples(root):
+    quoted = {name for path in texts(root) if path.suffix == ".md" for name, _, _ in quotes(path.read_text())}
+    for example in sorted(root.glob("examples/*.cpp")):
+        name = example.relative_to(root).as_posix()
+        if name not in quoted:
+            yield f"{name}: no document quotes it"
+
+
 def faults(root):
     """Everything that is wrong under `root`, a sentence each."""
     bib = root / "docs/references.bib"
@@ -102,7 +128,9 @@ def faults(root):
         if path.suffix == ".md":
             yield from link_faults(text, path, root)
             yield from path_faults(text, path, root, built)
+            yield from quote_faults(text, path, root)
         yield from citation_faults(text, path, root, keys)
+    yield from unquoted_examples(root)
 
 
 def main(arguments):

@@ -1,8 +1,35 @@
 #pragma once
 /// The public header: everything that a program outside the library needs. The library itself includes the
-/// headers of its layers one by one, and never this one.
+/// headers of its layers one by one, and never this one. docs/embedding.md shows a program for each part.
+///
+/// What is declared in the headers named here is public, and so are the types it uses; what other headers
+/// declare may change with any version.
 
-#include "tactum/haptics/frame.h"
+// Queries on two shapes: distance and overlap of convex parts, clearance of surfaces.
+#include "tactum/collision/closest_features.h"
+#include "tactum/surface/surface_distance.h"
+#include "tactum/geometry/hull.h"
+#include "tactum/geometry/primitives.h"
+
+// Parts and worlds.
+#include "tactum/dynamics/world.h"
+#include "tactum/mesh/mesh_import.h"
+#include "tactum/mesh/make_part.h"
+#include "tactum/haptics/materials.h"
+
+// Devices, by name or of the caller's own.
+#include "tactum/devices/device.h"
+#include "tactum/devices/registry.h"
+#include "tactum/devices/simulated_device.h"
+
+// Frames: a world stepped by the caller or by a loop.
+#include "tactum/haptics/force_stage.h"
+#include "tactum/loop/loop_thread.h"
+#include "tactum/haptics/simulation.h"
+
+// Scenes and sessions.
 #include "tactum/scene/builtin_scenes.h"
+#include "tactum/scene/scene_file.h"
 #include "tactum/session/session.h"
+
 #include "tactum/version.h"

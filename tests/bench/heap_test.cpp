@@ -9,10 +9,11 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <memory>
 
 #include "collision/cases.h"
 #include "oracles/exhaustive.h"
-#include "tactum/haptics/frame.h"
+#include "tactum/haptics/simulation.h"
 
 namespace tactum::bench {
 namespace {
@@ -24,34 +25,24 @@ bool full() {
 
 /// An ideal device that follows the scene's hand.
 struct HeapRig {
-  Scene scene;
-  FrameState state;
-  FrameReport report;
-  std::uint64_t frame = 0;
+  std::shared_ptr<const HandMotion> hand;
+  std::unique_ptr<Simulation> simulation;
 
-  HeapRig(Scene made, int budget)
-      : scene([&] {
-          made.settings.budget.max_exact_tests = budget;
-          return std::move(made);
-        }()),
-        state(scene.world, scene.settings) {}
-  const FrameReport& step() {
-    DeviceSample sample;
-    sample.valid = true;
-    sample.time_s = static_cast<double>(frame) * scene.settings.dt_s;
-    sample.X_DH = scene.hand->at(sample.time_s).X_DH;
-    FrameTick tick;
-    tick.index = frame++;
-    tick.now_s = sample.time_s;
-    haptic_frame(scene.world, scene.settings, sample, tick, state, report);
-    return report;
+  HeapRig(Scene made, int budget) : hand(made.hand) {
+    made.settings.budget.max_exact_tests = budget;
+    simulation = std::move(*Simulation::make(std::move(made.world), std::move(made.settings)));
   }
+  const FrameReport& step() {
+    simulation->step(hand->at(simulation->time_s()).X_DH);
+    return simulation->report();
+  }
+  std::uint64_t frames() const { return simulation->next_index(); }
   /// Whether two bodies share a point, by every feature of every pair of pieces.
   bool entered(std::size_t a, std::size_t b) const {
-    const Body& A = scene.world.bodies[a];
-    const Body& B = scene.world.bodies[b];
+    const Body& A = simulation->world().bodies[a];
+    const Body& B = simulation->world().bodies[b];
     if (!A.moves() && !B.moves()) return false;
-    const Pose X_AB = relative_pose(state.world.X_WB[a], state.world.X_WB[b]);
+    const Pose X_AB = relative_pose(simulation->bodies().X_WB[a], simulation->bodies().X_WB[b]);
     for (const Polytope& piece_b : B.part->pieces) {
       const Vec3 centre_b = X_AB * centre(piece_b);
       for (const Polytope& piece_a : A.part->pieces) {
@@ -76,24 +67,24 @@ struct HeapWatch {
 
   void frame(HeapRig& rig) {
     const FrameReport& report = rig.step();
-    ASSERT_LE(report.tests(), budget) << "frame " << rig.frame;
-    ASSERT_EQ(report.work.left_of_held, 0) << "frame " << rig.frame;
-    ASSERT_FALSE(report.penetrating) << "frame " << rig.frame;
+    ASSERT_LE(report.tests(), budget) << "frame " << rig.frames();
+    ASSERT_EQ(report.work.left_of_held, 0) << "frame " << rig.frames();
+    ASSERT_FALSE(report.penetrating) << "frame " << rig.frames();
     ASSERT_EQ(report.flags & (frame_flag::kCapacityReached | frame_flag::kPointsFull), 0u)
-        << "frame " << rig.frame;
+        << "frame " << rig.frames();
     most_near = std::max(most_near, report.work.near_pairs);
     short_frames += report.work.unchecked > 0 ? 1 : 0;
     unproven += report.work.left_unproven;
     longest = std::max(longest, report.longest_wait);
     met += report.held_contact_points > 0 ? 1 : 0;
     asleep = report.asleep;
-    const std::size_t bodies = rig.scene.world.bodies.size();
-    for (std::size_t b = 1; b < bodies && rig.frame % 25 == 0; ++b) {
-      ASSERT_FALSE(rig.entered(0, b)) << "frame " << rig.frame;
+    const std::size_t bodies = rig.simulation->world().bodies.size();
+    for (std::size_t b = 1; b < bodies && rig.frames() % 25 == 0; ++b) {
+      ASSERT_FALSE(rig.entered(0, b)) << "frame " << rig.frames();
     }
-    for (std::size_t a = 1; a < bodies && rig.frame % (full() ? 500 : 250) == 0; ++a) {
+    for (std::size_t a = 1; a < bodies && rig.frames() % (full() ? 500 : 250) == 0; ++a) {
       for (std::size_t b = a + 1; b < bodies; ++b) {
-        ASSERT_FALSE(rig.entered(a, b)) << a << " and " << b << ", frame " << rig.frame;
+        ASSERT_FALSE(rig.entered(a, b)) << a << " and " << b << ", frame " << rig.frames();
       }
     }
   }
@@ -117,9 +108,9 @@ TEST(Heap, StaysWithinATenthOfItsPairsAndEntersNothing) {
   }
   Result<Scene> made = heap_scene(options);
   ASSERT_TRUE(made) << made.error().message();
+  const auto frames = static_cast<std::uint64_t>(frames_of_motion(*made));
   HeapRig rig(std::move(*made), watch.budget);
-  const auto frames = static_cast<std::uint64_t>(frames_of_motion(rig.scene));
-  while (rig.frame < frames) ASSERT_NO_FATAL_FAILURE(watch.frame(rig));
+  while (rig.frames() < frames) ASSERT_NO_FATAL_FAILURE(watch.frame(rig));
   EXPECT_GE(watch.most_near, times_near * watch.budget) << "the budget must be a tenth of the pairs";
   EXPECT_GT(watch.short_frames, 100) << "the budget must have been short";
   EXPECT_GT(watch.unproven, 0);
@@ -127,19 +118,19 @@ TEST(Heap, StaysWithinATenthOfItsPairsAndEntersNothing) {
 
   // The hand rests now: motion stops, and then nothing is left unchecked.
   const std::uint64_t longest = frames + 10'000;
-  while (watch.asleep < options.bodies && rig.frame < longest) ASSERT_NO_FATAL_FAILURE(watch.frame(rig));
-  EXPECT_LT(rig.frame, longest) << watch.asleep << " at rest";
+  while (watch.asleep < options.bodies && rig.frames() < longest) ASSERT_NO_FATAL_FAILURE(watch.frame(rig));
+  EXPECT_LT(rig.frames(), longest) << watch.asleep << " at rest";
   for (int i = 0; i < 100; ++i) {
     ASSERT_NO_FATAL_FAILURE(watch.frame(rig));
-    EXPECT_EQ(rig.report.work.unchecked, 0);
-    EXPECT_EQ(rig.report.waiting, 0);
+    EXPECT_EQ(rig.simulation->report().work.unchecked, 0);
+    EXPECT_EQ(rig.simulation->report().waiting, 0);
   }
   std::printf(
       "[   NOTE   ] %d pairs near at once, %d tests a frame at most; short in %d of %d frames, longest wait "
       "%d "
       "frames; at rest after %d frames\n",
       watch.most_near, watch.budget, watch.short_frames, static_cast<int>(frames), watch.longest,
-      static_cast<int>(rig.frame));
+      static_cast<int>(rig.frames()));
 }
 
 }  // namespace

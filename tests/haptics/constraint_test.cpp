@@ -125,7 +125,7 @@ TEST(Constraint, TurningOnTheSpotIsHeldBackByThePatchsRadius) {
 TEST(Constraint, AGapBelowTheSkinOpensAndStillLetsItSlide) {
   BlockRig bench;
   const double skin = bench.skin();
-  bench.state.reset();
+  bench.simulation.reset();
   bench.world.bodies[0].X_WB.p.z() = kBlockHalf.z() + 0.1 * skin;
   bench.step({});
   EXPECT_NEAR(bench.X_WB().p.z() - kBlockHalf.z(), skin, 1e-3 * skin) << "opened first";

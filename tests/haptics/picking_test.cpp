@@ -35,16 +35,11 @@ struct Hand : Sandbox {
       X_DH = interpolated(from, to, static_cast<double>(i) / frames);
       DeviceSample sample;
       sample.valid = true;
-      sample.time_s = static_cast<double>(frame) * settings.dt_s;
       sample.X_DH = X_DH;
       sample.buttons = pressed ? 1u : 0u;
-      FrameTick tick;
-      tick.index = frame++;
-      tick.now_s = sample.time_s;
       const Vec3 before = report.coupling.f;
-      haptic_frame(world, settings, sample, tick, begun(), report);
+      step(sample);
       largest = std::max(largest, (report.coupling.f - before).norm());
-      penetrating_frames += report.penetrating ? 1 : 0;
     }
     return largest;
   }

@@ -87,7 +87,7 @@ TEST(MadeShapes, BoltNutAndSurfaceGearAreMeshesInTheirOwnFrame) {
   EXPECT_EQ(part.surface.triangles.size(), nut_mesh(shape)->triangles.size());
   EXPECT_TRUE(part.is_surface());
   EXPECT_TRUE(scene->remarks.empty());
-  EXPECT_NEAR(part_pose(*scene, 0, scene->world.bodies[0].X_WB).p.norm(), 0.0, 1e-15);
+  EXPECT_NEAR(part_pose(scene->world.bodies[0], scene->world.bodies[0].X_WB).p.norm(), 0.0, 1e-15);
   const Result<Scene> gear = with_part("{ gear = { as = \"surface\" } }");
   ASSERT_TRUE(gear);
   EXPECT_EQ(gear->world.bodies[0].part->surface.triangles.size(), gear_surface(Gear{})->triangles.size());

@@ -50,7 +50,7 @@ TEST(PreparedPart, LoadsAsTheMeshItWasMadeOf) {
   EXPECT_NEAR(part.mass_kg, mesh.mass_kg, 1e-12 * mesh.mass_kg);
   EXPECT_LT((part.inertia_B - mesh.inertia_B).norm(), 1e-12 * mesh.inertia_B.norm());
   EXPECT_LT((part.X_WB.p - mesh.X_WB.p).norm(), 1e-15);
-  EXPECT_LT((from_part->p_BP[0] - from_mesh->p_BP[0]).norm(), 1e-15);
+  EXPECT_LT((p_BP_of(part) - p_BP_of(mesh)).norm(), 1e-15);
   ASSERT_EQ(part.part->surface.vertices.size(), mesh.part->surface.vertices.size());
   for (std::size_t v = 0; v < part.part->surface.vertices.size(); ++v)
     EXPECT_LT((part.part->surface.vertices[v] - mesh.part->surface.vertices[v]).norm(), 1e-15);

@@ -103,7 +103,7 @@ rpy_deg = [0, 90, 0]
   ASSERT_TRUE(scene) << scene.error().message();
   const Body& peg = scene->world.bodies[0];
   EXPECT_TRUE(peg.X_WB.p.isApprox(Vec3(0.13, 0.2, 0.3), 1e-12)) << peg.X_WB.p.transpose();
-  EXPECT_TRUE(part_pose(*scene, 0, peg.X_WB).p.isApprox(Vec3(0.1, 0.2, 0.3), 1e-12));
+  EXPECT_TRUE(part_pose(peg, peg.X_WB).p.isApprox(Vec3(0.1, 0.2, 0.3), 1e-12));
   Aabb box;  // of the pieces, in the world: what is felt stands where the file says
   for (const Polytope& piece : peg.part->pieces)
     for (const Vec3& vertex : piece.vertices) box.extend(peg.X_WB * vertex);

@@ -22,8 +22,8 @@ struct BlockRig : Rig {
   double skin() { return begun().response.constraint()->constraint.skin_m; }
   /// The sum of the contact forces at the handle less the wrench that is felt.
   Wrench unaccounted() const {
-    const Wrench at_handle = moved(report.restoring, state->response.constraint()->constraint.problem.movers().front().centre -
-                                                         state->response.constraint()->constraint.problem.movers().front().origin);
+    const auto& held = simulation->state().response.constraint()->constraint.problem.movers().front();
+    const Wrench at_handle = moved(report.restoring, held.centre - held.origin);
     return at_handle - report.coupling;
   }
 };

@@ -3,24 +3,24 @@
 
 #include <memory>
 
-#include "tactum/haptics/frame.h"
+#include "tactum/haptics/simulation.h"
 #include "tactum/math/screw.h"
 
 namespace tactum {
 
 /// No damping, no smoothing: what is felt is the stretch of the coupling alone.
 struct Rig {
-  World world;
-  FrameSettings settings;
-  std::unique_ptr<FrameState> state;
+  World world;             ///< may be changed before the first step
+  FrameSettings settings;  ///< may be changed between steps
+  std::unique_ptr<Simulation> simulation;
   FrameReport report;
   Pose X_DH;
-  std::uint64_t frame = 0;
   int penetrating_frames = 0;
 
   explicit Rig(std::size_t bodies) {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     world.bodies.resize(bodies);
+    // The tests give the bodies parts of several sizes; what is felt must not depend on their inertia.
     world.bodies[0].mass_kg = 0.05;
     world.bodies[0].inertia_B = 1e-5 /* kg m^2 */ * Mat3::Identity();
     settings.tool.body = 0;
@@ -28,21 +28,17 @@ struct Rig {
     settings.coupling.damping_Nms_per_rad = 0.0;
     settings.smoothing = {kInfinity, kInfinity};
   }
-  FrameState& begun() {
-    if (!state) state = std::make_unique<FrameState>(world, settings);
-    return *state;
+  const FrameState& begun() {
+    if (!simulation) simulation = std::move(*Simulation::make(world, settings));
+    return simulation->state();
   }
   const Pose& X_WB() { return begun().world.X_WB[0]; }
   const FrameReport& step(const Pose& X) {
     X_DH = X;
-    DeviceSample sample;
-    sample.valid = true;
-    sample.time_s = static_cast<double>(frame) * 1e-3;
-    sample.X_DH = X;
-    FrameTick tick;
-    tick.index = frame++;
-    tick.now_s = sample.time_s;
-    haptic_frame(world, settings, sample, tick, begun(), report);
+    begun();
+    simulation->settings() = settings;
+    simulation->step(X);
+    report = simulation->report();
     penetrating_frames += report.penetrating ? 1 : 0;
     return report;
   }

@@ -6,8 +6,7 @@
 #include <memory>
 
 #include "tactum/geometry/primitives.h"
-#include "tactum/haptics/frame.h"
-#include "tactum/haptics/frame_state.h"
+#include "tactum/haptics/simulation.h"
 #include "tactum/mesh/make_part.h"
 
 namespace tactum {
@@ -19,11 +18,10 @@ inline std::shared_ptr<const Part> solid_of(const Polytope& shape) {
 }
 
 struct Sandbox {
-  World world;
-  FrameSettings settings;
-  std::unique_ptr<FrameState> state;
+  World world;             ///< may be changed before the first step
+  FrameSettings settings;  ///< may be changed between steps
+  std::unique_ptr<Simulation> simulation;
   FrameReport report;
-  std::uint64_t frame = 0;
   int penetrating_frames = 0;
   std::uint32_t flags = 0;  ///< of all frames
 
@@ -32,15 +30,10 @@ struct Sandbox {
 
   /// Adds a body with the density of water; returns its number.
   int add(const Polytope& shape, const Pose& X_WB, const Twist& V_WB = {}, const Joint& joint = {}) {
-    Body body;
-    body.part = solid_of(shape);
-    body.mass_kg = body.part->mass.mass;
-    body.inertia_B = body.part->mass.inertia;
-    body.X_WB = X_WB;
-    body.V_WB = V_WB;
-    body.joint = joint;
-    world.bodies.push_back(body);
-    return static_cast<int>(world.bodies.size()) - 1;
+    const Result<int> index =
+        world.add({.part = solid_of(shape), .X_WP = X_WB, .V_WB = V_WB, .joint = joint});
+    EXPECT_TRUE(index);
+    return *index;
   }
   int add_fixed(const Polytope& shape, const Pose& X_WB) {
     return add(shape, X_WB, {}, {.kind = JointKind::kFixed});
@@ -53,22 +46,22 @@ struct Sandbox {
             static_cast<int>(world.bodies.size())};
   }
 
-  FrameState& begun() {
-    if (!state) state = std::make_unique<FrameState>(world, settings);
-    return *state;
+  const FrameState& begun() {
+    if (!simulation) simulation = std::move(*Simulation::make(world, settings));
+    return simulation->state();
+  }
+  void step(const DeviceSample& sample) {
+    begun();
+    simulation->settings() = settings;
+    simulation->step(sample);
+    report = simulation->report();
+    penetrating_frames += report.penetrating ? 1 : 0;
+    flags |= report.flags;
   }
   void step(int frames = 1) {
-    for (int i = 0; i < frames; ++i) {
-      DeviceSample sample;
-      sample.valid = true;
-      sample.time_s = static_cast<double>(frame) * settings.dt_s;
-      FrameTick tick;
-      tick.index = frame++;
-      tick.now_s = sample.time_s;
-      haptic_frame(world, settings, sample, tick, begun(), report);
-      penetrating_frames += report.penetrating ? 1 : 0;
-      flags |= report.flags;
-    }
+    DeviceSample sample;
+    sample.valid = true;
+    for (int i = 0; i < frames; ++i) step(sample);
   }
   void run(double seconds) { step(static_cast<int>(std::lround(seconds / settings.dt_s))); }
 

@@ -34,6 +34,18 @@ class Docs(TreeTest):
     def test_code_blocks_are_left_alone(self):
         self.assertEqual(list(self.says("```\n`a/b.h` [x](y.md)\n```\n")), [])
 
+    def test_quotes_must_be_the_whole_file_as_it_is(self):
+        self.write("examples/a.cpp", "int main() {}\n")
+        self.assertEqual(list(self.says("```cpp examples/a.cpp\nint main() {}\n```\n")), [])
+        self.assert_one_fault(self.says("text\n```cpp examples/a.cpp\nint main() { }\n```\n"), "page.md:2", "not as it is")
+
+    def test_quotes_of_files_that_do_not_exist_are_caught(self):
+        self.assert_one_fault(self.says("```cpp examples/gone.cpp\nint x;\n```\n"), "page.md:1", "gone.cpp")
+
+    def test_examples_that_no_document_quotes_are_caught(self):
+        self.write("examples/a.cpp", "int main() {}\n")
+        self.assert_one_fault(self.says("nothing"), "examples/a.cpp")
+
     def test_unknown_sources_are_caught(self):
         self.write("docs/references.bib", "@article{Gregory2000,\n}\n")
         self.write("src/x.h", "/// [Gregory 2000, 5.1; Mirtich 1998]\n")

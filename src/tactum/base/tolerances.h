@@ -180,4 +180,8 @@ inline constexpr double kRotationConverged = 1e-9;
 /// capture writes, leave 2e-4. Farther off, the columns are not a quaternion.
 inline constexpr double kQuaternionNear = 1e-3;
 
+/// A part is about its centre of mass when its origin is this near to it: a micrometre in a metre, far below
+/// what the hand can tell of a weight, far above what the volume integrals of a mesh leave.
+inline constexpr double kCentered = 1e-6;
+
 }  // namespace tactum::tolerances

@@ -8,11 +8,14 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "tactum/base/result.h"
 #include "tactum/dynamics/force_field.h"
 #include "tactum/geometry/part.h"
+#include "tactum/mesh/make_part.h"
 #include "tactum/math/spatial.h"
 
 namespace tactum {
@@ -46,6 +49,7 @@ struct Joint {
 /// A rigid body; its part's pieces are told in B.
 struct Body {
   std::string name;
+  std::string material;  ///< by which pairs of bodies get friction and restitution; may be empty
   std::shared_ptr<const Part> part;
   double mass_kg = 0.0;           ///< [kg]
   Mat3 inertia_B = Mat3::Zero();  ///< about the centre of mass [kg m^2]
@@ -57,8 +61,27 @@ struct Body {
   bool moves() const { return joint.kind != JointKind::kFixed; }
 };
 
+/// What World::add makes a body from. Mass and inertia follow from the part.
+struct BodySpec {
+  std::string name = {};                  ///< empty, or one that no other body of the world has
+  std::shared_ptr<const Part> part = {};  ///< about its centre of mass: PartOptions::about_center_of_mass
+  std::optional<double> density_kg_per_m3 = {};  ///< when absent, the density the part was made with [kg/m^3]
+  std::optional<double> mass_kg = {};            ///< instead of a density [kg]
+  Pose X_WP = {};             ///< at the start: the frame P of the part's input (its file, its points) [m]
+  Twist V_WB = {};            ///< at the start, of the centre of mass, world axes [m/s, rad/s]
+  Joint joint = {};           ///< its axis may have any length but zero
+  std::string material = {};  ///< see Body::material
+  std::vector<FieldPoint> field_points = {};  ///< see Body::field_points
+};
+
 /// Constant while frames run.
 struct World {
+  /// Adds a body and returns its index. An error says what the body cannot be made from: no part, a part
+  /// that is not about its centre of mass, a mass or density that is not positive (or both), a pose or
+  /// velocity that is not finite, an axis of length zero, limits that leave out the pose at the start, a name
+  /// that is taken. The world is then unchanged. Cost: linear in the number of bodies.
+  Result<int> add(const BodySpec& spec);
+
   std::vector<Body> bodies;
   Vec3 gravity_W = Vec3::Zero();   ///< [m/s^2]
   std::vector<ForceField> fields;  ///< felt by the held part

@@ -2,7 +2,8 @@
 /// A part: what is felt. Convex pieces under a hierarchy of boxes, or a surface alone; mass; and for every
 /// piece the contact patch it belongs to. mesh/make_part.h makes parts.
 ///
-/// Every part has the tree of its surface, so that solids can meet surfaces. The part's frame is the mesh's.
+/// Every part has the tree of its surface, so that solids can meet surfaces. The part's frame has the axes of
+/// the input, and its origin too, unless the part is made about its centre of mass, as bodies need it.
 
 #include <string>
 #include <vector>
@@ -28,6 +29,7 @@ struct Part {
   TrueSurface true_surface;  ///< what of solid pieces can be touched; single_piece() for surfaces
   SurfaceTree tree;          ///< over the surface
   MassProperties mass;
+  Vec3 origin = Vec3::Zero();        ///< the part's origin, in the frame of the input [m]
   double radius = 0.0;               ///< largest distance of a vertex from the centre of mass [m]
   double size = 0.0;                 ///< diagonal of the bounding box [m]
   std::vector<std::string> remarks;  ///< what was repaired or approximated, as sentences

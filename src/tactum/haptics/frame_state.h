@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tactum/haptics/contact_stage.h"
+#include "tactum/haptics/force_stage.h"
 #include "tactum/haptics/hand_stage.h"
 #include "tactum/haptics/response.h"
 #include "tactum/loop/safety.h"
@@ -34,7 +35,8 @@ struct FrameState {
   SmoothingState smoothing;
   PortState port;
   SafetyState safety;
-  StageObserver* observer;  ///< may be null
+  StageObserver* observer;            ///< may be null
+  ForceStage* force_stage = nullptr;  ///< of the caller's own; may be null
 
   void ended(Stage stage) noexcept {
     if (observer) observer->stage_ended(stage);

@@ -172,10 +172,48 @@ void note_repairs(const WeldReport& weld_report, const MeshReport& report, Part&
   note(static_cast<std::size_t>(report.misoriented_edges), "edges join triangles that face opposite ways");
 }
 
+/// The options for points in metres that have been moved already.
+PartOptions for_moved_points(const PartOptions& options) {
+  PartOptions moved = options;
+  moved.scale = 1.0;
+  moved.about_center_of_mass = false;
+  return moved;
+}
+
+/// The part with the word where its origin is in the frame of the input.
+Result<Part> with_origin(const Vec3& origin, Result<Part> part) {
+  if (part) part->origin = origin;
+  return part;
+}
+
+Result<Part> clouds_about_center(const std::vector<std::vector<Vec3>>& clouds, const PartOptions& options) {
+  std::vector<std::vector<Vec3>> moved = clouds;
+  for (std::vector<Vec3>& cloud : moved)
+    for (Vec3& point : cloud) point *= options.scale;
+  PartOptions of_density_one = for_moved_points(options);
+  of_density_one.density_kg_per_m3 = 1.0;
+  const Result<Part> as_given = part_from_clouds(moved, of_density_one);
+  if (!as_given) return as_given.error();
+  const Vec3 center = as_given->mass.center;
+  for (std::vector<Vec3>& cloud : moved)
+    for (Vec3& point : cloud) point -= center;
+  return with_origin(center, part_from_clouds(moved, for_moved_points(options)));
+}
+
+/// A mesh of a million triangles is not made a part twice for this.
+Result<Part> mesh_about_center(const TriangleMesh& mesh, const PartOptions& options) {
+  TriangleMesh moved = mesh;
+  for (Vec3& vertex : moved.vertices) vertex *= options.scale;
+  const Vec3 center = mass_properties_or_hull(moved, 1.0).center;
+  for (Vec3& vertex : moved.vertices) vertex -= center;
+  return with_origin(center, part_from_mesh(moved, for_moved_points(options)));
+}
+
 }  // namespace
 
 Result<Part> part_from_clouds(const std::vector<std::vector<Vec3>>& clouds, const PartOptions& options) {
   if (Result<void> sound = check_options(options); !sound) return sound.error();
+  if (options.about_center_of_mass) return clouds_about_center(clouds, options);
   if (clouds.empty()) return unusable(options, "no piece", "at least one");
   Part part;
   part.name = options.name;
@@ -219,6 +257,7 @@ Result<Part> part_from_convex_groups(const ImportedMesh& mesh, const PartOptions
 
 Result<Part> part_from_mesh(const TriangleMesh& mesh, const PartOptions& options) {
   if (Result<void> sound = check_options(options); !sound) return sound.error();
+  if (options.about_center_of_mass) return mesh_about_center(mesh, options);
   TriangleMesh scaled = mesh;
   for (Vec3& vertex : scaled.vertices) vertex *= options.scale;
   MeshReport report = report_mesh(scaled);

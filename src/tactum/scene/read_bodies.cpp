@@ -81,8 +81,8 @@ Joint read_joint(const TomlReader& body, const Pose& X_WP) {
   return joint;
 }
 
-/// The part, its mass and the body's place, from the shape and either a mass or a density.
-void read_solid(const TomlReader& reader, const Shape& shape, const Pose& X_WP, Body& body, Vec3& p_BP) {
+/// The part and either a mass or a density.
+void read_solid(const TomlReader& reader, const Shape& shape, BodySpec& spec) {
   const bool weighed = reader.has("mass_kg");
   if (weighed && reader.has("density_kg_per_m3")) {
     reader.fail("mass_kg", "two masses in " + reader.section(), "mass_kg and density_kg_per_m3",
@@ -92,63 +92,56 @@ void read_solid(const TomlReader& reader, const Shape& shape, const Pose& X_WP, 
   const double density = reader.number("density_kg_per_m3", kWaterDensity, kPositive);
   const double mass = weighed ? reader.number("mass_kg", {}, kPositive) : 0.0;
   if (reader.errors()) return;
-  const Result<Vec3> center = centre_of_mass(shape);
-  if (!center) return reader.fail("part", center.error().message());
-  Result<std::shared_ptr<const Part>> part = part_about(*center, shape, density);
+  Result<std::shared_ptr<const Part>> part = part_of(shape, density);
   if (!part) return reader.fail("part", part.error().message());
-
-  body.part = std::move(*part);
-  const double factor = weighed ? mass / body.part->mass.mass : 1.0;
-  body.mass_kg = factor * body.part->mass.mass;
-  body.inertia_B = factor * body.part->mass.inertia;
-  body.X_WB = {X_WP.R, X_WP * *center};
-  p_BP = -*center;
+  spec.part = std::move(*part);
+  if (weighed) spec.mass_kg = mass;
 }
 
 /// Where force fields act: so many points over the surface, or each told by itself.
-void read_field_points(const TomlReader& reader, const Vec3& p_BP, Body& body) {
+void read_field_points(const TomlReader& reader, const Vec3& p_BP, BodySpec& spec) {
   const auto points = reader.tables("field_point", {"pos_m", "weight"});
   for (const TomlReader& point : points)
-    body.field_points.push_back(
+    spec.field_points.push_back(
         {p_BP + point.vector3("pos_m"), point.number("weight", 1.0 / static_cast<double>(points.size()))});
   if (!reader.has("field_points")) return;
   const int count = reader.integer("field_points", {}, 1, kMostFieldPoints);
   if (!points.empty())
     return reader.fail("field_points", "two sets of sample points in " + reader.section(),
                        "field_points and field_point", "one of them");
-  if (!reader.errors()) body.field_points = spread_over(body.part->surface, count);
+  if (!reader.errors()) spec.field_points = spread_over(spec.part->surface, count);
 }
 
 void read_body(const TomlReader& reader, const SearchFolders& folders, Scene& scene) {
-  Body body;
-  body.name = reader.text("name");
+  BodySpec spec;
+  spec.name = reader.text("name");
   for (const Body& other : scene.world.bodies)
-    if (other.name == body.name)
-      reader.fail("name", "two bodies of one name", fmt::format("\"{}\"", body.name), "a name of its own");
-  if (body.name.empty())
+    if (other.name == spec.name)
+      reader.fail("name", "two bodies of one name", fmt::format("\"{}\"", spec.name), "a name of its own");
+  if (spec.name.empty())
     reader.fail("name", "a body without a name in " + reader.section(), "\"\"", "a text");
 
   // Told in the world, or in the frame of the part it stands on.
-  Pose X_WP{reader.rotation(), reader.vector3("pos_m", Vec3::Zero())};
+  spec.X_WP = {reader.rotation(), reader.vector3("pos_m", Vec3::Zero())};
   if (reader.has("on")) {
     const int on = body_called(reader, "on", scene.world);
     if (on < 0) return;
-    const auto index = static_cast<std::size_t>(on);
-    X_WP = part_pose(scene, index, scene.world.bodies[index].X_WB) * X_WP;
+    const Body& below = scene.world.bodies[static_cast<std::size_t>(on)];
+    spec.X_WP = part_pose(below, below.X_WB) * spec.X_WP;
   }
-  body.joint = read_joint(reader, X_WP);
+  spec.joint = read_joint(reader, spec.X_WP);
+  spec.material = reader.text("material", "");
   const Shape shape =
       reader.has("component") ? read_components(reader, folders) : read_shape(reader, folders);
   if (reader.errors()) return;
-  Vec3 p_BP = Vec3::Zero();
-  read_solid(reader, shape, X_WP, body, p_BP);
+  read_solid(reader, shape, spec);
   if (reader.errors()) return;
-  read_field_points(reader, p_BP, body);
-  for (const std::string& remark : body.part->remarks)
-    scene.remarks.push_back(fmt::format("{} ({}): {}", body.name, shape.file, remark));
-  scene.p_BP.push_back(p_BP);
-  scene.materials.push_back(reader.text("material", ""));
-  scene.world.bodies.push_back(std::move(body));
+  read_field_points(reader, -spec.part->origin, spec);
+  if (reader.errors()) return;
+  for (const std::string& remark : spec.part->remarks)
+    scene.remarks.push_back(fmt::format("{} ({}): {}", spec.name, shape.file, remark));
+  if (const Result<int> added = scene.world.add(spec); !added)
+    reader.fail(nullptr, added.error().what, added.error().found, added.error().expected);
 }
 
 }  // namespace

@@ -27,16 +27,14 @@ Result<Polytope> moved(const Polytope& piece, const Pose& X) {
 /// The convex pieces of a shape in its own frame.
 Result<Pieces> pieces_of(const Shape& shape) {
   if (!shape.pieces.empty()) return shape.pieces;
-  const Result<Vec3> center = centre_of_mass(shape);
-  if (!center) return center.error();
-  const Result<std::shared_ptr<const Part>> part = part_about(*center, shape, 1.0);
+  const Result<std::shared_ptr<const Part>> part = part_of(shape, 1.0);
   if (!part) return part.error();
   if ((*part)->is_surface())
     return Error{"a component that is felt by its surface", (*part)->piece_report,
                  "convex pieces: a shape made of them, or a mesh with pieces = \"solid\" or \"given\"", ""};
   Pieces pieces;
   for (const Polytope& piece : (*part)->pieces) {
-    Result<Polytope> back = moved(piece, {Mat3::Identity(), *center});
+    Result<Polytope> back = moved(piece, {Mat3::Identity(), (*part)->origin});
     if (!back) return back.error();
     pieces.push_back(std::move(*back));
   }

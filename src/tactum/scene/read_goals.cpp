@@ -35,7 +35,8 @@ void read_turned(const TomlReader& table, const World& world, Goal& goal) {
 void read_moved(const TomlReader& table, const Scene& scene, Goal& goal) {
   goal.body = body_called(table, "body", scene.world);
   if (goal.body < 0) return;
-  goal.p_BQ = scene.p_BP[static_cast<std::size_t>(goal.body)] + table.vector3("point_m", Vec3::Zero());
+  goal.p_BQ = p_BP_of(scene.world.bodies[static_cast<std::size_t>(goal.body)]) +
+              table.vector3("point_m", Vec3::Zero());
   if (table.has("at_least_m") == table.has("to_m")) {
     table.fail(nullptr, table.section() + " must tell one way", table.has("to_m") ? "two" : "none",
                "at_least_m along a direction, or to_m with tolerance_m");

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "tactum/haptics/impulse_display.h"
+#include "tactum/haptics/materials.h"
 #include "tactum/scene/scene_sections.h"
 
 namespace tactum {
@@ -54,24 +55,12 @@ void read_pairs(const TomlReader& root, const char* key, Range range, const Scen
                 PairCoefficients& table) {
   const auto pairs = root.tables(key, {"material_a", "material_b", "coefficient"});
   if (pairs.empty()) return;
-  const std::size_t bodies = scene.world.bodies.size();
-  table.bodies = static_cast<int>(bodies);
-  table.coefficients.assign(bodies * bodies, 0.0);
   for (const TomlReader& pair : pairs) {
-    const double coefficient = pair.number("coefficient", {}, range);
-    std::string material[2];
-    for (int side = 0; side < 2; ++side) {
-      const char* const which = side == 0 ? "material_a" : "material_b";
-      material[side] = pair.text(which);
-      const auto& known = scene.materials;
-      if (std::find(known.begin(), known.end(), material[side]) == known.end())
-        pair.fail(which, "no body is of this material", fmt::format("\"{}\"", material[side]),
-                  "the material of a [[body]]");
-    }
-    for (std::size_t a = 0; a < bodies; ++a)
-      for (std::size_t b = 0; b < bodies; ++b)
-        if (scene.materials[a] == material[0] && scene.materials[b] == material[1])
-          table.coefficients[a * bodies + b] = table.coefficients[b * bodies + a] = coefficient;
+    const MaterialPair told{pair.text("material_a"), pair.text("material_b"),
+                            pair.number("coefficient", {}, range)};
+    const Result<void> set = set_coefficient(scene.world, told, table);
+    if (!set)
+      pair.fail(set.error().where.c_str(), set.error().what, set.error().found, "the material of a [[body]]");
   }
 }
 
@@ -136,7 +125,7 @@ Vec3 middle_of(const HingeLine& hinge) {
 /// Where the handle sits in the held body. Centre: on the hinge's axis (or at the centre of mass of a body
 /// without one). Rim: `radius_m` from the axis in the direction told by `angle_deg` about it, from the part's
 /// x axis.
-Vec3 read_grasp(const TomlReader& table, const Body& body, const Vec3& p_BP) {
+Vec3 read_grasp(const TomlReader& table, const Body& body) {
   const std::string grasp = table.choice("grasp", "centre", {"centre", "rim", "point"});
   for (const char* key : {"radius_m", "angle_deg"})
     if (grasp != "rim" && table.has(key))
@@ -145,7 +134,7 @@ Vec3 read_grasp(const TomlReader& table, const Body& body, const Vec3& p_BP) {
   if (grasp != "point" && table.has("pos_m"))
     table.fail("pos_m", "\"pos_m\" is for grasp = \"point\" only", fmt::format("\"{}\"", grasp), "\"point\"");
   const bool hinged = body.joint.kind == JointKind::kHinge;
-  if (grasp == "point") return p_BP + table.vector3("pos_m");
+  if (grasp == "point") return p_BP_of(body) + table.vector3("pos_m");
   if (grasp == "centre") return hinged ? middle_of(hinge_of(body)) : Vec3::Zero();
   if (!hinged) {
     table.fail("grasp", "only a hinged body has a rim to hold", fmt::format("\"{}\"", body.name),
@@ -194,7 +183,7 @@ void read_tool(const TomlReader& root, Scene& scene) {
       return;
     }
     tool.body = held;
-    tool.X_BH.p = read_grasp(table, body, scene.p_BP[static_cast<std::size_t>(held)]);
+    tool.X_BH.p = read_grasp(table, body);
     tool.X_BH.R = body.X_WB.R.transpose() * workspace.X_WD.R;
     handle_W = body.X_WB * tool.X_BH.p;
   }

@@ -30,7 +30,7 @@ const std::vector<std::string>& made_shapes();
 /// The shape under the key `kind`, one of made_shapes(), of the table `part`.
 Shape read_made_shape(const TomlReader& part, const std::string& kind);
 
-/// Every `[[body]]`, into scene.world.bodies, p_BP and remarks.
+/// Every `[[body]]`, into scene.world.bodies and remarks.
 void read_bodies(const TomlReader& root, const SearchFolders& folders, Scene& scene);
 
 /// Every `[[field]]`: needs the bodies, which get sample points when there are fields.

@@ -25,11 +25,7 @@ struct Shape {
   std::shared_ptr<const PartFile> prepared;       ///< instead of a mesh
 };
 
-/// In P [m].
-Result<Vec3> centre_of_mass(const Shape& shape);
-
-/// The part seen from `origin` [m]; a prepared one can only be seen from its centre of mass.
-Result<std::shared_ptr<const Part>> part_about(const Vec3& origin, const Shape& shape,
-                                               double density_kg_per_m3);
+/// The part about its centre of mass; Part::origin says where that is in P.
+Result<std::shared_ptr<const Part>> part_of(const Shape& shape, double density_kg_per_m3);
 
 }  // namespace tactum

@@ -5,46 +5,43 @@
 #include "tactum/devices/registry.h"
 #include "tactum/haptics/coupling_gains.h"
 #include "tactum/haptics/setting_table.h"
+#include "tactum/haptics/simulation.h"
 
 namespace tactum {
 namespace {
 
 constexpr std::size_t kGlances = 4096;  // four seconds at 1 kHz between two polls
 
-/// Scene files cannot say these things; programs that build a scene of their own can.
-Result<void> check(const Scene& scene) {
-  for (const Body& body : scene.world.bodies) {
-    if (!body.part || body.part->surface.triangles.empty())
-      return Error{"a body has no part", "none", "convex pieces or a surface", body.name};
-    if (body.moves() && !(body.mass_kg > 0.0 && body.inertia_B.allFinite() && body.inertia_B.trace() > 0.0))
-      return Error{"a body that moves has no mass or inertia", std::to_string(body.mass_kg) + " kg", "more",
-                   body.name};
-    if (!body.X_WB.finite()) return Error{"a body's pose is not finite", "", "numbers", body.name};
-  }
-  const int bodies = static_cast<int>(scene.world.bodies.size());
-  if (scene.settings.tool.body >= bodies)
-    return Error{"the tool holds a body that is not there", std::to_string(scene.settings.tool.body),
-                 "less than " + std::to_string(bodies), scene.name};
-  if (!(scene.settings.dt_s > 0.0)) return Error{"the frame's step is not positive", "", "", scene.name};
-  if (!scene.hand) return Error{"the scene has no hand motion", "", "one, if only a hold", scene.name};
-  return {};
-}
+bool is_simulated(const std::string& name) { return name == "simulated" || name.starts_with("simulated:"); }
 
 }  // namespace
 
 Result<std::unique_ptr<Session>> Session::open(Scene scene, const SessionOptions& options) {
-  if (const Result<void> checked = check(scene); !checked) return checked.error();
   DeviceOptions device_options;
   device_options.hand_motion = scene.hand;
   device_options.grip = options.grip.empty() ? scene.grip : options.grip;
   const std::string name = options.device.empty() ? "simulated:" + scene.device : options.device;
+  if (is_simulated(name) && !scene.hand)
+    return Error{"the scene has no hand motion for a simulated device", "none", "one, if only a hold",
+                 scene.name};
   Result<std::unique_ptr<Device>> device = make_device(name, device_options);
   if (!device) return device.error();
-  if (options.rate_Hz != 0.0) {
-    if (Result<void> rate = check_rate(options.rate_Hz); !rate) return rate.error();
-    scene.settings.dt_s = 1.0 / options.rate_Hz;
+  return open(std::move(scene), std::move(*device), options.rate_Hz);
+}
+
+Result<std::unique_ptr<Session>> Session::open(Scene scene, std::unique_ptr<Device> device, double rate_Hz) {
+  if (!device) return Error{"the session has no device", "null", "a device", scene.name};
+  if (rate_Hz != 0.0) {
+    if (Result<void> rate = check_rate(rate_Hz); !rate) return rate.error();
+    scene.settings.dt_s = 1.0 / rate_Hz;
   }
-  return std::unique_ptr<Session>(new Session(std::move(scene), std::move(*device)));
+  // Scene files cannot say these things; programs that build a scene of their own can.
+  if (Result<void> sound = check_world(scene.world, scene.settings); !sound) {
+    Error error = sound.error();
+    if (error.where.empty()) error.where = scene.name;
+    return error;
+  }
+  return std::unique_ptr<Session>(new Session(std::move(scene), std::move(device)));
 }
 
 Session::Session(Scene scene, std::unique_ptr<Device> device)

@@ -1,8 +1,8 @@
 #pragma once
 /// The façade: open a scene and a device, run, watch, stop. One Session is one run.
 ///
-///   Scene + device name --open--> Session --run_virtual()------------------> RunRecord, goals
-///                                    '------start(), status(), stop()--------------^
+///   Scene + device or its name --open--> Session --run_virtual()--> or --start(), status(), stop()-->
+///   RunRecord, goals
 ///
 /// The loop's thread owns the frame; other threads see it only through rings of small records, and ask for
 /// changes through another (command.h), which the loop empties between two frames.
@@ -42,8 +42,13 @@ struct SessionStatus {
 
 class Session final : private HapticFrame {
  public:
-  /// Makes the device (not yet open) and reserves everything the frames need.
+  /// Makes the device (not yet open) and reserves everything the frames need. The scene must have a hand
+  /// motion when the device is simulated.
   static Result<std::unique_ptr<Session>> open(Scene scene, const SessionOptions& options);
+  /// The same with a device of the caller's (not yet open); the scene needs no hand motion. `rate_Hz` 0: the
+  /// scene's [Hz].
+  static Result<std::unique_ptr<Session>> open(Scene scene, std::unique_ptr<Device> device,
+                                               double rate_Hz = 0.0);
   ~Session() override { stop(); }
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
@@ -83,6 +88,8 @@ class Session final : private HapticFrame {
   const FrameState& state() const noexcept { return state_; }
   /// Shows every frame to `feed`; set before the run, null for none.
   void show_to(FrameFeed* feed) noexcept { feed_ = feed; }
+  /// Puts a stage of the caller's before passivity and safety; set before the run, null for none.
+  void set_force_stage(ForceStage* stage) noexcept { state_.force_stage = stage; }
   /// Takes the times of the stages of every frame; set before the run, null for none.
   void time_stages(StageClock* clock) noexcept {
     stage_clock_ = clock;

@@ -1,0 +1,30 @@
+#pragma once
+/// A stage of the caller's own in the chain of forces: guidance, a texture, a vibration, the weight of the
+/// handle.
+///
+///   contacts, coupling -> smoothing -> the caller's stage -> passivity -> safety -> device
+///
+/// The stages behind it watch what it adds as they watch the rest: energy that it makes is damped as far as
+/// PortSettings allows, and no limit of safety.h can be passed. FrameReport::smoothed is the wrench before
+/// this stage, FrameReport::shown the one that was sent.
+
+#include "tactum/devices/device.h"
+#include "tactum/haptics/frame_report.h"
+
+namespace tactum {
+
+class ForceStage {
+ public:
+  virtual ~ForceStage() = default;
+  /// The wrench to go on with, instead of `F_D`: on the hand, at the handle, axes of D [N, N m]. Called in
+  /// the frame: it must not allocate, lock, throw or read a clock. `report` is filled up to
+  /// FrameReport::smoothed. A wrench that is not finite is a fault that safety answers with zero.
+  virtual Wrench apply(const Wrench& F_D, const DeviceSample& sample, const FrameReport& report) noexcept = 0;
+
+ protected:
+  ForceStage() = default;
+  ForceStage(const ForceStage&) = default;
+  ForceStage& operator=(const ForceStage&) = default;
+};
+
+}  // namespace tactum

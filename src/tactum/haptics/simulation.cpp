@@ -1,0 +1,66 @@
+#include "tactum/haptics/simulation.h"
+
+#include <utility>
+
+#include "tactum/haptics/coupling_gains.h"
+
+namespace tactum {
+
+Result<void> check_world(const World& world, const FrameSettings& settings) {
+  for (const Body& body : world.bodies) {
+    if (!body.part || body.part->surface.triangles.empty())
+      return Error{"a body has no part", "none", "convex pieces or a surface", body.name};
+    if (body.moves() && !(body.mass_kg > 0.0 && body.inertia_B.allFinite() && body.inertia_B.trace() > 0.0))
+      return Error{"a body that moves has no mass or inertia", std::to_string(body.mass_kg) + " kg", "more",
+                   body.name};
+    if (!body.X_WB.finite()) return Error{"a body's pose is not finite", "", "numbers", body.name};
+  }
+  const int bodies = static_cast<int>(world.bodies.size());
+  if (settings.tool.body >= bodies)
+    return Error{"the tool holds a body that is not there", std::to_string(settings.tool.body),
+                 "less than " + std::to_string(bodies), ""};
+  if (!(settings.dt_s > 0.0))
+    return Error{"the frame's step is not positive", std::to_string(settings.dt_s) + " s", "more", ""};
+  return {};
+}
+
+FrameSettings settings_for(const DeviceInfo& info, double rate_Hz) {
+  FrameSettings settings;
+  settings.dt_s = 1.0 / rate_Hz;
+  settings.safety = safety_limits(info);
+  settings.port = port_settings(info, rate_Hz);
+  settings.coupling = coupling_gains(info, rate_Hz).coupling;
+  return settings;
+}
+
+Result<std::unique_ptr<Simulation>> Simulation::make(World world, FrameSettings settings) {
+  if (Result<void> sound = check_world(world, settings); !sound) return sound.error();
+  return std::unique_ptr<Simulation>(new Simulation(std::move(world), std::move(settings)));
+}
+
+Simulation::Simulation(World world, FrameSettings settings)
+    : world_(std::move(world)), settings_(std::move(settings)), state_(world_, settings_) {}
+
+Wrench Simulation::step(const DeviceSample& sample) noexcept {
+  FrameTick tick;
+  tick.index = next_index_;
+  tick.now_s = time_s();
+  tick.period_s = settings_.dt_s;
+  DeviceSample now = sample;
+  now.time_s = tick.now_s;
+  return run(now, tick);
+}
+
+Wrench Simulation::step(const Pose& X_DH) noexcept {
+  DeviceSample sample;
+  sample.valid = true;
+  sample.X_DH = X_DH;
+  return step(sample);
+}
+
+Wrench Simulation::run(const DeviceSample& sample, const FrameTick& tick) noexcept {
+  next_index_ = tick.index + 1;
+  return haptic_frame(world_, settings_, sample, tick, state_, report_);
+}
+
+}  // namespace tactum

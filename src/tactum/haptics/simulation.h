@@ -1,0 +1,69 @@
+#pragma once
+/// A world and its settings, stepped frame by frame: what a program needs that has no scene file.
+///
+///   World world;                                                 bodies, by World::add
+///   FrameSettings settings = settings_for(device.info(), 1000.0);
+///   settings.tool.body = 0;                                      which body the hand holds
+///   auto simulation = Simulation::make(std::move(world), settings);
+///   (*simulation)->step(sample)  ->  wrench                      in a loop of the caller's, or
+///   LoopThread().start(device, **simulation, ...)                in the loop of this library
+///
+/// A frame is haptic_frame (frame.h): it allocates nothing, locks nothing, throws nothing and reads no clock,
+/// and the same samples give the same bits.
+
+#include <memory>
+
+#include "tactum/haptics/frame.h"
+
+namespace tactum {
+
+/// An error when the world cannot be stepped: a body without a part, a pose that is not finite, a moving body
+/// without mass or inertia, a tool that holds no body of the world, a step that is not positive.
+Result<void> check_world(const World& world, const FrameSettings& settings);
+
+/// The default settings with what depends on the device: the step, the limits of safety, what the passivity
+/// stage knows of it, and the stiffest coupling it holds stable. Without these limits no force is sent.
+FrameSettings settings_for(const DeviceInfo& info, double rate_Hz);
+
+class Simulation final : public HapticFrame {
+ public:
+  /// Takes world and settings, and reserves everything the frames need. Slow; allocates.
+  static Result<std::unique_ptr<Simulation>> make(World world, FrameSettings settings);
+  Simulation(const Simulation&) = delete;
+  Simulation& operator=(const Simulation&) = delete;
+
+  /// One frame, FrameSettings::dt_s after the last. The sample counts as measured now, whatever its time.
+  /// Returns the wrench on the hand, axes of D, at the handle [N, N m].
+  Wrench step(const DeviceSample& sample) noexcept;
+  /// The same with nothing known but the pose of the handle.
+  Wrench step(const Pose& X_DH) noexcept;
+  /// The same with the loop's own index and time; the sample's time is then on the loop's clock.
+  Wrench run(const DeviceSample& sample, const FrameTick& tick) noexcept override;
+
+  const World& world() const noexcept { return world_; }
+  /// Between two frames the caller may change what setting_table.h calls live, and the budget.
+  FrameSettings& settings() noexcept { return settings_; }
+  const FrameSettings& settings() const noexcept { return settings_; }
+  /// Where the bodies are and how they move.
+  const WorldState& bodies() const noexcept { return state_.world; }
+  const FrameState& state() const noexcept { return state_; }
+  /// Of the last frame.
+  const FrameReport& report() const noexcept { return report_; }
+  /// Of the next frame: frames since the start, and the time it is at [s].
+  std::uint64_t next_index() const noexcept { return next_index_; }
+  double time_s() const noexcept { return static_cast<double>(next_index_) * settings_.dt_s; }
+
+  /// Puts a stage of the caller's before passivity and safety; null for none. It must outlive the frames.
+  void set_force_stage(ForceStage* stage) noexcept { state_.force_stage = stage; }
+
+ private:
+  Simulation(World world, FrameSettings settings);
+
+  World world_;
+  FrameSettings settings_;
+  FrameState state_;
+  FrameReport report_;
+  std::uint64_t next_index_ = 0;
+};
+
+}  // namespace tactum
