@@ -28,6 +28,12 @@ add_library(header_selfcheck OBJECT ${header_sources} ${CMAKE_CURRENT_BINARY_DIR
 target_compile_options(header_selfcheck PRIVATE -O0)
 target_link_libraries(header_selfcheck PRIVATE tactum_session tactum_warnings)
 
+# Nothing that is compiled for newer processors is called on others. Only where functions are inlined: without that the
+# wide files hold copies of everything they use.
+if(CMAKE_BUILD_TYPE STREQUAL "Release" AND CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  add_test(NAME house.wide_symbols COMMAND ${PYTHON3} ${tools}/check_wide_symbols.py ${PROJECT_BINARY_DIR})
+endif()
+
 # One frame, the same bits: g++ and clang++, optimised or not, sanitized or not. ./test builds them all.
 file(GLOB bench_command ${PROJECT_SOURCE_DIR}/app/*bench*.cpp)
 if(bench_command)
