@@ -37,11 +37,12 @@ struct Rig {
     X_DH = X;
     DeviceSample sample;
     sample.valid = true;
-    sample.time_s = static_cast<double>(frame) * 1e-3;
+    sample.time_s = static_cast<double>(frame) * settings.dt_s;
     sample.X_DH = X;
     FrameTick tick;
     tick.index = frame++;
     tick.now_s = sample.time_s;
+    tick.period_s = settings.dt_s;
     haptic_frame(world, settings, sample, tick, begun(), report);
     penetrating_frames += report.penetrating ? 1 : 0;
     return report;

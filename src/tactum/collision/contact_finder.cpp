@@ -50,7 +50,7 @@ void ContactFinder::find_patches(std::span<const Pose> X_WB, int budget, PatchPo
   thrifty_ = kAmple * due_.size() > static_cast<Index>(std::max(budget, 0));
   // Before the list is handed over: what is known leaves it.
   const int may_test = thrifty_ ? leave_known(X_WB) : budget;
-  const int checked = prioritise(due_, may_test);
+  const int checked = prioritise(due_, may_test, head_start_);
   work_.due = static_cast<int>(due_.size());
   for (int i = 0; i < work_.due; ++i) {
     const std::int32_t number = due_[Index(i)].pair;
@@ -82,7 +82,7 @@ void ContactFinder::find_patches(std::span<const Pose> X_WB, int budget, PatchPo
   for (const int number : objected_) settle_objected(patches_[Index(number)], X_WB);
   candidate_order_.clear();
   for (SeamCandidate& candidate : candidates_) candidate_order_.push_back(&candidate);
-  work_.rooms_full |= !settle_seams(candidate_order_, X_WB, patches_);
+  work_.rooms_full |= !settle_seams(candidate_order_, X_WB, steady_, patches_);
   for (const bool held : {true, false})
     for (const SweepAndPrune::Pair& near : sweep_.pairs())
       if (meet_by_surfaces(near.a, near.b) && of_held(near.a, near.b) == held)
@@ -258,10 +258,10 @@ void ContactFinder::hand_on(Pair& pair, const PairDistance& found, const Pose& X
     if (objected && found.distance > 0.0) objected_.push_back(static_cast<int>(patches_.size()) - 1);
     return;
   }
-  const PairDistance shown = steady_depth(A, B, X_AB, found, pair.shown);
+  const PairDistance shown = steady_depth(A, B, X_AB, found, steady_, pair.shown);
   patch.distance = shown.distance;
   contact_manifold(A, B, X_AB, shown, reach, patch.manifold);
-  steady_centroid(X_AB, patch.manifold, pair.shown);
+  steady_centroid(X_AB, patch.manifold, steady_, pair.shown);
 }
 
 int ContactFinder::distances_at(std::span<const Pose> X_WB, std::span<double> distance,

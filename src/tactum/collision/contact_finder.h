@@ -34,6 +34,7 @@
 #include <utility>
 #include <vector>
 
+#include "tactum/base/frame_rate.h"
 #include "tactum/collision/contact.h"
 #include "tactum/collision/contact_patch.h"
 #include "tactum/collision/contact_reduction.h"
@@ -99,8 +100,9 @@ struct ContactWork {
 
 class ContactFinder {
  public:
+  /// `dt_s` is the time from frame to frame [s].
   ContactFinder(std::vector<CollisionBody> bodies, std::span<const Pose> X_WB,
-                const ContactFinderRooms& rooms = {});
+                const ContactFinderRooms& rooms = {}, double dt_s = kReferenceStep_s);
 
   /// Renews what the motion since the last frame has made stale. `reach[i]` [m] bounds how far any point of
   /// body i moves in this frame; the tolerance of a pair is the sum of its reaches, at least `min_tolerance`
@@ -221,6 +223,8 @@ class ContactFinder {
   std::vector<SurfaceMinimum> minima_;
   std::vector<ReductionScratch> reduction_scratch_;
   std::size_t kept_minima_ = 0;
+  SteadyLimits steady_;
+  int head_start_;  // frames
   std::span<const double> reach_;
   PatchPoints points_ = PatchPoints::kQuadrature;
   double min_tolerance_ = 0.0;

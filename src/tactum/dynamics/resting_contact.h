@@ -12,7 +12,7 @@
 /// A gap below nothing is asked to open. What is wedged has no room to, and its rows no answer: each sweep
 /// would press it together by as much more. An island whose sweeps have not ended after a third of their
 /// number is therefore set back to where it began and only kept from closing further, and so are its contacts
-/// for some frames. What friction presses together ever harder finds an end where, in the last sweeps,
+/// for some time. What friction presses together ever harder finds an end where, in the last sweeps,
 /// friction may only be what it was.
 ///
 /// Springs, damping, friction and limits of joints are rows of the same kind.
@@ -21,6 +21,7 @@
 #include <span>
 #include <vector>
 
+#include "tactum/base/frame_rate.h"
 #include "tactum/dynamics/friction_row.h"
 
 namespace tactum {
@@ -122,6 +123,7 @@ class RestingContact {
   std::vector<Range> islands_;            // by the island's number
   std::vector<int> joint_left_shut_;      // as Last::left_shut, by body
   std::size_t next_ = 0;                  // in last_: names come in the same order from frame to frame
+  double h_ = kReferenceStep_s;           // of the rows [s]
   bool started_ = false;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "tactum/base/frame_rate.h"
 #include "tactum/base/tolerances.h"
 #include "tactum/haptics/constraint_rows.h"
 #include "tactum/haptics/frame_state.h"
@@ -19,9 +20,9 @@ constexpr int kSlipRounds = 6;
 constexpr double kTrustGrowth = 2.0;
 /// The tolerance of contact determination is so much more than the trusted length, in skins.
 constexpr double kReachMargin = 4.0;
-/// A part whose step is refused in so many frames on end is felt where it stands, not where the forces would
+/// A part whose steps have been refused for so long is felt where it stands, not where the forces would
 /// have it: what is felt would be the same however far the hand goes away.
-constexpr int kStandsFrames = 2;
+constexpr double kStands_s = 0.002;
 
 /// The bodies and what each wants: to the hand, on along its way; or, `at_rest`, nothing.
 void add_bodies(const World& world, const FrameSettings& settings, double dt_s, bool at_rest,
@@ -265,7 +266,7 @@ double move_held_island(const World& world, const FrameSettings& settings, doubl
   const double share = advance(world, settings, dt_s, state, report);
   c.stood = share > 0.0 ? 0 : c.stood + 1;
   if (share > 0.0) take_trial(state);
-  if (c.stood >= kStandsFrames) feel(settings, dt_s, Vec6::Zero(), state);
+  if (c.stood >= frames_in(kStands_s, dt_s)) feel(settings, dt_s, Vec6::Zero(), state);
   c.friction.end(own_rows(state), c.first_row, c.problem, state.world.X_WB);
   const std::vector<Pose>& before = share > 0.0 ? c.X_WB_trial : state.world.X_WB;  // take_trial swaps them
   for (Index i = 0; i < world.bodies.size(); ++i)

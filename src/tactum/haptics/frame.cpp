@@ -55,7 +55,7 @@ Wrench haptic_frame(const World& world, const FrameSettings& settings, const Dev
     raw = felt_wrench(settings, state, report);
   }
   report.coupling = raw;
-  report.smoothed = smooth_wrench(settings.smoothing, state.smoothing, to_device(state.hand, raw));
+  report.smoothed = smooth_wrench(settings.smoothing, dt, state.smoothing, to_device(state.hand, raw));
 
   // Does it make energy? Is it safe to send?
   const PortInput port = port_input(world, settings, state, report);

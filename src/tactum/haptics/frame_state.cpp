@@ -17,7 +17,7 @@ FrameState::FrameState(const World& constant_world, const FrameSettings& setting
                        StageObserver* stage_observer)
     : world(initial_state(constant_world)),
       tool(settings.tool),
-      finder(collision_bodies(constant_world), world.X_WB, settings.budget.rooms),
+      finder(collision_bodies(constant_world), world.X_WB, settings.budget.rooms, settings.dt_s),
       observer(stage_observer),
       resistance(constant_world.bodies.size(), Resistance::Zero()),
       mobility(constant_world.bodies.size(), Mobility::Zero()),

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "tactum/base/frame_rate.h"
 #include "tactum/haptics/frame_state.h"
 #include "tactum/math/screw.h"
 
@@ -10,7 +11,7 @@ namespace {
 
 using Index = std::size_t;
 
-constexpr int kStillFrames = 60;
+constexpr double kStill_s = 0.06;
 /// No point has gone farther in that time than this share of the skin: some nanometres.
 constexpr double kStillShare = 0.01;
 
@@ -49,8 +50,9 @@ Sleep::Sleep(const World& world)
       islands(world),
       restless(world.bodies.size(), 0) {}
 
-void let_sleep(const World& world, FrameState& state, FrameReport& report) noexcept {
+void let_sleep(const World& world, double dt_s, FrameState& state, FrameReport& report) noexcept {
   Sleep& s = state.sleep;
+  const int still_frames = frames_in(kStill_s, dt_s);
   std::vector<char>& waits = state.waiting.waits;  // nobody so far
   s.islands.clear(world, waits);
   count_touches(state);
@@ -58,12 +60,12 @@ void let_sleep(const World& world, FrameState& state, FrameReport& report) noexc
   for (Index i = 0; i < world.bodies.size(); ++i) {
     if (!world.bodies[i].moves()) continue;
     if (is_still(state, i)) {
-      s.still[i] = std::min(s.still[i] + 1, kStillFrames);
+      s.still[i] = std::min(s.still[i] + 1, still_frames);
     } else {
       s.X_still[i] = state.world.X_WB[i];
       s.still[i] = 0;
     }
-    if (s.still[i] < kStillFrames) s.restless[Index(s.islands.of(static_cast<int>(i)))] = 1;
+    if (s.still[i] < still_frames) s.restless[Index(s.islands.of(static_cast<int>(i)))] = 1;
   }
   for (Index i = 0; i < world.bodies.size(); ++i) {
     if (!world.bodies[i].moves() || s.restless[Index(s.islands.of(static_cast<int>(i)))]) continue;

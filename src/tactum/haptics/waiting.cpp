@@ -1,8 +1,10 @@
 #include "tactum/haptics/waiting.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
+#include "tactum/base/frame_rate.h"
 #include "tactum/haptics/frame_state.h"
 #include "tactum/math/screw.h"
 
@@ -15,21 +17,22 @@ using Index = std::size_t;
 constexpr int kFewestRounds = 1;
 constexpr int kMostRounds = 8;
 
-/// While a body waits, the guess of how far it would go fades, so that its turn comes however many gaps it
-/// has.
+/// While a body waits, the guess of how far it would go fades to this share in kReferenceStep_s, so that its
+/// turn comes however many gaps it has.
 constexpr double kFading = 0.8;
 
-// What rests: in so many frames it has gone no farther than this share of its radius. What wakes: a neighbour
+// What rests: in so long it has gone no farther than this share of its radius. What wakes: a neighbour
 // as fast as this.
-constexpr int kRestFrames = 60;
+constexpr double kRest_s = 0.06;
 constexpr double kRestShare = 0.03;
 constexpr double kWakingSpeed = 0.15;  // [m/s]
 
 bool asleep(const Waiting& w, Index body) { return w.contacts_at_rest[body] > 0; }
 
 /// Who falls asleep, and who wakes.
-void watch_rest(const World& world, FrameState& state) {
+void watch_rest(const World& world, double dt_s, FrameState& state) {
   Waiting& w = state.waiting;
+  const int rest_frames = frames_in(kRest_s, dt_s);
   std::fill(w.contacts.begin(), w.contacts.end(), 0);
   std::fill(w.hit.begin(), w.hit.end(), 0);
   const auto fast = [&](int body) {
@@ -51,7 +54,7 @@ void watch_rest(const World& world, FrameState& state) {
     if (left || lost || w.hit[i] || w.urgency[i] != urgency::kOther) {
       w.X_rest[i] = X_WB;
       w.rested[i] = w.contacts_at_rest[i] = 0;
-    } else if (!w.waits[i] && ++w.rested[i] >= kRestFrames) {
+    } else if (!w.waits[i] && ++w.rested[i] >= rest_frames) {
       w.contacts_at_rest[i] = std::max(w.contacts_at_rest[i], w.contacts[i]);
     }
   }
@@ -160,14 +163,15 @@ void let_wait(const World& world, const FrameSettings& settings, double dt_s, Fr
     if (!state.free.others) {
       wake(state.sleep);
     } else if (settings.budget.sleep) {
-      let_sleep(world, state, report);
+      let_sleep(world, dt_s, state, report);
     }
     return;
   }
   wake(state.sleep);
-  watch_rest(world, state);
+  watch_rest(world, dt_s, state);
   std::fill(w.waits.begin(), w.waits.end(), 1);
   let_go(world, state);
+  const double fading = std::pow(kFading, dt_s / kReferenceStep_s);
   for (Index i = 0; i < world.bodies.size(); ++i) {
     w.waited[i] = w.waits[i] && !asleep(w, i) ? w.waited[i] + 1 : 0;
     if (!w.waits[i] || !world.bodies[i].moves()) continue;
@@ -177,7 +181,7 @@ void let_wait(const World& world, const FrameSettings& settings, double dt_s, Fr
       w.way[i] = 0.0;
       continue;
     }
-    w.way[i] *= kFading;
+    w.way[i] *= fading;
     ++report.waiting;
     report.flags |= frame_flag::kBudgetShort;
     report.longest_wait = std::max(report.longest_wait, w.waited[i]);
