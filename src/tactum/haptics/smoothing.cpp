@@ -14,6 +14,10 @@ Vec3 smoothed(const Vec3& F0, const Vec3& F1, double F_max) noexcept {
 
 Wrench smooth_wrench(const SmoothingSettings& settings, double dt_s, SmoothingState& state,
                      const Wrench& computed) noexcept {
+  if (!settings.on) {
+    state.shown = computed;
+    return state.shown;
+  }
   const double steps = dt_s / kReferenceStep_s;
   state.shown.f = smoothed(state.shown.f, computed.f, settings.max_force_step_N * steps);
   state.shown.t = smoothed(state.shown.t, computed.t, settings.max_torque_step_Nm * steps);
