@@ -16,7 +16,7 @@ std::vector<std::string> frame_notes(const RunRecord& record) {
     notes.push_back(fmt::format(
         "{} pair checks were left out, {} of them without a proof that nothing could touch; bodies waited "
         "{} times: raise max_exact_tests",
-        record.unchecked, record.left_unproven, record.waiting));
+        record.sum("work.unchecked"), record.sum("work.left_unproven"), record.sum("waiting")));
   if (record.flags & frame_flag::kCapacityReached)
     notes.emplace_back("near pairs or patches were dropped: capacity reached");
   if (record.flags & frame_flag::kPointsFull)
@@ -24,8 +24,24 @@ std::vector<std::string> frame_notes(const RunRecord& record) {
   if (record.flags & frame_flag::kSolverBounded)
     notes.emplace_back("the contact solver did not always converge: raise solver_iterations");
   if (record.flags & frame_flag::kUncertified)
-    notes.push_back(fmt::format("{} distances had no certificate", record.uncertified));
+    notes.push_back(fmt::format("{} distances had no certificate", record.sum("work.uncertified")));
   return notes;
+}
+
+/// Sums and largest values of the report's fields, by the last part of their names.
+void add_fields(const RunRecord& record, nlohmann::ordered_json& json) {
+  for_each_report_field([&](auto field) {
+    using Field = decltype(field);
+    const std::string_view name = Field::info.name;
+    const std::string key(name.substr(name.rfind('.') + 1));  // npos + 1 is the beginning
+    const double largest = record.largest_at(Field::place);
+    if constexpr (Field::info.in_run == InRun::kSum) {
+      json[key] = record.sum_at(Field::place);
+      json["max_" + key] = static_cast<std::uint64_t>(largest);
+    } else if constexpr (Field::info.in_run == InRun::kLargest) {
+      json["max_" + key] = largest;
+    }
+  });
 }
 
 }  // namespace
@@ -62,14 +78,19 @@ void print_summary(std::FILE* out, const Session& session, const Summary& times,
       "work             {} bodies; mean {:.1f} exact tests, {:.1f} contact pairs; at most {} tests a frame, "
       "{} "
       "pairs unchecked\n",
-      record.bodies, mean(static_cast<double>(record.exact_tests + record.validation_tests), record.frames),
-      mean(static_cast<double>(record.patches), record.frames), record.max_tests, record.max_unchecked);
-  if (record.surface_queries > 0)
+      record.largest("work.bodies"),
+      mean(static_cast<double>(record.sum("work.exact_tests") + record.sum("validation_tests")),
+           record.frames),
+      mean(static_cast<double>(record.sum("work.patches")), record.frames), record.max_tests,
+      record.largest("work.unchecked"));
+  if (record.sum("work.surface_queries") > 0)
     fmt::print(
         out,
         "surfaces         {} queries: mean {:.0f} minima, at most {} a frame; mean {:.0f} feature pairs\n",
-        record.surface_queries, mean(static_cast<double>(record.minima), record.surface_queries),
-        record.max_minima, mean(static_cast<double>(record.feature_steps), record.surface_queries));
+        record.sum("work.surface_queries"),
+        mean(static_cast<double>(record.sum("work.minima")), record.sum("work.surface_queries")),
+        record.largest("work.minima"),
+        mean(static_cast<double>(record.sum("work.feature_steps")), record.sum("work.surface_queries")));
   const LoopStatus loop = session.loop_status();
   if (loop.frames > 0)
     fmt::print(out, "loop             {} frames, {} missed deadlines, {} late\n", loop.frames,
@@ -93,40 +114,32 @@ nlohmann::ordered_json summary_json(const Session& session, const Summary& times
   nlohmann::ordered_json stages_us;
   for (const StageSummary& stage : stages.summaries()) stages_us[stage.name] = summary_us(stage.summary);
   const LoopStatus loop = session.loop_status();
-  return {{"scene", session.scene().name},
-          {"device", session.device().name},
-          {"rate_Hz", session.rate_Hz()},
-          {"frames", record.frames},
-          {"colliding_frames", record.colliding_frames},
-          {"penetrating_frames", record.penetrating_frames},
-          {"max_penetration_m", record.max_penetration_m},
-          {"mean_force_N", mean(record.sum_force_N, record.frames)},
-          {"max_force_N", record.max_force_N},
-          {"max_force_step_N", record.max_force_step_N},
-          {"mean_torque_Nm", mean(record.sum_torque_Nm, record.frames)},
-          {"max_torque_Nm", record.max_torque_Nm},
-          {"max_torque_step_Nm", record.max_torque_step_Nm},
-          {"max_momentum_off_Ns", record.max_momentum_off_Ns},
-          {"forced_short_frames", record.forced_short_frames},
-          {"non_finite_frames", record.non_finite_frames},
-          {"exact_tests", record.exact_tests},
-          {"uncertified", record.uncertified},
-          {"unchecked", record.unchecked},
-          {"left_unproven", record.left_unproven},
-          {"validation_tests", record.validation_tests},
-          {"max_tests", record.max_tests},
-          {"waiting", record.waiting},
-          {"surface_queries", record.surface_queries},
-          {"minima", record.minima},
-          {"max_minima", record.max_minima},
-          {"feature_steps", record.feature_steps},
-          {"missed_deadlines", loop.missed_deadlines},
-          {"frame_us", summary_us(times)},
-          {"stages_us", stages_us},
-          {"notes", frame_notes(record)},
-          {"goals", goals},
-          {"goal_met", session.goals().all_met()},
-          {"frame_hash", hash_text(record.hash())}};
+  nlohmann::ordered_json json = {{"scene", session.scene().name},
+                                 {"device", session.device().name},
+                                 {"rate_Hz", session.rate_Hz()},
+                                 {"frames", record.frames},
+                                 {"colliding_frames", record.colliding_frames},
+                                 {"penetrating_frames", record.penetrating_frames},
+                                 {"max_penetration_m", record.max_penetration_m},
+                                 {"mean_force_N", mean(record.sum_force_N, record.frames)},
+                                 {"max_force_N", record.max_force_N},
+                                 {"max_force_step_N", record.max_force_step_N},
+                                 {"mean_torque_Nm", mean(record.sum_torque_Nm, record.frames)},
+                                 {"max_torque_Nm", record.max_torque_Nm},
+                                 {"max_torque_step_Nm", record.max_torque_step_Nm},
+                                 {"max_momentum_off_Ns", record.max_momentum_off_Ns},
+                                 {"forced_short_frames", record.forced_short_frames},
+                                 {"non_finite_frames", record.non_finite_frames},
+                                 {"max_tests", record.max_tests},
+                                 {"missed_deadlines", loop.missed_deadlines},
+                                 {"frame_us", summary_us(times)},
+                                 {"stages_us", stages_us},
+                                 {"notes", frame_notes(record)},
+                                 {"goals", goals},
+                                 {"goal_met", session.goals().all_met()},
+                                 {"frame_hash", hash_text(record.hash())}};
+  add_fields(record, json);
+  return json;
 }
 
 }  // namespace tactum

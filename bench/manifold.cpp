@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "tactum/base/frame_rate.h"
 #include "tactum/collision/manifold.h"
 #include "tactum/contact/steady_contact.h"
 
@@ -72,7 +73,7 @@ void measure_steadiness(const Shape& a, const Shape& b, const Recording& recordi
       row.pressure_max_m = std::max(row.pressure_max_m, (now->pressure - last->pressure).norm());
     }
     last = now;
-    steady_centroid(recording.poses[i], patch, memory);
+    steady_centroid(recording.poses[i], patch, SteadyLimits(kReferenceStep_s), memory);
     const std::optional<Centres> shown = centres_of(patch);
     if (shown && last_shown)
       row.shown_max_m = std::max(row.shown_max_m, (shown->centroid - last_shown->centroid).norm());

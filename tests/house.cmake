@@ -40,6 +40,11 @@ target_link_libraries(header_selfcheck PRIVATE tactum_session tactum_warnings)
 
 # The frames of every shipped scene are the committed ones.
 add_test(NAME golden.frames COMMAND ${PYTHON3} ${tools}/golden_frames.py $<TARGET_FILE:tactum>)
+# Nothing that is compiled for newer processors is called on others. Only where functions are inlined: without that the
+# wide files hold copies of everything they use.
+if(CMAKE_BUILD_TYPE STREQUAL "Release" AND CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  add_test(NAME house.wide_symbols COMMAND ${PYTHON3} ${tools}/check_wide_symbols.py ${PROJECT_BINARY_DIR})
+endif()
 
 # One frame, the same bits: g++ and clang++, optimised or not, sanitized or not. ./test builds them all.
 set(builds ${PROJECT_SOURCE_DIR}/build)

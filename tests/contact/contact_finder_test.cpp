@@ -310,6 +310,7 @@ TEST(ContactFinder, WhatABudgetLeavesIsNotEntered) {
 }
 
 TEST(Schedule, TheMostUrgentComeFirst) {
+  constexpr int kHeadStartFrames = 8;
   std::vector<DuePair> due;
   Random random(3);
   for (int i = 0; i < 100; ++i) {
@@ -318,17 +319,17 @@ TEST(Schedule, TheMostUrgentComeFirst) {
   }
   const std::vector<DuePair> all = due;
   const int budget = 40;
-  ASSERT_EQ(prioritise(due, budget), budget);
+  ASSERT_EQ(prioritise(due, budget, kHeadStartFrames), budget);
   const auto urgency = [](const DuePair& d) {
-    return std::tuple(d.urgency, d.last_checked - (d.was_in_contact ? kHeadStart : 0), d.pair);
+    return std::tuple(d.urgency, d.last_checked - (d.was_in_contact ? kHeadStartFrames : 0), d.pair);
   };
   auto least_urgent_taken = urgency(due[0]);
   for (int i = 0; i < budget; ++i)
     least_urgent_taken = std::max(least_urgent_taken, urgency(due[std::size_t(i)]));
   for (std::size_t i = budget; i < due.size(); ++i) EXPECT_GT(urgency(due[i]), least_urgent_taken);
   for (int i = 1; i < budget; ++i) EXPECT_LT(due[std::size_t(i) - 1].pair, due[std::size_t(i)].pair);
-  EXPECT_EQ(prioritise(due, 1000), 100);
-  EXPECT_EQ(prioritise(due, 0), 0);
+  EXPECT_EQ(prioritise(due, 1000, kHeadStartFrames), 100);
+  EXPECT_EQ(prioritise(due, 0, kHeadStartFrames), 0);
 }
 
 }  // namespace

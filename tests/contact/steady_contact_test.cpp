@@ -13,6 +13,8 @@
 namespace tactum {
 namespace {
 
+const SteadyLimits kLimits(0.001);
+
 Vec3 centroid(const Manifold& patch) {
   Vec3 sum = Vec3::Zero();
   for (const ContactPoint& p : patch.points) sum += p.weight * 0.5 * (p.p_a + p.p_b);
@@ -46,7 +48,7 @@ TEST(SteadyContact, ASwitchingNormalTurnsSlowlyAndAlwaysSeparates) {
         last = {};
         continue;
       }
-      const PairDistance shown = steady_depth(box, box, X, found, last);
+      const PairDistance shown = steady_depth(box, box, X, found, kLimits, last);
       SCOPED_TRACE("seed " + std::to_string(seed) + ", run " + std::to_string(run) + ", frame " +
                    std::to_string(frame));
       EXPECT_NEAR(shown.normal.norm(), 1.0, 1e-12);
@@ -61,9 +63,9 @@ TEST(SteadyContact, ASwitchingNormalTurnsSlowlyAndAlwaysSeparates) {
                   shown.distance, 1e-12);
       if (!before.isZero()) {
         const double turn = before.cross(shown.normal).norm();
-        EXPECT_LE(turn, std::sin(kNormalTurn) + 1e-9);
+        EXPECT_LE(turn, std::sin(kLimits.turn_rad) + 1e-9);
         EXPECT_GT(before.dot(shown.normal), 0.0);
-        EXPECT_LE(std::abs(shown.distance - depth_before), 2.0 * kNormalTurn * 4e-3 + 4e-4);
+        EXPECT_LE(std::abs(shown.distance - depth_before), 2.0 * kLimits.turn_rad * 4e-3 + 4e-4);
       }
       const bool there = shown.normal.dot(found.normal) > 1.0 - 1e-12;
       behind = there ? 0 : behind + 1;
@@ -111,7 +113,7 @@ TEST(SteadyContact, TheCentroidTakesNoStepOnAnyShape) {
       Manifold patch;
       contact_manifold(A, B, X, now, 1e-4, patch);
       const Manifold raw = patch;
-      steady_centroid(X, patch, last);
+      steady_centroid(X, patch, kLimits, last);
       if (patch.points.empty()) {
         have = false;
         if (now.distance > 1e-4) X.p += now.normal * (now.distance - 5e-5);  // back into touch

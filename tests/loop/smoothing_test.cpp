@@ -54,16 +54,16 @@ TEST(Smoothing, ReachesAConstantForceAndTreatsTorqueApart) {
   settings.max_torque_step_Nm = 0.01;
   SmoothingState state;
   const Wrench computed{{2.2, 0, 0}, {0, 0, 0.005}};
-  Wrench shown = smooth_wrench(settings, state, computed);
+  Wrench shown = smooth_wrench(settings, 0.001, state, computed);
   EXPECT_EQ(shown.f.x(), 0.5);
   EXPECT_EQ(shown.t.z(), 0.005) << "a small torque is not held back by a large force";
   const double expected[] = {1.0, 1.5, 1.85, 2.2, 2.2};
   for (const double force : expected) {
-    shown = smooth_wrench(settings, state, computed);
+    shown = smooth_wrench(settings, 0.001, state, computed);
     EXPECT_NEAR(shown.f.x(), force, 1e-15);
   }
   settings.max_force_step_N = std::numeric_limits<double>::infinity();
-  EXPECT_EQ(smooth_wrench(settings, state, {{-90, 0, 0}, {0, 0, 0}}).f.x(), -90.0);
+  EXPECT_EQ(smooth_wrench(settings, 0.001, state, {{-90, 0, 0}, {0, 0, 0}}).f.x(), -90.0);
 }
 
 }  // namespace

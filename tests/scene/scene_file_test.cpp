@@ -230,7 +230,7 @@ TEST(SceneErrors, OutOfRange) {
   expect_error(13, "joint = { kind = \"hinge\", axis = [0, 0, 0] }", "test.toml:13:34", "no direction");
   expect_error(10, "part = { box = { size_m = [1, -1, 1] } }", "test.toml:10:27", "three numbers above 0");
   expect_error(10, "part = { gear = { teeth = 7 } }", "test.toml:10:17", "found 7, expected 18 to 400");
-  expect_error(15, "damping_Ns_per_m = -0.1", "test.toml:15:20", "expected at least 0");
+  expect_error(15, "damping_Ns_per_m = -0.1", "test.toml:15:20", "expected 0 to 20");
 }
 
 TEST(SceneErrors, Orientations) {

@@ -2,10 +2,13 @@
 
 #include "tactum/haptics/setting_table.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 
+#include "support/generated_page.h"
 #include "tactum/scene/scene_file.h"
 
 namespace tactum {
@@ -14,15 +17,24 @@ namespace {
 const char* const kBody = "schema = 1\n";
 const char* const kPart = "\n[[body]]\nname = \"b\"\npart = { box = { size_m = [0.1, 0.1, 0.1] } }\n";
 
+/// A value of the setting's range that is not the default.
+double other_value(const SettingInfo& setting, double share) {
+  const UserSettings defaults;
+  const double usual = setting.get(defaults.frame, defaults.safety);
+  if (setting.kind == SettingKind::kOnOff || setting.kind == SettingKind::kChoice) return 1.0 - usual;
+  const double value = setting.low + share * (setting.high - setting.low);
+  return setting.kind == SettingKind::kInteger ? std::round(value) : value;
+}
+
 TEST(SettingTable, WhatItWritesReadsBackToTheSameSettings) {
   UserSettings settings;
+  const UserSettings defaults;
   double share = 0.1;
   for (const SettingInfo& setting : setting_table()) {
     share = std::fmod(share + 0.37, 1.0);
-    double value = setting.low + share * (setting.high - setting.low);
-    if (setting.kind != SettingKind::kNumber)
-      value = setting.kind == SettingKind::kOnOff ? 1.0 : std::round(value);
+    const double value = other_value(setting, share);
     EXPECT_TRUE(in_range(setting, value)) << setting.key;
+    EXPECT_NE(value, setting.get(defaults.frame, defaults.safety)) << setting.key;
     setting.set(settings.frame, settings.safety, value);
     EXPECT_NEAR(setting.get(settings.frame, settings.safety), value, 1e-12 * std::abs(value)) << setting.key;
   }
@@ -34,6 +46,85 @@ TEST(SettingTable, WhatItWritesReadsBackToTheSameSettings) {
     EXPECT_NEAR(setting.get(scene->settings, scene->safety), written, 1e-12 * std::abs(written))
         << setting.key;
   }
+}
+
+/// A scene file with this one setting.
+Result<Scene> scene_with(const SettingInfo& setting, const std::string& value) {
+  const std::string line = fmt::format("{} = {}\n", setting.key, value);
+  const std::string section = *setting.section ? fmt::format("[{}]\n", setting.section) : "";
+  return parse_scene(kBody + section + line + kPart, "one", "one.toml", {});
+}
+
+TEST(SettingTable, WhatTheTableAcceptsAFileMaySayAndNothingElse) {
+  for (const SettingInfo& setting : setting_table()) {
+    SCOPED_TRACE(setting.key);
+    if (setting.kind == SettingKind::kOnOff || setting.kind == SettingKind::kChoice) {
+      EXPECT_FALSE(scene_with(setting, "7"));
+      EXPECT_FALSE(in_range(setting, 7.0));
+      continue;
+    }
+    const bool whole = setting.kind == SettingKind::kInteger;
+    const double beyond = whole ? 1.0 : 1e-3 * (setting.high - setting.low);
+    for (const double value : {setting.low, setting.high, setting.low - beyond, setting.high + beyond}) {
+      const Result<Scene> scene = scene_with(setting, fmt::format("{}", value));
+      EXPECT_EQ(static_cast<bool>(scene), in_range(setting, value)) << value;
+      EXPECT_EQ(in_range(setting, value), value >= setting.low && value <= setting.high) << value;
+      if (!scene) {
+        EXPECT_NE(scene.error().message().find("one.toml:"), std::string::npos) << scene.error().message();
+      }
+    }
+    EXPECT_FALSE(scene_with(setting, "nan"));
+    EXPECT_FALSE(in_range(setting, std::nan("")));
+  }
+}
+
+TEST(SettingTable, SmoothingThatIsOffKeepsItsLimits) {
+  UserSettings settings;
+  const auto set = [&](const char* key, double value) {
+    setting_table()[static_cast<std::size_t>(setting_called(key))].set(settings.frame, settings.safety,
+                                                                       value);
+  };
+  set("smoothing.max_force_step_N", 0.25);
+  set("smoothing.on", 0.0);
+  set("smoothing.on", 1.0);
+  EXPECT_EQ(settings.frame.smoothing.max_force_step_N, 0.25);
+}
+
+/// "0.001 to 5", "true, false", "penalty, constraint".
+std::string range_of(const SettingInfo& setting) {
+  if (setting.kind == SettingKind::kOnOff) return "true, false";
+  if (setting.kind != SettingKind::kChoice) return fmt::format("{} to {}", setting.low, setting.high);
+  std::string words;
+  for (const char* word : setting.choices) words += (words.empty() ? "" : ", ") + std::string(word);
+  return words;
+}
+
+std::string default_of(const SettingInfo& setting) {
+  const UserSettings defaults;
+  const double value = setting.get(defaults.frame, defaults.safety);
+  if (setting.kind == SettingKind::kOnOff) return value != 0.0 ? "true" : "false";
+  if (setting.kind == SettingKind::kChoice) return setting.choices[static_cast<std::size_t>(value)];
+  return std::isinf(value) ? "none" : fmt::format("{:.6g}", value);
+}
+
+TEST(SettingTable, ThePageIsMadeFromTheTable) {
+  std::string page =
+      "# Settings\n\n"
+      "Made from `src/tactum/haptics/setting_table.cpp` by a test, not by hand. The same table reads and "
+      "writes\n"
+      "scene files and makes the viewer's panel. Where the last column says so a setting takes effect "
+      "between two\n"
+      "frames, otherwise when the scene starts again. Safety settings can only tighten the device's own "
+      "limits.\n"
+      "Without the section `[coupling]` the coupling is chosen for the device and its rate\n"
+      "([stability](algorithms/stability.md)).\n\n"
+      "| setting | unit | default | range | meaning | live |\n|---|---|---|---|---|---|\n";
+  for (const SettingInfo& setting : setting_table()) {
+    const std::string section = *setting.section ? fmt::format("{}.", setting.section) : "";
+    page += fmt::format("| `{}{}` | {} | {} | {} | {} | {} |\n", section, setting.key, setting.unit,
+                        default_of(setting), range_of(setting), setting.meaning, setting.live ? "yes" : "");
+  }
+  testing::expect_page("docs/settings.md", page);
 }
 
 TEST(SettingTable, TheDefaultsLieInTheirRangesAndReadBack) {

@@ -101,10 +101,11 @@ TEST_P(RealParts, AreFeltWithoutEverCrossing) {
   ASSERT_TRUE(session.run_virtual(frames, &referee));
 
   const RunRecord& record = session.record();
-  std::printf("%s: %llu of %llu frames pushed; never nearer than %.1f nm; %llu minima, at most %d a frame\n",
-              name.c_str(), static_cast<unsigned long long>(record.held_contact_frames),
-              static_cast<unsigned long long>(frames), referee.least_m * 1e9,
-              static_cast<unsigned long long>(record.minima), record.max_minima);
+  std::printf(
+      "%s: %llu of %llu frames pushed; never nearer than %.1f nm; %llu minima, at most %.0f a frame\n",
+      name.c_str(), static_cast<unsigned long long>(record.held_contact_frames),
+      static_cast<unsigned long long>(frames), referee.least_m * 1e9,
+      static_cast<unsigned long long>(record.sum("work.minima")), record.largest("work.minima"));
   EXPECT_EQ(referee.crossing, 0);
   EXPECT_GT(referee.least_m, 0.0);
   EXPECT_EQ(record.penetrating_frames, 0u);

@@ -224,6 +224,7 @@ class Tracker {
   }
 
  private:
+  // These divide the work of the search among its calls; they are no times, and so are not told in seconds.
   static constexpr std::uint32_t kLook = 3;  ///< of so many frames one looks around
   static constexpr std::uint32_t kDue = 4;   ///< of so many of those, one is for the candidates
   static constexpr int kMoves = 2;           ///< from facet to facet, of a walk whose turn it is

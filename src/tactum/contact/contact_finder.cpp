@@ -51,7 +51,7 @@ void ContactFinder::find_patches(std::span<const Pose> X_WB, int budget, PatchPo
   budget_limited_ = kAmple * due_.size() > static_cast<Index>(std::max(budget, 0));
   // Pairs whose answer still holds leave the list before it is put in order.
   const int may_test = budget_limited_ ? skip_still_valid(X_WB) : budget;
-  const int checked = prioritise(due_, may_test);
+  const int checked = prioritise(due_, may_test, head_start_);
   work_.due = static_cast<int>(due_.size());
   for (int i = 0; i < work_.due; ++i) {
     const std::int32_t number = due_[Index(i)].pair;
@@ -83,7 +83,7 @@ void ContactFinder::find_patches(std::span<const Pose> X_WB, int budget, PatchPo
   for (const int number : internal_contacts_) settle_internal_contact(patches_[Index(number)], X_WB);
   candidate_order_.clear();
   for (SeamCandidate& candidate : candidates_) candidate_order_.push_back(&candidate);
-  work_.capacity_reached |= !settle_seams(candidate_order_, X_WB, patches_);
+  work_.capacity_reached |= !settle_seams(candidate_order_, X_WB, steady_, patches_);
   for (const bool held : {true, false})
     for (const SweepAndPrune::Pair& near : sweep_.pairs())
       if (meet_by_surfaces(near.a, near.b) && of_held(near.a, near.b) == held)
@@ -261,10 +261,10 @@ void ContactFinder::emit_patch(Pair& pair, const PairDistance& found, const Pose
     if (internal && found.distance > 0.0) internal_contacts_.push_back(static_cast<int>(patches_.size()) - 1);
     return;
   }
-  const PairDistance shown = steady_depth(A, B, X_AB, found, pair.shown);
+  const PairDistance shown = steady_depth(A, B, X_AB, found, steady_, pair.shown);
   patch.distance = shown.distance;
   contact_manifold(A, B, X_AB, shown, reach, patch.manifold);
-  steady_centroid(X_AB, patch.manifold, pair.shown);
+  steady_centroid(X_AB, patch.manifold, steady_, pair.shown);
 }
 
 int ContactFinder::distances_at(std::span<const Pose> X_WB, std::span<double> distance,

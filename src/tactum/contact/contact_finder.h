@@ -32,6 +32,7 @@
 #include <utility>
 #include <vector>
 
+#include "tactum/base/frame_rate.h"
 #include "tactum/collision/contact.h"
 #include "tactum/contact/contact_patch.h"
 #include "tactum/contact/contact_reduction.h"
@@ -60,8 +61,9 @@ enum class PatchPoints {
 
 class ContactFinder final : public GapOracle {
  public:
+  /// `dt_s` is the time from frame to frame [s].
   ContactFinder(std::vector<CollisionBody> bodies, std::span<const Pose> X_WB,
-                const ContactFinderCapacity& capacity = {});
+                const ContactFinderCapacity& capacity = {}, double dt_s = kReferenceStep_s);
 
   /// Renews what the motion since the last frame has made stale. `reach[i]` [m] bounds how far any point of
   /// body i moves in this frame; the tolerance of a pair is the sum of its reaches, at least `min_tolerance`
@@ -176,6 +178,8 @@ class ContactFinder final : public GapOracle {
   std::vector<SurfaceMinimum> minima_;
   std::vector<ReductionScratch> reduction_scratch_;
   std::size_t kept_minima_ = 0;
+  SteadyLimits steady_;
+  int head_start_;             // frames
   std::vector<double> reach_;  // by body
   PatchPoints points_ = PatchPoints::kQuadrature;
   double min_tolerance_ = 0.0;

@@ -30,8 +30,10 @@ bool inside(const Aabb& small, const Aabb& large) {
 }  // namespace
 
 ContactFinder::ContactFinder(std::vector<CollisionBody> bodies, std::span<const Pose> X_WB,
-                             const ContactFinderCapacity& capacity)
-    : bodies_(std::move(bodies)), last_X_WB_(X_WB.begin(), X_WB.end()), sweep_([&] {
+                             const ContactFinderCapacity& capacity, double dt_s)
+    : bodies_(std::move(bodies)),
+      last_X_WB_(X_WB.begin(), X_WB.end()),
+      sweep_([&] {
         for (Index i = 0; i < bodies_.size(); ++i) {
           const Part& part = *bodies_[i].part;
           double radius = 0.0;
@@ -46,7 +48,9 @@ ContactFinder::ContactFinder(std::vector<CollisionBody> bodies, std::span<const 
           fat_box_.push_back(turned(box, X_WB[i], box_growth_.back()));
         }
         return SweepAndPrune(fat_box_);
-      }()) {
+      }()),
+      steady_(dt_s),
+      head_start_(frames_in(kHeadStart_s, dt_s)) {
   travel_.assign(bodies_.size(), 0.0);
   lists_.resize(bodies_.size() * bodies_.size());
   pairs_.reserve(capacity.pairs);

@@ -5,7 +5,7 @@
 ///
 ///   pairs of the held part               always: what the hand feels is never guessed
 ///   pairs of what touches it             it is what the hand feels next
-///   of the others, by time since the last check; to have been in contact counts as kHeadStart frames more
+///   of the others, by time since the last check; to have been in contact counts as kHeadStart_s more
 ///
 /// The paper puts all pairs in contact before all others. In a heap there are always more of them than the
 /// array holds, and the others would never be checked; with a head start every pair's turn comes.
@@ -28,10 +28,11 @@ struct DuePair {
   std::int64_t last_checked = -1;          ///< frame number of its last exact test
 };
 
-inline constexpr std::int64_t kHeadStart = 8;  ///< [frames]
+inline constexpr double kHeadStart_s = 0.008;  ///< [s]
 
 /// Moves the `budget` most urgent pairs to the front, in their original order among themselves, and returns
-/// how many those are: min(budget, due.size()). Linear in expectation.
-int prioritise(std::span<DuePair> due, int budget) noexcept;
+/// how many those are: min(budget, due.size()). `head_start` is kHeadStart_s in frames. Linear in
+/// expectation.
+int prioritise(std::span<DuePair> due, int budget, int head_start) noexcept;
 
 }  // namespace tactum

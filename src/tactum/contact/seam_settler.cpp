@@ -19,9 +19,9 @@ constexpr double kFarDeeper = 2.0;
 /// The candidates of two bodies.
 class TwoBodies {
  public:
-  TwoBodies(std::span<SeamCandidate*> candidates, const Pose& X_AB,
+  TwoBodies(std::span<SeamCandidate*> candidates, const Pose& X_AB, const SteadyLimits& steady,
             std::vector<ContactPatch>& patches) noexcept
-      : candidates_(candidates), X_AB_(X_AB), patches_(patches) {}
+      : candidates_(candidates), X_AB_(X_AB), steady_(steady), patches_(patches) {}
 
   void settle() noexcept {
     for (SeamCandidate* candidate : candidates_)
@@ -153,7 +153,7 @@ class TwoBodies {
   /// Makes the patch of a true contact: its own stretch and those of its followers, as one.
   void lead(SeamCandidate& nearest) noexcept {
     PairDistance shown =
-        steady_depth(piece_a(nearest), piece_b(nearest), X_AB_, nearest.found, *nearest.shown);
+        steady_depth(piece_a(nearest), piece_b(nearest), X_AB_, nearest.found, steady_, *nearest.shown);
     shown.a = true_feature(*nearest.part_a, nearest.piece_a, shown.a, shown.p_a);
     shown.b =
         true_feature(*nearest.part_b, nearest.piece_b, shown.b, rotated_back(X_AB_.R, shown.p_b - X_AB_.p));
@@ -180,7 +180,7 @@ class TwoBodies {
     if (!stretches_.empty())
       contact_manifold_over(piece_a(leader), piece_b(leader), X_AB_, led, leader.reach,
                             {stretches_.begin(), stretches_.size()}, patch->manifold);
-    steady_centroid(X_AB_, patch->manifold, *leader.shown);
+    steady_centroid(X_AB_, patch->manifold, steady_, *leader.shown);
     for (SeamCandidate* other : candidates_)
       if (other != &leader && other->led_by == leader.patch) remember(*other, leader, shown);
   }
@@ -289,6 +289,7 @@ class TwoBodies {
 
   std::span<SeamCandidate*> candidates_;
   const Pose& X_AB_;
+  const SteadyLimits& steady_;
   std::vector<ContactPatch>& patches_;
   StaticVector<Stretch, 512> stretches_;  // of the patch in work
   bool full_ = false;
@@ -297,7 +298,7 @@ class TwoBodies {
 }  // namespace
 
 bool settle_seams(std::span<SeamCandidate*> candidates, std::span<const Pose> X_WB,
-                  std::vector<ContactPatch>& patches) noexcept {
+                  const SteadyLimits& steady, std::vector<ContactPatch>& patches) noexcept {
   std::sort(candidates.begin(), candidates.end(), [](const SeamCandidate* p, const SeamCandidate* q) {
     return std::tie(p->body_a, p->body_b, p->internal, p->found.distance, p->piece_a, p->piece_b) <
            std::tie(q->body_a, q->body_b, q->internal, q->found.distance, q->piece_a, q->piece_b);
@@ -309,7 +310,7 @@ bool settle_seams(std::span<SeamCandidate*> candidates, std::span<const Pose> X_
     const auto last = std::find_if(first, candidates.end(),
                                    [&](const SeamCandidate* c) { return c->body_a != a || c->body_b != b; });
     const Pose X_AB = relative_pose(X_WB[Index(a)], X_WB[Index(b)]);
-    TwoBodies bodies({first, last}, X_AB, patches);
+    TwoBodies bodies({first, last}, X_AB, steady, patches);
     bodies.settle();
     complete = complete && !bodies.full();
     first = last;

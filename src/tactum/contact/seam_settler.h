@@ -41,6 +41,6 @@ struct SeamCandidate {
 /// Appends the patches of `candidates`, which are settled and their order changed. False when `patches` is
 /// full.
 bool settle_seams(std::span<SeamCandidate*> candidates, std::span<const Pose> X_WB,
-                  std::vector<ContactPatch>& patches) noexcept;
+                  const SteadyLimits& steady, std::vector<ContactPatch>& patches) noexcept;
 
 }  // namespace tactum

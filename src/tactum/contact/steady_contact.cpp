@@ -25,15 +25,15 @@ PairDistance depth_across(const PairView& pair, const PairDistance& found, const
 }  // namespace
 
 PairDistance steady_depth(const Polytope& A, const Polytope& B, const Pose& X_AB, const PairDistance& found,
-                          SteadyContact& last) noexcept {
+                          const SteadyLimits& limits, SteadyContact& last) noexcept {
   const Vec3 from = last.normal_A;
   last.normal_A = found.normal;
-  if (found.distance >= 0.0 || from.isZero() || from.dot(found.normal) >= std::cos(kNormalTurn)) return found;
+  if (found.distance >= 0.0 || from.isZero() || from.dot(found.normal) >= limits.cosine) return found;
   const Vec3 toward = found.normal - from * from.dot(found.normal);
   const double sine = toward.norm();
   if (sine < tolerances::kParallelSine) return found;  // turned right round: no way is the nearest
   const PairView pair(A, B, X_AB);
-  const Vec3 n = from * std::cos(kNormalTurn) + toward * (std::sin(kNormalTurn) / sine);
+  const Vec3 n = from * limits.cosine + toward * (limits.sine / sine);
   const PairDistance between = depth_across(pair, found, n.normalized());
   const PairDistance start = depth_across(pair, found, from);
   if (between.distance < kDeepestDetour * std::min(start.distance, found.distance)) return found;
@@ -41,7 +41,8 @@ PairDistance steady_depth(const Polytope& A, const Polytope& B, const Pose& X_AB
   return between;
 }
 
-void steady_centroid(const Pose& X_AB, Manifold& patch, SteadyContact& last) noexcept {
+void steady_centroid(const Pose& X_AB, Manifold& patch, const SteadyLimits& limits,
+                     SteadyContact& last) noexcept {
   if (patch.points.empty()) {
     last.has_centroid = false;
     return;
@@ -52,8 +53,8 @@ void steady_centroid(const Pose& X_AB, Manifold& patch, SteadyContact& last) noe
     const Vec3 displacement = 0.5 * (last.centroid_A + X_AB * last.centroid_B) - centroid;
     const Vec3 back = displacement - patch.normal * patch.normal.dot(displacement);
     const double length = back.norm();
-    if (length > kCentroidStep) {
-      const Vec3 shift = back * (1.0 - kCentroidStep / length);
+    if (length > limits.step_m) {
+      const Vec3 shift = back * (1.0 - limits.step_m / length);
       for (ContactPoint& point : patch.points) {
         point.p_a += shift;
         point.p_b += shift;

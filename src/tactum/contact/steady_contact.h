@@ -5,22 +5,38 @@
 /// one edge and now at the other; both answers are right and the hand would feel the step between them. Here
 /// the answer of the last frame is kept and moves over to the new one at a bounded rate:
 ///
-///     normal     turns by at most kNormalTurn a frame, on the great circle, so it arrives within
-///                pi / kNormalTurn = 63 frames; the depth along it is that of true support planes, so moving
+///     normal     turns by at most kNormalTurnRate, on the great circle, so it arrives within
+///                pi / kNormalTurnRate = 63 ms; the depth along it is that of true support planes, so moving
 ///                A by it separates at every frame on the way
-///     centroid   stays where both bodies carry it, and moves from there by at most kCentroidStep a frame
+///     centroid   stays where both bodies carry it, and moves from there at kCentroidSpeed at most
 ///
 /// A thin piece pushed right through another has no way round: every normal between is far deeper than both.
 /// Then the normal switches at once. Cost: 40 ns while nothing is limited.
+
+#include <cmath>
 
 #include "tactum/collision/contact.h"
 #include "tactum/geometry/polytope.h"
 
 namespace tactum {
 
-inline constexpr double kNormalTurn = 0.05;    ///< [rad] a frame
-inline constexpr double kCentroidStep = 5e-5;  ///< [m] a frame
-inline constexpr double kDeepestDetour = 2.0;  ///< a normal on the way may be this many times as deep [-]
+inline constexpr double kNormalTurnRate = 50.0;  ///< [rad/s]
+inline constexpr double kCentroidSpeed = 0.05;   ///< [m/s]
+inline constexpr double kDeepestDetour = 2.0;    ///< a normal on the way may be this many times as deep [-]
+
+/// How far a contact moves over in one frame.
+struct SteadyLimits {
+  /// With `dt_s` from frame to frame [s].
+  explicit SteadyLimits(double dt_s)
+      : turn_rad(kNormalTurnRate * dt_s),
+        cosine(std::cos(turn_rad)),
+        sine(std::sin(turn_rad)),
+        step_m(kCentroidSpeed * dt_s) {}
+
+  double turn_rad;      ///< of the normal [rad]
+  double cosine, sine;  ///< of that angle [-]
+  double step_m;        ///< of the centroid [m]
+};
 
 /// What was shown in the last frame. Value-initialised means nothing.
 struct SteadyContact {
@@ -33,11 +49,12 @@ struct SteadyContact {
 /// The overlap `found` as it is to be shown: itself while its normal is near the last, else the depth along a
 /// normal on the way there. Without an overlap the memory follows.
 PairDistance steady_depth(const Polytope& A, const Polytope& B, const Pose& X_AB, const PairDistance& found,
-                          SteadyContact& last) noexcept;
+                          const SteadyLimits& limits, SteadyContact& last) noexcept;
 
 /// Moves the points of `patch` together, in its plane, so that their centroid takes no step. Between two
-/// frames it moves, in A's frame, by at most kCentroidStep and half of B's own motion there. An empty patch
+/// frames it moves, in A's frame, by at most the limit and half of B's own motion there. An empty patch
 /// forgets.
-void steady_centroid(const Pose& X_AB, Manifold& patch, SteadyContact& last) noexcept;
+void steady_centroid(const Pose& X_AB, Manifold& patch, const SteadyLimits& limits,
+                     SteadyContact& last) noexcept;
 
 }  // namespace tactum

@@ -4,7 +4,6 @@
 
 #include "tactum/base/tolerances.h"
 #include "tactum/dynamics/world.h"
-#include "tactum/mesh/make_part.h"
 
 namespace tactum {
 namespace {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "tactum/base/frame_rate.h"
 #include "tactum/base/tolerances.h"
 
 namespace tactum {
@@ -17,9 +18,9 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr Index kLookAhead = 64;
 
 /// In this share of the sweeps contacts are asked to open; what has not come to an end by then is wedged, and
-/// is not asked again for some frames.
+/// is not asked again for kLeftShut_s.
 constexpr int kOpeningShare = 3;
-constexpr int kLeftShut = 16;
+constexpr double kLeftShut_s = 0.016;
 
 /// In the last sweeps, so many in one of all, friction grows no more with what it presses together.
 constexpr int kLimitedShare = 6;
@@ -48,6 +49,7 @@ Vec3 RestingContact::keep(std::uint64_t name) noexcept {
 
 void RestingContact::add(const ContactRow& row, int index, int island, std::uint64_t name, double gap_m,
                          std::span<const Pose> X_WB, std::span<const Mobility> W, double h) noexcept {
+  h_ = h;
   if (rows_.size() == rows_.capacity() || now_.size() == now_.capacity()) return;
   Row& next = rows_.emplace_back();
   next.body_a = row.body_a;
@@ -68,6 +70,7 @@ void RestingContact::add(const ContactRow& row, int index, int island, std::uint
 
 void RestingContact::add_joint(int body, int island, const Body& what, const Pose& X_WB, const Mobility& W,
                                double h) noexcept {
+  h_ = h;
   const Joint& joint = what.joint;
   const auto add_row = [&](const Vec6& along, double wanted, double opening, double softness, double lower,
                            double upper) {
@@ -199,11 +202,12 @@ void RestingContact::accelerate(const Range& island, Pace& pace, std::span<Twist
 /// asked that is more than rounding.
 bool RestingContact::open_nothing(const Range& island, std::span<Twist> V) noexcept {
   bool asked = false;
+  const int frames_left_shut = frames_in(kLeftShut_s, h_);
   const auto take_off = [&](auto& row, int& left_shut) {
     const double opening = std::exchange(row.opening, 0.0);
     row.wanted -= opening;
     if (!(std::abs(opening) > tolerances::kRestingVelocity)) return;
-    left_shut = kLeftShut;
+    left_shut = frames_left_shut;
     asked = true;
   };
   for (int i = 0; i < island.joint_count; ++i) {

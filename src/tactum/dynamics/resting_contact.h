@@ -12,7 +12,7 @@
 /// Contacts that overlap get a velocity of separation. If a body is wedged, that makes the rows infeasible,
 /// and each sweep would add as much to the impulses as the one before. An island whose sweeps have not
 /// converged after a third of their number is therefore set back to the impulses it began with; from then on,
-/// and for some frames after, its contacts are only kept from closing further. Impulses that friction makes
+/// and for some time after, its contacts are only kept from closing further. Impulses that friction makes
 /// grow from sweep to sweep are bounded in the last sweeps, in which friction may not exceed what it was.
 ///
 /// Springs, damping, friction and limits of joints are rows of the same kind.
@@ -21,6 +21,7 @@
 #include <span>
 #include <vector>
 
+#include "tactum/base/frame_rate.h"
 #include "tactum/dynamics/friction_row.h"
 
 namespace tactum {
@@ -122,6 +123,7 @@ class RestingContact {
   std::vector<Range> islands_;            // by the island's number
   std::vector<int> joint_left_shut_;      // as Last::left_shut, by body
   std::size_t next_ = 0;                  // in last_: names come in the same order from frame to frame
+  double h_ = kReferenceStep_s;           // of the rows [s]
   bool started_ = false;
 };
 

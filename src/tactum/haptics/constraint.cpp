@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "tactum/base/frame_rate.h"
 #include "tactum/base/tolerances.h"
 #include "tactum/haptics/constraint_rows.h"
 #include "tactum/haptics/constraint_step.h"
@@ -20,9 +21,9 @@ constexpr int kSlipRounds = 6;
 constexpr double kTrustGrowth = 2.0;
 /// The tolerance of contact determination is so much more than the trusted length, in skins.
 constexpr double kReachMargin = 4.0;
-/// A part whose step is refused in so many frames on end is felt where it stands, not where the forces would
+/// A part whose steps have been refused for so long is felt where it stands, not where the forces would
 /// have it: what is felt would be the same however far the hand goes away.
-constexpr int kStandsFrames = 2;
+constexpr double kStands_s = 0.002;
 
 /// The bodies and what each wants: to the hand, on along its way; or, `at_rest`, nothing.
 void add_bodies(bool at_rest, ConstraintStep& step) {
@@ -263,7 +264,7 @@ double move_held_island(ConstraintStep& step) {
   const double share = advance(step);
   c.stood = share > 0.0 ? 0 : c.stood + 1;
   if (share > 0.0) take_trial(step);
-  if (c.stood >= kStandsFrames) feel(Vec6::Zero(), step);
+  if (c.stood >= frames_in(kStands_s, step.dt_s)) feel(Vec6::Zero(), step);
   c.friction.end(step.world, own_rows(step), step.patches, c.first_row, c.problem, step.bodies.X_WB);
   const std::vector<Pose>& before = share > 0.0 ? c.X_WB_trial : step.bodies.X_WB;  // take_trial swaps them
   for (Index i = 0; i < step.world.bodies.size(); ++i)

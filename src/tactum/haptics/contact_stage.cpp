@@ -47,7 +47,7 @@ std::uint32_t flags_of(const ContactWork& work) {
 }  // namespace
 
 ContactStage::ContactStage(const World& world, const FrameSettings& settings, std::span<const Pose> X_WB)
-    : finder(collision_bodies(world), X_WB, settings.budget.capacity),
+    : finder(collision_bodies(world), X_WB, settings.budget.capacity, settings.dt_s),
       urgency(world.bodies.size(), urgency::kOther) {
   if (!settings.shading.on) return;
   bool some_bend = false;

@@ -1,10 +1,69 @@
 #include "tactum/haptics/frame_report.h"
 
+#include "tactum/haptics/report_fields.h"
+
 namespace tactum {
 namespace {
 
+// That no member of the report is missing in the list of its fields: as many members are named as there are.
+
+/// Stands for any member of an aggregate.
+struct AnyMember {
+  template <class T>
+  operator T() const;  // NOLINT: an initializer of everything
+};
+
+template <class Struct, class... Members>
+consteval std::size_t members_of() {
+  if constexpr (requires { Struct{Members{}..., AnyMember{}}; })
+    return members_of<Struct, Members..., AnyMember>();
+  else
+    return sizeof...(Members);
+}
+
+template <auto Member>
+constexpr char kMemberId = 0;
+
+template <class Struct>
+struct NamedMembers {
+  std::array<const char*, 2 * kReportFields> seen{};
+  std::size_t count = 0;
+
+  template <class Value>
+  constexpr void see(Value Struct::*, const char* id) {
+    for (std::size_t i = 0; i < count; ++i)
+      if (seen[i] == id) return;
+    seen[count++] = id;
+  }
+  template <class Other, class Value>
+  constexpr void see(Value Other::*, const char*) {}
+  template <auto... Path>
+  constexpr void see_all(const ReportPath<Path...>&) {
+    (see(Path, &kMemberId<Path>), ...);
+  }
+};
+
+template <class Struct>
+consteval std::size_t named_members_of() {
+  NamedMembers<Struct> named;
+  std::apply([&](const auto&... field) { (named.see_all(field), ...); }, report_detail::kFields);
+  return named.count;
+}
+
+static_assert(named_members_of<FrameReport>() == members_of<FrameReport>());
+static_assert(named_members_of<FrictionReport>() == members_of<FrictionReport>());
+static_assert(named_members_of<PortReport>() == members_of<PortReport>());
+static_assert(named_members_of<EnergyTotals>() == members_of<EnergyTotals>());
+static_assert(named_members_of<ContactWork>() == members_of<ContactWork>());
+
+void add(FrameHash& hash, double value) { hash.add(value + 0.0); }  // one zero, whatever its sign
+
+template <class Count>
+requires std::is_integral_v<Count>
+void add(FrameHash& hash, Count value) { hash.add(value); }
+
 void add(FrameHash& hash, const Vec3& v) {
-  for (int i = 0; i < 3; ++i) hash.add(v[i] + 0.0);  // one zero, whatever its sign
+  for (int i = 0; i < 3; ++i) add(hash, v[i]);
 }
 
 void add(FrameHash& hash, const Wrench& F) {
@@ -20,47 +79,7 @@ void add(FrameHash& hash, const Pose& X) {
 }  // namespace
 
 void add_to(FrameHash& hash, const FrameReport& report) noexcept {
-  hash.add(report.index);
-  hash.add(report.flags);
-  hash.add(report.safety);
-  add(hash, report.X_WH);
-  add(hash, report.X_WH_proxy);
-  add(hash, report.restoring);
-  add(hash, report.field);
-  add(hash, report.coupling);
-  add(hash, report.smoothed);
-  hash.add(report.port.ledger_J + 0.0);
-  hash.add(report.port.ledger_turning_J + 0.0);
-  hash.add(report.port.injected_Ns_per_m + 0.0);
-  hash.add(report.port.injected_Nms_per_rad + 0.0);
-  for (const EnergyTotals& total : {report.port.total, report.port.total_turning})
-    for (double energy_J : {total.from_hand_J, total.to_hand_J, total.damped_J}) hash.add(energy_J + 0.0);
-  add(hash, report.shown);
-  hash.add(report.tolerance_m);
-  hash.add(report.min_distance_m);
-  hash.add(report.time_of_impact_s);
-  hash.add(report.contact_points);
-  hash.add(report.solver_iterations);
-  hash.add(report.active_constraints);
-  hash.add(report.validation_tests);
-  hash.add(report.validation_retries);
-  hash.add(report.waiting);
-  hash.add(report.cut_short);
-  hash.add(report.momentum_off_Ns);
-  hash.add(report.friction.sticking);
-  hash.add(report.friction.slipping);
-  hash.add(report.friction.cone_used + 0.0);
-  hash.add(report.work.near_pairs);
-  hash.add(report.work.exact_tests);
-  hash.add(report.work.feature_steps);
-  hash.add(report.work.patches);
-  hash.add(report.held_contact_points);
-  hash.add(report.penetrating);
-  hash.add(report.work.broad_phase_runs);
-  hash.add(report.work.known);
-  hash.add(report.work.unchecked);
-  hash.add(report.work.left_unproven);
-  hash.add(report.work.uncertified);
+  for_each_report_field([&](auto field) { add(hash, decltype(field)::of(report)); });
 }
 
 void add_to(FrameHash& hash, const WorldState& state) noexcept {

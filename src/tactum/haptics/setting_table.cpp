@@ -3,13 +3,11 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
 #include <type_traits>
 
 namespace tactum {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::infinity();
 constexpr double degrees(double radians) { return radians * (180.0 / kPi); }
 constexpr double radians(double degrees) { return degrees * (kPi / 180.0); }
 
@@ -42,10 +40,10 @@ void set_limit(Frame&, Safety& safety, double value) {
 
 // clang-format off
 constexpr SettingInfo kSettings[] = {
-  {"coupling", "stiffness_N_per_m", "Stiffness", "N/m", "spring between the hand and the held part", 20, 5000, kNumber, true,
+  {"coupling", "stiffness_N_per_m", "Stiffness", "N/m", "spring between the hand and the held part", 1, 50000, kNumber, true,
    get_field<&Frame::coupling, &Coupling::stiffness_N_per_m>,
    set_field<&Frame::coupling, &Coupling::stiffness_N_per_m>},
-  {"coupling", "stiffness_Nm_per_rad", "Turning stiffness", "N m/rad", "the same spring against turning", 0.01, 10, kNumber, true,
+  {"coupling", "stiffness_Nm_per_rad", "Turning stiffness", "N m/rad", "the same spring against turning", 0.0005, 100, kNumber, true,
    get_field<&Frame::coupling, &Coupling::stiffness_Nm_per_rad>,
    set_field<&Frame::coupling, &Coupling::stiffness_Nm_per_rad>},
   {"coupling", "damping_Ns_per_m", "Damping", "N s/m", "what takes the swing out of that spring", 0, 20, kNumber, true,
@@ -65,6 +63,9 @@ constexpr SettingInfo kSettings[] = {
   {"constraint", "least_step_m", "First step", "m", "how far it may always try to travel; from there the step doubles", 0.01e-3, 0.001, kNumber, true,
    get_field<&Frame::constraint, &Constraint::least_step_m>,
    set_field<&Frame::constraint, &Constraint::least_step_m>},
+  {"constraint", "max_step_on_surfaces_m", "Longest step on surfaces", "m", "the longest step while surfaces without pieces touch", 0.001e-3, 0.001, kNumber, true,
+   get_field<&Frame::constraint, &Constraint::max_step_on_surfaces_m>,
+   set_field<&Frame::constraint, &Constraint::max_step_on_surfaces_m>},
   {"constraint", "max_turn_deg", "Largest turn", "deg", "how far the held part may turn in one frame", 0.1, 5, kNumber, true,
    [](const Frame& frame, const Safety&) { return degrees(frame.constraint.max_turn_rad); },
    [](Frame& frame, Safety&, double value) { frame.constraint.max_turn_rad = radians(value); }},
@@ -79,6 +80,13 @@ constexpr SettingInfo kSettings[] = {
    get_field<&Frame::penalty, &Penalty::min_tolerance_m>,
    set_field<&Frame::penalty, &Penalty::min_tolerance_m>},
 
+  {"impacts", "expansion_s", "Length of a blow", "s", "a blow on the held part is felt as a pulse so long, of the same momentum", 0, 0.1, kNumber, true,
+   get_field<&Frame::impacts, &Impacts::expansion_s>,
+   set_field<&Frame::impacts, &Impacts::expansion_s>},
+  {"impacts", "amplification", "Strength of a blow", "", "the momentum of that pulse is multiplied by it", 0, 10, kNumber, true,
+   get_field<&Frame::impacts, &Impacts::amplification>,
+   set_field<&Frame::impacts, &Impacts::amplification>},
+
   {"shading", "on", "Force shading", "", "facets of a curved surface feel round", 0, 1, kOnOff, false,
    get_field<&Frame::shading, &Shading::on>,
    set_field<&Frame::shading, &Shading::on>},
@@ -87,14 +95,12 @@ constexpr SettingInfo kSettings[] = {
    [](Frame& frame, Safety&, double value) { frame.shading.crease_rad = radians(value); }},
 
   {"smoothing", "on", "Smoothing", "", "no step in the shown force is larger than told below", 0, 1, kOnOff, true,
-   [](const Frame& frame, const Safety&) { return std::isfinite(frame.smoothing.max_force_step_N) ? 1.0 : 0.0; },
-   [](Frame& frame, Safety&, double value) {
-     frame.smoothing = value != 0.0 ? SmoothingSettings{} : SmoothingSettings{kNone, kNone};
-   }},
-  {"smoothing", "max_force_step_N", "Largest force step", "N", "of the shown force, from frame to frame", 0.01, 10, kNumber, true,
+   get_field<&Frame::smoothing, &SmoothingSettings::on>,
+   set_field<&Frame::smoothing, &SmoothingSettings::on>},
+  {"smoothing", "max_force_step_N", "Largest force step", "N", "of the shown force in a millisecond", 0.01, 10, kNumber, true,
    get_field<&Frame::smoothing, &SmoothingSettings::max_force_step_N>,
    set_field<&Frame::smoothing, &SmoothingSettings::max_force_step_N>},
-  {"smoothing", "max_torque_step_Nm", "Largest torque step", "N m", "of the shown torque, from frame to frame", 0.0005, 0.5, kNumber, true,
+  {"smoothing", "max_torque_step_Nm", "Largest torque step", "N m", "of the shown torque in a millisecond", 0.0005, 0.5, kNumber, true,
    get_field<&Frame::smoothing, &SmoothingSettings::max_torque_step_Nm>,
    set_field<&Frame::smoothing, &SmoothingSettings::max_torque_step_Nm>},
 
@@ -114,18 +120,25 @@ constexpr SettingInfo kSettings[] = {
   {"", "dt_s", "Frame time", "s", "time from frame to frame: the rate of the loop is one over it", 0.0001, 0.01, kNumber, false,
    [](const Frame& frame, const Safety&) { return frame.dt_s; },
    [](Frame& frame, Safety&, double value) { frame.dt_s = value; }},
-  {"budget", "max_exact_tests", "Exact tests", "", "most exact tests of pairs in a frame", 1, 100000, kInteger, true,
+  {"budget", "max_exact_tests", "Exact tests", "", "most exact tests of pairs in a frame", 1, 1000000, kInteger, true,
    get_field<&Frame::budget, &WorkBudget::max_exact_tests>,
    set_field<&Frame::budget, &WorkBudget::max_exact_tests>},
-  {"budget", "max_contact_points", "Contact points", "", "most contact points in a frame", 1, 10000, kInteger, false,
+  {"budget", "max_contact_points", "Contact points", "", "most contact points in a frame", 1, 100000, kInteger, false,
    get_field<&Frame::budget, &WorkBudget::max_contact_points>,
    set_field<&Frame::budget, &WorkBudget::max_contact_points>},
-  {"budget", "solver_iterations", "Solver rounds", "", "most rounds of the contact solver", 1, 1000, kInteger, true,
+  {"budget", "solver_iterations", "Solver rounds", "", "most rounds of the contact solver", 1, 10000, kInteger, true,
    get_field<&Frame::budget, &WorkBudget::solver_iterations>,
    set_field<&Frame::budget, &WorkBudget::solver_iterations>},
   {"budget", "sleep", "Sleep", "", "what rests is not looked at, where nobody could tell", 0, 1, kOnOff, true,
    get_field<&Frame::budget, &WorkBudget::sleep>,
    set_field<&Frame::budget, &WorkBudget::sleep>},
+
+  {"workspace", "scale", "Scale", "", "metres of the scene to a metre of the device", 0.001, 1000, kNumber, false,
+   get_field<&Frame::workspace, &Workspace::scale>,
+   set_field<&Frame::workspace, &Workspace::scale>},
+  {"workspace", "clutch_button", "Clutch", "", "while this button is held the device moves without the scene; -1: none", -1, 31, kInteger, false,
+   get_field<&Frame::workspace, &Workspace::clutch_button>,
+   set_field<&Frame::workspace, &Workspace::clutch_button>},
 };
 // clang-format on
 

@@ -1,6 +1,8 @@
 #pragma once
 /// The settings described by themselves: section and key as in scene files, unit, range, meaning. One table,
-/// from which panels, saved files and checks are made; a setting that gets a line here appears everywhere.
+/// from which scene files are read and written, ranges are checked, and the viewer's panel and
+/// docs/settings.md are made; a setting that gets a line here appears everywhere. What is no single number,
+/// as the pose of the workspace, what is held, and coefficients of pairs of materials, belongs to the scene.
 
 #include <span>
 #include <string>
@@ -30,7 +32,7 @@ struct SettingInfo {
   const char* name;     ///< for people: "Stiffness"
   const char* unit;     ///< of the values told here: "N/m"; "" for none
   const char* meaning;  ///< one line
-  double low, high;     ///< the range that is offered; the ends belong to it
+  double low, high;     ///< the range, of files as of panels; the ends belong to it
   SettingKind kind;
   bool live;  ///< takes effect between two frames; else when the scene starts again
   double (*get)(const FrameSettings&, const SafetySettings&);  ///< infinite where there is no limit
@@ -48,7 +50,7 @@ int setting_called(std::string_view section_and_key) noexcept;
 bool in_range(const SettingInfo& setting, double value) noexcept;
 
 /// All of them as sections of a scene file, with units and meanings as comments. Reading them gives the same
-/// settings.
+/// settings of this table.
 std::string settings_toml(const FrameSettings& frame, const SafetySettings& safety);
 
 }  // namespace tactum

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "tactum/base/frame_rate.h"
 #include "tactum/haptics/constraint_step.h"
 #include "tactum/math/screw.h"
 
@@ -10,7 +11,7 @@ namespace {
 
 using Index = std::size_t;
 
-constexpr int kStillFrames = 60;
+constexpr double kStill_s = 0.06;
 /// No point has gone farther in that time than this share of the skin: some nanometres.
 constexpr double kStillShare = 0.01;
 
@@ -51,6 +52,7 @@ Sleep::Sleep(const World& world)
 
 void let_sleep(ConstraintStep& step) noexcept {
   Sleep& s = step.own.sleep;
+  const int still_frames = frames_in(kStill_s, step.dt_s);
   std::vector<char>& waits = step.own.waiting.waits;  // nobody so far
   s.islands.clear(step.world, waits);
   count_touches(step);
@@ -58,12 +60,12 @@ void let_sleep(ConstraintStep& step) noexcept {
   for (Index i = 0; i < step.world.bodies.size(); ++i) {
     if (!step.world.bodies[i].moves()) continue;
     if (is_still(step, i)) {
-      s.still[i] = std::min(s.still[i] + 1, kStillFrames);
+      s.still[i] = std::min(s.still[i] + 1, still_frames);
     } else {
       s.X_still[i] = step.bodies.X_WB[i];
       s.still[i] = 0;
     }
-    if (s.still[i] < kStillFrames) s.restless[Index(s.islands.of(static_cast<int>(i)))] = 1;
+    if (s.still[i] < still_frames) s.restless[Index(s.islands.of(static_cast<int>(i)))] = 1;
   }
   for (Index i = 0; i < step.world.bodies.size(); ++i) {
     if (!step.world.bodies[i].moves() || s.restless[Index(s.islands.of(static_cast<int>(i)))]) continue;

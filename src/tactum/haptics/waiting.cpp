@@ -1,8 +1,10 @@
 #include "tactum/haptics/waiting.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
+#include "tactum/base/frame_rate.h"
 #include "tactum/haptics/constraint_step.h"
 #include "tactum/math/screw.h"
 
@@ -15,13 +17,13 @@ using Index = std::size_t;
 constexpr int kFewestRounds = 1;
 constexpr int kMostRounds = 8;
 
-/// While a body waits, the guess of how far it would go fades, so that its turn comes however many gaps it
-/// has.
+/// While a body waits, the guess of how far it would go fades to this share in kReferenceStep_s, so that its
+/// turn comes however many gaps it has.
 constexpr double kFading = 0.8;
 
-// What rests: in so many frames it has gone no farther than this share of its radius. What wakes: a neighbour
+// What rests: in so long it has gone no farther than this share of its radius. What wakes: a neighbour
 // as fast as this.
-constexpr int kRestFrames = 60;
+constexpr double kRest_s = 0.06;
 constexpr double kRestShare = 0.03;
 constexpr double kWakingSpeed = 0.15;  // [m/s]
 
@@ -30,6 +32,7 @@ bool asleep(const Waiting& w, Index body) { return w.contacts_at_rest[body] > 0;
 /// Who falls asleep, and who wakes.
 void watch_rest(ConstraintStep& step) {
   Waiting& w = step.own.waiting;
+  const int rest_frames = frames_in(kRest_s, step.dt_s);
   std::fill(w.contacts.begin(), w.contacts.end(), 0);
   std::fill(w.hit.begin(), w.hit.end(), 0);
   const auto fast = [&](int body) {
@@ -51,7 +54,7 @@ void watch_rest(ConstraintStep& step) {
     if (left || lost || w.hit[i] || step.urgency[i] != urgency::kOther) {
       w.X_rest[i] = X_WB;
       w.rested[i] = w.contacts_at_rest[i] = 0;
-    } else if (!w.waits[i] && ++w.rested[i] >= kRestFrames) {
+    } else if (!w.waits[i] && ++w.rested[i] >= rest_frames) {
       w.contacts_at_rest[i] = std::max(w.contacts_at_rest[i], w.contacts[i]);
     }
   }
@@ -154,6 +157,7 @@ void let_wait(ConstraintStep& step) noexcept {
   watch_rest(step);
   std::fill(w.waits.begin(), w.waits.end(), 1);
   let_go(step);
+  const double fading = std::pow(kFading, step.dt_s / kReferenceStep_s);
   for (Index i = 0; i < step.world.bodies.size(); ++i) {
     w.waited[i] = w.waits[i] && !asleep(w, i) ? w.waited[i] + 1 : 0;
     if (!w.waits[i] || !step.world.bodies[i].moves()) continue;
@@ -163,7 +167,7 @@ void let_wait(ConstraintStep& step) noexcept {
       w.way[i] = 0.0;
       continue;
     }
-    w.way[i] *= kFading;
+    w.way[i] *= fading;
     ++step.report.waiting;
     step.report.flags |= frame_flag::kBudgetShort;
     step.report.longest_wait = std::max(step.report.longest_wait, w.waited[i]);

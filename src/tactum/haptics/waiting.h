@@ -9,7 +9,7 @@
 ///           the held part, then those that have waited longest
 ///
 /// What waits carries nobody's load, so a heap whose bodies take turns would never come to rest. Therefore,
-/// while the budget is not ample, a body that has hardly left its place in its last 60 frames sleeps: it
+/// while the budget is not ample, a body that has hardly left its place in its last 60 ms sleeps: it
 /// stands still, at no cost, until the held part or something fast touches it, or it has lost half of its
 /// contacts. With an ample budget nothing waits, and only what nobody could see move sleeps (sleep.h).
 ///

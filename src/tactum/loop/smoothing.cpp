@@ -1,5 +1,7 @@
 #include "tactum/loop/smoothing.h"
 
+#include "tactum/base/frame_rate.h"
+
 namespace tactum {
 
 Vec3 smoothed(const Vec3& F0, const Vec3& F1, double F_max) noexcept {
@@ -10,10 +12,15 @@ Vec3 smoothed(const Vec3& F0, const Vec3& F1, double F_max) noexcept {
   return F1;
 }
 
-Wrench smooth_wrench(const SmoothingSettings& settings, SmoothingState& state,
+Wrench smooth_wrench(const SmoothingSettings& settings, double dt_s, SmoothingState& state,
                      const Wrench& computed) noexcept {
-  state.shown.f = smoothed(state.shown.f, computed.f, settings.max_force_step_N);
-  state.shown.t = smoothed(state.shown.t, computed.t, settings.max_torque_step_Nm);
+  if (!settings.on) {
+    state.shown = computed;
+    return state.shown;
+  }
+  const double steps = dt_s / kReferenceStep_s;
+  state.shown.f = smoothed(state.shown.f, computed.f, settings.max_force_step_N * steps);
+  state.shown.t = smoothed(state.shown.t, computed.t, settings.max_torque_step_Nm * steps);
   return state.shown;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 /// The linear smoothing scheme of [Gregory 2000, 5.3]: no displayed force differs from the last by more than
-/// about F_max.
+/// about F_max. The paper's frames take 1 ms. With longer or shorter ones F_max grows or shrinks with the
+/// step, so that the force rises and falls as fast at every rate.
 ///
 ///   d = F1 - F0            |d| > 2 F_max :  show F0 + F_max in the direction of d
 ///                          |d| >   F_max :  show (F0 + F1) / 2
@@ -17,8 +18,9 @@
 namespace tactum {
 
 struct SmoothingSettings {
-  double max_force_step_N = 0.5;     ///< F_max of the force; infinity: no smoothing [N]
-  double max_torque_step_Nm = 0.01;  ///< F_max of the torque; infinity: no smoothing [N m]
+  double max_force_step_N = 0.5;     ///< F_max of the force in 1 ms; infinity: no smoothing [N]
+  double max_torque_step_Nm = 0.01;  ///< F_max of the torque in 1 ms; infinity: no smoothing [N m]
+  bool on = true;                    ///< false: what is computed is shown
 };
 
 struct SmoothingState {
@@ -28,8 +30,8 @@ struct SmoothingState {
 /// The scheme for one vector: what to show after `F0` when `F1` was computed.
 Vec3 smoothed(const Vec3& F0, const Vec3& F1, double F_max) noexcept;
 
-/// The scheme for force and torque; remembers what it returns.
-Wrench smooth_wrench(const SmoothingSettings& settings, SmoothingState& state,
+/// The scheme for force and torque, with `dt_s` from frame to frame [s]; remembers what it returns.
+Wrench smooth_wrench(const SmoothingSettings& settings, double dt_s, SmoothingState& state,
                      const Wrench& computed) noexcept;
 
 }  // namespace tactum

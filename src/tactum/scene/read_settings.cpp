@@ -2,52 +2,54 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
 
-#include "tactum/haptics/impulse_display.h"
 #include "tactum/haptics/materials.h"
+#include "tactum/haptics/setting_table.h"
 #include "tactum/scene/scene_sections.h"
 
 namespace tactum {
 namespace {
 
-// From 10 kHz to 100 Hz.
-constexpr double kShortestStep_s = 0.0001;
-constexpr double kLongestStep_s = 0.01;
-
-void read_coupling(const TomlReader& root, Coupling& coupling) {
-  const TomlReader table = root.table(
-      "coupling", {"stiffness_N_per_m", "stiffness_Nm_per_rad", "damping_Ns_per_m", "damping_Nms_per_rad"});
-  coupling.stiffness_N_per_m = table.number("stiffness_N_per_m", coupling.stiffness_N_per_m, kPositive);
-  coupling.stiffness_Nm_per_rad =
-      table.number("stiffness_Nm_per_rad", coupling.stiffness_Nm_per_rad, kPositive);
-  coupling.damping_Ns_per_m = table.number("damping_Ns_per_m", coupling.damping_Ns_per_m, kNotNegative);
-  coupling.damping_Nms_per_rad =
-      table.number("damping_Nms_per_rad", coupling.damping_Nms_per_rad, kNotNegative);
+/// The keys of a section's settings.
+std::vector<const char*> keys_of(std::string_view section) {
+  std::vector<const char*> keys;
+  for (const SettingInfo& setting : setting_table())
+    if (section == setting.section) keys.push_back(setting.key);
+  return keys;
 }
 
-void read_penalty(const TomlReader& root, Penalty& penalty) {
-  const TomlReader table = root.table("penalty", {"stiffness_N_per_m", "max_step_m", "min_tolerance_m"});
-  penalty.stiffness_N_per_m = table.number("stiffness_N_per_m", penalty.stiffness_N_per_m, kPositive);
-  penalty.max_step_m = table.number("max_step_m", penalty.max_step_m, kPositive);
-  penalty.min_tolerance_m = table.number("min_tolerance_m", penalty.min_tolerance_m, kNotNegative);
+/// One setting, where the file has it.
+void read_setting(const TomlReader& table, const SettingInfo& setting, Scene& scene) {
+  if (!table.has(setting.key)) return;
+  double value = setting.get(scene.settings, scene.safety);
+  const int low = static_cast<int>(setting.low);
+  switch (setting.kind) {
+    case SettingKind::kNumber:
+      value = table.number(setting.key, value, {setting.low, setting.high});
+      break;
+    case SettingKind::kInteger:
+      value = table.integer(setting.key, static_cast<int>(value), low, static_cast<int>(setting.high));
+      break;
+    case SettingKind::kOnOff:
+      value = table.flag(setting.key, value != 0.0) ? 1.0 : 0.0;
+      break;
+    case SettingKind::kChoice: {
+      const std::vector<std::string> words(setting.choices.begin(), setting.choices.end());
+      const std::string word = table.choice(setting.key, words[static_cast<std::size_t>(value)], words);
+      value = static_cast<double>(std::find(words.begin(), words.end(), word) - words.begin());
+      break;
+    }
+  }
+  setting.set(scene.settings, scene.safety, value);
 }
 
-void read_constraint(const TomlReader& root, Constraint& constraint) {
-  const TomlReader table =
-      root.table("constraint", {"max_step_m", "least_step_m", "max_step_on_surfaces_m", "max_turn_deg"});
-  constraint.max_step_m = table.number("max_step_m", constraint.max_step_m, kPositive);
-  constraint.least_step_m = table.number("least_step_m", constraint.least_step_m, kPositive);
-  constraint.max_step_on_surfaces_m =
-      table.number("max_step_on_surfaces_m", constraint.max_step_on_surfaces_m, kPositive);
-  if (table.has("max_turn_deg"))
-    constraint.max_turn_rad = radians(table.number("max_turn_deg", {}, kPositive));
-}
-
-ResponseModel response_of(const TomlReader& root) {
-  return root.choice("response", "constraint", {"constraint", "penalty"}) == "penalty"
-             ? ResponseModel::kPenalty
-             : ResponseModel::kConstraint;
+/// All settings of a section.
+void read_section(const TomlReader& table, std::string_view section, Scene& scene) {
+  for (const SettingInfo& setting : setting_table())
+    if (section == setting.section) read_setting(table, setting, scene);
 }
 
 /// `[[friction]]` or `[[restitution]]`: a coefficient for every pair of bodies of two materials.
@@ -62,50 +64,6 @@ void read_pairs(const TomlReader& root, const char* key, Range range, const Scen
     if (!set)
       pair.fail(set.error().where.c_str(), set.error().what, set.error().found, "the material of a [[body]]");
   }
-}
-
-void read_impacts(const TomlReader& root, Scene& scene) {
-  Impacts& impacts = scene.settings.impacts;
-  read_pairs(root, "restitution", {0.0, 1.0}, scene, impacts.restitution);
-  const TomlReader table = root.table("impacts", {"expansion_s", "amplification"});
-  const double longest = static_cast<double>(ImpulseDisplay::kMostFrames) * scene.settings.dt_s;
-  impacts.expansion_s = table.number("expansion_s", impacts.expansion_s, {0.0, longest});
-  impacts.amplification = table.number("amplification", impacts.amplification, {0.0, 10.0});
-}
-
-void read_feel(const TomlReader& root, Shading& shading, SmoothingSettings& smoothing) {
-  const TomlReader shade = root.table("shading", {"on", "crease_deg"});
-  shading.on = shade.flag("on", shading.on);
-  if (shade.has("crease_deg")) shading.crease_rad = radians(shade.number("crease_deg", {}, {0.0, 90.0}));
-  const TomlReader smooth = root.table("smoothing", {"on", "max_force_step_N", "max_torque_step_Nm"});
-  smoothing.max_force_step_N = smooth.number("max_force_step_N", smoothing.max_force_step_N, kPositive);
-  smoothing.max_torque_step_Nm = smooth.number("max_torque_step_Nm", smoothing.max_torque_step_Nm, kPositive);
-  if (!smooth.flag("on", true)) {
-    smoothing.max_force_step_N = std::numeric_limits<double>::infinity();
-    smoothing.max_torque_step_Nm = std::numeric_limits<double>::infinity();
-  }
-}
-
-void read_safety(const TomlReader& root, SafetySettings& safety) {
-  const TomlReader table = root.table("safety", {"max_force_N", "max_torque_Nm", "max_force_slew_N_per_s",
-                                                 "max_torque_slew_Nm_per_s", "start_ramp_s", "stop_ramp_s"});
-  safety.max_force_N = table.number("max_force_N", safety.max_force_N, kNotNegative);
-  safety.max_torque_Nm = table.number("max_torque_Nm", safety.max_torque_Nm, kNotNegative);
-  safety.max_force_slew_N_per_s =
-      table.number("max_force_slew_N_per_s", safety.max_force_slew_N_per_s, kPositive);
-  safety.max_torque_slew_Nm_per_s =
-      table.number("max_torque_slew_Nm_per_s", safety.max_torque_slew_Nm_per_s, kPositive);
-  safety.start_ramp_s = table.number("start_ramp_s", safety.start_ramp_s, kNotNegative);
-  safety.stop_ramp_s = table.number("stop_ramp_s", safety.stop_ramp_s, kPositive);
-}
-
-void read_budget(const TomlReader& root, WorkBudget& budget) {
-  const TomlReader table =
-      root.table("budget", {"max_exact_tests", "max_contact_points", "solver_iterations", "sleep"});
-  budget.max_exact_tests = table.integer("max_exact_tests", budget.max_exact_tests, 1, 1'000'000);
-  budget.max_contact_points = table.integer("max_contact_points", budget.max_contact_points, 1, 100'000);
-  budget.solver_iterations = table.integer("solver_iterations", budget.solver_iterations, 1, 10'000);
-  budget.sleep = table.flag("sleep", budget.sleep);
 }
 
 /// The line of a hinge, told in the body's frame.
@@ -153,10 +111,10 @@ Vec3 read_grasp(const TomlReader& table, const Body& body) {
 /// are the world's; the handle starts with the device's axes, whatever the body's.
 void read_tool(const TomlReader& root, Scene& scene) {
   Workspace& workspace = scene.settings.workspace;
-  const TomlReader space =
-      root.table("workspace", {"scale", "pos_m", "quat_wxyz", "rpy_deg", "clutch_button"});
-  workspace.scale = space.number("scale", 1.0, {0.001, 1000.0});
-  workspace.clutch_button = space.integer("clutch_button", -1, -1, 31);
+  std::vector<const char*> keys = keys_of("workspace");
+  keys.insert(keys.end(), {"pos_m", "quat_wxyz", "rpy_deg"});
+  const TomlReader space = root.table("workspace", keys);
+  read_section(space, "workspace", scene);
   workspace.X_WD.R = space.rotation();
 
   Vec3 handle_W = Vec3::Zero();
@@ -193,17 +151,17 @@ void read_tool(const TomlReader& root, Scene& scene) {
 }  // namespace
 
 void read_settings(const TomlReader& root, Scene& scene) {
-  scene.settings.dt_s = root.number("dt_s", 0.001, {kShortestStep_s, kLongestStep_s});
-  read_coupling(root, scene.settings.coupling);
   scene.coupling_by_device = !root.has("coupling");
-  scene.settings.response = response_of(root);
-  read_penalty(root, scene.settings.penalty);
-  read_constraint(root, scene.settings.constraint);
+  read_section(root, "", scene);
+  std::string_view last;
+  for (const SettingInfo& setting : setting_table()) {
+    const std::string_view section = setting.section;
+    if (section.empty() || section == last || section == "workspace") continue;
+    read_section(root.table(setting.section, keys_of(section)), section, scene);
+    last = section;
+  }
   read_pairs(root, "friction", kNotNegative, scene, scene.settings.friction);
-  read_impacts(root, scene);
-  read_feel(root, scene.settings.shading, scene.settings.smoothing);
-  read_safety(root, scene.safety);
-  read_budget(root, scene.settings.budget);
+  read_pairs(root, "restitution", {0.0, 1.0}, scene, scene.settings.impacts.restitution);
   read_tool(root, scene);
 }
 

@@ -77,13 +77,13 @@ std::string nearest_word(std::string_view word, const std::vector<std::string>& 
   return nearest;
 }
 
-TomlReader::TomlReader(const toml::table& table, const std::string& file, std::string path, Keys keys,
-                       FirstError& errors)
+TomlReader::TomlReader(const toml::table& table, const std::string& file, std::string path,
+                       std::span<const char* const> keys, FirstError& errors)
     : table_(table), file_(file), path_(std::move(path)), errors_(errors) {
   check_keys(keys);
 }
 
-void TomlReader::check_keys(Keys keys) const {
+void TomlReader::check_keys(std::span<const char* const> keys) const {
   const std::vector<std::string> known(keys.begin(), keys.end());
   for (const auto& [key, value] : table_) {
     if (std::find(known.begin(), known.end(), key.str()) != known.end()) continue;
@@ -229,7 +229,7 @@ Mat3 TomlReader::rotation() const {
 
 std::string TomlReader::path_of(const char* key) const { return path_.empty() ? key : path_ + "." + key; }
 
-TomlReader TomlReader::table(const char* key, Keys keys) const {
+TomlReader TomlReader::table(const char* key, std::span<const char* const> keys) const {
   const toml::node* value = table_.get(key);
   const toml::table* inner = value ? value->as_table() : nullptr;
   if (value && !inner)

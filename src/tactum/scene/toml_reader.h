@@ -15,8 +15,10 @@
 #include <initializer_list>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "tactum/base/result.h"
@@ -57,8 +59,11 @@ class TomlReader {
 
   /// `path` is the table's dotted name, empty for the whole file; `file` names the source. All references
   /// must outlive the reader.
+  TomlReader(const toml::table& table, const std::string& file, std::string path,
+             std::span<const char* const> keys, FirstError& errors);
   TomlReader(const toml::table& table, const std::string& file, std::string path, Keys keys,
-             FirstError& errors);
+             FirstError& errors)
+      : TomlReader(table, file, std::move(path), std::span(keys.begin(), keys.size()), errors) {}
 
   bool has(const char* key) const { return table_.contains(key); }
   /// "[body 2.joint]", or "the scene" for the whole file.
@@ -81,7 +86,10 @@ class TomlReader {
   Mat3 rotation() const;
 
   /// The table under `key` opened with its own keys; an absent one reads as an empty table.
-  TomlReader table(const char* key, Keys keys) const;
+  TomlReader table(const char* key, std::span<const char* const> keys) const;
+  TomlReader table(const char* key, Keys keys) const {
+    return table(key, std::span(keys.begin(), keys.size()));
+  }
   /// The tables of an array of tables `[[path.key]]`, each opened with `keys`; none when absent.
   std::vector<TomlReader> tables(const char* key, Keys keys) const;
 
@@ -92,7 +100,7 @@ class TomlReader {
 
  private:
   const toml::node* node(const char* key, bool required, const char* expected) const;
-  void check_keys(Keys keys) const;
+  void check_keys(std::span<const char* const> keys) const;
   std::string path_of(const char* key) const;
 
   const toml::table& table_;

@@ -1,7 +1,8 @@
 #pragma once
 /// What a frame can show of itself, by name: the wrench after every stage that changes it, and single
 /// numbers. Displays, charts and exports are made from these two tables alone, so that a stage or a number
-/// that gets a line here appears in all of them.
+/// that gets a line here appears in all of them. Channels that are fields of the report are made from the
+/// list of its fields (haptics/report_fields.h).
 
 #include <cstdint>
 #include <span>

@@ -28,25 +28,18 @@ void RunRecord::add(const FrameReport& report, const WorldState& world) noexcept
   max_torque_step_Nm = std::max(max_torque_step_Nm, (report.shown.t - last_shown_.t).norm());
   last_shown_ = report.shown;
 
-  broad_phase_runs += static_cast<std::uint64_t>(report.work.broad_phase_runs);
-  exact_tests += static_cast<std::uint64_t>(report.work.exact_tests);
-  uncertified += static_cast<std::uint64_t>(report.work.uncertified);
-  unchecked += static_cast<std::uint64_t>(report.work.unchecked);
-  left_unproven += static_cast<std::uint64_t>(report.work.left_unproven);
-  validation_tests += static_cast<std::uint64_t>(report.validation_tests);
-  patches += static_cast<std::uint64_t>(report.work.patches);
-  waiting += static_cast<std::uint64_t>(report.waiting);
-  surface_queries += static_cast<std::uint64_t>(report.work.surface_queries);
-  minima += static_cast<std::uint64_t>(report.work.minima);
-  feature_steps += static_cast<std::uint64_t>(report.work.feature_steps);
-  max_minima = std::max(max_minima, report.work.minima);
   flags |= report.flags;
   safety |= report.safety;
-  max_contact_points = std::max(max_contact_points, report.contact_points);
-  max_exact_tests = std::max(max_exact_tests, report.work.exact_tests);
   max_tests = std::max(max_tests, report.tests());
-  max_unchecked = std::max(max_unchecked, report.work.unchecked);
-  bodies = std::max(bodies, report.work.bodies);
+  for_each_report_field([&](auto field) {
+    using Field = decltype(field);
+    if constexpr (Field::info.in_run != InRun::kNothing) {
+      double& largest = largest_[Field::place];
+      largest = std::max(largest, static_cast<double>(Field::of(report)));
+      if constexpr (Field::info.in_run == InRun::kSum)
+        sum_[Field::place] += static_cast<std::uint64_t>(Field::of(report));
+    }
+  });
   add_to(hash_, report);
   add_to(hash_, world);
 }

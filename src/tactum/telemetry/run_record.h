@@ -10,6 +10,7 @@
 #include "tactum/base/hash.h"
 #include "tactum/haptics/frame_report.h"
 #include "tactum/haptics/frame_state.h"
+#include "tactum/haptics/report_fields.h"
 #include "tactum/telemetry/statistics.h"
 
 namespace tactum {
@@ -32,29 +33,22 @@ class RunRecord {
   double max_momentum_off_Ns = 0.0;       ///< of frames whose steps were all taken whole [N s]
   std::uint64_t forced_short_frames = 0;  ///< the others
   std::uint64_t non_finite_frames = 0;    ///< frames whose computed wrench was not finite (zero was sent)
-  std::uint64_t broad_phase_runs = 0;
-  std::uint64_t exact_tests = 0;
-  std::uint64_t uncertified = 0;
-  std::uint64_t unchecked = 0;
-  std::uint64_t left_unproven = 0;     ///< of these, pairs that no bound proved to stay apart
-  std::uint64_t validation_tests = 0;  ///< exact tests of poses on trial
-  std::uint64_t patches = 0;           ///< contact pairs
-  std::uint64_t waiting = 0;           ///< bodies that stood still for want of budget, frame by frame
-  std::uint64_t surface_queries = 0;   ///< pairs of bodies asked for the local minima of their surfaces
-  std::uint64_t minima = 0;            ///< found by them
-  std::uint64_t feature_steps = 0;     ///< feature pairs visited, of surfaces and of convex pieces
-  int max_minima = 0;                  ///< in one frame
-  std::uint32_t flags = 0;             ///< union of all frames' frame_flag
-  std::uint32_t safety = 0;            ///< union of all frames' safety_flag
-  int max_contact_points = 0;
-  int max_exact_tests = 0;  ///< in one frame
-  int max_tests = 0;        ///< ... with those of poses on trial: what the budget bounds
-  int max_unchecked = 0;    ///< in one frame
-  int bodies = 0;
+  std::uint32_t flags = 0;                ///< union of all frames' frame_flag
+  std::uint32_t safety = 0;               ///< union of all frames' safety_flag
+  int max_tests = 0;  ///< exact tests in one frame with those of poses on trial: what the budget bounds
 
+  /// Of a field that runs sum up (haptics/report_fields.h), by name: sum("work.exact_tests").
+  std::uint64_t sum(ReportFieldName field) const noexcept { return sum_[field.place]; }
+  /// The largest value of a frame, of a field that runs sum up or keep the largest of.
+  double largest(ReportFieldName field) const noexcept { return largest_[field.place]; }
+  /// The same by the field's place in the list.
+  std::uint64_t sum_at(std::size_t place) const noexcept { return sum_[place]; }
+  double largest_at(std::size_t place) const noexcept { return largest_[place]; }
   std::uint64_t hash() const noexcept { return hash_.value(); }
 
  private:
+  std::array<std::uint64_t, kReportFields> sum_{};
+  std::array<double, kReportFields> largest_{};
   Wrench last_shown_;
   FrameHash hash_;
 };

@@ -9,7 +9,7 @@ export interface Ask { (message: Record<string, unknown>): void }
 const idOf = (setting: Setting) => (setting.section ? `${setting.section}.${setting.key}` : setting.key);
 const sections: Record<string, string> = {
   coupling: "Coupling of hand and part", penalty: "Contact", shading: "Shading", smoothing: "Smoothing", safety: "Safety: only tighter",
-  "": "Response and rate", constraint: "Nothing is entered", budget: "Work budget",
+  "": "Response and rate", constraint: "Nothing is entered", impacts: "Blows", budget: "Work budget", workspace: "Workspace",
 };
 
 /** Sliders of wide ranges go by factors, not by steps. */

@@ -1,0 +1,17 @@
+#pragma once
+/// Behaviour is told in seconds; a frame needs it in steps of its own length.
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactum {
+
+/// The step at which limits that are told for one frame hold as they stand [s].
+inline constexpr double kReferenceStep_s = 0.001;
+
+/// How many frames of `dt_s` make up a time, rounded; at least one.
+inline int frames_in(double time_s, double dt_s) noexcept {
+  return std::max(1, static_cast<int>(std::lround(time_s / dt_s)));
+}
+
+}  // namespace tactum
