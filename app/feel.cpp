@@ -11,7 +11,7 @@
 #include "commands.h"
 #include "output.h"
 #include "tactum/haptics/coupling_gains.h"
-#include "tactum/haptics/field_pull.h"
+#include "tactum/response/field_pull.h"
 #include "tactum/scene/builtin_scenes.h"
 #include "tactum/session/session.h"
 #include "tactum/telemetry/statistics.h"

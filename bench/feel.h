@@ -20,7 +20,7 @@
 #include "bench/report.h"
 #include "bench/shapes.h"
 #include "tactum/devices/hand_motion.h"
-#include "tactum/haptics/settings.h"
+#include "tactum/response/settings.h"
 
 namespace tactum::bench {
 

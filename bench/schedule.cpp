@@ -10,6 +10,7 @@
 #include "bench/heap.h"
 #include "bench/overlap.h"
 #include "tactum/base/hash.h"
+#include "tactum/haptics/frame_hash.h"
 #include "tactum/haptics/simulation.h"
 
 namespace tactum::bench {

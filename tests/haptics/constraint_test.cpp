@@ -1,4 +1,4 @@
-#include "tactum/haptics/constraint.h"
+#include "tactum/response/constraint.h"
 
 #include <gtest/gtest.h>
 

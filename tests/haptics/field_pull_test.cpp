@@ -1,7 +1,7 @@
 /// Force fields as the hand feels them: the load on the held part, carried by the coupling, beside contact,
 /// and its energy.
 
-#include "tactum/haptics/field_pull.h"
+#include "tactum/response/field_pull.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 /// Bodies that move by themselves, against what mechanics says in closed form.
 
-#include "tactum/haptics/free_bodies.h"
+#include "tactum/response/free_bodies.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "tactum/haptics/friction.h"
+#include "tactum/response/friction.h"
 #include "tactum/mesh/make_part.h"
 
 #include <gtest/gtest.h>

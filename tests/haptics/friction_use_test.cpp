@@ -1,4 +1,4 @@
-#include "tactum/haptics/friction_use.h"
+#include "tactum/response/friction_use.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 /// What sleeps must not be told from what is awake: the same worlds with and without sleep.
 
-#include "tactum/haptics/sleep.h"
+#include "tactum/response/sleep.h"
 
 #include <gtest/gtest.h>
 

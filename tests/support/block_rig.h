@@ -19,10 +19,11 @@ struct BlockRig : Rig {
     settings.response = ResponseModel::kConstraint;
     if (mu > 0.0) settings.friction = {{0.0, mu, mu, 0.0}, 2};
   }
-  double skin() { return begun().response.constraint()->constraint.skin_m; }
+  double skin() { return begun().response.constraint()->memory().constraint.skin_m; }
   /// The sum of the contact forces at the handle less the wrench that is felt.
   Wrench unaccounted() const {
-    const auto& held = simulation->state().response.constraint()->constraint.problem.movers().front();
+    const auto& held =
+        simulation->state().response.constraint()->memory().constraint.problem.movers().front();
     const Wrench at_handle = moved(report.restoring, held.centre - held.origin);
     return at_handle - report.coupling;
   }

@@ -1,5 +1,6 @@
 /// The list of the report's fields, and what is made from it.
 #include "tactum/haptics/report_fields.h"
+#include "tactum/haptics/frame_hash.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 #pragma once
 /// Errors of set-up work (files, devices, settings): a value or a sentence that says what is wrong.
-/// The haptic frame never uses these; it degrades with flags (haptics/frame_report.h).
+/// The haptic frame never uses these; it degrades with flags (response/frame_report.h).
 
 #include <optional>
 #include <string>

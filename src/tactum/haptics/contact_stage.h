@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "tactum/haptics/frame_report.h"
-#include "tactum/haptics/step_input.h"
+#include "tactum/response/frame_report.h"
+#include "tactum/response/step_input.h"
 
 namespace tactum {
 

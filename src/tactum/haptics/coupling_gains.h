@@ -22,8 +22,8 @@
 #include <string>
 
 #include "tactum/devices/device.h"
-#include "tactum/haptics/settings.h"
 #include "tactum/loop/passivity.h"
+#include "tactum/response/settings.h"
 
 namespace tactum {
 

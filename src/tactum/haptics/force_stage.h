@@ -9,7 +9,7 @@
 /// this stage, FrameReport::shown the one that was sent.
 
 #include "tactum/devices/device.h"
-#include "tactum/haptics/frame_report.h"
+#include "tactum/response/frame_report.h"
 
 namespace tactum {
 

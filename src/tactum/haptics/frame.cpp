@@ -1,6 +1,6 @@
 #include "tactum/haptics/frame.h"
 
-#include "tactum/haptics/energy.h"
+#include "tactum/response/energy.h"
 
 namespace tactum {
 namespace {
@@ -52,7 +52,8 @@ Wrench haptic_frame(const World& world, const FrameSettings& settings, const Dev
     felt = state.response.felt(step, bodies);
   }
   report.coupling = felt;
-  report.smoothed = smooth_wrench(settings.smoothing, settings.dt_s, state.smoothing, to_device(state.hand, felt));
+  report.smoothed =
+      smooth_wrench(settings.smoothing, settings.dt_s, state.smoothing, to_device(state.hand, felt));
 
   // Does it make energy? Is it safe to send?
   PortInput port{.wanted = report.smoothed, .sent = state.safety.sent, .dt_s = settings.dt_s};

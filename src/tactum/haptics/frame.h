@@ -1,9 +1,9 @@
 #pragma once
 /// One haptic frame: from a device sample to a wrench. The heart; read frame.cpp from top to bottom.
 
-#include "tactum/haptics/frame_report.h"
 #include "tactum/haptics/frame_state.h"
 #include "tactum/loop/loop.h"
+#include "tactum/response/frame_report.h"
 
 namespace tactum {
 

@@ -7,9 +7,9 @@
 #include "tactum/haptics/contact_stage.h"
 #include "tactum/haptics/force_stage.h"
 #include "tactum/haptics/hand_stage.h"
-#include "tactum/haptics/response.h"
 #include "tactum/loop/safety.h"
 #include "tactum/loop/smoothing.h"
+#include "tactum/response/response.h"
 
 namespace tactum {
 

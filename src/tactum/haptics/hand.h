@@ -7,7 +7,7 @@
 /// place in the world stays, and the mapping X_WD follows.
 
 #include "tactum/devices/device.h"
-#include "tactum/haptics/settings.h"
+#include "tactum/response/settings.h"
 
 namespace tactum {
 

@@ -1,9 +1,9 @@
 #pragma once
 /// The first stage of a frame: where is the hand, what does it hold, and what do force fields do to that?
 
-#include "tactum/haptics/field_pull.h"
 #include "tactum/haptics/hand.h"
 #include "tactum/haptics/picking.h"
+#include "tactum/response/field_pull.h"
 
 namespace tactum {
 

@@ -8,7 +8,7 @@
 
 #include "tactum/base/result.h"
 #include "tactum/dynamics/world.h"
-#include "tactum/haptics/settings.h"
+#include "tactum/response/settings.h"
 
 namespace tactum {
 

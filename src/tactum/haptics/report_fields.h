@@ -17,7 +17,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "tactum/haptics/frame_report.h"
+#include "tactum/response/frame_report.h"
 
 namespace tactum {
 

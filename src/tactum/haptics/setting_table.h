@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "tactum/haptics/settings.h"
+#include "tactum/response/settings.h"
 
 namespace tactum {
 

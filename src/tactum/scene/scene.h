@@ -8,8 +8,8 @@
 
 #include "tactum/devices/hand_motion.h"
 #include "tactum/dynamics/world.h"
-#include "tactum/haptics/settings.h"
 #include "tactum/loop/safety.h"
+#include "tactum/response/settings.h"
 #include "tactum/scene/goal.h"
 
 namespace tactum {

@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <span>
 
-#include "tactum/haptics/frame_report.h"
 #include "tactum/haptics/frame_state.h"
+#include "tactum/response/frame_report.h"
 
 namespace tactum {
 

@@ -13,7 +13,7 @@
 
 #include "tactum/base/newest.h"
 #include "tactum/base/spsc_ring.h"
-#include "tactum/haptics/settings.h"
+#include "tactum/response/settings.h"
 #include "tactum/telemetry/channels.h"
 #include "tactum/telemetry/run_record.h"
 

@@ -1,4 +1,5 @@
 #include "tactum/telemetry/run_record.h"
+#include "tactum/haptics/frame_hash.h"
 
 #include <algorithm>
 

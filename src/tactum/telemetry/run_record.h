@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "tactum/base/hash.h"
-#include "tactum/haptics/frame_report.h"
 #include "tactum/haptics/frame_state.h"
 #include "tactum/haptics/report_fields.h"
+#include "tactum/response/frame_report.h"
 #include "tactum/telemetry/statistics.h"
 
 namespace tactum {

@@ -1,0 +1,93 @@
+#include "tactum/haptics/frame_hash.h"
+
+#include "tactum/haptics/report_fields.h"
+
+namespace tactum {
+namespace {
+
+// That no member of the report is missing in the list of its fields: as many members are named as there are.
+
+/// Stands for any member of an aggregate.
+struct AnyMember {
+  template <class T>
+  operator T() const;  // NOLINT: an initializer of everything
+};
+
+template <class Struct, class... Members>
+consteval std::size_t members_of() {
+  if constexpr (requires { Struct{Members{}..., AnyMember{}}; })
+    return members_of<Struct, Members..., AnyMember>();
+  else
+    return sizeof...(Members);
+}
+
+template <auto Member>
+constexpr char kMemberId = 0;
+
+template <class Struct>
+struct NamedMembers {
+  std::array<const char*, 2 * kReportFields> seen{};
+  std::size_t count = 0;
+
+  template <class Value>
+  constexpr void see(Value Struct::*, const char* id) {
+    for (std::size_t i = 0; i < count; ++i)
+      if (seen[i] == id) return;
+    seen[count++] = id;
+  }
+  template <class Other, class Value>
+  constexpr void see(Value Other::*, const char*) {}
+  template <auto... Path>
+  constexpr void see_all(const ReportPath<Path...>&) {
+    (see(Path, &kMemberId<Path>), ...);
+  }
+};
+
+template <class Struct>
+consteval std::size_t named_members_of() {
+  NamedMembers<Struct> named;
+  std::apply([&](const auto&... field) { (named.see_all(field), ...); }, report_detail::kFields);
+  return named.count;
+}
+
+static_assert(named_members_of<FrameReport>() == members_of<FrameReport>());
+static_assert(named_members_of<FrictionReport>() == members_of<FrictionReport>());
+static_assert(named_members_of<PortReport>() == members_of<PortReport>());
+static_assert(named_members_of<EnergyTotals>() == members_of<EnergyTotals>());
+static_assert(named_members_of<ContactWork>() == members_of<ContactWork>());
+
+void add(FrameHash& hash, double value) { hash.add(value + 0.0); }  // one zero, whatever its sign
+
+template <class Count>
+requires std::is_integral_v<Count>
+void add(FrameHash& hash, Count value) { hash.add(value); }
+
+void add(FrameHash& hash, const Vec3& v) {
+  for (int i = 0; i < 3; ++i) add(hash, v[i]);
+}
+
+void add(FrameHash& hash, const Wrench& F) {
+  add(hash, F.f);
+  add(hash, F.t);
+}
+
+void add(FrameHash& hash, const Pose& X) {
+  add(hash, X.p);
+  for (int i = 0; i < 3; ++i) add(hash, Vec3(X.R.col(i)));
+}
+
+}  // namespace
+
+void add_to(FrameHash& hash, const FrameReport& report) noexcept {
+  for_each_report_field([&](auto field) { add(hash, decltype(field)::of(report)); });
+}
+
+void add_to(FrameHash& hash, const WorldState& state) noexcept {
+  for (const Pose& X_WB : state.X_WB) add(hash, X_WB);
+  for (const Twist& V_WB : state.V_WB) {
+    add(hash, V_WB.v);
+    add(hash, V_WB.w);
+  }
+}
+
+}  // namespace tactum

@@ -1,0 +1,15 @@
+#pragma once
+/// Names what a frame computed, so that two runs can be compared to the bit.
+
+#include "tactum/base/hash.h"
+#include "tactum/response/frame_report.h"
+
+namespace tactum {
+
+/// Adds everything that was computed and counted to the hash (a negative zero as zero): equal hashes mean
+/// equal frames.
+void add_to(FrameHash& hash, const FrameReport& report) noexcept;
+/// The same for where the bodies are and how they move.
+void add_to(FrameHash& hash, const WorldState& state) noexcept;
+
+}  // namespace tactum

@@ -1,0 +1,375 @@
+#include "tactum/response/constraint.h"
+
+#include <algorithm>
+
+#include "tactum/base/frame_rate.h"
+#include "tactum/base/tolerances.h"
+#include "tactum/math/screw.h"
+#include "tactum/response/constraint_rows.h"
+#include "tactum/response/constraint_trial.h"
+#include "tactum/response/field_pull.h"
+#include "tactum/response/free_bodies.h"
+#include "tactum/response/held_part.h"
+#include "tactum/response/momentum.h"
+#include "tactum/response/waiting.h"
+
+namespace tactum {
+namespace {
+
+using Index = std::size_t;
+
+/// How often patches that slid are let slip further: what is left of the error is mu^2 a round.
+constexpr int kSlipRounds = 6;
+/// The trusted length after a step, in lengths of that step.
+constexpr double kTrustGrowth = 2.0;
+/// The tolerance of contact determination is so much more than the trusted length, in skins.
+constexpr double kReachMargin = 4.0;
+/// A part whose steps have been refused for so long is felt where it stands, not where the forces would
+/// have it: what is felt would be the same however far the hand goes away.
+constexpr double kStands_s = 0.002;
+
+/// The bodies and what each wants: to the hand, on along its way; or, `at_rest`, nothing.
+void add_bodies(bool at_rest, ConstraintStep& step) {
+  ConstraintProblem& problem = step.own.constraint.problem;
+  problem.clear();
+  const int held = step.held.body;
+  bool room = true;
+  if (held >= 0) {
+    const Pose& X_WB = step.bodies.X_WB[Index(held)];
+    Vec6 wanted = Vec6::Zero();
+    step.own.constraint.wanted = wanted;
+    if (!at_rest) {
+      step.own.constraint.wanted = wanted_by_hand(step);
+      wanted = with_load(step, step.own.constraint.wanted);
+    }
+    room &= problem.add_held(held, step.world.bodies[Index(held)], X_WB, X_WB * step.held.X_BH.p,
+                             step_metric(step.settings.coupling, step.held, step.dt_s), wanted);
+  }
+  for (Index i = 0; i < step.world.bodies.size(); ++i) {
+    const int b = static_cast<int>(i);
+    if (b == held || !step.own.free.near_held[i]) continue;
+    const Vec6 on = at_rest ? Vec6(Vec6::Zero()) : to_vector(step.bodies.V_WB[i] * step.dt_s);
+    room &= problem.add_free(b, step.world.bodies[i], step.bodies.X_WB[i], on, step.dt_s);
+  }
+  if (!room) step.report.flags |= frame_flag::kSolverBounded;
+  problem.add_joint_rows();
+}
+
+/// Counts an answer; whether it is one.
+bool solved(const QpAnswer& answer, FrameReport& report) {
+  report.solver_iterations += answer.iterations;
+  if (answer.status == QpStatus::kBounded) report.flags |= frame_flag::kSolverBounded;
+  return answer.status == QpStatus::kSolved;
+}
+
+using RowNames = StaticVector<std::uint64_t, kMostUnknowns>;
+
+/// The names of the contact rows that hold in the last answer.
+void note_held(const ConstraintState& c, RowNames& names) {
+  names.clear();
+  for (const QpActive& active : c.problem.answer().active) {
+    const Index row = Index(active.row) - c.first_row;
+    if (Index(active.row) >= c.first_row && row < c.own_rows) names.push_back(c.names[row]);
+  }
+}
+
+StaticVector<int, kMostUnknowns> rows_of(const RowNames& names, const ConstraintState& c) {
+  StaticVector<int, kMostUnknowns> rows;
+  for (Index row = 0; row < c.own_rows; ++row)
+    if (std::find(names.begin(), names.end(), c.names[row]) != names.end())
+      rows.push_back(static_cast<int>(c.first_row + row));
+  return rows;
+}
+
+void begin(const StaticVector<int, kMostUnknowns>& rows, ConstraintProblem& problem) {
+  problem.begin({rows.begin(), rows.end()});
+}
+
+/// Solves, from the rows begun with, or from those that hold now. False when there is no solution.
+bool solve_on(const FrameSettings& settings, ConstraintProblem& problem, FrameReport& report) {
+  return solved(problem.solve_on(settings.budget.solver_iterations), report);
+}
+
+/// Begins with what held in the last frame while every patch stuck, if any did. One body has so few rows that
+/// to go on from the answer without friction costs no more.
+void begin_sticking(ConstraintState& c) {
+  if (c.problem.movers().size() == 1) return;
+  StaticVector<int, kMostUnknowns> rows = rows_of(c.held_sticking, c);
+  const Index of_contacts = rows.size();
+  c.friction.rows_that_stuck(rows);
+  if (rows.size() > of_contacts) begin(rows, c.problem);
+}
+
+/// Lets every patch stick, then slip where it must, until none slips further. Where no answer keeps the
+/// anchors they are taken off; where there is none at all, friction.
+bool solve_sliding(const FrameSettings& settings, ConstraintState& c, FrameReport& report) {
+  for (int round = 0; round <= kSlipRounds; ++round) {
+    bool found = solve_on(settings, c.problem, report);
+    if (!found) {
+      c.friction.forget_anchors(c.problem);
+      found = solve_on(settings, c.problem, report);
+    }
+    if (!found) {
+      c.friction.clear();
+      c.problem.forget_cones();
+      return solve_on(settings, c.problem, report);
+    }
+    if (round == 0) {
+      note_held(c, c.held_sticking);
+      c.friction.note_sticking(c.problem);
+    }
+    if (!c.friction.let_slip(c.skin_m, c.problem)) break;
+  }
+  return true;
+}
+
+/// Keeps what the answer says of forces: impulses, the rows that hold, the wrench at the handle.
+void keep_forces(ConstraintStep& step) {
+  ConstraintState& c = step.own.constraint;
+  note_held(c, c.held);
+  for (ContactRow& row : own_rows(step)) row.impulse = 0.0;
+  for (const QpActive& active : c.problem.answer().active) {
+    const Index row = Index(active.row) - c.first_row;
+    if (Index(active.row) >= c.first_row && row < c.own_rows)
+      step.own.contact_rows.rows[row].impulse = active.multiplier * step.dt_s;
+  }
+  step.report.active_constraints = static_cast<int>(c.held.size());
+  feel(c.problem.displacement_at_centre(c.problem.movers().front()), step);
+}
+
+/// The farthest way of a point of the body in the last answer [m].
+double way_of(const ConstraintStep& step, const Mover& mover) {
+  const Vec6 x = step.own.constraint.moves().displacement(mover.body);
+  return x.head<3>().norm() + x.tail<3>().norm() * step.radius_m[Index(mover.body)];
+}
+
+/// The share of the answer's step that is trusted.
+double trusted_share(const ConstraintStep& step) {
+  const ConstraintState& c = step.own.constraint;
+  double share = 1.0;
+  for (const Mover& mover : c.moves().movers()) {
+    const double way = way_of(step, mover);
+    const double trusted = step.own.reach[Index(mover.body)] - kReachMargin * c.skin_m;
+    if (way * share > trusted) share = trusted / way;
+    if (mover.body != step.held.body) continue;
+    const double turn = c.moves().displacement(mover.body).tail<3>().norm();
+    if (turn * share > step.settings.constraint.max_turn_rad)
+      share = step.settings.constraint.max_turn_rad / turn;
+  }
+  return share;
+}
+
+/// Moves everything by `share` of the answer's step, on trial, and looks at every gap there.
+bool open_after(double share, ConstraintStep& step) {
+  ConstraintState& c = step.own.constraint;
+  c.X_WB_trial = step.bodies.X_WB;  // same size: nothing is allocated
+  for (const Mover& mover : c.moves().movers()) {
+    const Index i = Index(mover.body);
+    const Twist displacement = to_twist(c.moves().displacement(mover.body) * share);
+    c.X_WB_trial[i] =
+        constrained_pose(step.world.bodies[i], advanced(step.bodies.X_WB[i], displacement, 1.0));
+    if (!c.X_WB_trial[i].finite()) return false;
+  }
+  look_at_trial(0, step);
+  for (Index p = 0; p < c.gap.size(); ++p)
+    if (step.own.free.patch_asked[p] && !open_at_trial(p, c)) return false;
+  return true;
+}
+
+void take_trial(ConstraintStep& step) {
+  ConstraintState& c = step.own.constraint;
+  step.bodies.X_WB.swap(c.X_WB_trial);
+  for (Index p = 0; p < c.gap.size(); ++p)
+    if (step.own.free.patch_asked[p]) c.gap[p] = c.gap_trial[p];
+}
+
+/// Contacts nearer than half the skin are opened first, as far as there is room.
+void restore(ConstraintStep& step) {
+  ConstraintState& c = step.own.constraint;
+  bool tight = false;
+  for (Index p = 0; p < c.gap.size(); ++p) tight |= step.own.free.patch_asked[p] && c.gap[p] < 0.5 * c.skin_m;
+  if (!tight || step.gaps.blocked(step.held.body)) return;
+  add_bodies(true, step);
+  add_contact_rows(true, c.problem, step);
+  begin(rows_of(c.held, c), c.problem);
+  if (!solve_on(step.settings, c.problem, step.report)) return;
+  if (!open_after(trusted_share(step), step)) return;
+  for (ContactRow& row : own_rows(step)) row.distance = gap_at_trial(row, step);
+  take_trial(step);
+}
+
+/// Finds what pushes, where shading bends normals with these, and for those the problem of the way: to where
+/// the forces would have it, as far as the true normals let it. False when there is no answer.
+bool find_forces(ConstraintStep& step) {
+  ConstraintState& c = step.own.constraint;
+  add_bodies(false, step);
+  c.shades = c.bent;
+  if (c.shades) exchange_normals(step);
+  add_contact_rows(false, c.problem, step);
+  c.friction.clear();
+  begin(rows_of(c.held_without_friction, c), c.problem);
+  bool found = solve_on(step.settings, c.problem, step.report);
+  note_held(c, c.held_without_friction);
+  if (found && c.friction.begin(step.world, step.settings.friction, own_rows(step), step.patches,
+                                step.bodies.X_WB, c.skin_m, c.first_row, c.problem)) {
+    begin_sticking(c);
+    found = solve_sliding(step.settings, c, step.report);
+  }
+  if (found) keep_forces(step);
+  if (!c.shades) return found;
+  exchange_normals(step);
+  c.way.follow(c.problem);
+  add_contact_rows(false, c.way, step);
+  begin(rows_of(c.held, c), c.way);
+  return found && solve_on(step.settings, c.way, step.report);
+}
+
+/// Solves again after a feedback.
+bool find_again(ConstraintStep& step) {
+  ConstraintState& c = step.own.constraint;
+  if (c.shades) return solve_on(step.settings, c.way, step.report);
+  const bool found = c.friction.acts() ? solve_sliding(step.settings, c, step.report)
+                                       : solve_on(step.settings, c.problem, step.report);
+  if (found) keep_forces(step);
+  return found;
+}
+
+/// Goes where the hand wants as far as everything stays open; returns the share of the answer that was taken.
+double advance(ConstraintStep& step) {
+  if (!find_forces(step)) return 0.0;
+  if (step.gaps.blocked(step.held.body)) return 0.0;
+  double share = 0.0;
+  for (int round = 0; round <= kFeedbacks; ++round) {
+    if (round > 0) {
+      ++step.report.validation_retries;
+      feed_back(share, step);
+      if (!find_again(step)) break;
+    }
+    share = trusted_share(step);
+    if (open_after(share, step)) return share;
+  }
+  for (int halving = 0; halving < kHalvings; ++halving) {
+    ++step.report.validation_retries;
+    share *= 0.5;
+    if (open_after(share, step)) return share;
+  }
+  return 0.0;
+}
+
+/// The island of the held part: its bodies' velocities are what they did, but for what only opened a gap,
+/// which no force did. Returns the share of the answer that was taken.
+double move_held_island(ConstraintStep& step) {
+  ConstraintState& c = step.own.constraint;
+  step.own.free.patch_asked.clear();
+  for (const ContactPatch& patch : step.patches)
+    step.own.free.patch_asked.push_back(step.own.free.of_held(patch) ? 1 : 0);
+  restore(step);
+  const double share = advance(step);
+  c.stood = share > 0.0 ? 0 : c.stood + 1;
+  if (share > 0.0) take_trial(step);
+  if (c.stood >= frames_in(kStands_s, step.dt_s)) feel(Vec6::Zero(), step);
+  c.friction.end(step.world, own_rows(step), step.patches, c.first_row, c.problem, step.bodies.X_WB);
+  const std::vector<Pose>& before = share > 0.0 ? c.X_WB_trial : step.bodies.X_WB;  // take_trial swaps them
+  for (Index i = 0; i < step.world.bodies.size(); ++i)
+    if (step.own.free.near_held[i])
+      step.bodies.V_WB[i] = twist_between(before[i], step.bodies.X_WB[i], step.dt_s);
+  return share;
+}
+
+/// The length that is trusted in the next frame, from what the held part's island did in this one.
+void trust_step(ConstraintStep& step) {
+  double way = 0.0;
+  for (Index i = 0; i < step.own.free.near_held.size(); ++i) {
+    if (!step.own.free.near_held[i]) continue;
+    const Twist moved = twist_between(step.X_WB_start[i], step.bodies.X_WB[i], 1.0);
+    way = std::max(way, moved.v.norm() + moved.w.norm() * step.radius_m[i]);
+  }
+  const Constraint& limits = step.settings.constraint;
+  const double most = step.work.minima > 0 ? limits.max_step_on_surfaces_m : limits.max_step_m;
+  step.own.constraint.trust_m = std::clamp(kTrustGrowth * way, std::min(limits.least_step_m, most), most);
+}
+
+/// The points at which something pushes the body: corners, and the centre of a patch whose load friction's
+/// cone carries alone.
+int pushing_points(std::span<const ContactRow> corners, int body, const ConstraintState& c) {
+  int points = 0;
+  std::array<bool, Friction::kMostPatches> counted{};
+  for (const ContactRow& row : corners) {
+    if (!(row.impulse > 0.0) || (row.body_a != body && row.body_b != body)) continue;
+    ++points;
+    if (row.grip >= 0) counted[Index(row.grip)] = true;
+  }
+  for (Index i = 0; i < c.friction_uses.size(); ++i) {
+    const PatchKey& key = c.friction.patches()[i].key;
+    if (c.friction_uses[i].load_N > 0.0 && !counted[i] && (key.body_a == body || key.body_b == body))
+      ++points;
+  }
+  return points;
+}
+
+/// The contacts as they push: normal forces of corners, and of friction the edges of its cones.
+void report_rows(ConstraintStep& step) {
+  const int held = step.held.body;
+  const ConstraintState& c = step.own.constraint;
+  if (c.shades) exchange_normals(step);
+  step.report.contact_points = static_cast<int>(c.names.size());
+  use_of_friction(step.world, c.friction, step.patches, c.first_row, c.problem, own_rows(step),
+                  step.own.constraint.friction_uses);
+  step.report.friction = sum_of(c.friction_uses);
+  step.report.held_contact_points =
+      pushing_points({step.own.contact_rows.rows.data(), c.names.size()}, held, c);
+  Vec3 torque = Vec3::Zero();
+  Vec3 origin = held < 0 ? Vec3(Vec3::Zero()) : step.X_WB_start[Index(held)].p;
+  if (step.own.free.held_island >= 0) {
+    origin = c.problem.movers().front().origin;
+    torque = c.friction.add_forces(held, step.dt_s, c.problem, step.own.contact_rows.rows);
+  }
+  if (held < 0) return;
+  step.report.restoring = contact_wrench(step.own.contact_rows.rows, held, origin, step.dt_s);
+  step.report.restoring.t += torque;
+}
+
+}  // namespace
+
+void trusted_reach(const MotionInput& input, const WorldState& bodies, ConstraintResponse& own) noexcept {
+  const ConstraintState& c = own.constraint;
+  const double pull = input.world.gravity_W.norm() * input.dt_s;
+  for (Index i = 0; i < own.reach.size(); ++i) {
+    own.reach[i] = kReachMargin * c.skin_m;
+    if (!input.world.bodies[i].moves()) continue;
+    const Twist& V = bodies.V_WB[i];
+    const bool held = static_cast<int>(i) == input.held.body;
+    if (!held) own.reach[i] += (V.v.norm() + pull + V.w.norm() * input.radius_m[i]) * input.dt_s;
+    if (held || own.free.near_held[i]) own.reach[i] += c.trust_m;
+  }
+}
+
+void respond_constrained(ConstraintStep& step) noexcept {
+  ConstraintState& c = step.own.constraint;
+  c.gap.clear();
+  for (const ContactPatch& patch : step.patches) c.gap.push_back(patch.distance);
+  c.gap_trial.resize(c.gap.size());
+  c.gap_least.resize(c.gap.size());
+  c.gap_answer.resize(c.gap.size());
+
+  step.own.free.others = others_move(step.world, step.held.body);
+  let_wait(step);
+  find_islands(step);
+  begin_balance(step);
+  make_corner_rows(step);
+  strike(step);
+  move_free_bodies(step);
+  double share = 1.0;  // of the held island's step
+  if (step.own.free.held_island >= 0) {
+    share = move_held_island(step);
+  } else {
+    c.friction.forget();
+  }
+  trust_step(step);
+  end_turning(step);
+  end_balance(share == 1.0 && !c.shades, step);
+  go_on(step);
+  report_rows(step);
+}
+
+}  // namespace tactum

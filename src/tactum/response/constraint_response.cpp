@@ -1,0 +1,33 @@
+#include "tactum/response/constraint_response.h"
+
+#include "tactum/response/constraint.h"
+#include "tactum/response/free_bodies.h"
+
+namespace tactum {
+
+ConstraintResponse::ConstraintResponse(const World& world, const FrameSettings& settings, WorldState& bodies)
+    : memory_(world, settings) {
+  begin_midway(world, settings.dt_s, bodies);
+}
+
+std::span<const double> ConstraintResponse::bound_motion(const MotionInput& input,
+                                                         WorldState& bodies) noexcept {
+  pull_free_bodies(input, bodies);
+  trusted_reach(input, bodies, memory_);
+  return memory_.reach;
+}
+
+void ConstraintResponse::step(const StepInput& input, GapOracle& gaps, WorldState& bodies,
+                              FrameReport& report) noexcept {
+  if (input.held.body != grasped_last_) memory_.constraint.felt = {};
+  grasped_last_ = input.held.body;
+  ConstraintStep step{input, gaps, bodies, memory_, report};
+  respond_constrained(step);
+}
+
+Wrench ConstraintResponse::felt(const StepInput& input, const WorldState& /*bodies*/) noexcept {
+  const Wrench pulses = memory_.impulses.next();
+  return input.held.body < 0 ? Wrench{} : memory_.constraint.felt + pulses;
+}
+
+}  // namespace tactum

@@ -1,0 +1,189 @@
+#include "tactum/response/constraint_rows.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "tactum/contact/patch_corners.h"
+
+namespace tactum {
+namespace {
+
+using Index = std::size_t;
+
+Push push_of(const ContactRow& row) { return {row.p_W, row.n_BA_W, Vec3::Zero()}; }
+
+/// A name that a row keeps from frame to frame while the pair's patch has as many corners.
+std::uint64_t name_of(const ContactPatch& patch, Index corner) {
+  if (patch.of_surfaces) return patch.manifold.points[0].id;
+  const auto pieces =
+      static_cast<std::uint64_t>(patch.piece_a) << 20 ^ static_cast<std::uint64_t>(patch.piece_b);
+  const auto bodies =
+      static_cast<std::uint64_t>(patch.body_a) << 6 ^ static_cast<std::uint64_t>(patch.body_b);
+  return (bodies << 40 ^ pieces) << 8 ^ corner;
+}
+
+/// Whether a whole face of the body touches: a face beside the edge or corner that touches does not.
+bool by_face(const Feature& on, bool beside) { return on.kind == FeatureKind::kFace && !beside; }
+
+/// How the shading of the two bodies' faces bends a normal at a corner, A's frame. The one face that there is
+/// decides; of two curved faces each has half a say, and a flat one against a curved one all of it. A face
+/// beside the edge that touches has none, as the edge has none.
+Vec3 bend(const ShadingNormals& a, const ShadingNormals& b, const Pose& X_AB, const ContactPatch& patch,
+          const PatchCorner& corner) {
+  const auto deviation = [&](const ShadingNormals& shading, int piece, const Feature& on, bool beside,
+                             const Vec3& p) -> Vec3 {
+    if (beside) return Vec3::Zero();
+    return patch.of_surfaces ? shading.deviation_on_surface(on, p) : shading.deviation(piece, on, p);
+  };
+  const Feature& on_a = patch.manifold.a;
+  const Feature& on_b = patch.manifold.b;
+  const Vec3 p_B = rotated_back(X_AB.R, corner.p_A - X_AB.p);
+  const Vec3 by_a = deviation(a, patch.piece_a, on_a, patch.neighbour_face_a, corner.p_A);
+  const Vec3 by_b = deviation(b, patch.piece_b, on_b, patch.neighbour_face_b, p_B);
+  if (!by_face(on_a, patch.neighbour_face_a) || !by_face(on_b, patch.neighbour_face_b))
+    return rotated(X_AB.R, by_b) - by_a;
+  if (by_a.isZero(0.0) || by_b.isZero(0.0)) return Vec3::Zero();
+  return 0.5 * (rotated(X_AB.R, by_b) - by_a);
+}
+
+/// The rows of a patch: one per corner.
+struct RowMaker {
+  ConstraintStep& step;
+
+  void add(const ContactPatch& patch, int number, bool own) const noexcept {
+    if (patch.manifold.points.empty() && (patch.manifold.a.index < 0 || patch.manifold.b.index < 0))
+      return;  // only watched
+    ConstraintState& c = step.own.constraint;
+    ContactRows& out = step.own.contact_rows;
+    const int other = patch.body_a == step.held.body   ? patch.body_b
+                      : patch.body_b == step.held.body ? patch.body_a
+                                                       : -1;
+    const Pose& X_WA = step.bodies.X_WB[Index(patch.body_a)];
+    const Pose X_AB = relative_pose(X_WA, step.bodies.X_WB[Index(patch.body_b)]);
+    PatchCorners corners;
+    if (patch.of_surfaces) {
+      const ContactPoint& point = patch.manifold.points[0];
+      corners.push_back({0.5 * (point.p_a + point.p_b), point.distance});
+    } else {
+      const Polytope& A = step.world.bodies[Index(patch.body_a)].part->pieces[Index(patch.piece_a)];
+      const Polytope& B = step.world.bodies[Index(patch.body_b)].part->pieces[Index(patch.piece_b)];
+      if (other < 0) {
+        c.corner_memory.corners_of(A, B, X_AB, patch, corners);
+      } else {  // what the hand holds hardly ever lies still to the bit
+        patch_corners(A, B, X_AB, patch.manifold, patch.distance, patch.tolerance, corners);
+      }
+    }
+    const Vec3 normal_W = X_WA.R * patch.manifold.normal;
+    const double friction = step.settings.friction.between(patch.body_a, patch.body_b);
+    const double restitution = step.settings.impacts.restitution.between(patch.body_a, patch.body_b);
+    // What the hand drives into something that is held is no blow: its coupling is what bounces.
+    const Islands& islands = step.own.free.islands;
+    const bool struck = (islands.moves(patch.body_a) || islands.moves(patch.body_b)) &&
+                        (other < 0 || step.world.bodies[Index(other)].joint.kind == JointKind::kFree);
+    for (Index i = 0; i < corners.size(); ++i) {
+      if (out.rows.size() == out.rows.capacity()) {
+        out.full = true;
+        return;
+      }
+      ContactRow& row = out.rows.emplace_back();
+      row.body_a = patch.body_a;
+      row.body_b = patch.body_b;
+      row.patch = number;
+      row.n_BA_W = normal_W;
+      row.p_W = X_WA * corners[i].p_A;
+      row.distance = corners[i].distance;
+      row.tolerance = patch.tolerance;
+      row.friction = friction;
+      row.restitution = restitution;
+      row.struck = struck;
+      c.names.push_back(name_of(patch, i));
+      if (!own || step.shading.empty()) continue;
+      const Vec3 bent =
+          bend(step.shading[Index(patch.body_a)], step.shading[Index(patch.body_b)], X_AB, patch, corners[i]);
+      c.bent |= !bent.isZero(0.0);
+      c.shaded.push_back(bent.isZero(0.0) ? normal_W : Vec3((normal_W + X_WA.R * bent).normalized()));
+    }
+  }
+};
+
+}  // namespace
+
+void make_corner_rows(ConstraintStep& step) noexcept {
+  ConstraintState& c = step.own.constraint;
+  ContactRows& out = step.own.contact_rows;
+  out.rows.clear();
+  out.full = false;
+  c.names.clear();
+  c.shaded.clear();
+  c.shades = c.bent = false;
+  const std::span<const ContactPatch> patches = step.patches;
+  const RowMaker maker{step};
+  for (Index p = 0; p < patches.size() && !out.full; ++p)
+    if (step.own.free.of_held(patches[p])) maker.add(patches[p], static_cast<int>(p), true);
+  c.own_rows = out.rows.size();
+  for (Index p = 0; p < patches.size() && !out.full; ++p)
+    if (!step.own.free.of_held(patches[p])) maker.add(patches[p], static_cast<int>(p), false);
+}
+
+std::span<ContactRow> own_rows(ConstraintStep& step) noexcept {
+  return {step.own.contact_rows.rows.data(), step.own.constraint.own_rows};
+}
+
+void add_contact_rows(bool opening, ConstraintProblem& problem, ConstraintStep& step) noexcept {
+  ConstraintState& c = step.own.constraint;
+  c.first_row = problem.rows();
+  for (const ContactRow& row : own_rows(step)) {
+    const double offset = c.skin_m - row.distance;
+    problem.add_row(problem.row_of(row.body_a, row.body_b, push_of(row)),
+                    opening ? offset : std::min(0.0, offset));
+  }
+  c.feedback.assign(c.own_rows, 0.0);
+}
+
+void exchange_normals(ConstraintStep& step) noexcept {
+  ConstraintState& c = step.own.constraint;
+  for (Index r = 0; r < c.shaded.size(); ++r) std::swap(c.shaded[r], step.own.contact_rows.rows[r].n_BA_W);
+}
+
+double gap_at_trial(const ContactRow& row, const ConstraintStep& step) noexcept {
+  const ConstraintState& c = step.own.constraint;
+  const ContactPatch& patch = step.patches[Index(row.patch)];
+  const auto carried = [&](int body, const Vec3& p_W) {
+    const Pose& before = step.bodies.X_WB[Index(body)];
+    return c.X_WB_trial[Index(body)] * rotated_back(before.R, p_W - before.p);
+  };
+  const bool on_a = by_face(patch.manifold.a, patch.neighbour_face_a);
+  const bool on_b = by_face(patch.manifold.b, patch.neighbour_face_b);
+  const int owner = on_a && !on_b ? row.body_a : row.body_b;
+  const Vec3 half = 0.5 * row.distance * row.n_BA_W;
+  const Vec3 normal =
+      c.X_WB_trial[Index(owner)].R * rotated_back(step.bodies.X_WB[Index(owner)].R, row.n_BA_W);
+  return normal.dot(carried(row.body_a, row.p_W + half) - carried(row.body_b, row.p_W - half));
+}
+
+double overstated_at_trial(std::span<const ContactRow> rows_of_patch, const ConstraintStep& step) noexcept {
+  if (step.own.constraint.gap_answer[Index(rows_of_patch.front().patch)] != GapAnswer::kExact) return 0.0;
+  double least = std::numeric_limits<double>::infinity();
+  for (const ContactRow& row : rows_of_patch) least = std::min(least, gap_at_trial(row, step));
+  return std::max(0.0, least - step.own.constraint.gap_trial[Index(rows_of_patch.front().patch)]);
+}
+
+void feed_back(double share, ConstraintStep& step) noexcept {
+  ConstraintState& c = step.own.constraint;
+  ConstraintProblem& problem = c.moves();
+  const std::span<const ContactRow> rows = own_rows(step);
+  for (Index first = 0, end = 0; first < rows.size(); first = end) {
+    for (end = first + 1; end < rows.size() && rows[end].patch == rows[first].patch;) ++end;
+    const double too_much = overstated_at_trial(rows.subspan(first, end - first), step);
+    for (Index r = first; r < end; ++r) {
+      const double linear = problem.opening(problem.row_of(rows[r].body_a, rows[r].body_b, push_of(rows[r])));
+      const double gap = gap_at_trial(rows[r], step) - too_much;
+      const double missing = (rows[r].distance + share * linear - gap) / share;
+      problem.tighten(c.first_row + r, missing - c.feedback[r]);
+      c.feedback[r] = missing;
+    }
+  }
+}
+
+}  // namespace tactum

@@ -1,0 +1,79 @@
+#include "tactum/response/constraint_state.h"
+
+#include <algorithm>
+
+#include "tactum/base/tolerances.h"
+
+namespace tactum {
+
+using Index = std::size_t;
+
+ConstraintState::ConstraintState(const World& world, const FrameSettings& settings)
+    : problem(static_cast<Index>(settings.budget.max_contact_points)),
+      way(static_cast<Index>(settings.budget.max_contact_points)),
+      trust_m(settings.constraint.least_step_m),
+      corner_memory(settings.budget.capacity.patches / 4 + 1),
+      X_WB_trial(world.bodies.size()) {
+  double size = 0.0;
+  for (const Body& body : world.bodies)
+    if (body.moves()) size = std::max(size, body.part->size);
+  skin_m = tolerances::kSkin * size;
+  const Index rows = static_cast<Index>(settings.budget.max_contact_points);
+  names.reserve(rows);
+  feedback.reserve(rows);
+  shaded.reserve(rows);
+  gap.reserve(settings.budget.capacity.patches);
+  gap_trial.reserve(settings.budget.capacity.patches);
+  gap_least.reserve(settings.budget.capacity.patches);
+  gap_answer.reserve(settings.budget.capacity.patches);
+}
+
+FreeBodies::FreeBodies(const World& world, const FrameSettings& settings)
+    : islands(world),
+      resting(Index(settings.budget.max_contact_points), world.bodies.size()),
+      momentum(world),
+      near_held(world.bodies.size(), 0),
+      w_start(world.bodies.size(), Vec3::Zero()),
+      w_free(world.bodies.size(), Vec3::Zero()),
+      share(world.bodies.size(), 1.0),
+      cut(world.bodies.size(), 0),
+      settled(world.bodies.size(), 0) {
+  patch_asked.reserve(settings.budget.capacity.patches);
+  patch_closed.reserve(settings.budget.capacity.patches);
+}
+
+Waiting::Waiting(const World& world, const FrameSettings& settings)
+    : waits(world.bodies.size(), 0),
+      waited(world.bodies.size(), 0),
+      way(world.bodies.size(), 0.0),
+      X_rest(world.bodies.size()),
+      rested(world.bodies.size(), 0),
+      contacts_at_rest(world.bodies.size(), 0),
+      V_kept(world.bodies.size()),
+      first_patch(world.bodies.size() + 1, 0),
+      next_patch(world.bodies.size() + 1, 0),
+      contacts(world.bodies.size(), 0),
+      hit(world.bodies.size(), 0) {
+  order.reserve(world.bodies.size());
+  patch_of.reserve(2 * settings.budget.capacity.patches);
+  counted.reserve(settings.budget.capacity.patches);
+}
+
+Sleep::Sleep(const World& world)
+    : X_still(world.bodies.size()),
+      still(world.bodies.size(), 0),
+      touched(world.bodies.size(), 0),
+      touches(world.bodies.size(), 0),
+      islands(world),
+      restless(world.bodies.size(), 0) {}
+
+ConstraintMemory::ConstraintMemory(const World& world, const FrameSettings& settings)
+    : constraint(world, settings),
+      free(world, settings),
+      waiting(world, settings),
+      sleep(world),
+      contact_rows(settings.budget.capacity.patches, Index(settings.budget.max_contact_points)),
+      mobility(world.bodies.size(), Mobility::Zero()),
+      reach(world.bodies.size(), 0.0) {}
+
+}  // namespace tactum

@@ -1,0 +1,158 @@
+#pragma once
+/// What the constraint response keeps from frame to frame and works on, allocated at load time: a struct for each of
+/// its parts, and the step that is being made. The functions stand in the parts' own headers.
+
+#include <vector>
+
+#include "tactum/contact/gap_oracle.h"
+#include "tactum/contact/patch_corners.h"
+#include "tactum/dynamics/impacts.h"
+#include "tactum/dynamics/islands.h"
+#include "tactum/dynamics/resting_contact.h"
+#include "tactum/response/constraint_problem.h"
+#include "tactum/response/contact_force.h"
+#include "tactum/response/frame_report.h"
+#include "tactum/response/friction.h"
+#include "tactum/response/friction_use.h"
+#include "tactum/response/impulse_display.h"
+#include "tactum/response/step_input.h"
+
+namespace tactum {
+
+/// Of the held part's island (constraint.h).
+struct ConstraintState {
+  ConstraintState(const World& world, const FrameSettings& settings);
+
+  ConstraintProblem problem;  ///< of the forces, and of the way unless normals are shaded
+  ConstraintProblem way;      ///< where they are: to where the forces would have it
+  Friction friction;
+  double skin_m;               ///< the gap contacts are held at [m]
+  double trust_m;              ///< how far a point of a body may move in the next frame [m]
+  Vec6 wanted;                 ///< what the coupling asked of the handle [m, rad]
+  int stood = 0;               ///< frames on end in which no step could be taken [-]
+  Wrench felt;                 ///< of the contact forces, at the handle, world axes [N, N m]
+  FrictionUses friction_uses;  ///< what friction does, for displays
+  /// Names of the rows that held last: in the end, without friction, and while every patch stuck. The next
+  /// frame's problems begin with them.
+  StaticVector<std::uint64_t, kMostUnknowns> held, held_without_friction, held_sticking;
+  CornerMemory corner_memory;
+
+  // Scratch of one frame.
+  std::size_t own_rows = 0;          ///< the first so many contact rows are the problem's
+  std::size_t first_row = 0;         ///< of them, in the problem
+  bool bent = false;                 ///< some normal is bent by shading
+  bool shades = false;               ///< ... so the step is that of `way`
+  std::vector<Vec3> shaded;          ///< normals of the own rows; empty without shading [-]
+  std::vector<std::uint64_t> names;  ///< of the rows
+  std::vector<double> feedback;      ///< what exact gaps have added to the rows [m]
+  std::vector<Pose> X_WB_trial;
+  std::vector<double> gap, gap_trial;  ///< of the patches: now, and at the trial [m]
+  std::vector<double> gap_least;       ///< what they may become [m]
+  std::vector<GapAnswer> gap_answer;   ///< how the trial's are known
+
+  /// The problem whose answer is the step.
+  ConstraintProblem& moves() { return shades ? way : problem; }
+  const ConstraintProblem& moves() const { return shades ? way : problem; }
+};
+
+/// The balance of momentum (momentum.h); scratch of one frame.
+struct Momentum {
+  explicit Momentum(const World& world) : counts(world.bodies.size(), 0) {}
+
+  /// `impulse` acts on body_a, its opposite on body_b [N s].
+  void give(int body_a, int body_b, const Vec3& impulse) noexcept {
+    const bool a = counts[static_cast<std::size_t>(body_a)] != 0;
+    const bool b = counts[static_cast<std::size_t>(body_b)] != 0;
+    if (a == b) return;
+    due_Ns += a ? impulse : Vec3(-impulse);
+  }
+
+  std::vector<char> counts;    ///< bodies that are free, awake and not held
+  Vec3 due_Ns = Vec3::Zero();  ///< what they should have at the end of the frame
+};
+
+/// Of the bodies that move by themselves (free_bodies.h).
+struct FreeBodies {
+  FreeBodies(const World& world, const FrameSettings& settings);
+
+  Islands islands;
+  RestingContact resting;
+  Momentum momentum;
+  int held_island = -1;         ///< the island that constraint.h answers for; -1: none
+  bool held_here = false;       ///< the held part's island had no room there
+  bool others = false;          ///< some body moves by itself
+  bool alone = true;            ///< nothing but the held part's island moves
+  std::vector<char> near_held;  ///< of each body: in the held part's island in the last frame
+
+  /// Whether a patch belongs to the island that constraint.h answers for.
+  bool of_held(const ContactPatch& patch) const noexcept {
+    return held_island >= 0 && islands.of_contact(patch.body_a, patch.body_b) == held_island;
+  }
+
+  // Scratch of one frame, one entry per body, or per patch.
+  std::vector<Vec3> w_start;       ///< rates at the start [rad/s]
+  std::vector<Vec3> w_free;        ///< ... midway, if nothing touches [rad/s]
+  std::vector<double> share;       ///< of a body's step that is taken [-]
+  std::vector<char> cut;           ///< it has just become less
+  std::vector<char> settled;       ///< an island's step has been found good
+  std::vector<char> patch_asked;   ///< patches whose gap is asked for
+  std::vector<char> patch_closed;  ///< ... and is not open
+};
+
+/// Who waits (waiting.h); one entry per body.
+struct Waiting {
+  Waiting(const World& world, const FrameSettings& settings);
+
+  std::vector<char> waits;            ///< in this frame
+  std::vector<int> waited;            ///< how many frames on end [-]
+  std::vector<double> way;            ///< of the last step it took or tried [m]
+  std::vector<Pose> X_rest;           ///< the place it has hardly left
+  std::vector<int> rested;            ///< frames that it moved in since [-]
+  std::vector<int> contacts_at_rest;  ///< of those that sleep; 0: awake [-]
+  int rounds = 2;                     ///< tests that a gap on trial is expected to take [-]
+  bool ran_out = false;               ///< tests did not suffice for the poses on trial in this frame
+
+  // Scratch of one frame.
+  std::vector<Twist> V_kept;  ///< velocities of those that wait [m/s, rad/s]
+  std::vector<int> order, first_patch, next_patch, patch_of;
+  std::vector<char> counted;  ///< of each patch
+  std::vector<int> contacts;  ///< patches of each body
+  std::vector<char> hit;      ///< by something fast
+};
+
+/// Who sleeps (sleep.h); one entry per body.
+struct Sleep {
+  explicit Sleep(const World& world);
+
+  std::vector<Pose> X_still;   ///< the place it has not left
+  std::vector<int> still;      ///< frames since it came there [-]
+  std::vector<int> touched;    ///< patches in the last frame [-]
+  std::vector<int> touches;    ///< ... and now [-]
+  Islands islands;             ///< by this frame's patches, whoever sleeps
+  std::vector<char> restless;  ///< of islands
+};
+
+/// Everything that the constraint response keeps from frame to frame. Its parts work on each other: a step of one is
+/// made while the others' states are known (ConstraintStep).
+struct ConstraintMemory {
+  ConstraintMemory(const World& world, const FrameSettings& settings);
+
+  ConstraintState constraint;  ///< the island of the held part (constraint.h)
+  FreeBodies free;             ///< the other islands (free_bodies.h)
+  Waiting waiting;             ///< waiting.h
+  Sleep sleep;                 ///< sleep.h
+  ContactRows contact_rows;
+  ImpulseDisplay impulses;         ///< blows on the held part that are being felt
+  std::vector<Mobility> mobility;  ///< by body; scratch of one frame
+  std::vector<double> reach;       ///< by body: how far it may move [m]
+};
+
+/// One step while it is made: its inputs, what it may ask, and what it changes.
+struct ConstraintStep : StepInput {
+  GapOracle& gaps;
+  WorldState& bodies;     ///< where everything is, and how it moves
+  ConstraintMemory& own;  ///< what the response keeps
+  FrameReport& report;
+};
+
+}  // namespace tactum

@@ -1,0 +1,43 @@
+#include "tactum/response/constraint_trial.h"
+
+#include <algorithm>
+
+#include "tactum/base/tolerances.h"
+
+namespace tactum {
+namespace {
+
+using Index = std::size_t;
+
+/// Gaps of bodies that touch are known to rounding only, some share of the skin. Kept to the bit, they would
+/// hold for ever what is jammed without play, and all that touches it.
+constexpr double kKnownGap = tolerances::kCertificate;
+
+/// What a gap may become: open, and if it must shrink below half the skin, then by no more than half, or by
+/// as much as it is known to. Held to the exact last gap, a part that is a rounding too near could never move
+/// again.
+double least_gap(double now, double skin) {
+  const double known = kKnownGap * skin;
+  return std::min(0.5 * skin, now > known ? 0.5 * now : now - known);
+}
+
+}  // namespace
+
+void look_at_trial(int keep_back, ConstraintStep& step) noexcept {
+  ConstraintState& c = step.own.constraint;
+  for (Index p = 0; p < c.gap.size(); ++p) {
+    c.gap_answer[p] = step.own.free.patch_asked[p] ? GapAnswer::kAsked : GapAnswer::kNotAsked;
+    c.gap_least[p] = least_gap(c.gap[p], c.skin_m);
+  }
+  step.report.validation_tests +=
+      step.gaps.distances_at(c.X_WB_trial, c.gap_trial, c.gap_answer, c.gap_least, keep_back);
+  step.own.waiting.ran_out |=
+      std::find(c.gap_answer.begin(), c.gap_answer.end(), GapAnswer::kUnknown) != c.gap_answer.end();
+}
+
+bool open_at_trial(std::size_t patch, const ConstraintState& c) noexcept {
+  if (c.gap_answer[patch] == GapAnswer::kExact) return c.gap_trial[patch] >= c.gap_least[patch];
+  return c.gap_answer[patch] == GapAnswer::kProven;
+}
+
+}  // namespace tactum

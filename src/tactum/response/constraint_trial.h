@@ -1,0 +1,14 @@
+#pragma once
+/// The gaps of the constraint response at poses on trial: whether they are open there.
+
+#include "tactum/response/constraint_state.h"
+
+namespace tactum {
+
+/// Asks for the gaps at the trial of the patches that FreeBodies::patch_asked names, as long as more than
+/// `keep_back` tests are left.
+void look_at_trial(int keep_back, ConstraintStep& step) noexcept;
+/// Whether the gap of a patch that was asked for is open at the trial.
+bool open_at_trial(std::size_t patch, const ConstraintState& c) noexcept;
+
+}  // namespace tactum

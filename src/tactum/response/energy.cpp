@@ -1,0 +1,41 @@
+#include "tactum/response/energy.h"
+
+#include "tactum/math/screw.h"
+
+namespace tactum {
+
+double bodies_energy(const World& world, const WorldState& bodies, int held) noexcept {
+  double energy_J = 0.0;
+  for (std::size_t i = 0; i < world.bodies.size(); ++i) {
+    const Body& body = world.bodies[i];
+    if (!body.moves()) continue;
+    const Pose& X_WB = bodies.X_WB[i];
+    if (static_cast<int>(i) == held) {  // it has weight, but the hand does not feel its inertia
+      energy_J -= body.mass_kg * world.gravity_W.dot(X_WB.p);
+      continue;
+    }
+    const Twist& V_WB = bodies.V_WB[i];
+    const Vec3 w_B = X_WB.R.transpose() * V_WB.w;
+    energy_J += 0.5 * body.mass_kg * V_WB.v.squaredNorm() + 0.5 * w_B.dot(body.inertia_B * w_B) -
+                body.mass_kg * world.gravity_W.dot(X_WB.p);
+  }
+  return energy_J;
+}
+
+void add_stored_energy(const World& world, const Coupling& coupling, const GraspedPart& held,
+                       const WorldState& bodies, double field_work_J, double pending_J,
+                       PortInput& port) noexcept {
+  // What a field gives the held part is its own, as a falling weight's is; a vortex gives without end.
+  port.bodies_J = bodies_energy(world, bodies, held.body) - field_work_J;
+  if (held.body < 0) return;
+  Twist stretch;
+  if (held.hand_known) {
+    const Pose X_WH_proxy = bodies.X_WB[static_cast<std::size_t>(held.body)] * held.X_BH;
+    stretch = twist_between(held.X_WH, X_WH_proxy, 1.0);
+  }
+  port.spring_J = 0.5 * coupling.stiffness_N_per_m * stretch.v.squaredNorm();
+  port.spring_J += pending_J;
+  port.spring_turning_J = 0.5 * coupling.stiffness_Nm_per_rad * stretch.w.squaredNorm();
+}
+
+}  // namespace tactum

@@ -1,0 +1,87 @@
+#include "tactum/response/field_pull.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "tactum/math/screw.h"
+
+namespace tactum {
+namespace {
+
+using Index = std::size_t;
+
+/// A step is at most so much more than what would end at the balance: at one and a half an error changes its
+/// sign and halves.
+constexpr double kOvershoot = 1.5;
+/// From where on a field is called steep beside the coupling, a share of its stiffness.
+constexpr double kSteep = 0.5;
+
+double work_over_step(const Wrench& load, std::span<const Pose> X_WB, const FieldPull& pull) {
+  return power(load, twist_between(pull.X_WB_start, X_WB[Index(pull.body)], 1.0));
+}
+
+/// How stiff the field is beside the coupling, both against ways and against turns [-].
+double stiffness_beside(const Coupling& coupling, const FieldLoad& load) {
+  return load.stiffness_N_per_m / coupling.stiffness_N_per_m +
+         load.stiffness_Nm_per_rad / coupling.stiffness_Nm_per_rad;
+}
+
+}  // namespace
+
+void find_field_load(const World& world, std::span<const Pose> X_WB, GraspedPart& held,
+                     FieldPull& pull) noexcept {
+  if (world.fields.empty()) return;
+  const FieldLoad before = pull.load;
+  const bool goes_on = held.body >= 0 && held.body == pull.body;
+  pull.load = {};
+  pull.body = held.body;
+  if (held.body < 0) return;
+  const Body& body = world.bodies[Index(held.body)];
+  const Pose& X_WB_now = X_WB[Index(held.body)];
+  pull.load = field_load(world.fields, body.field_points, X_WB_now, held.X_BH.p);
+  if (goes_on) pull.given_J += 0.5 * work_over_step(pull.load.at_centre - before.at_centre, X_WB, pull);
+  pull.X_WB_start = X_WB_now;
+  held.in_field = true;
+  held.field = pull.load;
+}
+
+void add_field_work(std::span<const Pose> X_WB, FieldPull& pull) noexcept {
+  if (pull.body >= 0) pull.given_J += work_over_step(pull.load.at_centre, X_WB, pull);
+}
+
+Wrench field_at_handle(const GraspedPart& held, std::span<const Pose> X_WB) noexcept {
+  if (!held.in_field) return {};
+  return moved(held.field.at_centre, X_WB[Index(held.body)].R * held.X_BH.p);
+}
+
+HeldMetric step_metric(const Coupling& coupling, const GraspedPart& held, double dt_s) noexcept {
+  const HeldMetric metric = held_metric(coupling, dt_s);
+  const double needed = (1.0 + stiffness_beside(coupling, held.field)) / kOvershoot;
+  return {std::max(metric.stiffness_N_per_m, coupling.stiffness_N_per_m * needed),
+          std::max(metric.stiffness_Nm_per_rad, coupling.stiffness_Nm_per_rad * needed)};
+}
+
+Pose loaded_hand(const Coupling& coupling, const GraspedPart& held, const Pose& X_WB) noexcept {
+  if (!held.in_field) return held.X_WH;
+  const double stiffer = std::max(1.0, (1.0 + stiffness_beside(coupling, held.field)) / kOvershoot);
+  const Pose X_WH_proxy = X_WB * held.X_BH;
+  const Twist missing = twist_between(X_WH_proxy, held.X_WH, 1.0);
+  const Wrench load = moved(held.field.at_centre, X_WB.R * held.X_BH.p);
+  const Twist step{(missing.v + load.f / coupling.stiffness_N_per_m) / stiffer,
+                   (missing.w + load.t / coupling.stiffness_Nm_per_rad) / stiffer};
+  return advanced(X_WH_proxy, step, 1.0);
+}
+
+std::string field_sentence(const World& world, const Coupling& coupling) {
+  if (world.fields.empty()) return "";
+  double steep = 0.0;
+  for (const ForceField& field : world.fields) steep += steepest(field);
+  const double share = steep / coupling.stiffness_N_per_m;
+  return fmt::format("force fields: up to {:.3g} N/m, {:.0f} % of the coupling{}", steep, 100.0 * share,
+                     share > kSteep ? ": steeper than it can follow at full stiffness; lower their scale, or "
+                                      "smooth them"
+                                    : "");
+}
+
+}  // namespace tactum

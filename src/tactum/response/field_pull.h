@@ -1,0 +1,52 @@
+#pragma once
+/// Force fields and the held part: what they do to it in this frame, how far that may move it, and what they
+/// have given it so far.
+///
+/// A field is felt like weight: it loads the held part, and the coupling carries the load. Only the proxy is
+/// in the field; what the hand feels is no stiffer than the coupling. The load is that of the pose before the
+/// step, so in a field much steeper than the coupling a full step would overshoot,
+///
+///     x = (k way + b v + W) / K,     K = k + b / dt,   but at least  2/3 (k + field)
+///
+/// and is made shorter; where it ends is the same.
+
+#include <span>
+#include <string>
+
+#include "tactum/dynamics/force_field.h"
+#include "tactum/dynamics/world.h"
+#include "tactum/response/constraint_problem.h"
+#include "tactum/response/step_input.h"
+
+namespace tactum {
+
+/// The load of force fields on what is held, from frame to frame, and the work it did.
+struct FieldPull {
+  FieldLoad load;        ///< at the pose the frame starts with
+  double given_J = 0.0;  ///< work on the held parts since the start, of either sign [J]
+  int body = -1;         ///< on which the load acts; -1: none
+  Pose X_WB_start;       ///< its pose at the start of the frame [m]
+};
+
+/// Finds the load on the held body in this frame, and mends the work of the last step by what the field was
+/// at its end.
+void find_field_load(const World& world, std::span<const Pose> X_WB, GraspedPart& held,
+                     FieldPull& pull) noexcept;
+
+/// Adds the work of the load over the frame's step.
+void add_field_work(std::span<const Pose> X_WB, FieldPull& pull) noexcept;
+
+/// The load told at the handle, world axes.
+Wrench field_at_handle(const GraspedPart& held, std::span<const Pose> X_WB) noexcept;
+
+/// The coupling over one frame, at least as stiff as the load needs its step to be short.
+HeldMetric step_metric(const Coupling& coupling, const GraspedPart& held, double dt_s) noexcept;
+
+/// In the penalty response: the pose of the handle at which the coupling carries the load, or as far towards
+/// it as is safe. X_WB is the held body's.
+Pose loaded_hand(const Coupling& coupling, const GraspedPart& held, const Pose& X_WB) noexcept;
+
+/// How steep the scene's fields are beside the coupling, in a sentence for people; empty without fields.
+std::string field_sentence(const World& world, const Coupling& coupling);
+
+}  // namespace tactum

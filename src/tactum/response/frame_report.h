@@ -1,0 +1,76 @@
+#pragma once
+/// The one plain report of a frame: everything a display, a recording or a test wants to know about it.
+/// Numbers only.
+
+#include <cstdint>
+
+#include "tactum/contact/contact_work.h"
+#include "tactum/dynamics/world.h"
+#include "tactum/loop/passivity.h"
+#include "tactum/math/spatial.h"
+
+namespace tactum {
+
+/// What the frame could not do in full, each with the setting to raise. A frame never stops for these.
+namespace frame_flag {
+inline constexpr std::uint32_t kBudgetShort = 1u << 0;  ///< pairs left unchecked: WorkBudget::max_exact_tests
+inline constexpr std::uint32_t kCapacityReached = 1u << 1;  ///< pairs or patches dropped: WorkBudget
+inline constexpr std::uint32_t kPointsFull =
+    1u << 2;  ///< contact points dropped: WorkBudget::max_contact_points
+inline constexpr std::uint32_t kSolverBounded = 1u << 3;  ///< not converged: WorkBudget::solver_iterations
+inline constexpr std::uint32_t kUncertified = 1u << 4;    ///< a distance without its certificate was used
+inline constexpr std::uint32_t kMotionUndone =
+    1u << 6;  ///< a motion was no number; the body stayed where it was
+inline constexpr std::uint32_t kNoHand = 1u
+                                         << 5;  ///< no valid sample yet: nothing is held, the wrench is zero
+}  // namespace frame_flag
+
+/// Dry friction of one frame, over all patches that push (constraint response); friction_use.h tells of each.
+struct FrictionReport {
+  int sticking = 0;        ///< patches
+  int slipping = 0;        ///< patches
+  double cone_used = 0.0;  ///< largest share of a friction cone in use; 1: at its edge [-]
+};
+
+struct FrameReport {
+  std::uint64_t index = 0;   ///< frames since the start
+  std::uint32_t flags = 0;   ///< frame_flag
+  std::uint32_t safety = 0;  ///< safety_flag
+  int held = -1;             ///< the body that is held; -1: none
+  Pose X_WH;                 ///< where the hand is [m]
+  Pose X_WH_proxy;           ///< where the proxy would have it [m]
+  Wrench
+      restoring;  ///< sum of the contact forces on the held part, at its centre of mass, world axes [N, N m]
+  Wrench field;   ///< of force fields on the held part, at its centre of mass, world axes [N, N m]
+  Wrench coupling;  ///< spring from hand to proxy, at the handle, world axes: the raw wrench [N, N m]
+  Wrench smoothed;  ///< after smoothing, device axes [N, N m]
+  PortReport port;  ///< energy that passed between hand and scene, and what was done about it
+  Wrench shown;     ///< after safety, device axes: what was sent [N, N m]
+  double tolerance_m = 0.0;     ///< largest delta of a pair in contact; 0 without contact [m]
+  double min_distance_m = 0.0;  ///< smallest signed distance of the pairs in contact; 0 without contact [m]
+  bool penetrating = false;     ///< some pair overlaps by more than its error bound
+  double time_of_impact_s =
+      0.0;                      ///< smallest, from the start of the frame; the whole step without impact [s]
+  int contact_points = 0;       ///< rows of the contact problem
+  int held_contact_points = 0;  ///< ... that push the held part
+  int impacts = 0;              ///< pairs of bodies that hit each other, blow by blow (constraint response)
+  int solver_iterations = 0;
+  int active_constraints = 0;  ///< rows that hold the bodies (constraint response)
+  int validation_tests = 0;    ///< exact tests of poses before they were taken
+  int validation_retries = 0;  ///< steps that were not taken as they came
+  int waiting = 0;             ///< bodies that stood still for want of budget (waiting.h)
+  int asleep = 0;              ///< bodies that rest, and were not looked at
+  int longest_wait = 0;        ///< ... of these, frames on end
+  int cut_short = 0;           ///< bodies that stayed, because no step of theirs was found open
+  /// By how much the momentum of what moves freely is off from what it was given (momentum.h) [N s].
+  double momentum_off_Ns = 0.0;
+  bool forced_short = false;  ///< ... because some step was cut short of where the forces would have it
+  FrictionReport friction;    ///< what patches do that rub
+  ContactWork work;
+
+  /// Exact tests in all: what the budget bounds.
+  int tests() const { return work.exact_tests + validation_tests; }
+  bool in_contact() const { return work.patches > 0; }
+};
+
+}  // namespace tactum

@@ -1,0 +1,404 @@
+#include "tactum/response/free_bodies.h"
+
+#include <algorithm>
+
+#include "tactum/base/tolerances.h"
+#include "tactum/dynamics/spin.h"
+#include "tactum/response/constraint_rows.h"
+#include "tactum/response/constraint_trial.h"
+#include "tactum/response/coupling.h"
+#include "tactum/response/energy.h"
+#include "tactum/response/field_pull.h"
+#include "tactum/response/held_part.h"
+#include "tactum/response/momentum.h"
+
+namespace tactum {
+namespace {
+
+using Index = std::size_t;
+
+/// Blows in a frame, for every contact point and in all; what is left then is taken as rest, without
+/// restitution.
+constexpr int kBlowsAPoint = 8;
+constexpr int kMostBlows = 128;
+/// A gap below the skin opens by this share of what is missing in a frame.
+constexpr double kOpening = 0.1;
+/// After the halvings, how often those that are in the way of what stays may be found, before all stay.
+constexpr int kMostStops = 12;
+/// Tests of each gap of the held part's island that are kept for it.
+constexpr int kRoundsOfHeld = 4;
+
+/// The books of all blows; those on the held part told at the handle.
+class BlowsOnHeld final : public ImpactObserver {
+ public:
+  BlowsOnHeld(int held, const Vec3& p_WH, Momentum& momentum)
+      : held_(held), p_WH_(p_WH), momentum_(momentum) {}
+  void hit(int body_a, int body_b, const Vec3& impulse, const Vec3& p_W) noexcept override {
+    momentum_.give(body_a, body_b, impulse);
+    if (body_a != held_ && body_b != held_) return;
+    const Vec3 on_held = body_a == held_ ? impulse : Vec3(-impulse);
+    sum_ = sum_ + Wrench{on_held, (p_W - p_WH_).cross(on_held)};
+    any_ = true;
+  }
+  const Wrench* sum() const { return any_ ? &sum_ : nullptr; }
+
+ private:
+  int held_;
+  Vec3 p_WH_;
+  Momentum& momentum_;
+  Wrench sum_;
+  bool any_ = false;
+};
+
+bool is_held(const ConstraintStep& step, Index body) { return static_cast<int>(body) == step.held.body; }
+
+bool turns_freely(const Body& body) {
+  return body.joint.kind == JointKind::kFree || body.joint.kind == JointKind::kBall;
+}
+
+/// Inertia about the point it turns about: the centre of mass, or the ball it hangs on.
+Mat3 turning_inertia(const Body& body) {
+  if (body.joint.kind == JointKind::kFree) return body.inertia_B;
+  const Vec3 arm = body.X_WB.R.transpose() * (body.X_WB.p - body.joint.anchor_W);
+  return body.inertia_B + body.mass_kg * (arm.squaredNorm() * Mat3::Identity() - arm * arm.transpose());
+}
+
+/// Whether move_free_bodies() moves a body.
+bool moves_here(const ConstraintStep& step, Index body) {
+  if (!step.own.free.islands.moves(static_cast<int>(body))) return false;
+  return step.own.free.held_island < 0 ||
+         step.own.free.islands.of(static_cast<int>(body)) != step.own.free.held_island;
+}
+
+/// The held part as one of the bodies: its coupling is what resists.
+void lend_held(ConstraintStep& step) {
+  const Index held = Index(step.held.body);
+  const Body& body = step.world.bodies[held];
+  const Pose& X_WB = step.bodies.X_WB[held];
+  const Vec3 arm = X_WB.R * step.held.X_BH.p;
+  const HeldMetric metric = step_metric(step.settings.coupling, step.held, step.dt_s);
+  const Coupling both{.stiffness_N_per_m = metric.stiffness_N_per_m,
+                      .stiffness_Nm_per_rad = metric.stiffness_Nm_per_rad};
+  const Resistance M = coupling_resistance(both, arm, step.dt_s);
+  step.own.mobility[held] = mobility(body.joint, X_WB, M);
+  step.own.constraint.wanted = wanted_by_hand(step);
+  const Vec6 wanted = with_load(step, step.own.constraint.wanted);
+  const Twist at_origin = moved(to_twist(wanted), -arm) * (1.0 / step.dt_s);
+  step.bodies.V_WB[held] = constrained_velocity(body.joint, X_WB, M, at_origin);
+}
+
+void add_rows(ConstraintStep& step) {
+  FreeBodies& f = step.own.free;
+  const ConstraintState& c = step.own.constraint;
+  const std::vector<Pose>& X_WB = step.bodies.X_WB;
+  f.resting.begin();
+  for (Index r = c.own_rows; r < step.own.contact_rows.rows.size(); ++r) {
+    ContactRow& row = step.own.contact_rows.rows[r];
+    const int island = f.islands.of_contact(row.body_a, row.body_b);
+    if (island < 0) {
+      row.impulse = std::max(0.0, row.n_BA_W.dot(f.resting.keep(c.names[r])));
+      continue;
+    }
+    const double beyond = row.distance - c.skin_m;
+    f.resting.add(row, static_cast<int>(r), island, c.names[r], beyond < 0.0 ? kOpening * beyond : beyond,
+                  X_WB, step.own.mobility, step.dt_s);
+  }
+  for (Index i = 0; i < step.world.bodies.size(); ++i)
+    if (moves_here(step, i) && !is_held(step, i))
+      f.resting.add_joint(static_cast<int>(i), f.islands.of(static_cast<int>(i)), step.world.bodies[i],
+                          X_WB[i], step.own.mobility[i], step.dt_s);
+}
+
+/// The share of every island's step that its bodies' reach allows, and how far each would go.
+void limit_shares(ConstraintStep& step) {
+  FreeBodies& f = step.own.free;
+  std::fill(f.share.begin(), f.share.end(), 1.0);
+  for (Index i = 0; i < f.share.size(); ++i) {
+    if (!moves_here(step, i)) continue;
+    const Twist& V = step.bodies.V_WB[i];
+    const double way = (V.v.norm() + V.w.norm() * step.radius_m[i]) * step.dt_s;
+    double& share = f.share[Index(f.islands.of(static_cast<int>(i)))];
+    if (way * share > step.own.reach[i]) share = step.own.reach[i] / way;
+    step.own.waiting.way[i] = way;
+  }
+  // An island's number is its first body.
+  for (Index i = 0; i < f.share.size(); ++i)
+    if (moves_here(step, i)) f.share[i] = f.share[Index(f.islands.of(static_cast<int>(i)))];
+  if (f.held_here && step.gaps.blocked(step.held.body)) f.share[Index(step.held.body)] = 0.0;
+}
+
+/// Puts the bodies of unsettled islands where their step leads.
+void try_steps(ConstraintStep& step) {
+  const FreeBodies& f = step.own.free;
+  for (Index i = 0; i < step.world.bodies.size(); ++i) {
+    if (!moves_here(step, i) || f.settled[Index(f.islands.of(static_cast<int>(i)))]) continue;
+    Pose& X_trial = step.own.constraint.X_WB_trial[i];
+    const Pose& X_WB = step.bodies.X_WB[i];
+    X_trial = X_WB;
+    if (f.share[i] > 0.0)
+      X_trial =
+          constrained_pose(step.world.bodies[i], advanced(X_WB, step.bodies.V_WB[i], f.share[i] * step.dt_s));
+    if (!X_trial.finite()) X_trial = X_WB;
+  }
+}
+
+/// Whether the trial has a body where it is now.
+bool stands(const ConstraintStep& step, int body) {
+  return !moves_here(step, Index(body)) || step.own.free.share[Index(body)] == 0.0;
+}
+
+/// Settles the islands whose gaps are all open on trial; false when some are not. With `all` every gap of an
+/// unsettled island is looked at, else those of bodies whose share has changed.
+bool look(bool all, int keep_back, ConstraintStep& step) {
+  FreeBodies& f = step.own.free;
+  const std::span<const ContactPatch> patches = step.patches;
+  f.patch_asked.clear();
+  f.patch_closed.clear();
+  for (const ContactPatch& patch : patches) {
+    const int island = f.islands.of_contact(patch.body_a, patch.body_b);
+    const bool news = all || f.cut[Index(patch.body_a)] || f.cut[Index(patch.body_b)];
+    const bool asked = island >= 0 && !f.of_held(patch) && !f.settled[Index(island)] && news &&
+                       !(stands(step, patch.body_a) && stands(step, patch.body_b));
+    f.patch_asked.push_back(asked ? 1 : 0);
+  }
+  look_at_trial(keep_back, step);
+  std::fill(f.settled.begin(), f.settled.end(), 1);
+  bool all_open = true;
+  for (Index p = 0; p < patches.size(); ++p) {
+    const bool closed = f.patch_asked[p] && !open_at_trial(p, step.own.constraint);
+    f.patch_closed.push_back(closed ? 1 : 0);
+    if (!closed) continue;
+    f.settled[Index(f.islands.of_contact(patches[p].body_a, patches[p].body_b))] = 0;
+    all_open = false;
+  }
+  return all_open;
+}
+
+/// Cuts the steps of the bodies whose gaps are not open: to half, or, where that has not helped or cannot be
+/// known, to nothing.
+void cut(bool halve, ConstraintStep& step) {
+  FreeBodies& f = step.own.free;
+  const std::span<const ContactPatch> patches = step.patches;
+  std::fill(f.cut.begin(), f.cut.end(), 0);
+  for (Index p = 0; p < patches.size(); ++p) {
+    if (!f.patch_closed[p]) continue;
+    const bool known = step.own.constraint.gap_answer[p] == GapAnswer::kExact;
+    for (const int body : {patches[p].body_a, patches[p].body_b}) {
+      if (!moves_here(step, Index(body))) continue;
+      double& share = f.share[Index(body)];
+      if (!halve || !known) {
+        share = 0.0;
+      } else if (!f.cut[Index(body)]) {
+        share *= 0.5;
+      }
+      f.cut[Index(body)] = 1;
+    }
+  }
+}
+
+/// The bodies of islands that are not settled stay.
+void stay(ConstraintStep& step) {
+  FreeBodies& f = step.own.free;
+  for (Index i = 0; i < f.share.size(); ++i)
+    if (moves_here(step, i) && !f.settled[Index(f.islands.of(static_cast<int>(i)))]) f.share[i] = 0.0;
+}
+
+/// Tests that are left to the held part's own island, when it comes after this.
+int kept_for_held(const ConstraintStep& step) {
+  const std::span<const ContactPatch> patches = step.patches;
+  const auto own = std::count_if(patches.begin(), patches.end(),
+                                 [&](const ContactPatch& patch) { return step.own.free.of_held(patch); });
+  return std::min(kRoundsOfHeld * static_cast<int>(own), step.gaps.tests_left() / 2);
+}
+
+/// Second-order correction, as in constraint_rows.h.
+void correct(ConstraintStep& step) {
+  FreeBodies& f = step.own.free;
+  const std::vector<Twist>& V_WB = step.bodies.V_WB;
+  const std::vector<Pose>& X_WB = step.bodies.X_WB;
+  const std::span<const ContactRow> rows = step.own.contact_rows.rows;
+  for (Index first = step.own.constraint.own_rows, end = first; first < rows.size(); first = end) {
+    for (end = first + 1; end < rows.size() && rows[end].patch == rows[first].patch;) ++end;
+    const Index a = Index(rows[first].body_a);
+    const Index b = Index(rows[first].body_b);
+    const int of_contact = f.islands.of_contact(rows[first].body_a, rows[first].body_b);
+    if (of_contact < 0 || f.settled[Index(of_contact)]) continue;
+    const Index island = Index(of_contact);
+    const double too_much = overstated_at_trial(rows.subspan(first, end - first), step);
+    const double share = f.share[island];
+    for (Index r = first; r < end; ++r) {
+      const double speed = rows[r].n_BA_W.dot(velocity_at(V_WB[a], rows[r].p_W - X_WB[a].p) -
+                                              velocity_at(V_WB[b], rows[r].p_W - X_WB[b].p));
+      const double gap = gap_at_trial(rows[r], step) - too_much;
+      const double missing = (rows[r].distance + share * speed * step.dt_s - gap) / share;
+      if (missing > 0.0) f.resting.tighten(static_cast<int>(r), missing, step.dt_s);
+    }
+  }
+}
+
+/// What the contacts did, for the report.
+void tell_forces(ConstraintStep& step) {
+  std::vector<ContactRow>& rows = step.own.contact_rows.rows;
+  step.own.free.resting.for_each([&](int index, double normal, const Vec3& impulse_W) {
+    ContactRow& row = rows[Index(index)];
+    row.impulse = normal;
+    step.own.free.momentum.give(row.body_a, row.body_b, impulse_W);
+    const Vec3 across = impulse_W - row.n_BA_W * normal;
+    const bool on_held = row.body_a == step.held.body || row.body_b == step.held.body;
+    if (!on_held || across.isZero(0.0) || rows.size() == rows.capacity()) return;
+    ContactRow friction = row;
+    friction.n_BA_W = across.normalized();
+    friction.impulse = across.norm();
+    rows.push_back(friction);
+  });
+  if (!step.own.free.held_here) return;
+  const Index held = Index(step.held.body);
+  const Vec3 arm = step.bodies.X_WB[held].R * step.held.X_BH.p;
+  feel(to_vector(moved(step.bodies.V_WB[held], arm) * step.dt_s), step);
+}
+
+}  // namespace
+
+void begin_midway(const World& world, double dt_s, WorldState& state) noexcept {
+  for (Index i = 0; i < world.bodies.size(); ++i)
+    if (world.bodies[i].moves()) state.V_WB[i].v -= world.gravity_W * (0.5 * dt_s);
+}
+
+void pull_free_bodies(const MotionInput& input, WorldState& bodies) noexcept {
+  const World& world = input.world;
+  for (Index i = 0; i < world.bodies.size(); ++i)
+    if (world.bodies[i].moves() && static_cast<int>(i) != input.held.body)
+      bodies.V_WB[i].v += world.gravity_W * (0.5 * input.dt_s);
+}
+
+bool others_move(const World& world, int held) noexcept {
+  for (Index i = 0; i < world.bodies.size(); ++i)
+    if (world.bodies[i].moves() && static_cast<int>(i) != held) return true;
+  return false;
+}
+
+void find_islands(ConstraintStep& step) noexcept {
+  FreeBodies& f = step.own.free;
+  f.islands.clear(step.world, step.own.waiting.waits);
+  f.held_island = -1;
+  f.held_here = false;
+  for (const ContactPatch& patch : step.patches) f.islands.join(patch.body_a, patch.body_b);
+  const int held = step.held.body;
+  const int island = held < 0 ? -1 : f.islands.of(held);
+  Index unknowns = 0;
+  f.alone = true;
+  for (Index i = 0; i < step.world.bodies.size(); ++i) {
+    const bool near =
+        island >= 0 && f.islands.moves(static_cast<int>(i)) && f.islands.of(static_cast<int>(i)) == island;
+    f.near_held[i] = near ? 1 : 0;
+    f.alone &= near || !f.islands.moves(static_cast<int>(i));
+    if (near) unknowns += unknowns_of(step.world.bodies[i].joint);
+  }
+  if (held < 0) return;
+  f.held_here = unknowns > kMostUnknowns;
+  if (!f.held_here) f.held_island = island;
+}
+
+void strike(ConstraintStep& step) noexcept {
+  if (!step.own.free.others) return;
+  std::vector<Twist>& V_WB = step.bodies.V_WB;
+  const std::vector<Pose>& X_WB = step.bodies.X_WB;
+  const int held = step.held.body;
+  for (Index i = 0; i < step.world.bodies.size(); ++i) {
+    if (!step.world.bodies[i].moves()) continue;
+    // The hand decides where the held part goes: a blow does not move it, it is felt.
+    const bool given_way = is_held(step, i) || !step.own.free.islands.moves(static_cast<int>(i));
+    step.own.mobility[i] = given_way ? Mobility::Zero() : inertial_mobility(step.world.bodies[i], X_WB[i]);
+    if (step.world.bodies[i].joint.kind != JointKind::kFree && !is_held(step, i))
+      V_WB[i] = constrained_velocity(step.world.bodies[i].joint, X_WB[i],
+                                     inertial_resistance(step.world.bodies[i], X_WB[i]), V_WB[i]);
+  }
+  const double energy_J = held < 0 ? 0.0 : bodies_energy(step.world, step.bodies, held);
+  BlowsOnHeld blows(held, held < 0 ? Vec3::Zero() : X_WB[Index(held)] * step.held.X_BH.p,
+                    step.own.free.momentum);
+  step.report.impacts = resolve_impacts(
+      step.own.contact_rows.rows, X_WB, step.own.mobility, step.dt_s,
+      std::min(kMostBlows, kBlowsAPoint * static_cast<int>(step.own.contact_rows.rows.size())), V_WB, &blows);
+  if (blows.sum())
+    step.own.impulses.add(step.settings.impacts, step.dt_s, *blows.sum(),
+                          std::max(0.0, energy_J - bodies_energy(step.world, step.bodies, held)));
+
+  for (Index i = 0; i < step.world.bodies.size(); ++i) {
+    const Body& body = step.world.bodies[i];
+    if (!step.own.free.islands.moves(static_cast<int>(i)) || is_held(step, i)) continue;
+    step.own.free.w_start[i] = V_WB[i].w;
+    if (turns_freely(body)) V_WB[i].w = rate_midway(turning_inertia(body), X_WB[i].R, V_WB[i].w, step.dt_s);
+    if (body.joint.kind == JointKind::kBall) V_WB[i].v = V_WB[i].w.cross(X_WB[i].p - body.joint.anchor_W);
+    step.own.free.w_free[i] = V_WB[i].w;
+    V_WB[i].v += step.world.gravity_W * (0.5 * step.dt_s);
+    if (body.joint.kind != JointKind::kFree)
+      V_WB[i] = constrained_velocity(body.joint, X_WB[i], inertial_resistance(body, X_WB[i]), V_WB[i]);
+  }
+}
+
+void move_free_bodies(ConstraintStep& step) noexcept {
+  FreeBodies& f = step.own.free;
+  if (f.alone && !f.held_here) return;
+  ConstraintState& c = step.own.constraint;
+  if (f.held_here) lend_held(step);
+  add_rows(step);
+  const auto solve = [&] {
+    // What is left moves nothing by more than the skin, and every step is looked at before it is taken.
+    const SolverResult solved = f.resting.solve(step.settings.budget.solver_iterations, c.skin_m / step.dt_s,
+                                                f.settled, step.bodies.V_WB);
+    step.report.solver_iterations += solved.iterations;
+    if (!solved.converged) step.report.flags |= frame_flag::kSolverBounded;
+  };
+  std::fill(f.settled.begin(), f.settled.end(), 0);
+  solve();
+  limit_shares(step);
+  const int keep_back = kept_for_held(step);
+  c.X_WB_trial = step.bodies.X_WB;  // same size: nothing is allocated
+  bool all = true;
+  for (int round = 0, cuts = 0;; ++round) {
+    try_steps(step);
+    if (cuts > kHalvings + kMostStops) break;  // those stayed
+    const int tests = step.report.validation_tests;
+    if (look(all, keep_back, step)) break;
+    ++step.report.validation_retries;
+    // To solve again asks for as many tests as now.
+    all = round < kFeedbacks && step.gaps.tests_left() - keep_back >= step.report.validation_tests - tests;
+    if (all) {
+      correct(step);
+      solve();
+      limit_shares(step);
+    } else if (++cuts <= kHalvings + kMostStops) {
+      round = kFeedbacks;
+      cut(cuts <= kHalvings, step);
+    } else {
+      stay(step);
+    }
+  }
+  for (Index i = 0; i < step.world.bodies.size(); ++i) {
+    if (!moves_here(step, i)) continue;
+    step.bodies.X_WB[i] = c.X_WB_trial[i];
+    if (f.share[i] > 0.0 || is_held(step, i)) continue;
+    // What does not go has no velocity: kept, it would grow under gravity while the body stays.
+    step.bodies.V_WB[i] = {};
+    ++step.report.cut_short;
+  }
+  f.resting.end();
+  tell_forces(step);
+}
+
+void end_turning(ConstraintStep& step) noexcept {
+  for (Index i = 0; i < step.world.bodies.size(); ++i) {
+    const Body& body = step.world.bodies[i];
+    if (!turns_freely(body) || is_held(step, i) || !step.own.free.islands.moves(static_cast<int>(i)))
+      continue;
+    const Mat3 inertia_B = turning_inertia(body);
+    const Mat3& R_start = step.X_WB_start[i].R;
+    const Pose& X_WB = step.bodies.X_WB[i];
+    Twist& V = step.bodies.V_WB[i];
+    const Vec3 pushed = inertia_at(inertia_B, R_start) * (V.w - step.own.free.w_free[i]);
+    V.w = rate_after(inertia_B, R_start, step.own.free.w_start[i], pushed, X_WB.R);
+    if (body.joint.kind == JointKind::kBall) V.v = V.w.cross(X_WB.p - body.joint.anchor_W);
+  }
+}
+
+}  // namespace tactum

@@ -1,0 +1,37 @@
+#include "tactum/response/held_part.h"
+#include "tactum/response/field_pull.h"
+
+namespace tactum {
+
+using Index = std::size_t;
+
+Vec6 wanted_by_hand(const ConstraintStep& step) noexcept {
+  const Pose X_WH_proxy = step.bodies.X_WB[Index(step.held.body)] * step.held.X_BH;
+  return balanced_step(step.settings.coupling, step.dt_s, X_WH_proxy, step.held.X_WH, step.held.V_WH);
+}
+
+Vec6 with_load(const ConstraintStep& step, const Vec6& wanted) noexcept {
+  const Index held = Index(step.held.body);
+  const Vec3 weight = step.world.bodies[held].mass_kg * step.world.gravity_W;
+  const Vec3 lever = -(step.bodies.X_WB[held].R * step.held.X_BH.p);  // from the handle
+  const Wrench field = field_at_handle(step.held, step.bodies.X_WB);
+  const HeldMetric metric = held_metric(step.settings.coupling, step.dt_s);
+  const HeldMetric over_step = step_metric(step.settings.coupling, step.held, step.dt_s);
+  Vec6 sunk;
+  sunk.head<3>() = wanted.head<3>() * (metric.stiffness_N_per_m / over_step.stiffness_N_per_m) +
+                   (weight + field.f) / over_step.stiffness_N_per_m;
+  sunk.tail<3>() = wanted.tail<3>() * (metric.stiffness_Nm_per_rad / over_step.stiffness_Nm_per_rad) +
+                   (lever.cross(weight) + field.t) / over_step.stiffness_Nm_per_rad;
+  return sunk;
+}
+
+void feel(const Vec6& displacement, ConstraintStep& step) noexcept {
+  // M (x - x*) at the handle: with a free held part, exactly the sum of the contact forces, its weight
+  // and the load of fields.
+  const HeldMetric metric = held_metric(step.settings.coupling, step.dt_s);
+  const Vec6 off = displacement - step.own.constraint.wanted;
+  step.own.constraint.felt = {metric.stiffness_N_per_m * off.head<3>(),
+                              metric.stiffness_Nm_per_rad * off.tail<3>()};
+}
+
+}  // namespace tactum

@@ -1,0 +1,16 @@
+#pragma once
+/// The held part in the constraint response: where the hand, its own weight and force fields would have it,
+/// and what the hand feels where it went instead. It has weight, but no inertia that could be felt.
+
+#include "tactum/response/constraint_state.h"
+
+namespace tactum {
+
+/// The displacement of the handle that the coupling asks for, (m, rad).
+Vec6 wanted_by_hand(const ConstraintStep& step) noexcept;
+/// ... and where the held part's weight and force fields pull it from there.
+Vec6 with_load(const ConstraintStep& step, const Vec6& wanted) noexcept;
+/// What the hand feels when the handle moves so: sets ConstraintState::felt.
+void feel(const Vec6& displacement, ConstraintStep& step) noexcept;
+
+}  // namespace tactum

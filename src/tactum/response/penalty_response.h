@@ -1,0 +1,54 @@
+#pragma once
+/// The `penalty` response as published [Gregory 2000, 5.2, 6.1], as a stage of the frame: every contact is a
+/// spring that pushes in proportion to its depth below the tolerance delta = v_c dt. The bodies advance to
+/// the smallest time of impact, the contact forces act, and the bodies advance with the new velocities for
+/// the rest of the frame.
+///
+/// The held part moves straight to where the hand holds it, but no farther in one frame than the safe
+/// threshold distance [Gregory 2000, 3.2]. The tolerance of contact determination grows with that speed, so
+/// what moves towards the hand cannot slip past what it was tested against. (What contacts push it back by is
+/// bounded by the threshold too, but first tested in the next frame.) The threshold limits the step that is
+/// taken, not the pull that the contact forces are weighed against: with the pull cut to the threshold, a
+/// held gear could never push harder than the spring over half a millimetre.
+
+#include <vector>
+
+#include "tactum/response/contact_force.h"
+#include "tactum/response/frame_report.h"
+#include "tactum/response/step_input.h"
+
+namespace tactum {
+
+class PenaltyResponse {
+ public:
+  /// What a patch is asked for: points that carry its force over its area.
+  static constexpr PatchPoints kPoints = PatchPoints::kQuadrature;
+
+  PenaltyResponse(const World& world, const FrameSettings& settings);
+
+  /// How far any point of a body moves in this frame at its wanted velocity, by body [m]: the held part's
+  /// leads to the hand, at most the threshold distance; the others go on as they moved, pulled by gravity;
+  /// all as their joints allow. Sets the bodies' velocities.
+  std::span<const double> bound_motion(const MotionInput& input, WorldState& bodies) noexcept;
+  /// Moves everything that moves, and puts every transform back on its joint. Fills the report's response
+  /// fields.
+  void step(const StepInput& input, GapOracle& gaps, WorldState& bodies, FrameReport& report) noexcept;
+  /// The coupling from the hand to the held part, at the handle, world axes [N, N m].
+  Wrench felt(const StepInput& input, const WorldState& bodies) const noexcept;
+
+  /// The contacts of the last step.
+  std::span<const ContactRow> rows() const noexcept { return contacts_.rows; }
+  /// Whether rows were dropped for want of room.
+  bool rows_full() const noexcept { return contacts_.full; }
+
+ private:
+  void pull_held(const StepInput& input, double rest_s, WorldState& bodies) noexcept;
+  void slow_joints(const World& world, double h_s, int spared, WorldState& bodies) noexcept;
+
+  ContactRows contacts_;
+  std::vector<Resistance> resistance_;  // by body; scratch of one frame
+  std::vector<Mobility> mobility_;
+  std::vector<double> reach_;
+};
+
+}  // namespace tactum

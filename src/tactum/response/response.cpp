@@ -1,0 +1,67 @@
+#include "tactum/response/response.h"
+
+namespace tactum {
+namespace {
+
+using Model = std::variant<PenaltyResponse, ConstraintResponse>;
+
+Model make_model(const World& world, const FrameSettings& settings, WorldState& bodies) {
+  if (settings.response == ResponseModel::kConstraint)
+    return Model(std::in_place_type<ConstraintResponse>, world, settings, bodies);
+  return Model(std::in_place_type<PenaltyResponse>, world, settings);
+}
+
+/// A body whose motion is not a number stays where it was, at rest: one bad frame must not be the last good
+/// one.
+void undo_non_finite(std::span<const Pose> X_WB_start, WorldState& bodies, FrameReport& report) {
+  for (std::size_t i = 0; i < bodies.X_WB.size(); ++i) {
+    if (bodies.X_WB[i].finite() && bodies.V_WB[i].finite()) continue;
+    bodies.X_WB[i] = X_WB_start[i];
+    bodies.V_WB[i] = {};
+    report.flags |= frame_flag::kMotionUndone;
+  }
+}
+
+}  // namespace
+
+Response::Response(const World& world, const FrameSettings& settings, WorldState& bodies)
+    : model_(make_model(world, settings, bodies)) {}
+
+PatchPoints Response::points() const noexcept {
+  return std::visit([](const auto& model) { return model.kPoints; }, model_);
+}
+
+std::span<const double> Response::bound_motion(const MotionInput& input, WorldState& bodies) noexcept {
+  return std::visit([&](auto& model) { return model.bound_motion(input, bodies); }, model_);
+}
+
+void Response::step(const StepInput& input, GapOracle& gaps, WorldState& bodies,
+                    FrameReport& report) noexcept {
+  std::visit(
+      [&](auto& model) {
+        model.step(input, gaps, bodies, report);
+        if (model.rows_full()) report.flags |= frame_flag::kPointsFull;
+      },
+      model_);
+  undo_non_finite(input.X_WB_start, bodies, report);
+}
+
+Wrench Response::felt(const StepInput& input, const WorldState& bodies) noexcept {
+  return std::visit([&](auto& model) { return model.felt(input, bodies); }, model_);
+}
+
+std::span<const ContactRow> Response::rows() const noexcept {
+  return std::visit([](const auto& model) { return model.rows(); }, model_);
+}
+
+std::span<const FrictionUse> Response::friction_uses() const noexcept {
+  const ConstraintResponse* const model = constraint();
+  return model != nullptr ? model->friction_uses() : std::span<const FrictionUse>{};
+}
+
+double Response::pending_J() const noexcept {
+  const ConstraintResponse* const model = constraint();
+  return model != nullptr ? model->pending_J() : 0.0;
+}
+
+}  // namespace tactum

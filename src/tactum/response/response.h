@@ -1,0 +1,42 @@
+#pragma once
+/// How the held part and the world answer: one of two responses, each a stage of the frame with the same
+/// three calls. Which one is chosen here, in one place; a third would be another file and another
+/// alternative.
+
+#include <variant>
+
+#include "tactum/response/constraint_response.h"
+#include "tactum/response/penalty_response.h"
+
+namespace tactum {
+
+class Response {
+ public:
+  /// The response that the settings name. It may change the velocities that the world starts with.
+  Response(const World& world, const FrameSettings& settings, WorldState& bodies);
+
+  /// What contacts are asked for.
+  PatchPoints points() const noexcept;
+  /// How far any point of a body may move in this frame, by body [m]; sets the velocities that the bodies
+  /// want.
+  std::span<const double> bound_motion(const MotionInput& input, WorldState& bodies) noexcept;
+  /// Moves everything that moves. Fills the report's response fields.
+  void step(const StepInput& input, GapOracle& gaps, WorldState& bodies, FrameReport& report) noexcept;
+  /// What the hand feels of that, at the handle, world axes; nothing while nothing is held [N, N m].
+  Wrench felt(const StepInput& input, const WorldState& bodies) noexcept;
+
+  /// The contacts of the last step, for displays.
+  std::span<const ContactRow> rows() const noexcept;
+  /// What friction does at the contacts that rub, by ContactRow::grip; empty in the penalty response.
+  std::span<const FrictionUse> friction_uses() const noexcept;
+  /// Energy of blows that is still to be felt [J].
+  double pending_J() const noexcept;
+
+  /// The constraint response, if it is the one; else null. For tests and displays that look inside.
+  const ConstraintResponse* constraint() const noexcept { return std::get_if<ConstraintResponse>(&model_); }
+
+ private:
+  std::variant<PenaltyResponse, ConstraintResponse> model_;
+};
+
+}  // namespace tactum

@@ -1,0 +1,71 @@
+#include "tactum/response/sleep.h"
+
+#include <algorithm>
+
+#include "tactum/base/frame_rate.h"
+#include "tactum/math/screw.h"
+
+namespace tactum {
+namespace {
+
+using Index = std::size_t;
+
+constexpr double kStill_s = 0.06;
+/// No point has gone farther in that time than this share of the skin: some nanometres.
+constexpr double kStillShare = 0.01;
+
+void count_touches(ConstraintStep& step) {
+  Sleep& s = step.own.sleep;
+  s.touches.swap(s.touched);
+  std::fill(s.touches.begin(), s.touches.end(), 0);
+  for (const ContactPatch& patch : step.patches) {
+    ++s.touches[Index(patch.body_a)];
+    ++s.touches[Index(patch.body_b)];
+    s.islands.join(patch.body_a, patch.body_b);
+  }
+}
+
+/// Whether the body is where it was, with what it touched.
+bool is_still(const ConstraintStep& step, Index body) {
+  const Sleep& s = step.own.sleep;
+  if (s.touches[body] != s.touched[body] || static_cast<int>(body) == step.held.body) return false;
+  const double most = kStillShare * step.own.constraint.skin_m;
+  const Pose& was = s.X_still[body];
+  const Pose& is = step.bodies.X_WB[body];
+  const double way = (is.p - was.p).norm();
+  if (way > most) return false;
+  if (way == 0.0 && is.R == was.R) return true;  // as all that sleeps
+  const Twist moved = twist_between(was, is, 1.0);
+  return moved.v.norm() + moved.w.norm() * step.radius_m[body] <= most;
+}
+
+}  // namespace
+
+void let_sleep(ConstraintStep& step) noexcept {
+  Sleep& s = step.own.sleep;
+  const int still_frames = frames_in(kStill_s, step.dt_s);
+  std::vector<char>& waits = step.own.waiting.waits;  // nobody so far
+  s.islands.clear(step.world, waits);
+  count_touches(step);
+  std::fill(s.restless.begin(), s.restless.end(), 0);
+  for (Index i = 0; i < step.world.bodies.size(); ++i) {
+    if (!step.world.bodies[i].moves()) continue;
+    if (is_still(step, i)) {
+      s.still[i] = std::min(s.still[i] + 1, still_frames);
+    } else {
+      s.X_still[i] = step.bodies.X_WB[i];
+      s.still[i] = 0;
+    }
+    if (s.still[i] < still_frames) s.restless[Index(s.islands.of(static_cast<int>(i)))] = 1;
+  }
+  for (Index i = 0; i < step.world.bodies.size(); ++i) {
+    if (!step.world.bodies[i].moves() || s.restless[Index(s.islands.of(static_cast<int>(i)))]) continue;
+    waits[i] = 1;
+    step.own.waiting.V_kept[i] = step.bodies.V_WB[i] = {};
+    ++step.report.asleep;
+  }
+}
+
+void wake(Sleep& sleep) noexcept { std::fill(sleep.still.begin(), sleep.still.end(), 0); }
+
+}  // namespace tactum

@@ -1,0 +1,43 @@
+#pragma once
+/// What a response is given in every frame: the world, what the hand holds and wants, and where bodies touch.
+/// Nothing here changes while the response works.
+
+#include <span>
+#include <vector>
+
+#include "tactum/contact/contact_finder.h"
+#include "tactum/contact/shading.h"
+#include "tactum/dynamics/world.h"
+#include "tactum/response/settings.h"
+
+namespace tactum {
+
+/// The part that the hand holds, where the hand is, and what force fields do to the part.
+struct GraspedPart {
+  bool hand_known = false;  ///< false until the first valid sample: nothing may move
+  int body = -1;            ///< index into World::bodies; -1: nothing is held
+  Pose X_BH;                ///< the handle in the held body's frame [m]
+  Pose X_WH;                ///< the hand in the world [m]
+  Twist V_WH;               ///< its velocity [m/s, rad/s]
+  bool in_field = false;    ///< force fields act on the held part
+  FieldLoad field;          ///< what they do at the pose the frame starts with
+};
+
+/// What a motion bound depends on: everything that is known before contacts are looked for.
+struct MotionInput {
+  const World& world;
+  const FrameSettings& settings;
+  const GraspedPart& held;
+  std::span<const double> radius_m;  ///< of each body: farthest point from its origin [m]
+  double dt_s;                       ///< time from frame to frame [s]
+};
+
+struct StepInput : MotionInput {
+  std::span<const ContactPatch> patches;
+  std::span<const std::uint8_t> urgency;       ///< of each body (contact/schedule.h)
+  const ContactWork& work;                     ///< what was looked at, and what was left
+  const std::vector<ShadingNormals>& shading;  ///< one per body; empty when shading is off
+  std::span<const Pose> X_WB_start;            ///< poses at the start of the frame [m]
+};
+
+}  // namespace tactum
