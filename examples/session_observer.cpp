@@ -23,7 +23,7 @@ int main() {
   Result<Scene> scene = open_scene("block-on-plate");
   if (!scene) return 1;
   const auto frames = static_cast<std::uint64_t>(frames_of_motion(*scene));
-  // Session::open(scene, std::make_unique<MyDevice>()) takes a Device of one's own;
+  // Session::open_with(scene, std::make_unique<MyDevice>()) takes a Device of one's own;
   // session->start() runs it on a thread of its own, in real time.
   Result<std::unique_ptr<Session>> session = Session::open(std::move(*scene), SessionOptions{});
   if (!session) return std::fprintf(stderr, "%s\n", session.error().message().c_str()), 1;

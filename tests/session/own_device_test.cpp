@@ -3,8 +3,8 @@
 #include <limits>
 
 #include "support/allocation_guard.h"
-#include "tactum/tactum.h"
 #include "tactum/mesh/make_part.h"
+#include "tactum/tactum.h"
 
 namespace tactum {
 namespace {
@@ -40,7 +40,8 @@ TEST(OwnDevice, ASimulationGivesTheFramesOfASessionForTheSameSamples) {
     ASSERT_TRUE(named);
     ASSERT_TRUE((*named)->run_virtual(kFrames, nullptr));
     std::vector<DeviceSample> samples;
-    Result<std::unique_ptr<Session>> own = Session::open(*scene, std::make_unique<Recorder>(*scene, samples));
+    Result<std::unique_ptr<Session>> own =
+        Session::open_with(*scene, std::make_unique<Recorder>(*scene, samples));
     ASSERT_TRUE(own);
     ASSERT_TRUE((*own)->run_virtual(kFrames, nullptr));
     EXPECT_EQ((*own)->record().hash(), (*named)->record().hash()) << name;
@@ -102,7 +103,7 @@ TEST(OwnDevice, ASessionNeedsNoHandMotionUnlessItsDeviceIsSimulated) {
   const auto simulated = Session::open(*scene, SessionOptions{});
   ASSERT_FALSE(simulated);
   EXPECT_NE(simulated.error().message().find("no hand motion"), std::string::npos);
-  const auto own = Session::open(*scene, std::make_unique<StillDevice>(), 2000.0);
+  const auto own = Session::open_with(*scene, std::make_unique<StillDevice>(), 2000.0);
   ASSERT_TRUE(own) << own.error().message();
   EXPECT_EQ((*own)->device().name, "still");
   EXPECT_NEAR((*own)->rate_Hz(), 2000.0, 1e-9);
@@ -113,10 +114,10 @@ TEST(OwnDevice, ASessionNeedsNoHandMotionUnlessItsDeviceIsSimulated) {
 TEST(OwnDevice, WhatASessionCannotRunIsTold) {
   Result<Scene> scene = open_scene("block-on-plate");
   ASSERT_TRUE(scene);
-  EXPECT_FALSE(Session::open(*scene, std::unique_ptr<Device>()));
-  EXPECT_FALSE(Session::open(*scene, std::make_unique<StillDevice>(), -5.0));
+  EXPECT_FALSE(Session::open_with(*scene, std::unique_ptr<Device>()));
+  EXPECT_FALSE(Session::open_with(*scene, std::make_unique<StillDevice>(), -5.0));
   scene->world.bodies[static_cast<std::size_t>(scene->settings.tool.body)].mass_kg = 0.0;
-  const auto session = Session::open(*scene, std::make_unique<StillDevice>());
+  const auto session = Session::open_with(*scene, std::make_unique<StillDevice>());
   ASSERT_FALSE(session);
   EXPECT_NE(session.error().message().find("mass"), std::string::npos);
   EXPECT_FALSE(Simulation::make(scene->world, scene->settings));

@@ -331,7 +331,7 @@ void report_rows(ConstraintStep& step) {
 
 }  // namespace
 
-void trusted_reach(const MotionInput& input, const WorldState& bodies, ConstraintResponse& own) noexcept {
+void trusted_reach(const MotionInput& input, const WorldState& bodies, ConstraintMemory& own) noexcept {
   const ConstraintState& c = own.constraint;
   const double pull = input.world.gravity_W.norm() * input.dt_s;
   for (Index i = 0; i < own.reach.size(); ++i) {

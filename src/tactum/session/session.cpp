@@ -26,10 +26,11 @@ Result<std::unique_ptr<Session>> Session::open(Scene scene, const SessionOptions
                  scene.name};
   Result<std::unique_ptr<Device>> device = make_device(name, device_options);
   if (!device) return device.error();
-  return open(std::move(scene), std::move(*device), options.rate_Hz);
+  return open_with(std::move(scene), std::move(*device), options.rate_Hz);
 }
 
-Result<std::unique_ptr<Session>> Session::open(Scene scene, std::unique_ptr<Device> device, double rate_Hz) {
+Result<std::unique_ptr<Session>> Session::open_with(Scene scene, std::unique_ptr<Device> device,
+                                                    double rate_Hz) {
   if (!device) return Error{"the session has no device", "null", "a device", scene.name};
   if (rate_Hz != 0.0) {
     if (Result<void> rate = check_rate(rate_Hz); !rate) return rate.error();

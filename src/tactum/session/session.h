@@ -47,8 +47,8 @@ class Session final : private HapticFrame {
   static Result<std::unique_ptr<Session>> open(Scene scene, const SessionOptions& options);
   /// The same with a device of the caller's (not yet open); the scene needs no hand motion. `rate_Hz` 0: the
   /// scene's [Hz].
-  static Result<std::unique_ptr<Session>> open(Scene scene, std::unique_ptr<Device> device,
-                                               double rate_Hz = 0.0);
+  static Result<std::unique_ptr<Session>> open_with(Scene scene, std::unique_ptr<Device> device,
+                                                    double rate_Hz = 0.0);
   ~Session() override { stop(); }
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
