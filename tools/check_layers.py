@@ -2,7 +2,7 @@
 """Holds the layers of src/tactum apart:  tools/check_layers.py [ROOT]
 
 A file includes only its own layer and those to the left of it; the device branch (devices, loop) and the geometry
-branch meet first in haptics. Inside a layer, where x.h and x.cpp are one unit, includes have no cycle.
+branch meet first in response. Inside a layer, where x.h and x.cpp are one unit, includes have no cycle.
 A folder holds at most 25 headers. Nothing inside includes the umbrella tactum.h. The folder of every layer has a
 README.md with a caption for each header (`pose.h`, or `pose` for header and source).
 """

@@ -13,7 +13,8 @@ from concurrent.futures import ThreadPoolExecutor
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 OWN = ("src/", "app/", "viewer/server/")
-HEART = ("src/tactum/base/", "src/tactum/devices/", "src/tactum/loop/", "src/tactum/haptics/")
+HEART = ("src/tactum/base/", "src/tactum/devices/", "src/tactum/loop/", "src/tactum/response/", "src/tactum/haptics/",
+         "src/tactum/contact/shading.cpp")
 
 
 def chosen_sources(database, full):

@@ -7,15 +7,15 @@
 
 // Queries on two shapes: distance and overlap of convex parts, clearance of surfaces.
 #include "tactum/collision/closest_features.h"
-#include "tactum/surface/surface_distance.h"
 #include "tactum/geometry/hull.h"
 #include "tactum/geometry/primitives.h"
+#include "tactum/surface/surface_distance.h"
 
 // Parts and worlds.
 #include "tactum/dynamics/world.h"
-#include "tactum/mesh/mesh_import.h"
-#include "tactum/mesh/make_part.h"
 #include "tactum/haptics/materials.h"
+#include "tactum/mesh/make_part.h"
+#include "tactum/mesh/mesh_import.h"
 
 // Devices, by name or of the caller's own.
 #include "tactum/devices/device.h"
@@ -24,8 +24,8 @@
 
 // Frames: a world stepped by the caller or by a loop.
 #include "tactum/haptics/force_stage.h"
-#include "tactum/loop/loop_thread.h"
 #include "tactum/haptics/simulation.h"
+#include "tactum/loop/loop_thread.h"
 
 // Scenes and sessions.
 #include "tactum/scene/builtin_scenes.h"

@@ -20,7 +20,6 @@ namespace {
 using testing::box_mesh;
 using testing::icosphere;
 using testing::prism;
-using testing::transformed;
 
 PartFile solid_file() {
   PartFile file;

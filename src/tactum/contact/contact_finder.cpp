@@ -27,17 +27,8 @@ constexpr double kKnownShare = 0.05;
 
 }  // namespace
 
-void ContactFinder::find_patches(std::span<const Pose> X_WB, int budget, PatchPoints points,
-                                 std::span<const std::uint8_t> urgency) noexcept {
-  points_ = points;
-  urgency_.assign(urgency.begin(), urgency.end());
-  tests_left_ = budget;
-  patches_.clear();
-  candidates_.clear();
-  internal_contacts_.clear();
+void ContactFinder::list_due_pairs() noexcept {
   due_.clear();
-  emitted_.clear();
-  std::fill(blocked_.begin(), blocked_.end(), 0);
   for (Index i = 0; i < pairs_.size(); ++i) {
     Pair& pair = pairs_[i];
     if (pair.free_until - accumulated_motion(pair.body_a, pair.body_b) >
@@ -48,6 +39,19 @@ void ContactFinder::find_patches(std::span<const Pose> X_WB, int budget, PatchPo
                       pair.last_checked});
     }
   }
+}
+
+void ContactFinder::find_patches(std::span<const Pose> X_WB, int budget, PatchPoints points,
+                                 std::span<const std::uint8_t> urgency) noexcept {
+  points_ = points;
+  urgency_.assign(urgency.begin(), urgency.end());
+  tests_left_ = budget;
+  patches_.clear();
+  candidates_.clear();
+  internal_contacts_.clear();
+  emitted_.clear();
+  std::fill(blocked_.begin(), blocked_.end(), 0);
+  list_due_pairs();
   budget_limited_ = kAmple * due_.size() > static_cast<Index>(std::max(budget, 0));
   // Pairs whose answer still holds leave the list before it is put in order.
   const int may_test = budget_limited_ ? skip_still_valid(X_WB) : budget;

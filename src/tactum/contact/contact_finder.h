@@ -123,6 +123,8 @@ class ContactFinder final : public GapOracle {
   void append_pairs(int a, int b, const BodyPair& old) noexcept;
   double bound_at(const Pair& pair, const Answer& answer, const Pose& X_AB) const noexcept;
   void answer(Pair& pair, const Pose& X_AB, Answer& into) noexcept;
+  /// Fills due_ with the pairs that may be within their tolerance; the others are not in contact.
+  void list_due_pairs() noexcept;
   int skip_still_valid(std::span<const Pose> X_WB) noexcept;
   void skip(int a, int b, double gap, std::int64_t last_checked) noexcept;
   bool of_held(int a, int b) const noexcept { return urgency_of(a, b) == urgency::kHeld; }

@@ -15,7 +15,6 @@
 #include "tactum/base/result.h"
 #include "tactum/dynamics/force_field.h"
 #include "tactum/geometry/part.h"
-#include "tactum/geometry/part.h"
 #include "tactum/math/spatial.h"
 
 namespace tactum {

@@ -68,16 +68,16 @@ using RowNames = StaticVector<std::uint64_t, kMostUnknowns>;
 void note_held(const ConstraintState& c, RowNames& names) {
   names.clear();
   for (const QpActive& active : c.problem.answer().active) {
-    const Index row = Index(active.row) - c.first_row;
-    if (Index(active.row) >= c.first_row && row < c.own_rows) names.push_back(c.names[row]);
+    const Index row = Index(active.row) - c.rows.first;
+    if (Index(active.row) >= c.rows.first && row < c.rows.own) names.push_back(c.rows.names[row]);
   }
 }
 
 StaticVector<int, kMostUnknowns> rows_of(const RowNames& names, const ConstraintState& c) {
   StaticVector<int, kMostUnknowns> rows;
-  for (Index row = 0; row < c.own_rows; ++row)
-    if (std::find(names.begin(), names.end(), c.names[row]) != names.end())
-      rows.push_back(static_cast<int>(c.first_row + row));
+  for (Index row = 0; row < c.rows.own; ++row)
+    if (std::find(names.begin(), names.end(), c.rows.names[row]) != names.end())
+      rows.push_back(static_cast<int>(c.rows.first + row));
   return rows;
 }
 
@@ -94,7 +94,7 @@ bool solve_on(const FrameSettings& settings, ConstraintProblem& problem, FrameRe
 /// to go on from the answer without friction costs no more.
 void begin_sticking(ConstraintState& c) {
   if (c.problem.movers().size() == 1) return;
-  StaticVector<int, kMostUnknowns> rows = rows_of(c.held_sticking, c);
+  StaticVector<int, kMostUnknowns> rows = rows_of(c.warm_start.sticking, c);
   const Index of_contacts = rows.size();
   c.friction.rows_that_stuck(rows);
   if (rows.size() > of_contacts) begin(rows, c.problem);
@@ -115,7 +115,7 @@ bool solve_sliding(const FrameSettings& settings, ConstraintState& c, FrameRepor
       return solve_on(settings, c.problem, report);
     }
     if (round == 0) {
-      note_held(c, c.held_sticking);
+      note_held(c, c.warm_start.sticking);
       c.friction.note_sticking(c.problem);
     }
     if (!c.friction.let_slip(c.skin_m, c.problem)) break;
@@ -126,20 +126,20 @@ bool solve_sliding(const FrameSettings& settings, ConstraintState& c, FrameRepor
 /// Keeps what the answer says of forces: impulses, the rows that hold, the wrench at the handle.
 void keep_forces(ConstraintStep& step) {
   ConstraintState& c = step.own.constraint;
-  note_held(c, c.held);
+  note_held(c, c.warm_start.in_the_end);
   for (ContactRow& row : own_rows(step)) row.impulse = 0.0;
   for (const QpActive& active : c.problem.answer().active) {
-    const Index row = Index(active.row) - c.first_row;
-    if (Index(active.row) >= c.first_row && row < c.own_rows)
+    const Index row = Index(active.row) - c.rows.first;
+    if (Index(active.row) >= c.rows.first && row < c.rows.own)
       step.own.contact_rows.rows[row].impulse = active.multiplier * step.dt_s;
   }
-  step.report.active_constraints = static_cast<int>(c.held.size());
+  step.report.active_constraints = static_cast<int>(c.warm_start.in_the_end.size());
   feel(c.problem.displacement_at_centre(c.problem.movers().front()), step);
 }
 
 /// The farthest way of a point of the body in the last answer [m].
 double way_of(const ConstraintStep& step, const Mover& mover) {
-  const Vec6 x = step.own.constraint.moves().displacement(mover.body);
+  const Vec6 x = step.own.constraint.step_problem().displacement(mover.body);
   return x.head<3>().norm() + x.tail<3>().norm() * step.radius_m[Index(mover.body)];
 }
 
@@ -147,12 +147,12 @@ double way_of(const ConstraintStep& step, const Mover& mover) {
 double trusted_share(const ConstraintStep& step) {
   const ConstraintState& c = step.own.constraint;
   double share = 1.0;
-  for (const Mover& mover : c.moves().movers()) {
+  for (const Mover& mover : c.step_problem().movers()) {
     const double way = way_of(step, mover);
     const double trusted = step.own.reach[Index(mover.body)] - kReachMargin * c.skin_m;
     if (way * share > trusted) share = trusted / way;
     if (mover.body != step.held.body) continue;
-    const double turn = c.moves().displacement(mover.body).tail<3>().norm();
+    const double turn = c.step_problem().displacement(mover.body).tail<3>().norm();
     if (turn * share > step.settings.constraint.max_turn_rad)
       share = step.settings.constraint.max_turn_rad / turn;
   }
@@ -162,36 +162,37 @@ double trusted_share(const ConstraintStep& step) {
 /// Moves everything by `share` of the answer's step, on trial, and looks at every gap there.
 bool open_after(double share, ConstraintStep& step) {
   ConstraintState& c = step.own.constraint;
-  c.X_WB_trial = step.bodies.X_WB;  // same size: nothing is allocated
-  for (const Mover& mover : c.moves().movers()) {
+  c.trial.X_WB = step.bodies.X_WB;  // same size: nothing is allocated
+  for (const Mover& mover : c.step_problem().movers()) {
     const Index i = Index(mover.body);
-    const Twist displacement = to_twist(c.moves().displacement(mover.body) * share);
-    c.X_WB_trial[i] =
+    const Twist displacement = to_twist(c.step_problem().displacement(mover.body) * share);
+    c.trial.X_WB[i] =
         constrained_pose(step.world.bodies[i], advanced(step.bodies.X_WB[i], displacement, 1.0));
-    if (!c.X_WB_trial[i].finite()) return false;
+    if (!c.trial.X_WB[i].finite()) return false;
   }
   look_at_trial(0, step);
-  for (Index p = 0; p < c.gap.size(); ++p)
+  for (Index p = 0; p < c.trial.gap_now.size(); ++p)
     if (step.own.free.patch_asked[p] && !open_at_trial(p, c)) return false;
   return true;
 }
 
 void take_trial(ConstraintStep& step) {
   ConstraintState& c = step.own.constraint;
-  step.bodies.X_WB.swap(c.X_WB_trial);
-  for (Index p = 0; p < c.gap.size(); ++p)
-    if (step.own.free.patch_asked[p]) c.gap[p] = c.gap_trial[p];
+  step.bodies.X_WB.swap(c.trial.X_WB);
+  for (Index p = 0; p < c.trial.gap_now.size(); ++p)
+    if (step.own.free.patch_asked[p]) c.trial.gap_now[p] = c.trial.gap[p];
 }
 
 /// Contacts nearer than half the skin are opened first, as far as there is room.
 void restore(ConstraintStep& step) {
   ConstraintState& c = step.own.constraint;
   bool tight = false;
-  for (Index p = 0; p < c.gap.size(); ++p) tight |= step.own.free.patch_asked[p] && c.gap[p] < 0.5 * c.skin_m;
+  for (Index p = 0; p < c.trial.gap_now.size(); ++p)
+    tight |= step.own.free.patch_asked[p] && c.trial.gap_now[p] < 0.5 * c.skin_m;
   if (!tight || step.gaps.blocked(step.held.body)) return;
   add_bodies(true, step);
   add_contact_rows(true, c.problem, step);
-  begin(rows_of(c.held, c), c.problem);
+  begin(rows_of(c.warm_start.in_the_end, c), c.problem);
   if (!solve_on(step.settings, c.problem, step.report)) return;
   if (!open_after(trusted_share(step), step)) return;
   for (ContactRow& row : own_rows(step)) row.distance = gap_at_trial(row, step);
@@ -203,31 +204,31 @@ void restore(ConstraintStep& step) {
 bool find_forces(ConstraintStep& step) {
   ConstraintState& c = step.own.constraint;
   add_bodies(false, step);
-  c.shades = c.bent;
-  if (c.shades) exchange_normals(step);
+  c.rows.shades = c.rows.bent;
+  if (c.rows.shades) exchange_normals(step);
   add_contact_rows(false, c.problem, step);
   c.friction.clear();
-  begin(rows_of(c.held_without_friction, c), c.problem);
+  begin(rows_of(c.warm_start.without_friction, c), c.problem);
   bool found = solve_on(step.settings, c.problem, step.report);
-  note_held(c, c.held_without_friction);
+  note_held(c, c.warm_start.without_friction);
   if (found && c.friction.begin(step.world, step.settings.friction, own_rows(step), step.patches,
-                                step.bodies.X_WB, c.skin_m, c.first_row, c.problem)) {
+                                step.bodies.X_WB, c.skin_m, c.rows.first, c.problem)) {
     begin_sticking(c);
     found = solve_sliding(step.settings, c, step.report);
   }
   if (found) keep_forces(step);
-  if (!c.shades) return found;
+  if (!c.rows.shades) return found;
   exchange_normals(step);
-  c.way.follow(c.problem);
-  add_contact_rows(false, c.way, step);
-  begin(rows_of(c.held, c), c.way);
-  return found && solve_on(step.settings, c.way, step.report);
+  c.position_problem.follow(c.problem);
+  add_contact_rows(false, c.position_problem, step);
+  begin(rows_of(c.warm_start.in_the_end, c), c.position_problem);
+  return found && solve_on(step.settings, c.position_problem, step.report);
 }
 
 /// Solves again after a feedback.
 bool find_again(ConstraintStep& step) {
   ConstraintState& c = step.own.constraint;
-  if (c.shades) return solve_on(step.settings, c.way, step.report);
+  if (c.rows.shades) return solve_on(step.settings, c.position_problem, step.report);
   const bool found = c.friction.acts() ? solve_sliding(step.settings, c, step.report)
                                        : solve_on(step.settings, c.problem, step.report);
   if (found) keep_forces(step);
@@ -265,11 +266,11 @@ double move_held_island(ConstraintStep& step) {
     step.own.free.patch_asked.push_back(step.own.free.of_held(patch) ? 1 : 0);
   restore(step);
   const double share = advance(step);
-  c.stood = share > 0.0 ? 0 : c.stood + 1;
+  c.trust.consecutive_rejections = share > 0.0 ? 0 : c.trust.consecutive_rejections + 1;
   if (share > 0.0) take_trial(step);
-  if (c.stood >= frames_in(kStands_s, step.dt_s)) feel(Vec6::Zero(), step);
-  c.friction.end(step.world, own_rows(step), step.patches, c.first_row, c.problem, step.bodies.X_WB);
-  const std::vector<Pose>& before = share > 0.0 ? c.X_WB_trial : step.bodies.X_WB;  // take_trial swaps them
+  if (c.trust.consecutive_rejections >= frames_in(kStands_s, step.dt_s)) feel(Vec6::Zero(), step);
+  c.friction.end(step.world, own_rows(step), step.patches, c.rows.first, c.problem, step.bodies.X_WB);
+  const std::vector<Pose>& before = share > 0.0 ? c.trial.X_WB : step.bodies.X_WB;  // take_trial swaps them
   for (Index i = 0; i < step.world.bodies.size(); ++i)
     if (step.own.free.near_held[i])
       step.bodies.V_WB[i] = twist_between(before[i], step.bodies.X_WB[i], step.dt_s);
@@ -286,7 +287,8 @@ void trust_step(ConstraintStep& step) {
   }
   const Constraint& limits = step.settings.constraint;
   const double most = step.work.minima > 0 ? limits.max_step_on_surfaces_m : limits.max_step_m;
-  step.own.constraint.trust_m = std::clamp(kTrustGrowth * way, std::min(limits.least_step_m, most), most);
+  step.own.constraint.trust.length_m =
+      std::clamp(kTrustGrowth * way, std::min(limits.least_step_m, most), most);
 }
 
 /// The points at which something pushes the body: corners, and the centre of a patch whose load friction's
@@ -311,13 +313,13 @@ int pushing_points(std::span<const ContactRow> corners, int body, const Constrai
 void report_rows(ConstraintStep& step) {
   const int held = step.held.body;
   const ConstraintState& c = step.own.constraint;
-  if (c.shades) exchange_normals(step);
-  step.report.contact_points = static_cast<int>(c.names.size());
-  use_of_friction(step.world, c.friction, step.patches, c.first_row, c.problem, own_rows(step),
+  if (c.rows.shades) exchange_normals(step);
+  step.report.contact_points = static_cast<int>(c.rows.names.size());
+  use_of_friction(step.world, c.friction, step.patches, c.rows.first, c.problem, own_rows(step),
                   step.own.constraint.friction_uses);
   step.report.friction = sum_of(c.friction_uses);
   step.report.held_contact_points =
-      pushing_points({step.own.contact_rows.rows.data(), c.names.size()}, held, c);
+      pushing_points({step.own.contact_rows.rows.data(), c.rows.names.size()}, held, c);
   Vec3 torque = Vec3::Zero();
   Vec3 origin = held < 0 ? Vec3(Vec3::Zero()) : step.X_WB_start[Index(held)].p;
   if (step.own.free.held_island >= 0) {
@@ -340,17 +342,17 @@ void trusted_reach(const MotionInput& input, const WorldState& bodies, Constrain
     const Twist& V = bodies.V_WB[i];
     const bool held = static_cast<int>(i) == input.held.body;
     if (!held) own.reach[i] += (V.v.norm() + pull + V.w.norm() * input.radius_m[i]) * input.dt_s;
-    if (held || own.free.near_held[i]) own.reach[i] += c.trust_m;
+    if (held || own.free.near_held[i]) own.reach[i] += c.trust.length_m;
   }
 }
 
 void respond_constrained(ConstraintStep& step) noexcept {
   ConstraintState& c = step.own.constraint;
-  c.gap.clear();
-  for (const ContactPatch& patch : step.patches) c.gap.push_back(patch.distance);
-  c.gap_trial.resize(c.gap.size());
-  c.gap_least.resize(c.gap.size());
-  c.gap_answer.resize(c.gap.size());
+  c.trial.gap_now.clear();
+  for (const ContactPatch& patch : step.patches) c.trial.gap_now.push_back(patch.distance);
+  c.trial.gap.resize(c.trial.gap_now.size());
+  c.trial.gap_least.resize(c.trial.gap_now.size());
+  c.trial.gap_answer.resize(c.trial.gap_now.size());
 
   step.own.free.others = others_move(step.world, step.held.body);
   let_wait(step);
@@ -367,7 +369,7 @@ void respond_constrained(ConstraintStep& step) noexcept {
   }
   trust_step(step);
   end_turning(step);
-  end_balance(share == 1.0 && !c.shades, step);
+  end_balance(share == 1.0 && !c.rows.shades, step);
   go_on(step);
   report_rows(step);
 }

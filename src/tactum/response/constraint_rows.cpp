@@ -97,12 +97,12 @@ struct RowMaker {
       row.friction = friction;
       row.restitution = restitution;
       row.struck = struck;
-      c.names.push_back(name_of(patch, i));
+      c.rows.names.push_back(name_of(patch, i));
       if (!own || step.shading.empty()) continue;
       const Vec3 bent =
           bend(step.shading[Index(patch.body_a)], step.shading[Index(patch.body_b)], X_AB, patch, corners[i]);
-      c.bent |= !bent.isZero(0.0);
-      c.shaded.push_back(bent.isZero(0.0) ? normal_W : Vec3((normal_W + X_WA.R * bent).normalized()));
+      c.rows.bent |= !bent.isZero(0.0);
+      c.rows.shaded.push_back(bent.isZero(0.0) ? normal_W : Vec3((normal_W + X_WA.R * bent).normalized()));
     }
   }
 };
@@ -114,36 +114,37 @@ void make_corner_rows(ConstraintStep& step) noexcept {
   ContactRows& out = step.own.contact_rows;
   out.rows.clear();
   out.full = false;
-  c.names.clear();
-  c.shaded.clear();
-  c.shades = c.bent = false;
+  c.rows.names.clear();
+  c.rows.shaded.clear();
+  c.rows.shades = c.rows.bent = false;
   const std::span<const ContactPatch> patches = step.patches;
   const RowMaker maker{step};
   for (Index p = 0; p < patches.size() && !out.full; ++p)
     if (step.own.free.of_held(patches[p])) maker.add(patches[p], static_cast<int>(p), true);
-  c.own_rows = out.rows.size();
+  c.rows.own = out.rows.size();
   for (Index p = 0; p < patches.size() && !out.full; ++p)
     if (!step.own.free.of_held(patches[p])) maker.add(patches[p], static_cast<int>(p), false);
 }
 
 std::span<ContactRow> own_rows(ConstraintStep& step) noexcept {
-  return {step.own.contact_rows.rows.data(), step.own.constraint.own_rows};
+  return {step.own.contact_rows.rows.data(), step.own.constraint.rows.own};
 }
 
 void add_contact_rows(bool opening, ConstraintProblem& problem, ConstraintStep& step) noexcept {
   ConstraintState& c = step.own.constraint;
-  c.first_row = problem.rows();
+  c.rows.first = problem.rows();
   for (const ContactRow& row : own_rows(step)) {
     const double offset = c.skin_m - row.distance;
     problem.add_row(problem.row_of(row.body_a, row.body_b, push_of(row)),
                     opening ? offset : std::min(0.0, offset));
   }
-  c.feedback.assign(c.own_rows, 0.0);
+  c.rows.feedback.assign(c.rows.own, 0.0);
 }
 
 void exchange_normals(ConstraintStep& step) noexcept {
   ConstraintState& c = step.own.constraint;
-  for (Index r = 0; r < c.shaded.size(); ++r) std::swap(c.shaded[r], step.own.contact_rows.rows[r].n_BA_W);
+  for (Index r = 0; r < c.rows.shaded.size(); ++r)
+    std::swap(c.rows.shaded[r], step.own.contact_rows.rows[r].n_BA_W);
 }
 
 double gap_at_trial(const ContactRow& row, const ConstraintStep& step) noexcept {
@@ -151,27 +152,28 @@ double gap_at_trial(const ContactRow& row, const ConstraintStep& step) noexcept 
   const ContactPatch& patch = step.patches[Index(row.patch)];
   const auto carried = [&](int body, const Vec3& p_W) {
     const Pose& before = step.bodies.X_WB[Index(body)];
-    return c.X_WB_trial[Index(body)] * rotated_back(before.R, p_W - before.p);
+    return c.trial.X_WB[Index(body)] * rotated_back(before.R, p_W - before.p);
   };
   const bool on_a = by_face(patch.manifold.a, patch.neighbour_face_a);
   const bool on_b = by_face(patch.manifold.b, patch.neighbour_face_b);
   const int owner = on_a && !on_b ? row.body_a : row.body_b;
   const Vec3 half = 0.5 * row.distance * row.n_BA_W;
   const Vec3 normal =
-      c.X_WB_trial[Index(owner)].R * rotated_back(step.bodies.X_WB[Index(owner)].R, row.n_BA_W);
+      c.trial.X_WB[Index(owner)].R * rotated_back(step.bodies.X_WB[Index(owner)].R, row.n_BA_W);
   return normal.dot(carried(row.body_a, row.p_W + half) - carried(row.body_b, row.p_W - half));
 }
 
 double overstated_at_trial(std::span<const ContactRow> rows_of_patch, const ConstraintStep& step) noexcept {
-  if (step.own.constraint.gap_answer[Index(rows_of_patch.front().patch)] != GapAnswer::kExact) return 0.0;
+  if (step.own.constraint.trial.gap_answer[Index(rows_of_patch.front().patch)] != GapAnswer::kExact)
+    return 0.0;
   double least = std::numeric_limits<double>::infinity();
   for (const ContactRow& row : rows_of_patch) least = std::min(least, gap_at_trial(row, step));
-  return std::max(0.0, least - step.own.constraint.gap_trial[Index(rows_of_patch.front().patch)]);
+  return std::max(0.0, least - step.own.constraint.trial.gap[Index(rows_of_patch.front().patch)]);
 }
 
 void feed_back(double share, ConstraintStep& step) noexcept {
   ConstraintState& c = step.own.constraint;
-  ConstraintProblem& problem = c.moves();
+  ConstraintProblem& problem = c.step_problem();
   const std::span<const ContactRow> rows = own_rows(step);
   for (Index first = 0, end = 0; first < rows.size(); first = end) {
     for (end = first + 1; end < rows.size() && rows[end].patch == rows[first].patch;) ++end;
@@ -180,8 +182,8 @@ void feed_back(double share, ConstraintStep& step) noexcept {
       const double linear = problem.opening(problem.row_of(rows[r].body_a, rows[r].body_b, push_of(rows[r])));
       const double gap = gap_at_trial(rows[r], step) - too_much;
       const double missing = (rows[r].distance + share * linear - gap) / share;
-      problem.tighten(c.first_row + r, missing - c.feedback[r]);
-      c.feedback[r] = missing;
+      problem.tighten(c.rows.first + r, missing - c.rows.feedback[r]);
+      c.rows.feedback[r] = missing;
     }
   }
 }

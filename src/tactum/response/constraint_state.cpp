@@ -9,23 +9,24 @@ namespace tactum {
 using Index = std::size_t;
 
 ConstraintState::ConstraintState(const World& world, const FrameSettings& settings)
-    : problem(static_cast<Index>(settings.budget.max_contact_points)),
-      way(static_cast<Index>(settings.budget.max_contact_points)),
-      trust_m(settings.constraint.least_step_m),
-      corner_memory(settings.budget.capacity.patches / 4 + 1),
-      X_WB_trial(world.bodies.size()) {
+    : problem(Index(settings.budget.max_contact_points)),
+      position_problem(Index(settings.budget.max_contact_points)),
+      trust{.length_m = settings.constraint.least_step_m},
+      corner_memory(settings.budget.capacity.patches / 4 + 1) {
   double size = 0.0;
   for (const Body& body : world.bodies)
     if (body.moves()) size = std::max(size, body.part->size);
   skin_m = tolerances::kSkin * size;
-  const Index rows = static_cast<Index>(settings.budget.max_contact_points);
-  names.reserve(rows);
-  feedback.reserve(rows);
-  shaded.reserve(rows);
-  gap.reserve(settings.budget.capacity.patches);
-  gap_trial.reserve(settings.budget.capacity.patches);
-  gap_least.reserve(settings.budget.capacity.patches);
-  gap_answer.reserve(settings.budget.capacity.patches);
+  const Index most_rows = Index(settings.budget.max_contact_points);
+  rows.names.reserve(most_rows);
+  rows.feedback.reserve(most_rows);
+  rows.shaded.reserve(most_rows);
+  const Index most_patches = settings.budget.capacity.patches;
+  trial.X_WB.resize(world.bodies.size());
+  trial.gap_now.reserve(most_patches);
+  trial.gap.reserve(most_patches);
+  trial.gap_least.reserve(most_patches);
+  trial.gap_answer.reserve(most_patches);
 }
 
 FreeBodies::FreeBodies(const World& world, const FrameSettings& settings)

@@ -1,6 +1,6 @@
 #pragma once
-/// What the constraint response keeps from frame to frame and works on, allocated at load time: a struct for each of
-/// its parts, and the step that is being made. The functions stand in the parts' own headers.
+/// What the constraint response keeps from frame to frame and works on, allocated at load time: a struct for
+/// each of its parts, and the step that is being made. The functions stand in the parts' own headers.
 
 #include <vector>
 
@@ -19,40 +19,59 @@
 
 namespace tactum {
 
+/// The names of rows that were active in the last frame's answers: the next frame's problems begin with them.
+struct WarmStart {
+  StaticVector<std::uint64_t, kMostUnknowns> in_the_end;        ///< of the answer that was used
+  StaticVector<std::uint64_t, kMostUnknowns> without_friction;  ///< before friction had cones
+  StaticVector<std::uint64_t, kMostUnknowns> sticking;          ///< while every patch stuck
+};
+
+/// The contact rows of the island as rows of its problem; scratch of one frame.
+struct CornerRows {
+  std::size_t own = 0;               ///< the first so many contact rows are the island's
+  std::size_t first = 0;             ///< the first of them in the problem
+  bool bent = false;                 ///< some normal is bent by shading
+  bool shades = false;               ///< ... so the step is the answer of the position problem
+  std::vector<Vec3> shaded;          ///< normals of the own rows; empty without shading [-]
+  std::vector<std::uint64_t> names;  ///< of the rows, kept from frame to frame
+  std::vector<double> feedback;      ///< what exact gaps have added to the rows [m]
+};
+
+/// A pose on trial, and the gaps of the patches there; scratch of one frame, an entry per body or patch.
+struct TrialPose {
+  std::vector<Pose> X_WB;             ///< where the bodies would be [m]
+  std::vector<double> gap_now;        ///< before the step [m]
+  std::vector<double> gap;            ///< at the trial [m]
+  std::vector<double> gap_least;      ///< what it may become [m]
+  std::vector<GapAnswer> gap_answer;  ///< how the gap at the trial is known
+};
+
+/// How far the island's steps are trusted, by what came of the last ones.
+struct StepTrust {
+  double length_m = 0.0;           ///< how far a point of a body may move in the next frame [m]
+  int consecutive_rejections = 0;  ///< frames on end in which no step could be taken [-]
+};
+
 /// Of the held part's island (constraint.h).
 struct ConstraintState {
   ConstraintState(const World& world, const FrameSettings& settings);
 
-  ConstraintProblem problem;  ///< of the forces, and of the way unless normals are shaded
-  ConstraintProblem way;      ///< where they are: to where the forces would have it
+  ConstraintProblem problem;           ///< of the forces, and of the positions unless normals are shaded
+  ConstraintProblem position_problem;  ///< with true normals: to where the forces would have the bodies
   Friction friction;
-  double skin_m;               ///< the gap contacts are held at [m]
-  double trust_m;              ///< how far a point of a body may move in the next frame [m]
-  Vec6 wanted;                 ///< what the coupling asked of the handle [m, rad]
-  int stood = 0;               ///< frames on end in which no step could be taken [-]
-  Wrench felt;                 ///< of the contact forces, at the handle, world axes [N, N m]
   FrictionUses friction_uses;  ///< what friction does, for displays
-  /// Names of the rows that held last: in the end, without friction, and while every patch stuck. The next
-  /// frame's problems begin with them.
-  StaticVector<std::uint64_t, kMostUnknowns> held, held_without_friction, held_sticking;
+  double skin_m;               ///< the gap contacts are held at [m]
+  StepTrust trust;
+  Vec6 wanted;  ///< what the coupling asked of the handle [m, rad]
+  Wrench felt;  ///< of the contact forces, at the handle, world axes [N, N m]
+  WarmStart warm_start;
   CornerMemory corner_memory;
-
-  // Scratch of one frame.
-  std::size_t own_rows = 0;          ///< the first so many contact rows are the problem's
-  std::size_t first_row = 0;         ///< of them, in the problem
-  bool bent = false;                 ///< some normal is bent by shading
-  bool shades = false;               ///< ... so the step is that of `way`
-  std::vector<Vec3> shaded;          ///< normals of the own rows; empty without shading [-]
-  std::vector<std::uint64_t> names;  ///< of the rows
-  std::vector<double> feedback;      ///< what exact gaps have added to the rows [m]
-  std::vector<Pose> X_WB_trial;
-  std::vector<double> gap, gap_trial;  ///< of the patches: now, and at the trial [m]
-  std::vector<double> gap_least;       ///< what they may become [m]
-  std::vector<GapAnswer> gap_answer;   ///< how the trial's are known
+  CornerRows rows;
+  TrialPose trial;
 
   /// The problem whose answer is the step.
-  ConstraintProblem& moves() { return shades ? way : problem; }
-  const ConstraintProblem& moves() const { return shades ? way : problem; }
+  ConstraintProblem& step_problem() { return rows.shades ? position_problem : problem; }
+  const ConstraintProblem& step_problem() const { return rows.shades ? position_problem : problem; }
 };
 
 /// The balance of momentum (momentum.h); scratch of one frame.
@@ -132,8 +151,8 @@ struct Sleep {
   std::vector<char> restless;  ///< of islands
 };
 
-/// Everything that the constraint response keeps from frame to frame. Its parts work on each other: a step of one is
-/// made while the others' states are known (ConstraintStep).
+/// Everything that the constraint response keeps from frame to frame. Its parts work on each other: a step of
+/// one is made while the others' states are known (ConstraintStep).
 struct ConstraintMemory {
   ConstraintMemory(const World& world, const FrameSettings& settings);
 

@@ -25,19 +25,19 @@ double least_gap(double now, double skin) {
 
 void look_at_trial(int keep_back, ConstraintStep& step) noexcept {
   ConstraintState& c = step.own.constraint;
-  for (Index p = 0; p < c.gap.size(); ++p) {
-    c.gap_answer[p] = step.own.free.patch_asked[p] ? GapAnswer::kAsked : GapAnswer::kNotAsked;
-    c.gap_least[p] = least_gap(c.gap[p], c.skin_m);
+  for (Index p = 0; p < c.trial.gap_now.size(); ++p) {
+    c.trial.gap_answer[p] = step.own.free.patch_asked[p] ? GapAnswer::kAsked : GapAnswer::kNotAsked;
+    c.trial.gap_least[p] = least_gap(c.trial.gap_now[p], c.skin_m);
   }
   step.report.validation_tests +=
-      step.gaps.distances_at(c.X_WB_trial, c.gap_trial, c.gap_answer, c.gap_least, keep_back);
-  step.own.waiting.ran_out |=
-      std::find(c.gap_answer.begin(), c.gap_answer.end(), GapAnswer::kUnknown) != c.gap_answer.end();
+      step.gaps.distances_at(c.trial.X_WB, c.trial.gap, c.trial.gap_answer, c.trial.gap_least, keep_back);
+  step.own.waiting.ran_out |= std::find(c.trial.gap_answer.begin(), c.trial.gap_answer.end(),
+                                        GapAnswer::kUnknown) != c.trial.gap_answer.end();
 }
 
 bool open_at_trial(std::size_t patch, const ConstraintState& c) noexcept {
-  if (c.gap_answer[patch] == GapAnswer::kExact) return c.gap_trial[patch] >= c.gap_least[patch];
-  return c.gap_answer[patch] == GapAnswer::kProven;
+  if (c.trial.gap_answer[patch] == GapAnswer::kExact) return c.trial.gap[patch] >= c.trial.gap_least[patch];
+  return c.trial.gap_answer[patch] == GapAnswer::kProven;
 }
 
 }  // namespace tactum

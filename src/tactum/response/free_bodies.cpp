@@ -92,16 +92,16 @@ void add_rows(ConstraintStep& step) {
   const ConstraintState& c = step.own.constraint;
   const std::vector<Pose>& X_WB = step.bodies.X_WB;
   f.resting.begin();
-  for (Index r = c.own_rows; r < step.own.contact_rows.rows.size(); ++r) {
+  for (Index r = c.rows.own; r < step.own.contact_rows.rows.size(); ++r) {
     ContactRow& row = step.own.contact_rows.rows[r];
     const int island = f.islands.of_contact(row.body_a, row.body_b);
     if (island < 0) {
-      row.impulse = std::max(0.0, row.n_BA_W.dot(f.resting.keep(c.names[r])));
+      row.impulse = std::max(0.0, row.n_BA_W.dot(f.resting.keep(c.rows.names[r])));
       continue;
     }
     const double beyond = row.distance - c.skin_m;
-    f.resting.add(row, static_cast<int>(r), island, c.names[r], beyond < 0.0 ? kOpening * beyond : beyond,
-                  X_WB, step.own.mobility, step.dt_s);
+    f.resting.add(row, static_cast<int>(r), island, c.rows.names[r],
+                  beyond < 0.0 ? kOpening * beyond : beyond, X_WB, step.own.mobility, step.dt_s);
   }
   for (Index i = 0; i < step.world.bodies.size(); ++i)
     if (moves_here(step, i) && !is_held(step, i))
@@ -132,7 +132,7 @@ void try_steps(ConstraintStep& step) {
   const FreeBodies& f = step.own.free;
   for (Index i = 0; i < step.world.bodies.size(); ++i) {
     if (!moves_here(step, i) || f.settled[Index(f.islands.of(static_cast<int>(i)))]) continue;
-    Pose& X_trial = step.own.constraint.X_WB_trial[i];
+    Pose& X_trial = step.own.constraint.trial.X_WB[i];
     const Pose& X_WB = step.bodies.X_WB[i];
     X_trial = X_WB;
     if (f.share[i] > 0.0)
@@ -182,7 +182,7 @@ void cut(bool halve, ConstraintStep& step) {
   std::fill(f.cut.begin(), f.cut.end(), 0);
   for (Index p = 0; p < patches.size(); ++p) {
     if (!f.patch_closed[p]) continue;
-    const bool known = step.own.constraint.gap_answer[p] == GapAnswer::kExact;
+    const bool known = step.own.constraint.trial.gap_answer[p] == GapAnswer::kExact;
     for (const int body : {patches[p].body_a, patches[p].body_b}) {
       if (!moves_here(step, Index(body))) continue;
       double& share = f.share[Index(body)];
@@ -217,7 +217,7 @@ void correct(ConstraintStep& step) {
   const std::vector<Twist>& V_WB = step.bodies.V_WB;
   const std::vector<Pose>& X_WB = step.bodies.X_WB;
   const std::span<const ContactRow> rows = step.own.contact_rows.rows;
-  for (Index first = step.own.constraint.own_rows, end = first; first < rows.size(); first = end) {
+  for (Index first = step.own.constraint.rows.own, end = first; first < rows.size(); first = end) {
     for (end = first + 1; end < rows.size() && rows[end].patch == rows[first].patch;) ++end;
     const Index a = Index(rows[first].body_a);
     const Index b = Index(rows[first].body_b);
@@ -353,7 +353,7 @@ void move_free_bodies(ConstraintStep& step) noexcept {
   solve();
   limit_shares(step);
   const int keep_back = kept_for_held(step);
-  c.X_WB_trial = step.bodies.X_WB;  // same size: nothing is allocated
+  c.trial.X_WB = step.bodies.X_WB;  // same size: nothing is allocated
   bool all = true;
   for (int round = 0, cuts = 0;; ++round) {
     try_steps(step);
@@ -376,7 +376,7 @@ void move_free_bodies(ConstraintStep& step) noexcept {
   }
   for (Index i = 0; i < step.world.bodies.size(); ++i) {
     if (!moves_here(step, i)) continue;
-    step.bodies.X_WB[i] = c.X_WB_trial[i];
+    step.bodies.X_WB[i] = c.trial.X_WB[i];
     if (f.share[i] > 0.0 || is_held(step, i)) continue;
     // What does not go has no velocity: kept, it would grow under gravity while the body stays.
     step.bodies.V_WB[i] = {};

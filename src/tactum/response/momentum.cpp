@@ -10,10 +10,10 @@ void give_by_island(ConstraintStep& step) {
   const ConstraintState& c = step.own.constraint;
   for (const QpActive& active : c.problem.answer().active) {
     const Index row = Index(active.row);
-    if (row < c.first_row) continue;
+    if (row < c.rows.first) continue;
     const double impulse = active.multiplier * step.dt_s;
-    if (row - c.first_row < c.own_rows) {
-      const ContactRow& contact = step.own.contact_rows.rows[row - c.first_row];
+    if (row - c.rows.first < c.rows.own) {
+      const ContactRow& contact = step.own.contact_rows.rows[row - c.rows.first];
       step.own.free.momentum.give(contact.body_a, contact.body_b, impulse * contact.n_BA_W);
       continue;
     }

@@ -2,7 +2,6 @@
 
 #include <utility>
 
-#include "tactum/base/assert.h"
 #include "tactum/mesh/make_part.h"
 
 namespace tactum {

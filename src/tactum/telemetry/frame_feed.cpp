@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tactum/base/assert.h"
+
 namespace tactum {
 namespace {
 
@@ -26,7 +28,9 @@ FrameFeed::FrameFeed(std::size_t bodies, double rate_Hz)
         picture.X_WB.resize(bodies);
         picture.contacts.reserve(kContacts);
       }),
-      frames_a_picture_(std::max<std::uint64_t>(1, static_cast<std::uint64_t>(rate_Hz / kPictures_Hz))) {}
+      frames_a_picture_(std::max<std::uint64_t>(1, static_cast<std::uint64_t>(rate_Hz / kPictures_Hz))) {
+  TACTUM_DEMAND(sample_size() <= FrameSample::kRoom);
+}
 
 void FrameFeed::take(const FrameSource& frame, const StageClock* clock) noexcept {
   FrameSample sample;
