@@ -141,6 +141,10 @@ TEST(OwnDevice, WhatAFileSaysOfMaterialsAProgramCanSay) {
   EXPECT_FALSE(set_coefficient(world, {"", "steel", 0.4}, friction));
   EXPECT_FALSE(set_coefficient(world, {"wood", "steel", -0.4}, friction));
   EXPECT_EQ(friction.between(0, 1), 0.4) << "an error changes nothing";
+  FrameSettings settings;
+  settings.friction = friction;
+  EXPECT_TRUE(check_world(World{}, {}));
+  EXPECT_FALSE(check_world(World{}, settings)) << "the table is of a world of two bodies";
 }
 
 /// Adds a force along x.

@@ -33,6 +33,7 @@
 #include <vector>
 
 #include "tactum/base/frame_rate.h"
+#include "tactum/base/reserved_vector.h"
 #include "tactum/collision/contact.h"
 #include "tactum/contact/contact_patch.h"
 #include "tactum/contact/contact_reduction.h"
@@ -164,25 +165,25 @@ class ContactFinder final : public GapOracle {
   std::vector<Pose> last_X_WB_;
   SweepAndPrune sweep_;
   std::vector<BodyPair> lists_;
-  std::vector<Pair> pairs_, renewed_;
-  std::vector<std::pair<std::int32_t, std::int32_t>> near_pieces_;  // of the two bodies in work
-  std::vector<DuePair> due_;
-  std::vector<std::int32_t> emitted_;  // pairs with an answer, or that had one
-  std::vector<char> blocked_;          // by body
-  std::vector<std::uint8_t> urgency_;  // by body; empty: all alike
+  ReservedVector<Pair> pairs_, renewed_;
+  ReservedVector<std::pair<std::int32_t, std::int32_t>> near_pieces_;  // of the two bodies in work
+  ReservedVector<DuePair> due_;
+  ReservedVector<std::int32_t> emitted_;  // pairs with an answer, or that had one
+  std::vector<char> blocked_;             // by body
+  ReservedVector<std::uint8_t> urgency_;  // by body; empty: all alike
   bool budget_limited_ = false;
   int tests_left_ = 0;
-  std::vector<ContactPatch> patches_;
-  std::vector<int>
+  ReservedVector<ContactPatch> patches_;
+  ReservedVector<int>
       internal_contacts_;  // patches of pieces that are apart, of points that are no contact of the parts
-  std::vector<SeamCandidate> candidates_;
-  std::vector<SeamCandidate*> candidate_order_;
-  std::vector<SurfaceMinimum> minima_;
-  std::vector<ReductionScratch> reduction_scratch_;
+  ReservedVector<SeamCandidate> candidates_;
+  ReservedVector<SeamCandidate*> candidate_order_;
+  ReservedVector<SurfaceMinimum> minima_;
+  ReservedVector<ReductionScratch> reduction_scratch_;
   std::size_t kept_minima_ = 0;
   SteadyLimits steady_;
-  int head_start_;             // frames
-  std::vector<double> reach_;  // by body
+  int head_start_;                // frames
+  ReservedVector<double> reach_;  // by body
   PatchPoints points_ = PatchPoints::kQuadrature;
   double min_tolerance_ = 0.0;
   std::int64_t frame_ = 0;

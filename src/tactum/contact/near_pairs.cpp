@@ -56,6 +56,8 @@ ContactFinder::ContactFinder(std::vector<CollisionBody> bodies, std::span<const 
   pairs_.reserve(capacity.pairs);
   renewed_.reserve(capacity.pairs);
   near_pieces_.reserve(capacity.pairs);
+  urgency_.reserve(bodies_.size());
+  reach_.reserve(bodies_.size());
   due_.reserve(capacity.pairs);
   emitted_.reserve(capacity.pairs);
   blocked_.assign(bodies_.size(), 0);

@@ -120,7 +120,11 @@ void ContactFinder::surface_distances_at(std::span<const ContactPatch> patches, 
   const MinimaQuery query{
       .reach = kWatched * first.tolerance, .depth = first.tolerance, .cone_inflation = 0.0};
   const Pose X_AB = relative_pose(X_WB[Index(first.body_a)], X_WB[Index(first.body_b)]);
-  surface_minima(part_a.tree, part_b.tree, X_AB, query, minima_);
+  if (surface_minima(part_a.tree, part_b.tree, X_AB, query, minima_).full) {
+    work_.capacity_reached = true;
+    std::fill(asked.begin(), asked.end(), GapAnswer::kUnknown);  // those without room may be closed
+    return;
+  }
   std::fill(distance.begin(), distance.end(), query.reach);
   const auto nearest = std::min_element(patches.begin(), patches.end(),
                                         [](const auto& p, const auto& q) { return p.distance < q.distance; });

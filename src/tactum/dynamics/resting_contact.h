@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "tactum/base/frame_rate.h"
+#include "tactum/base/reserved_vector.h"
 #include "tactum/dynamics/friction_row.h"
 
 namespace tactum {
@@ -116,14 +117,14 @@ class RestingContact {
   SolverResult solve_island(const Range& island, int max_sweeps, double harmless,
                             std::span<Twist> V) noexcept;
 
-  std::vector<Row> rows_;
-  std::vector<Last> last_, now_;  // of the last frame, and of this one
-  std::vector<JointRow> joints_;
-  std::vector<int> order_, joint_order_;  // rows, island by island
-  std::vector<Range> islands_;            // by the island's number
-  std::vector<int> joint_left_shut_;      // as Last::left_shut, by body
-  std::size_t next_ = 0;                  // in last_: names come in the same order from frame to frame
-  double h_ = kReferenceStep_s;           // of the rows [s]
+  ReservedVector<Row> rows_;
+  ReservedVector<Last> last_, now_;  // of the last frame, and of this one
+  ReservedVector<JointRow> joints_;
+  ReservedVector<int> order_, joint_order_;  // rows, island by island
+  std::vector<Range> islands_;               // by the island's number
+  std::vector<int> joint_left_shut_;         // as Last::left_shut, by body
+  std::size_t next_ = 0;                     // in last_: names come in the same order from frame to frame
+  double h_ = kReferenceStep_s;              // of the rows [s]
   bool started_ = false;
 };
 

@@ -18,7 +18,8 @@ class ForceStage {
   virtual ~ForceStage() = default;
   /// The wrench to go on with, instead of `F_D`: on the hand, at the handle, axes of D [N, N m]. Called in
   /// the frame: it must not allocate, lock, throw or read a clock. `report` is filled up to
-  /// FrameReport::smoothed. A wrench that is not finite is a fault that safety answers with zero.
+  /// FrameReport::smoothed. `sample` may be invalid, and is so until the device has been read once: look at
+  /// DeviceSample::valid. A wrench that is not finite is a fault that safety answers with zero.
   virtual Wrench apply(const Wrench& F_D, const DeviceSample& sample, const FrameReport& report) noexcept = 0;
 
  protected:

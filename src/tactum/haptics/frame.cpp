@@ -55,7 +55,7 @@ Wrench haptic_frame(const World& world, const FrameSettings& settings, const Dev
   report.smoothed =
       smooth_wrench(settings.smoothing, settings.dt_s, state.smoothing, to_device(state.hand, felt));
 
-  // Does it make energy? Is it safe to send?
+  // What does the caller add? Does it make energy? Is it safe to send?
   PortInput port{.wanted = report.smoothed, .sent = state.safety.sent, .dt_s = settings.dt_s};
   const double pending_J = state.response.pending_J();
   add_stored_energy(world, settings.coupling, held, bodies, state.hand.field.given_J, pending_J, port);

@@ -19,6 +19,11 @@ Result<void> check_world(const World& world, const FrameSettings& settings) {
   if (settings.tool.body >= bodies)
     return Error{"the tool holds a body that is not there", std::to_string(settings.tool.body),
                  "less than " + std::to_string(bodies), ""};
+  for (const PairCoefficients* table : {&settings.friction, &settings.impacts.restitution})
+    if (!table->coefficients.empty() &&
+        (table->bodies != bodies || table->coefficients.size() != world.bodies.size() * world.bodies.size()))
+      return Error{"a table of friction or restitution is of another world",
+                   std::to_string(table->bodies) + " bodies", std::to_string(bodies), ""};
   if (!(settings.dt_s > 0.0))
     return Error{"the frame's step is not positive", std::to_string(settings.dt_s) + " s", "more", ""};
   return {};

@@ -6,7 +6,7 @@
 ///     no                                                        reads failing, pose leapt or frozen, loop
 ///     |                                                         late, wrench refused, motors off
 ///   gain up (start ramp) or down (stop ramp)
-///   gain * wanted -> magnitude limit -> slew limit -> magnitude limit
+///   wanted -> magnitude limit -> * gain -> slew limit -> magnitude limit
 ///
 /// A fault drops to zero in one frame, without the slew limit: the wrench would otherwise go on answering a
 /// pose nobody has measured, and a motor that lets go is the one thing that is safe without knowing anything.

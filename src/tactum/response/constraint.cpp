@@ -55,7 +55,7 @@ void add_bodies(bool at_rest, ConstraintStep& step) {
   problem.add_joint_rows();
 }
 
-/// Counts an answer; whether it is one.
+/// Adds the iterations of an answer to the report. True when it solves the problem.
 bool solved(const QpAnswer& answer, FrameReport& report) {
   report.solver_iterations += answer.iterations;
   if (answer.status == QpStatus::kBounded) report.flags |= frame_flag::kSolverBounded;
@@ -73,11 +73,11 @@ void note_held(const ConstraintState& c, RowNames& names) {
   }
 }
 
-StaticVector<int, kMostUnknowns> rows_of(const RowNames& names, const ConstraintState& c) {
+StaticVector<int, kMostUnknowns> rows_of(const RowNames& names, Index first, const ConstraintState& c) {
   StaticVector<int, kMostUnknowns> rows;
   for (Index row = 0; row < c.rows.own; ++row)
     if (std::find(names.begin(), names.end(), c.rows.names[row]) != names.end())
-      rows.push_back(static_cast<int>(c.rows.first + row));
+      rows.push_back(static_cast<int>(first + row));
   return rows;
 }
 
@@ -94,7 +94,7 @@ bool solve_on(const FrameSettings& settings, ConstraintProblem& problem, FrameRe
 /// to go on from the answer without friction costs no more.
 void begin_sticking(ConstraintState& c) {
   if (c.problem.movers().size() == 1) return;
-  StaticVector<int, kMostUnknowns> rows = rows_of(c.warm_start.sticking, c);
+  StaticVector<int, kMostUnknowns> rows = rows_of(c.warm_start.sticking, c.rows.first, c);
   const Index of_contacts = rows.size();
   c.friction.rows_that_stuck(rows);
   if (rows.size() > of_contacts) begin(rows, c.problem);
@@ -191,8 +191,8 @@ void restore(ConstraintStep& step) {
     tight |= step.own.free.patch_asked[p] && c.trial.gap_now[p] < 0.5 * c.skin_m;
   if (!tight || step.gaps.blocked(step.held.body)) return;
   add_bodies(true, step);
-  add_contact_rows(true, c.problem, step);
-  begin(rows_of(c.warm_start.in_the_end, c), c.problem);
+  c.rows.first = add_contact_rows(true, c.problem, step);
+  begin(rows_of(c.warm_start.in_the_end, c.rows.first, c), c.problem);
   if (!solve_on(step.settings, c.problem, step.report)) return;
   if (!open_after(trusted_share(step), step)) return;
   for (ContactRow& row : own_rows(step)) row.distance = gap_at_trial(row, step);
@@ -206,9 +206,9 @@ bool find_forces(ConstraintStep& step) {
   add_bodies(false, step);
   c.rows.shades = c.rows.bent;
   if (c.rows.shades) exchange_normals(step);
-  add_contact_rows(false, c.problem, step);
+  c.rows.first = add_contact_rows(false, c.problem, step);
   c.friction.clear();
-  begin(rows_of(c.warm_start.without_friction, c), c.problem);
+  begin(rows_of(c.warm_start.without_friction, c.rows.first, c), c.problem);
   bool found = solve_on(step.settings, c.problem, step.report);
   note_held(c, c.warm_start.without_friction);
   if (found && c.friction.begin(step.world, step.settings.friction, own_rows(step), step.patches,
@@ -220,8 +220,8 @@ bool find_forces(ConstraintStep& step) {
   if (!c.rows.shades) return found;
   exchange_normals(step);
   c.position_problem.follow(c.problem);
-  add_contact_rows(false, c.position_problem, step);
-  begin(rows_of(c.warm_start.in_the_end, c), c.position_problem);
+  c.rows.first_of_positions = add_contact_rows(false, c.position_problem, step);
+  begin(rows_of(c.warm_start.in_the_end, c.rows.first_of_positions, c), c.position_problem);
   return found && solve_on(step.settings, c.position_problem, step.report);
 }
 
@@ -242,6 +242,7 @@ double advance(ConstraintStep& step) {
   double share = 0.0;
   for (int round = 0; round <= kFeedbacks; ++round) {
     if (round > 0) {
+      if (!(share > 0.0)) return 0.0;  // nothing may move: no exact gap says more
       ++step.report.validation_retries;
       feed_back(share, step);
       if (!find_again(step)) break;

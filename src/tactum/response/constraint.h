@@ -1,6 +1,6 @@
 #pragma once
-/// The `constraint` response: the held part is a god-object with six degrees of freedom that goes where the
-/// hand wants it as far as nothing is entered [Zilles 1995; Ortega 2007].
+/// The island of the held part in the `constraint` response: the held part is a god-object with six degrees
+/// of freedom that goes where the hand wants it as far as nothing is entered [Zilles 1995; Ortega 2007].
 ///
 ///     rows: every corner of every patch  ->  nearest displacement  ->  scaled to the trusted length
 ///        ^                                                                       |

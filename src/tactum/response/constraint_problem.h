@@ -20,6 +20,7 @@
 
 #include <vector>
 
+#include "tactum/base/reserved_vector.h"
 #include "tactum/dynamics/joint.h"
 #include "tactum/math/small_qp.h"
 #include "tactum/response/settings.h"
@@ -141,7 +142,7 @@ class ConstraintProblem {
   std::size_t unknowns_ = 0;
   StaticVector<Brake, kMostMovers> brakes_;
   StaticVector<Limit, 2 * kMostMovers> limits_;
-  std::vector<QpRow> rows_;
+  ReservedVector<QpRow> rows_;
   StaticVector<QpCone, kMostCones> cones_;
   std::size_t most_rows_;
   SmallQp qp_;

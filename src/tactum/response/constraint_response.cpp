@@ -19,7 +19,10 @@ std::span<const double> ConstraintResponse::bound_motion(const MotionInput& inpu
 
 void ConstraintResponse::step(const StepInput& input, GapOracle& gaps, WorldState& bodies,
                               FrameReport& report) noexcept {
-  if (input.held.body != grasped_last_) memory_.constraint.felt = {};
+  if (input.held.body != grasped_last_) {
+    memory_.constraint.felt = {};
+    memory_.impulses = {};
+  }
   grasped_last_ = input.held.body;
   ConstraintStep step{input, gaps, bodies, memory_, report};
   respond_constrained(step);

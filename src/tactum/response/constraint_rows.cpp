@@ -130,15 +130,16 @@ std::span<ContactRow> own_rows(ConstraintStep& step) noexcept {
   return {step.own.contact_rows.rows.data(), step.own.constraint.rows.own};
 }
 
-void add_contact_rows(bool opening, ConstraintProblem& problem, ConstraintStep& step) noexcept {
+std::size_t add_contact_rows(bool opening, ConstraintProblem& problem, ConstraintStep& step) noexcept {
   ConstraintState& c = step.own.constraint;
-  c.rows.first = problem.rows();
+  const Index first = problem.rows();
   for (const ContactRow& row : own_rows(step)) {
     const double offset = c.skin_m - row.distance;
     problem.add_row(problem.row_of(row.body_a, row.body_b, push_of(row)),
                     opening ? offset : std::min(0.0, offset));
   }
   c.rows.feedback.assign(c.rows.own, 0.0);
+  return first;
 }
 
 void exchange_normals(ConstraintStep& step) noexcept {
@@ -174,6 +175,7 @@ double overstated_at_trial(std::span<const ContactRow> rows_of_patch, const Cons
 void feed_back(double share, ConstraintStep& step) noexcept {
   ConstraintState& c = step.own.constraint;
   ConstraintProblem& problem = c.step_problem();
+  const Index first_row = c.rows.shades ? c.rows.first_of_positions : c.rows.first;
   const std::span<const ContactRow> rows = own_rows(step);
   for (Index first = 0, end = 0; first < rows.size(); first = end) {
     for (end = first + 1; end < rows.size() && rows[end].patch == rows[first].patch;) ++end;
@@ -182,7 +184,7 @@ void feed_back(double share, ConstraintStep& step) noexcept {
       const double linear = problem.opening(problem.row_of(rows[r].body_a, rows[r].body_b, push_of(rows[r])));
       const double gap = gap_at_trial(rows[r], step) - too_much;
       const double missing = (rows[r].distance + share * linear - gap) / share;
-      problem.tighten(c.rows.first + r, missing - c.rows.feedback[r]);
+      problem.tighten(first_row + r, missing - c.rows.feedback[r]);
       c.rows.feedback[r] = missing;
     }
   }

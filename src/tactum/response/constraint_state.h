@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "tactum/base/reserved_vector.h"
 #include "tactum/contact/gap_oracle.h"
 #include "tactum/contact/patch_corners.h"
 #include "tactum/dynamics/impacts.h"
@@ -28,22 +29,23 @@ struct WarmStart {
 
 /// The contact rows of the island as rows of its problem; scratch of one frame.
 struct CornerRows {
-  std::size_t own = 0;               ///< the first so many contact rows are the island's
-  std::size_t first = 0;             ///< the first of them in the problem
-  bool bent = false;                 ///< some normal is bent by shading
-  bool shades = false;               ///< ... so the step is the answer of the position problem
-  std::vector<Vec3> shaded;          ///< normals of the own rows; empty without shading [-]
-  std::vector<std::uint64_t> names;  ///< of the rows, kept from frame to frame
-  std::vector<double> feedback;      ///< what exact gaps have added to the rows [m]
+  std::size_t own = 0;                  ///< the first so many contact rows are the island's
+  std::size_t first = 0;                ///< the first of them in the problem of the forces
+  std::size_t first_of_positions = 0;   ///< ... and in the position problem, which has no rows of brakes
+  bool bent = false;                    ///< some normal is bent by shading
+  bool shades = false;                  ///< ... so the step is the answer of the position problem
+  ReservedVector<Vec3> shaded;          ///< normals of the own rows; empty without shading [-]
+  ReservedVector<std::uint64_t> names;  ///< of the rows, kept from frame to frame
+  ReservedVector<double> feedback;      ///< what exact gaps have added to the rows [m]
 };
 
 /// A pose on trial, and the gaps of the patches there; scratch of one frame, an entry per body or patch.
 struct TrialPose {
-  std::vector<Pose> X_WB;             ///< where the bodies would be [m]
-  std::vector<double> gap_now;        ///< before the step [m]
-  std::vector<double> gap;            ///< at the trial [m]
-  std::vector<double> gap_least;      ///< what it may become [m]
-  std::vector<GapAnswer> gap_answer;  ///< how the gap at the trial is known
+  std::vector<Pose> X_WB;                ///< where the bodies would be [m]
+  ReservedVector<double> gap_now;        ///< before the step [m]
+  ReservedVector<double> gap;            ///< at the trial [m]
+  ReservedVector<double> gap_least;      ///< what it may become [m]
+  ReservedVector<GapAnswer> gap_answer;  ///< how the gap at the trial is known
 };
 
 /// How far the island's steps are trusted, by what came of the last ones.
@@ -109,13 +111,13 @@ struct FreeBodies {
   }
 
   // Scratch of one frame, one entry per body, or per patch.
-  std::vector<Vec3> w_start;       ///< rates at the start [rad/s]
-  std::vector<Vec3> w_free;        ///< ... midway, if nothing touches [rad/s]
-  std::vector<double> share;       ///< of a body's step that is taken [-]
-  std::vector<char> cut;           ///< it has just become less
-  std::vector<char> settled;       ///< an island's step has been found good
-  std::vector<char> patch_asked;   ///< patches whose gap is asked for
-  std::vector<char> patch_closed;  ///< ... and is not open
+  std::vector<Vec3> w_start;          ///< rates at the start [rad/s]
+  std::vector<Vec3> w_free;           ///< ... midway, if nothing touches [rad/s]
+  std::vector<double> share;          ///< of a body's step that is taken [-]
+  std::vector<char> cut;              ///< it has just become less
+  std::vector<char> settled;          ///< an island's step has been found good
+  ReservedVector<char> patch_asked;   ///< patches whose gap is asked for
+  ReservedVector<char> patch_closed;  ///< ... and is not open
 };
 
 /// Who waits (waiting.h); one entry per body.
@@ -133,10 +135,10 @@ struct Waiting {
 
   // Scratch of one frame.
   std::vector<Twist> V_kept;  ///< velocities of those that wait [m/s, rad/s]
-  std::vector<int> order, first_patch, next_patch, patch_of;
-  std::vector<char> counted;  ///< of each patch
-  std::vector<int> contacts;  ///< patches of each body
-  std::vector<char> hit;      ///< by something fast
+  ReservedVector<int> order, first_patch, next_patch, patch_of;
+  ReservedVector<char> counted;  ///< of each patch
+  std::vector<int> contacts;     ///< patches of each body
+  std::vector<char> hit;         ///< by something fast
 };
 
 /// Who sleeps (sleep.h); one entry per body.

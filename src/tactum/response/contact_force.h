@@ -10,6 +10,7 @@
 
 #include <vector>
 
+#include "tactum/base/reserved_vector.h"
 #include "tactum/contact/contact_patch.h"
 #include "tactum/contact/shading.h"
 #include "tactum/dynamics/contact_solver.h"
@@ -36,11 +37,11 @@ struct ContactRows {
   struct Facet {
     int body_a, body_b, group_a, group_b, patch;
   };
-  std::vector<Facet> facets;
-  std::vector<FacetPoint> points;  // of one facet
-  std::vector<ContactRow> rows;
-  std::vector<PushRow> pushes;  // of the rows, when they are swept
-  bool full = false;            ///< points were dropped
+  ReservedVector<Facet> facets;
+  ReservedVector<FacetPoint> points;  // of one facet
+  ReservedVector<ContactRow> rows;
+  ReservedVector<PushRow> pushes;  // of the rows, when they are swept
+  bool full = false;               ///< points were dropped
 };
 
 /// Fills `out.rows`. `shading` has one entry per body, or is empty for force directions without shading.

@@ -226,6 +226,7 @@ void correct(ConstraintStep& step) {
     const Index island = Index(of_contact);
     const double too_much = overstated_at_trial(rows.subspan(first, end - first), step);
     const double share = f.share[island];
+    if (!(share > 0.0)) continue;  // it stays, and its rows ask for nothing
     for (Index r = first; r < end; ++r) {
       const double speed = rows[r].n_BA_W.dot(velocity_at(V_WB[a], rows[r].p_W - X_WB[a].p) -
                                               velocity_at(V_WB[b], rows[r].p_W - X_WB[b].p));

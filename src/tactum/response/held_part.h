@@ -8,7 +8,7 @@ namespace tactum {
 
 /// The displacement of the handle that the coupling asks for, (m, rad).
 Vec6 wanted_by_hand(const ConstraintStep& step) noexcept;
-/// ... and where the held part's weight and force fields pull it from there.
+/// The displacement that `wanted` becomes when weight and force fields load the held part, (m, rad).
 Vec6 with_load(const ConstraintStep& step, const Vec6& wanted) noexcept;
 /// What the hand feels when the handle moves so: sets ConstraintState::felt.
 void feel(const Vec6& displacement, ConstraintStep& step) noexcept;

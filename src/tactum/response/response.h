@@ -15,7 +15,7 @@ class Response {
   /// The response that the settings name. It may change the velocities that the world starts with.
   Response(const World& world, const FrameSettings& settings, WorldState& bodies);
 
-  /// What contacts are asked for.
+  /// Whether patches carry weighted points or the closest one.
   PatchPoints points() const noexcept;
   /// How far any point of a body may move in this frame, by body [m]; sets the velocities that the bodies
   /// want.
@@ -23,6 +23,7 @@ class Response {
   /// Moves everything that moves. Fills the report's response fields.
   void step(const StepInput& input, GapOracle& gaps, WorldState& bodies, FrameReport& report) noexcept;
   /// What the hand feels of that, at the handle, world axes; nothing while nothing is held [N, N m].
+  /// Call it once a frame: it moves the pulses of impacts on.
   Wrench felt(const StepInput& input, const WorldState& bodies) noexcept;
 
   /// The contacts of the last step, for displays.

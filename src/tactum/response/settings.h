@@ -1,6 +1,7 @@
 #pragma once
 /// Everything about the response that can be set, each with its unit, its default and, where there is one,
-/// the paper's value. Constant while frames run. [Gregory 2000]: "Six Degree-of-Freedom Haptic Display of
+/// the paper's value. Constant during a frame; what setting_table.h calls live may
+/// change between two frames. [Gregory 2000]: "Six Degree-of-Freedom Haptic Display of
 /// Polygonal Models".
 
 #include <vector>

@@ -109,7 +109,8 @@ void Session::obey(const SessionCommand& command) noexcept {
 }
 
 Wrench Session::run(const DeviceSample& sample, const FrameTick& tick) noexcept {
-  for (SessionCommand command; commands_.pop(command);) obey(command);
+  SessionCommand command;  // no more than fit in, however fast another thread asks
+  for (std::size_t n = 0; n < kCommands && commands_.pop(command); ++n) obey(command);
   FrameTick felt = tick;
   felt.stop = tick.stop || held_at_zero_.load(std::memory_order_relaxed);
   if (stage_clock_ != nullptr) stage_clock_->frame_begins();

@@ -1,8 +1,8 @@
 #pragma once
 /// The façade: open a scene and a device, run, watch, stop. One Session is one run.
 ///
-///   Scene + device or its name --open--> Session --run_virtual()--> or --start(), status(), stop()-->
-///   RunRecord, goals
+///   Scene + device or its name --open, open_with--> Session --run_virtual()--> or
+///   --start(), poll(), stop()--> RunRecord, goals
 ///
 /// The loop's thread owns the frame; other threads see it only through rings of small records, and ask for
 /// changes through another (command.h), which the loop empties between two frames.

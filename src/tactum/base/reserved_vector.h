@@ -1,0 +1,26 @@
+#pragma once
+/// A vector whose copy keeps its capacity. What is reserved at load time is room that frames fill without
+/// allocating; a copied std::vector has room for what it holds alone, so that a copied state would drop what
+/// comes next.
+
+#include <vector>
+
+namespace tactum {
+
+template <class T>
+class ReservedVector : public std::vector<T> {
+ public:
+  using std::vector<T>::vector;
+  ReservedVector() = default;
+  ReservedVector(const ReservedVector& other) : std::vector<T>() { *this = other; }
+  ReservedVector(ReservedVector&&) noexcept = default;
+  ReservedVector& operator=(const ReservedVector& other) {
+    this->reserve(other.capacity());
+    this->assign(other.begin(), other.end());
+    return *this;
+  }
+  ReservedVector& operator=(ReservedVector&&) noexcept = default;
+  ~ReservedVector() = default;
+};
+
+}  // namespace tactum

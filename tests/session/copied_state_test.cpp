@@ -1,0 +1,54 @@
+#include <gtest/gtest.h>
+
+#include "tactum/haptics/frame.h"
+#include "tactum/haptics/frame_hash.h"
+#include "tactum/scene/builtin_scenes.h"
+
+namespace tactum {
+namespace {
+
+/// The hash of `frames` frames of a scene's own hand, from frame `first` on.
+std::uint64_t hash_of(const Scene& scene, FrameState& state, int first, int frames) {
+  FrameHash hash;
+  for (int i = first; i < first + frames; ++i) {
+    DeviceSample sample;
+    sample.valid = true;
+    sample.time_s = i * scene.settings.dt_s;
+    sample.X_DH = scene.hand->at(sample.time_s).X_DH;
+    FrameTick tick;
+    tick.index = static_cast<std::uint64_t>(i);
+    tick.now_s = sample.time_s;
+    FrameReport report;
+    haptic_frame(scene.world, scene.settings, sample, tick, state, report);
+    add_to(hash, report);
+    add_to(hash, state.world);
+  }
+  return hash.value();
+}
+
+class CopiedState : public testing::TestWithParam<const char*> {};
+
+TEST_P(CopiedState, GoesOnAsItsOriginal) {
+  for (const ResponseModel response : {ResponseModel::kConstraint, ResponseModel::kPenalty}) {
+    Result<Scene> scene = open_scene(GetParam());
+    ASSERT_TRUE(scene) << scene.error().message();
+    scene->settings.response = response;
+    FrameState state(scene->world, scene->settings);
+    hash_of(*scene, state, 0, 400);
+    // The first copy is made before most contacts, so that what it has room for is more than it holds.
+    FrameState early(state);
+    hash_of(*scene, state, 400, 1600);
+    FrameState late(state);
+    const std::uint64_t original = hash_of(*scene, state, 2000, 1000);
+    EXPECT_EQ(hash_of(*scene, late, 2000, 1000), original);
+    hash_of(*scene, early, 400, 1600);
+    EXPECT_EQ(hash_of(*scene, early, 2000, 1000), original);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, CopiedState,
+                         testing::Values("block-on-plate", "gears", "peg-in-hole", "moving-objects",
+                                         "gears-involute", "lock"));
+
+}  // namespace
+}  // namespace tactum
