@@ -32,13 +32,13 @@ std::vector<std::string> frame_notes(const RunRecord& record) {
 void add_fields(const RunRecord& record, nlohmann::ordered_json& json) {
   for_each_report_field([&](auto field) {
     using Field = decltype(field);
-    const std::string_view name = Field::info.name;
+    const std::string_view name = Field::kInfo.name;
     const std::string key(name.substr(name.rfind('.') + 1));  // npos + 1 is the beginning
-    const double largest = record.largest_at(Field::place);
-    if constexpr (Field::info.in_run == InRun::kSum) {
-      json[key] = record.sum_at(Field::place);
+    const double largest = record.largest_at(Field::kPlace);
+    if constexpr (Field::kInfo.in_run == InRun::kSum) {
+      json[key] = record.sum_at(Field::kPlace);
       json["max_" + key] = static_cast<std::uint64_t>(largest);
-    } else if constexpr (Field::info.in_run == InRun::kLargest) {
+    } else if constexpr (Field::kInfo.in_run == InRun::kLargest) {
       json["max_" + key] = largest;
     }
   });

@@ -32,9 +32,11 @@ foreach(header IN LISTS headers)
     list(APPEND header_sources ${CMAKE_CURRENT_BINARY_DIR}/headers/${name}.cpp)
   endif()
 endforeach()
-# All at once, for clang-tidy; and once more, which one without #pragma once does not stand.
-file(CONFIGURE OUTPUT headers/every_header.cpp CONTENT "${every_header}${every_header}" @ONLY)
-add_library(header_selfcheck OBJECT ${header_sources} ${CMAKE_CURRENT_BINARY_DIR}/headers/every_header.cpp)
+# All at once, for clang-tidy; and all twice, which one without #pragma once does not stand.
+file(CONFIGURE OUTPUT headers/every_header.cpp CONTENT "${every_header}" @ONLY)
+file(CONFIGURE OUTPUT headers/every_header_twice.cpp CONTENT "${every_header}${every_header}" @ONLY)
+add_library(header_selfcheck OBJECT ${header_sources} ${CMAKE_CURRENT_BINARY_DIR}/headers/every_header.cpp
+  ${CMAKE_CURRENT_BINARY_DIR}/headers/every_header_twice.cpp)
 target_compile_options(header_selfcheck PRIVATE -O0)
 target_link_libraries(header_selfcheck PRIVATE tactum_session tactum_warnings)
 

@@ -65,7 +65,7 @@ TEST(ReportFields, EveryNumberIsInTheHash) {
     using Field = decltype(field);
     const auto& value = Field::of(report);
     expect_every_number_counts(const_cast<std::remove_cvref_t<decltype(value)>&>(value), report,
-                               Field::info.name);
+                               Field::kInfo.name);
   });
 }
 
@@ -84,10 +84,10 @@ TEST(ReportFields, NoNumberIsListedTwice) {
   std::set<std::string> names, last_parts, channel_keys;
   for_each_report_field([&](auto field) {
     using Field = decltype(field);
-    const std::string name = Field::info.name;
+    const std::string name = Field::kInfo.name;
     EXPECT_TRUE(places.insert(&Field::of(report)).second) << name;
     EXPECT_TRUE(names.insert(name).second) << name;
-    if (Field::info.in_run != InRun::kNothing) {  // keys of the JSON summary
+    if (Field::kInfo.in_run != InRun::kNothing) {  // keys of the JSON summary
       EXPECT_TRUE(last_parts.insert(name.substr(name.rfind('.') + 1)).second) << name;
     }
   });
@@ -139,7 +139,7 @@ TEST(ReportFields, ThePageIsMadeFromTheList) {
       "has a key in the last column is a channel of the viewer's charts and exports.\n\n"
       "| field | unit | meaning | in a run | channel |\n|---|---|---|---|---|\n";
   for_each_report_field([&](auto field) {
-    const FieldInfo& info = decltype(field)::info;
+    const FieldInfo& info = decltype(field)::kInfo;
     const std::string key =
         info.channel.key == nullptr ? std::string() : "`" + std::string(info.channel.key) + "`";
     page += "| `" + std::string(info.name) + "` | " + info.unit + " | " + info.meaning + " | " +

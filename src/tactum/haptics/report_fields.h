@@ -5,7 +5,7 @@
 ///
 ///   for_each_report_field([&](auto field) {
 ///     using Field = decltype(field);
-///     print(Field::info.name, Field::of(report));
+///     print(Field::kInfo.name, Field::of(report));
 ///   });
 ///
 /// The visits are resolved when compiled: there is neither a table nor a call at run time.
@@ -163,8 +163,8 @@ inline constexpr std::size_t kReportFields = std::tuple_size_v<decltype(report_d
 /// The field at a place of the list.
 template <std::size_t Place>
 struct ReportField {
-  static constexpr std::size_t place = Place;
-  static constexpr FieldInfo info = std::get<Place>(report_detail::kFields);
+  static constexpr std::size_t kPlace = Place;
+  static constexpr FieldInfo kInfo = std::get<Place>(report_detail::kFields);
   static constexpr const auto& of(const FrameReport& report) noexcept {
     return std::tuple_element_t<Place, std::remove_const_t<decltype(report_detail::kFields)>>::of(report);
   }
@@ -181,7 +181,7 @@ constexpr void for_each_report_field(const Visit& visit) {
 struct ReportFieldName {
   consteval ReportFieldName(const char* name) : place(kReportFields) {  // NOLINT: a name is meant
     for_each_report_field([&](auto field) {
-      if (std::string_view(decltype(field)::info.name) == name) place = decltype(field)::place;
+      if (std::string_view(decltype(field)::kInfo.name) == name) place = decltype(field)::kPlace;
     });
     if (place == kReportFields) throw "no field of the report has this name";
   }

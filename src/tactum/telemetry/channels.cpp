@@ -64,7 +64,7 @@ constexpr FlagName kFrameFlags[] = {
 
 constexpr std::size_t kFieldChannels = [] {
   std::size_t count = 0;
-  for_each_report_field([&](auto field) { count += decltype(field)::info.channel.key != nullptr ? 1 : 0; });
+  for_each_report_field([&](auto field) { count += decltype(field)::kInfo.channel.key != nullptr ? 1 : 0; });
   return count;
 }();
 
@@ -75,12 +75,14 @@ constexpr auto kChannels = [] {
   for (const Channel& channel : kMadeChannels) all[count++] = channel;
   for_each_report_field([&](auto field) {
     using Field = decltype(field);
-    if constexpr (Field::info.channel.key != nullptr) {
-      const FieldChannel& shown = Field::info.channel;
-      all[count++] = {
-          shown.key,           shown.label,
-          Field::info.unit,    shown.group,
-          Field::info.meaning, [](Source f) noexcept { return static_cast<double>(Field::of(f.report)); }};
+    if constexpr (Field::kInfo.channel.key != nullptr) {
+      const FieldChannel& shown = Field::kInfo.channel;
+      all[count++] = {shown.key,
+                      shown.label,
+                      Field::kInfo.unit,
+                      shown.group,
+                      Field::kInfo.meaning,
+                      [](Source f) noexcept { return static_cast<double>(Field::of(f.report)); }};
     }
   });
   return all;

@@ -34,11 +34,11 @@ void RunRecord::add(const FrameReport& report, const WorldState& world) noexcept
   max_tests = std::max(max_tests, report.tests());
   for_each_report_field([&](auto field) {
     using Field = decltype(field);
-    if constexpr (Field::info.in_run != InRun::kNothing) {
-      double& largest = largest_[Field::place];
+    if constexpr (Field::kInfo.in_run != InRun::kNothing) {
+      double& largest = largest_[Field::kPlace];
       largest = std::max(largest, static_cast<double>(Field::of(report)));
-      if constexpr (Field::info.in_run == InRun::kSum)
-        sum_[Field::place] += static_cast<std::uint64_t>(Field::of(report));
+      if constexpr (Field::kInfo.in_run == InRun::kSum)
+        sum_[Field::kPlace] += static_cast<std::uint64_t>(Field::of(report));
     }
   });
   add_to(hash_, report);
