@@ -26,6 +26,7 @@ TEST(Rates, AShownNormalTurnsAsFast) {
   const Polytope box = make_box({0.04, 0.04, 0.04});
   const Pose X_AB{Mat3::Identity(), {0.0795, 0.0795, 0.0}};
   PairDistance found;
+  found.a = found.b = {FeatureKind::kVertex, 0};  // from where the supports are searched
   found.normal = -Vec3::UnitX();
   found.distance = -0.0005;
   found.p_b = {0.0395, 0.0395, 0.0};
