@@ -21,8 +21,8 @@ inline constexpr std::uint32_t kSolverBounded = 1u << 3;  ///< not converged: Wo
 inline constexpr std::uint32_t kUncertified = 1u << 4;    ///< a distance without its certificate was used
 inline constexpr std::uint32_t kMotionUndone =
     1u << 6;  ///< a motion was no number; the body stayed where it was
-inline constexpr std::uint32_t kNoHand = 1u
-                                         << 5;  ///< no valid sample yet: nothing is held, the wrench is zero
+inline constexpr std::uint32_t kNoHand =
+    1u << 5;  ///< no valid sample yet: the scene stands still, nothing is felt
 }  // namespace frame_flag
 
 /// Dry friction of one frame, over all patches that push (constraint response); friction_use.h tells of each.
@@ -42,7 +42,7 @@ struct FrameReport {
   Wrench
       restoring;  ///< sum of the contact forces on the held part, at its centre of mass, world axes [N, N m]
   Wrench field;   ///< of force fields on the held part, at its centre of mass, world axes [N, N m]
-  Wrench coupling;  ///< spring from hand to proxy, at the handle, world axes: the raw wrench [N, N m]
+  Wrench coupling;  ///< what the response lets the hand feel, at the handle, world axes: raw [N, N m]
   Wrench smoothed;  ///< after smoothing, device axes [N, N m]
   PortReport port;  ///< energy that passed between hand and scene, and what was done about it
   Wrench shown;     ///< after safety, device axes: what was sent [N, N m]
