@@ -22,17 +22,13 @@ double bodies_energy(const World& world, const WorldState& bodies, int held) noe
   return energy_J;
 }
 
-void add_stored_energy(const World& world, const Coupling& coupling, const GraspedPart& held,
-                       const WorldState& bodies, double field_work_J, double pending_J,
+void add_stored_energy(const World& world, const Coupling& coupling, const WorldState& bodies,
+                       const FrameReport& report, double field_work_J, double pending_J,
                        PortInput& port) noexcept {
   // What a field gives the held part is its own, as a falling weight's is; a vortex gives without end.
-  port.bodies_J = bodies_energy(world, bodies, held.body) - field_work_J;
-  if (held.body < 0) return;
-  Twist stretch;
-  if (held.hand_known) {
-    const Pose X_WH_proxy = bodies.X_WB[static_cast<std::size_t>(held.body)] * held.X_BH;
-    stretch = twist_between(held.X_WH, X_WH_proxy, 1.0);
-  }
+  port.bodies_J = bodies_energy(world, bodies, report.held) - field_work_J;
+  if (report.held < 0) return;
+  const Twist stretch = twist_between(report.X_WH, report.X_WH_proxy, 1.0);
   port.spring_J = 0.5 * coupling.stiffness_N_per_m * stretch.v.squaredNorm();
   port.spring_J += pending_J;
   port.spring_turning_J = 0.5 * coupling.stiffness_Nm_per_rad * stretch.w.squaredNorm();

@@ -2,7 +2,8 @@
 /// What a scene has stored, for the ledger of the passivity stage: springs and moving bodies.
 
 #include "tactum/loop/passivity.h"
-#include "tactum/response/step_input.h"
+#include "tactum/response/frame_report.h"
+#include "tactum/response/settings.h"
 
 namespace tactum {
 
@@ -10,11 +11,11 @@ namespace tactum {
 /// held part weighs nothing.
 double bodies_energy(const World& world, const WorldState& bodies, int held) noexcept;
 
-/// Fills the energies of the port's input, after the response: of the bodies, of the coupling's stretch, and
-/// of the impulses that are still to be felt (`pending_J`). `field_work_J` is what force fields have given
-/// the held part.
-void add_stored_energy(const World& world, const Coupling& coupling, const GraspedPart& held,
-                       const WorldState& bodies, double field_work_J, double pending_J,
+/// Fills the energies of the port's input, after the response: of the bodies, of the coupling's stretch
+/// between the hand and the held part, as the report has them, and of the impulses that are still to be felt
+/// (`pending_J`). `field_work_J` is what force fields have given the held part.
+void add_stored_energy(const World& world, const Coupling& coupling, const WorldState& bodies,
+                       const FrameReport& report, double field_work_J, double pending_J,
                        PortInput& port) noexcept;
 
 }  // namespace tactum
