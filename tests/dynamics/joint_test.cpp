@@ -1,4 +1,4 @@
-#include "tactum/dynamics/joint.h"
+#include "tactum/dynamics/joint_forces.h"
 
 #include <gtest/gtest.h>
 

@@ -1,31 +1,80 @@
 #pragma once
-/// A contact point as the responses take it, and how the search for such points' impulses ended.
+/// A contact point of two bodies as every solver takes it, and how a solution ended.
+
+#include <cmath>
+#include <cstddef>
+#include <span>
 
 #include "tactum/math/types.h"
 
 namespace tactum {
 
-/// One contact point between two bodies: normal from B to A, as in collision/contact.h, told in the world.
-struct ContactRow {
-  int body_a = -1, body_b = -1;
-  int patch = -1;              ///< the caller's number of the patch it stands for; the solver ignores it
-  int grip = -1;               ///< ... and of the friction it takes part in
+/// Which surfaces of two bodies touch, by groups of coplanar faces that their parts name. The corners and
+/// edges of one body that touch the same face of the other are on one pair of surfaces, whatever faces they
+/// belong to: kAnyGroup.
+struct SurfacePair {
+  int body_a = -1, body_b = -1, group_a = -1, group_b = -1;
+  bool operator==(const SurfacePair&) const = default;
+};
+
+inline constexpr int kAnyGroup = -1;
+
+/// What the penalty law needs of a point [Gregory 2000, 5.2].
+struct PenaltyLaw {
+  double margin = 0.0;     ///< delta, the contact margin of the pair [m]
+  double stiffness = 0.0;  ///< k, the point's share [N/m]
+};
+
+/// What an impact needs of a point.
+struct ImpactLaw {
+  double restitution = 0.0;  ///< of the speed [-]
+  bool enabled = true;       ///< takes part in impacts
+  bool seen = false;         ///< an impact was seen here first, in this frame
+};
+
+/// One contact point between two bodies: normal from B to A, as in collision/contact.h, in world axes.
+struct ContactRow : SurfacePair {
+  int patch = -1;              ///< the caller's number of the patch it stands for; solvers ignore it
+  int friction_patch = -1;     ///< the caller's number of the friction it takes part in; solvers ignore it
   Vec3 n_BA_W = Vec3::Zero();  ///< unit [-]
   Vec3 p_W = Vec3::Zero();     ///< where the force acts [m]
   double distance = 0.0;       ///< signed, at the start of the step [m]
-  double tolerance = 0.0;      ///< delta of the pair [m]
-  double stiffness = 0.0;      ///< k, the point's share [N/m]
+  double asked = 0.0;          ///< by how much the step has to open it at least; negative: it may close [m]
   double friction = 0.0;       ///< Coulomb's coefficient [-]
-  double restitution = 0.0;    ///< of the speed, in an impact [-]
-  bool struck = true;          ///< takes part in impacts
-  bool hit = false;            ///< an impact was seen here first, in this frame
-  double impulse = 0.0;        ///< lambda, the solver's answer [N s]
+  PenaltyLaw penalty;
+  ImpactLaw impact;
+  double impulse = 0.0;  ///< along the normal, the answer [N s]
 };
 
-/// Of whatever solves for impulses.
+/// The rows of contacts, and where the first of them stands in the problem.
+struct ContactRows {
+  std::span<const ContactRow> rows;
+  std::size_t first = 0;
+
+  /// The contact row with this number in the problem; null when it is none of them.
+  const ContactRow* row(int number) const noexcept {
+    const std::size_t at = static_cast<std::size_t>(number) - first;
+    return static_cast<std::size_t>(number) >= first && at < rows.size() ? &rows[at] : nullptr;
+  }
+};
+
+/// Which lengths count.
+struct ContactScale {
+  double skin_m = 0.0;     ///< the gap at which contacts are kept [m]
+  double settled_m = 0.0;  ///< a lift, or a gap beyond the skin, below this is none [m]
+};
+
+/// How far a gap below the skin is asked to open in a step of h seconds [m].
+inline double opening_of(const ContactRow& row, const ContactScale& scale, double h) noexcept {
+  constexpr double kOpening_s = 0.0095;  // a tenth in a millisecond
+  if (!(row.distance < scale.skin_m)) return 0.0;
+  return (scale.skin_m - row.distance) * (1.0 - std::exp(-h / kOpening_s));
+}
+
+/// How a search for forces ended.
 struct SolverResult {
-  int iterations = 0;      ///< rounds of Newton's method, or sweeps
-  bool converged = false;  ///< false: the sweeps ran out; the impulses are usable, not exact
+  int iterations = 0;      ///< sweeps, rounds of Newton's method, or changes of the active set
+  bool converged = false;  ///< false: the iterations ran out; the forces are usable, not exact
 };
 
 }  // namespace tactum

@@ -1,78 +1,209 @@
 #include "tactum/dynamics/impacts.h"
 
 #include <algorithm>
+#include <array>
 
 #include "tactum/base/static_vector.h"
-#include "tactum/base/tolerances.h"
-#include "tactum/dynamics/friction_row.h"
 
 namespace tactum {
 namespace {
 
 using Index = std::size_t;
 
-/// Corners of one pair that are hit together; of more, the first ones.
-constexpr Index kMostCorners = 32;
-constexpr int kSweeps = 50;
+constexpr int kMostIterations = 200;
+/// Velocities of less than this share of the approach are none.
+constexpr double kSettledShare = 1e-10;
+/// Energy is known to this share.
+constexpr double kEnergyRounding = 1e-10;
 
-double approach(const ContactRow& row, std::span<const Pose> X_WB, std::span<const Twist> V) {
+/// The corners of one pair that are hit together; each asks for its normal velocity after the impact [m/s].
+using Corners = StaticVector<ContactRow, ImpactScratch::kMostCorners>;
+
+double approach(const ContactRow& row, const ImpactBodies& bodies) {
   const Index a = Index(row.body_a);
   const Index b = Index(row.body_b);
-  return -row.n_BA_W.dot(velocity_at(V[a], row.p_W - X_WB[a].p) - velocity_at(V[b], row.p_W - X_WB[b].p));
+  return -row.n_BA_W.dot(velocity_at(bodies.V_WB[a], row.p_W - bodies.X_WB[a].p) -
+                         velocity_at(bodies.V_WB[b], row.p_W - bodies.X_WB[b].p));
 }
 
-struct Corner {
-  FrictionRow row;
-  Vec3 p_W = Vec3::Zero();
-  double wanted = 0.0;  // normal velocity after the impact [m/s]
-};
-
 /// All corners of the pair of `first` that close within h.
-void hit(std::span<const ContactRow> rows, const ContactRow& first, std::span<const Pose> X_WB,
-         std::span<const Mobility> W, double h, std::span<Twist> V, ImpactObserver* observer) {
-  StaticVector<Corner, kMostCorners> corners;
+void find_corners(std::span<const ContactRow> rows, const ContactRow& first, const ImpactBodies& bodies,
+                  double h, Corners& corners) {
   for (const ContactRow& row : rows) {
     if (row.body_a != first.body_a || row.body_b != first.body_b) continue;
-    const double speed = approach(row, X_WB, V);
-    if (row.distance > std::max(0.0, speed) * h) continue;
-    Corner corner;
-    corner.row.set(row, X_WB, W);
-    corner.p_W = row.p_W;
-    corner.wanted = speed > kImpactSpeed ? row.restitution * speed : 0.0;
-    if (!corners.push_back(corner)) break;
+    const double speed = approach(row, bodies);
+    if (row.distance > std::max(0.0, speed) * h || !corners.push_back(row)) continue;
+    corners.back().asked = speed > kImpactSpeed ? row.impact.restitution * speed : 0.0;
   }
-  Twist& a = V[Index(first.body_a)];
-  Twist& b = V[Index(first.body_b)];
-  for (int sweep = 0; sweep < kSweeps; ++sweep) {
-    double change = 0.0;
-    for (Corner& corner : corners) change = std::max(change, corner.row.relax(corner.wanted, a, b));
-    if (change <= tolerances::kContactVelocity * kImpactSpeed) break;
+}
+
+/// The problem of the pair: velocities for displacements, impulses for forces.
+ContactRows set_problem(const Corners& corners, const ImpactBodies& bodies, ContactProblem& problem) {
+  problem.clear();
+  for (const int body : {corners[0].body_a, corners[0].body_b}) {
+    const Index i = Index(body);
+    const Body& what = bodies.world.bodies[i];
+    const Pose& X_WB = bodies.X_WB[i];
+    if (bodies.moves[i] == 0) {  // it has a velocity all the same: the other one meets it
+      problem.add_given(body, X_WB.p, to_vector(bodies.V_WB[i]));
+      continue;
+    }
+    problem.add_body(body, what, X_WB, X_WB.p, inertial_metric(what, X_WB, 1.0), to_vector(bodies.V_WB[i]),
+                     0.0);
   }
-  if (observer == nullptr) return;
-  for (const Corner& corner : corners)
-    if (corner.row.impulse[0] > 0.0)
-      observer->hit(first.body_a, first.body_b, corner.row.impulse_W(), corner.p_W);
+  const ContactRows contacts{{corners.begin(), corners.end()}, problem.rows()};
+  for (const ContactRow& row : corners)
+    problem.add_row(problem.row_of(row.body_a, row.body_b, {row.p_W, row.n_BA_W, Vec3::Zero()}), row.asked);
+  return contacts;
+}
+
+/// The share of an answer's impulses that a pair is given.
+void report(const ContactRows& contacts, const Friction& friction, const ContactProblem& problem,
+            double share, ImpactObserver* observer) {
+  if (observer == nullptr || !(share > 0.0)) return;
+  const int a = contacts.rows[0].body_a;
+  const int b = contacts.rows[0].body_b;
+  for (const QpActive& active : problem.answer().active)
+    if (const ContactRow* const row = contacts.row(active.row))
+      observer->hit(a, b, share * active.multiplier * row->n_BA_W, Vec3::Zero(), row->p_W);
+  friction.for_each_force(problem, [&](Index, const Push& push, double multiplier) {
+    observer->hit(a, b, share * multiplier * push.force, share * multiplier * push.torque, push.p_W);
+  });
+}
+
+/// Twists of the two bodies of a pair.
+using PairTwists = std::array<Twist, 2>;
+
+/// The impact of one pair.
+class PairImpact {
+ public:
+  PairImpact(const Corners& corners, double speed, const ImpactBodies& bodies, ImpactScratch& scratch)
+      : corners_(corners),
+        input_{bodies.X_WB, {.settled_m = kSettledShare * speed}, scratch.no_anchors},
+        bodies_(bodies),
+        scratch_(scratch) {}
+
+  /// Solves for the velocities after the impact, each corner leaving with `asked`, or, plastic, with none.
+  bool solve(bool plastic) {
+    Corners corners = corners_;
+    if (plastic)
+      for (ContactRow& row : corners) row.asked = 0.0;
+    corners_now_ = corners;
+    contacts_ = set_problem(corners_now_, bodies_, scratch_.problem);
+    ExactStart start;
+    return solve_exactly(contacts_, input_, kMostIterations, start, scratch_.friction, scratch_.problem)
+        .solved;
+  }
+  PairTwists answer() const {
+    PairTwists V;
+    for (Index i = 0; i < 2; ++i) V[i] = to_twist(scratch_.problem.displacement(body(i)));
+    return V;
+  }
+  PairTwists now() const { return {bodies_.V_WB[Index(body(0))], bodies_.V_WB[Index(body(1))]}; }
+  /// Kinetic energy of those of the pair that an impact moves [J].
+  double energy(const PairTwists& V) const {
+    double energy_J = 0.0;
+    for (Index i = 0; i < 2; ++i) {
+      if (bodies_.moves[Index(body(i))] == 0) continue;
+      const Body& what = bodies_.world.bodies[Index(body(i))];
+      const Vec3 w_B = bodies_.X_WB[Index(body(i))].R.transpose() * V[i].w;
+      energy_J += 0.5 * what.mass_kg * V[i].v.squaredNorm() + 0.5 * w_B.dot(what.inertia_B * w_B);
+    }
+    return energy_J;
+  }
+  /// Whether nothing outside works on the pair.
+  bool is_closed() const {
+    const PairTwists V = now();
+    for (Index i = 0; i < 2; ++i)
+      if (bodies_.moves[Index(body(i))] == 0 && !(V[i].v.isZero(0.0) && V[i].w.isZero(0.0))) return false;
+    return true;
+  }
+  void give(double share, ImpactObserver* observer) const {
+    report(contacts_, scratch_.friction, scratch_.problem, share, observer);
+  }
+  void set(const PairTwists& V) const {
+    for (Index i = 0; i < 2; ++i)
+      if (bodies_.moves[Index(body(i))] != 0) bodies_.V_WB[Index(body(i))] = V[i];
+  }
+
+ private:
+  int body(Index i) const { return i == 0 ? corners_[0].body_a : corners_[0].body_b; }
+
+  const Corners& corners_;
+  Corners corners_now_;
+  ContactRows contacts_;
+  FrictionInput input_;
+  const ImpactBodies& bodies_;
+  ImpactScratch& scratch_;
+};
+
+PairTwists mixed(double share, const PairTwists& one, const PairTwists& other) {
+  return {one[0] * share + other[0] * (1.0 - share), one[1] * share + other[1] * (1.0 - share)};
+}
+
+/// Solves the impact of the pair of `first`; false when its impulses are not exact.
+///
+/// Newton's restitution with friction can make energy where friction turns the slip round [Kane 1984]. Then
+/// the answer is mixed with that of Poisson's restitution, which never does: the plastic impulses and e times
+/// these again. Both keep the cones and leave no corner approaching, and so does what lies between them.
+bool hit(std::span<const ContactRow> rows, const ContactRow& first, const ImpactBodies& bodies, double speed,
+         double h, ImpactScratch& scratch, ImpactObserver* observer) {
+  Corners corners;
+  find_corners(rows, first, bodies, h, corners);
+  PairImpact impact(corners, speed, bodies, scratch);
+  const PairTwists before = impact.now();
+  if (!impact.solve(false)) {  // what has no room to bounce, being hit from both sides, stays
+    const bool solved = impact.solve(true);
+    impact.give(1.0, observer);
+    impact.set(impact.answer());
+    return solved;
+  }
+  const PairTwists newton = impact.answer();
+  const double most_J = impact.energy(before);
+  // A given velocity does work on the other body: then energy says nothing.
+  const bool closed = impact.is_closed();
+  if (!closed || !(impact.energy(newton) > most_J * (1.0 + kEnergyRounding))) {
+    impact.give(1.0, observer);
+    impact.set(newton);
+    return true;
+  }
+  const bool plastic_solved = impact.solve(true);
+  const double e = first.impact.restitution;
+  const PairTwists plastic = impact.answer();
+  const PairTwists poisson = mixed(1.0 + e, plastic, before);
+  double share = 0.0;
+  for (double step = 0.5; step > kEnergyRounding; step *= 0.5)
+    if (impact.energy(mixed(share + step, newton, poisson)) <= most_J) share += step;
+  impact.give((1.0 - share) * (1.0 + e), observer);
+  const bool newton_solved = impact.solve(false);
+  impact.give(share, observer);
+  impact.set(mixed(share, newton, poisson));
+  return plastic_solved && newton_solved;
 }
 
 }  // namespace
 
-int resolve_impacts(std::span<ContactRow> rows, std::span<const Pose> X_WB, std::span<const Mobility> W,
-                    double h, int most, std::span<Twist> V, ImpactObserver* observer) noexcept {
-  for (int hits = 0; hits < most; ++hits) {
+ImpactResult resolve_impacts(std::span<ContactRow> rows, const ImpactBodies& bodies, double h, int most,
+                             ImpactScratch& scratch, ImpactObserver* observer) noexcept {
+  ImpactResult result;
+  for (;; ++result.hits) {
     ContactRow* fastest = nullptr;
     double speed = kImpactSpeed;
     for (ContactRow& row : rows) {
-      if (!row.struck) continue;
-      const double closing = approach(row, X_WB, V);
+      if (!row.impact.enabled) continue;
+      const double closing = approach(row, bodies);
       if (!(closing > speed) || row.distance > closing * h) continue;
       fastest = &row;
       speed = closing;
     }
-    if (fastest == nullptr) return hits;
-    fastest->hit = true;
-    hit(rows, *fastest, X_WB, W, h, V, observer);
+    if (fastest == nullptr) return result;
+    if (result.hits == most) {
+      result.converged = false;
+      return result;
+    }
+    fastest->impact.seen = true;
+    result.converged &= hit(rows, *fastest, bodies, speed, h, scratch, observer);
   }
-  return most;
 }
 
 }  // namespace tactum

@@ -1,33 +1,60 @@
 #pragma once
-/// Impacts: what bodies do to each other in no time at all [Mirtich 1996b]. One pair of bodies after
-/// the other, the fastest approach first, until none approaches faster than what rests does. So an impact
-/// travels through a row of touching balls as it does through Newton's cradle, where all contacts at once
-/// would share it.
+/// Impacts: what bodies do to each other in no time at all [Mirtich 1996b]. One pair of bodies after the other,
+/// the fastest approach first, until none approaches faster than what rests does. So an impact travels
+/// through a row of touching balls as it does through Newton's cradle, where all contacts at once would share
+/// it.
 ///
 /// Within a pair all its corners are hit together:  vn after >= -e vn before,  impulses >= 0, with Coulomb's
-/// friction at each; a box that falls flat on its face leaves flat.
+/// friction for each pair of surfaces; a box that falls flat on its face leaves flat. It is the contact problem
+/// of two bodies with velocities for displacements, and is solved exactly: the order of corners means nothing.
 
 #include <span>
 
-#include "tactum/dynamics/contact_row.h"
-#include "tactum/dynamics/joint.h"
+#include "tactum/dynamics/solve_exactly.h"
+#include "tactum/dynamics/world.h"
 
 namespace tactum {
 
 /// Approach slower than this is rest, not impact: a few frames' worth of gravity [m/s].
 inline constexpr double kImpactSpeed = 0.03;
 
-/// Told of every pair that is hit: `impulse` [N s] at `p_W` acts on body_a, its opposite on body_b.
+/// Receives what every pair that is hit gives to each other.
 class ImpactObserver {
  public:
   virtual ~ImpactObserver() = default;
-  virtual void hit(int body_a, int body_b, const Vec3& impulse, const Vec3& p_W) noexcept = 0;
+  /// `impulse` [N s] at `p_W` and `turning` [N m s] beside it act on body_a, their opposites on body_b.
+  virtual void hit(int body_a, int body_b, const Vec3& impulse, const Vec3& turning,
+                   const Vec3& p_W) noexcept = 0;
+};
+
+/// The bodies of a world and which of them an impact moves; an entry per body.
+struct ImpactBodies {
+  const World& world;
+  std::span<const Pose> X_WB;
+  std::span<const char> moves;
+  std::span<Twist> V_WB;
+};
+
+struct ImpactResult {
+  int hits = 0;           ///< pairs that were hit
+  bool converged = true;  ///< false: the impulses of some pair are not exact, or pairs were left
+};
+
+/// Working memory of resolve_impacts().
+struct ImpactScratch {
+  explicit ImpactScratch(std::size_t bodies) : problem(kMostCorners, bodies) {}
+  /// Corners of one pair that are hit together; of more, the first ones.
+  static constexpr std::size_t kMostCorners = 32;
+
+  ContactProblem problem;
+  FrictionAnchors no_anchors{0};
+  Friction friction;
 };
 
 /// Changes the twists of what is hit within the next `h` seconds, from rows with distances at their start;
 /// leaves the rows' impulses as they were and marks the fastest corner of every pair that was hit. At most
-/// `most` pairs are hit; returns how many were. `observer` may be null.
-int resolve_impacts(std::span<ContactRow> rows, std::span<const Pose> X_WB, std::span<const Mobility> W,
-                    double h, int most, std::span<Twist> V, ImpactObserver* observer) noexcept;
+/// `most` pairs are hit. `observer` may be null.
+ImpactResult resolve_impacts(std::span<ContactRow> rows, const ImpactBodies& bodies, double h, int most,
+                             ImpactScratch& scratch, ImpactObserver* observer) noexcept;
 
 }  // namespace tactum

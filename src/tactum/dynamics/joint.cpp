@@ -124,35 +124,6 @@ Twist constrained_velocity(const Joint& joint, const Pose& X_WB, const Resistanc
   return to_twist(S * SmallMatrix(MS.transpose() * S).llt().solve(MS.transpose() * to_vector(V)));
 }
 
-Twist after_joint(const Body& body, const Pose& X_WB, const Mobility& W, double h, const Twist& V) noexcept {
-  const Joint& joint = body.joint;
-  if (joint.kind == JointKind::kFree || joint.kind == JointKind::kFixed) return V;
-  // An angle takes as long as all the rest: a hinge's is told only where a spring or a limit asks for it.
-  const bool bound = joint.stiffness != 0.0 || joint.limited();
-  if (!bound && joint.damping == 0.0 && joint.friction == 0.0) return V;
-  Vec6 after = to_vector(V);
-  double damping = joint.damping;
-  if (joint.kind == JointKind::kBall) {  // about every axis, not only that of its position
-    const double mobile = W.bottomRightCorner<3, 3>().trace() / 3.0;
-    const Vec3 lost = V.w * (1.0 / (1.0 + mobile * h * damping) - 1.0);
-    after += joint_motions(joint, X_WB) * lost;
-    damping = 0.0;
-  }
-  const Vec6 along = joint_rate(body, X_WB);
-  const double mobile = along.dot(W * along);
-  if (!(mobile > 0.0)) return to_twist(after);
-  const double before = along.dot(after);
-  const double position = bound ? joint_position(body, X_WB) : 0.0;
-  // Spring and damper at the end of the step: stable however stiff.
-  double rate = (before - mobile * h * joint.stiffness * (position - joint.rest)) /
-                (1.0 + mobile * h * (damping + h * joint.stiffness));
-  const double most = joint.friction * h * mobile;
-  rate = std::abs(rate) <= most ? 0.0 : rate - std::copysign(most, rate);
-  rate = std::clamp(rate, std::min(0.0, (joint.lower - position) / h),
-                    std::max(0.0, (joint.upper - position) / h));
-  return to_twist(after + W * along * ((rate - before) / mobile));
-}
-
 Pose constrained_pose(const Body& body, const Pose& X_WB) noexcept {
   const Vec3& anchor = body.joint.anchor_W;
   const auto turned = [&](const Mat3& turn) -> Pose {

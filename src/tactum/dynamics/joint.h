@@ -28,11 +28,6 @@ JointMotions joint_motions(const Joint& joint, const Pose& X_WB) noexcept;
 /// a ball the axis it has turned about.
 Vec6 joint_rate(const Body& body, const Pose& X_WB) noexcept;
 
-/// What is left of a jointed body's twist after its joint's spring, damping, dry friction and limits have
-/// acted for `h` seconds: friction stops but never reverses, limits are not overrun. Applied after whatever
-/// else pushed in these `h` seconds, so that pushes below the friction move nothing.
-Twist after_joint(const Body& body, const Pose& X_WB, const Mobility& W, double h, const Twist& V) noexcept;
-
 /// What the joint lets through of a resistance. Zero for a fixed body.
 Mobility mobility(const Joint& joint, const Pose& X_WB, const Resistance& M) noexcept;
 /// The same of mass and inertia.

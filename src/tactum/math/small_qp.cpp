@@ -40,16 +40,6 @@ Lanes lanes(const double* x) noexcept {
 /// The next multiple of eight; what lies between is zero or meets zeros.
 Index whole(Index n) noexcept { return (n + 7) & ~Index(7); }
 
-double dot(const QpRow& row, const double* x) noexcept {
-  Lanes sum{};
-  for (const QpRow::Run& run : row.runs) {
-    const double* const at = x + run.first;
-    const double* const g = run.g.data();
-    sum += (lanes(g) * lanes(at) + lanes(g + 2) * lanes(at + 2)) + lanes(g + 4) * lanes(at + 4);
-  }
-  return sum[0] + sum[1];
-}
-
 /// Turns the pair (a, b) so that b vanishes.
 struct Turn {
   double cosine = 1.0, sine = 0.0;
@@ -81,6 +71,16 @@ struct Around {
 const Around kDirections;
 
 }  // namespace
+
+double dot(const QpRow& row, const double* x) noexcept {
+  Lanes sum{};
+  for (const QpRow::Run& run : row.runs) {
+    const double* const at = x + run.first;
+    const double* const g = run.g.data();
+    sum += (lanes(g) * lanes(at) + lanes(g + 2) * lanes(at + 2)) + lanes(g + 4) * lanes(at + 4);
+  }
+  return sum[0] + sum[1];
+}
 
 QpCone::Direction QpCone::direction(Index k) noexcept { return {kDirections.cosine[k], kDirections.sine[k]}; }
 

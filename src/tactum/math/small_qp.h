@@ -41,6 +41,9 @@ struct QpRow {
   double offset = 0.0;
 };
 
+/// g . z. Of z the eight numbers behind the last unknown are read too, and meet zeros.
+double dot(const QpRow& row, const double* z) noexcept;
+
 /// Rows that are made of four, the edges of a cone: off - slope (cos along + sin across) at equal angles,
 /// then off - twist about and off + twist about. They are looked at together, by four sums.
 struct QpCone {

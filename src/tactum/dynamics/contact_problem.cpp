@@ -1,0 +1,291 @@
+#include "tactum/dynamics/contact_problem.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "tactum/base/tolerances.h"
+
+namespace tactum {
+namespace {
+
+using Index = std::size_t;
+
+/// The unknown of a joint's friction has a spring of its own, for the metric must be positive: it changes the
+/// friction by less than this share over the farthest travel of a step.
+constexpr double kFrictionSoftness = 1e-3;
+constexpr double kFarthestTravel = 0.05;  // [rad or m]
+
+/// Rows of joints' limits and frictions, of each body.
+constexpr Index kJointRows = 4;
+/// A run of a row is read in whole lanes, beyond the last unknown.
+constexpr Index kRoomBehind = 8;
+
+Vec6 column(const Vec3& displacement, const Vec3& turn) {
+  Vec6 c;
+  c << displacement, turn;
+  return c;
+}
+
+/// The displacement of the point `r` away.
+Vec6 at_point(const Vec6& x, const Vec3& r) {
+  return column(x.head<3>() + Vec3(x.tail<3>()).cross(r), x.tail<3>());
+}
+
+/// The work of a push on a displacement stated at `centre`.
+double work(const Push& push, const Vec3& centre, const Vec6& x) {
+  const Vec3 torque = push.torque + (push.p_W - centre).cross(push.force);
+  return push.force.dot(x.head<3>()) + torque.dot(x.tail<3>());
+}
+
+}  // namespace
+
+BodyMetric inertial_metric(const Body& body, const Pose& X_WB, double h) noexcept {
+  const double per_step = 1.0 / (h * h);
+  return {body.mass_kg * per_step, X_WB.R * body.inertia_B * X_WB.R.transpose() * per_step};
+}
+
+std::size_t freedom_of(const Joint& joint) noexcept {
+  switch (joint.kind) {
+    case JointKind::kFixed:
+      return 0;
+    case JointKind::kHinge:
+    case JointKind::kSlider:
+      return 1;
+    case JointKind::kBall:
+      return 3;
+    case JointKind::kFree:
+      break;
+  }
+  return 6;
+}
+
+std::size_t exact_unknowns_of(const Joint& joint) noexcept {
+  return freedom_of(joint) + (joint.friction > 0.0 ? 1 : 0);
+}
+
+ContactProblem::ContactProblem(std::size_t most_rows, std::size_t bodies) : index_of_(bodies, -1) {
+  bodies_.reserve(bodies);
+  joint_frictions_.reserve(bodies);
+  limits_.reserve(2 * bodies);
+  rows_.reserve(most_rows + kJointRows * bodies);
+  z_.reserve(std::max(6 * bodies + kRoomBehind, columns::kColumn));
+}
+
+void ContactProblem::clear() noexcept {
+  for (const ProblemBody& body : bodies_) index_of_[Index(body.body)] = -1;
+  bodies_.clear();
+  unknowns_ = 0;
+  joint_frictions_.clear();
+  limits_.clear();
+  rows_.clear();
+  cones_.clear();
+  load_.fill(0.0);
+  is_loaded_ = false;
+}
+
+ProblemBody& ContactProblem::next_body(int body, std::size_t rank, const Vec3& origin,
+                                       const Vec3& centre) noexcept {
+  index_of_[Index(body)] = static_cast<int>(bodies_.size());
+  ProblemBody& next = bodies_.emplace_back();
+  next.body = body;
+  next.first = unknowns_;
+  next.rank = rank;
+  next.origin = origin;
+  next.centre = centre;
+  unknowns_ += rank;
+  return next;
+}
+
+/// The unknowns of a jointed body: its target is what is nearest to `target` in the metric, with the joint's
+/// spring and damping. All stated at the body's centre.
+void ContactProblem::set_motions(ProblemBody& body, const Body& what, const Pose& X_WB,
+                                 const BodyMetric& metric, const Vec6& target, double h) noexcept {
+  using Reduced = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 3, 3>;
+  using Few = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 3, 1>;
+  const JointForces forces = h > 0.0 ? joint_forces(what, X_WB, h) : JointForces{};
+  JointMotions S = joint_motions(what.joint, X_WB);
+  for (Eigen::Index i = 0; i < S.cols(); ++i) S.col(i) = at_point(S.col(i), body.centre - body.origin);
+  JointMotions MS = S;
+  MS.topRows<3>() *= metric.linear;
+  MS.bottomRows<3>() = metric.angular * S.bottomRows<3>();
+  Reduced M = S.transpose() * MS;
+  Few pull = MS.transpose() * target;
+  if (forces.drag_about_ball > 0.0)
+    for (Eigen::Index i = 0; i < S.cols(); ++i) M(i, i) += forces.drag_about_ball / h;
+  if (forces.drag > 0.0) {  // a hinge or slider: its unknown is its travel
+    M(0, 0) += forces.drag / h;
+    pull[0] += forces.drag * forces.free_rate;
+  }
+  const Eigen::LLT<Reduced> factor(M);
+  factor.solveInPlace(pull);
+  body.target = S * pull;
+  body.motions = factor.matrixL().solve(S.transpose()).transpose();  // M^-1 = L^-T L^-1
+
+  if (!forces.acts) return;
+  const Push along{body.centre, forces.rate.head<3>(), forces.rate.tail<3>()};
+  if (forces.friction > 0.0 && body.rank == 1)
+    joint_frictions_.push_back({bodies_.size() - 1, forces.friction,
+                                work(along, body.centre, body.motions.col(0)),
+                                work(along, body.centre, body.target)});
+  if (forces.limited_down()) limits_.push_back({body.body, along, std::max(0.0, forces.travel_down)});
+  if (forces.limited_up())
+    limits_.push_back({body.body, {along.p_W, -along.force, -along.torque}, std::max(0.0, forces.travel_up)});
+}
+
+void ContactProblem::add_body(int body, const Body& what, const Pose& X_WB, const Vec3& centre_W,
+                              const BodyMetric& metric, const Vec6& target, double h) noexcept {
+  ProblemBody& next = next_body(body, freedom_of(what.joint), X_WB.p, centre_W);
+  if (next.rank < 6) {
+    set_motions(next, what, X_WB, metric, target, h);
+    return;
+  }
+  next.target = target;
+  next.per_displacement = 1.0 / std::sqrt(metric.linear);
+  const Eigen::LLT<Mat3> angular(metric.angular);
+  next.turns = angular.matrixU().solve(Mat3::Identity());  // I^-1 = U^-1 U^-T
+}
+
+void ContactProblem::add_given(int body, const Vec3& origin_W, const Vec6& displacement) noexcept {
+  next_body(body, 0, origin_W, origin_W).target = displacement;
+}
+
+void ContactProblem::follow(const ContactProblem& led) noexcept {
+  clear();
+  for (const ProblemBody& other : led.bodies()) {
+    ProblemBody& body = next_body(other.body, other.rank, other.origin, other.centre);
+    body.target = led.displacement_at_centre(other);
+    body.per_displacement = other.per_displacement;
+    body.turns = other.turns;
+    body.motions = other.motions;
+  }
+  limits_ = led.limits_;
+  add_joint_rows(true);
+}
+
+/// One more unknown t that may not be less than the travel a of the joint, either way, and that the friction
+/// pulls down:  t >= a,  t >= -a,  energy  T t + e t^2 / 2,  so |T_a| <= T + e t, with e t a thousandth of T.
+void ContactProblem::add_friction_unknown(const JointFriction& friction) noexcept {
+  if (unknowns_ == kMostUnknowns) return;
+  const Index unknown = unknowns_++;
+  const double spring = kFrictionSoftness * friction.friction / kFarthestTravel;
+  const double unpulled = -friction.friction / spring;  // t*
+  for (const double side : {1.0, -1.0}) {
+    QpRow& row = rows_.emplace_back();
+    row.runs[0] = {static_cast<std::uint32_t>(unknown), 1, {1.0 / std::sqrt(spring)}};
+    row.runs[1] = {
+        static_cast<std::uint32_t>(bodies_[friction.body].first), 1, {-side * friction.per_unknown}};
+    row.offset = side * friction.free_travel - unpulled;
+  }
+}
+
+void ContactProblem::add_joint_rows(bool exact) noexcept {
+  if (exact)
+    for (const JointFriction& friction : joint_frictions_) add_friction_unknown(friction);
+  for (const Limit& limit : limits_) add_row(row_of(limit.body, -1, limit.push), -limit.travel);
+}
+
+QpRow ContactProblem::row_of(int body_a, int body_b, const Push& push) const noexcept {
+  QpRow row;
+  const auto project = [&](int number, double sign, QpRow::Run& run) {
+    const ProblemBody* const body = number < 0 ? nullptr : find(number);
+    if (body == nullptr) return;
+    run.first = static_cast<std::uint32_t>(body->first);
+    run.count = static_cast<std::uint32_t>(body->rank);
+    std::array<double, QpRow::kLongestRun>& g = run.g;
+    const Vec3 torque = push.torque + (push.p_W - body->centre).cross(push.force);
+    row.offset -= sign * (push.force.dot(body->target.head<3>()) + torque.dot(body->target.tail<3>()));
+    if (body->rank < 6) {
+      for (Index i = 0; i < body->rank; ++i)
+        g[i] = sign * work(push, body->centre, body->motions.col(Eigen::Index(i)));
+      return;
+    }
+    for (int i = 0; i < 3; ++i) {
+      g[Index(i)] = sign * body->per_displacement * push.force[i];
+      g[Index(3 + i)] = sign * torque.dot(body->turns.col(i));
+    }
+  };
+  project(body_a, 1.0, row.runs[0]);
+  project(body_b, -1.0, row.runs[1]);
+  return row;
+}
+
+bool ContactProblem::add_row(const QpRow& row, double offset) noexcept {
+  if (rows_.size() == rows_.capacity()) return false;
+  rows_.push_back(row);
+  rows_.back().offset += offset;
+  return true;
+}
+
+std::size_t ContactProblem::add_cone(const QpCone& cone) noexcept {
+  const Index first = rows_.size() + cones_.size() * QpCone::kEdges;
+  cones_.push_back(loaded(cone));
+  return first;
+}
+
+void ContactProblem::set_cone(std::size_t first_edge, const QpCone& cone) noexcept {
+  *(cones_.begin() + (first_edge - rows_.size()) / QpCone::kEdges) = loaded(cone);
+}
+
+/// The cone as it asks of z'.
+QpCone ContactProblem::loaded(const QpCone& cone) const noexcept {
+  QpCone shifted = cone;
+  if (is_loaded_)
+    for (QpRow* const row : {&shifted.off, &shifted.along, &shifted.across, &shifted.about})
+      row->offset -= dot(*row, load_.data());
+  return shifted;
+}
+
+void ContactProblem::add_load(const QpRow& along, double force_N) noexcept {
+  if (force_N == 0.0) return;
+  std::array<double, columns::kColumn> more{};
+  for (const QpRow::Run& run : along.runs)
+    for (Index i = 0; i < run.count; ++i) more[run.first + i] += run.g[i] * force_N;
+  for (Index i = 0; i < more.size(); ++i) load_[i] += more[i];
+  is_loaded_ = true;
+  for (QpRow& row : rows_) row.offset -= dot(row, more.data());
+  for (QpCone& cone : cones_)
+    for (QpRow* const row : {&cone.off, &cone.along, &cone.across, &cone.about})
+      row->offset -= dot(*row, more.data());
+}
+
+QpProblem ContactProblem::nearest_point() const noexcept {
+  return {unknowns_, rows_, {cones_.begin(), cones_.end()}, tolerances::kRowKept_m};
+}
+
+void ContactProblem::begin(std::span<const int> first) noexcept { qp_.begin(nearest_point(), first); }
+
+const QpAnswer& ContactProblem::solve_on(int max_iterations) noexcept {
+  const QpAnswer& answer = qp_.solve_on(nearest_point(), max_iterations);
+  z_.assign(answer.z.begin(), answer.z.end());
+  if (is_loaded_)
+    for (Index i = 0; i < unknowns_; ++i) z_[i] += load_[i];
+  return answer;
+}
+
+void ContactProblem::begin_values() noexcept { z_.assign(unknowns_ + kRoomBehind, 0.0); }
+
+Vec6 ContactProblem::displacement_at_centre(const ProblemBody& body) const noexcept {
+  const double* const at = z() + body.first;
+  if (body.rank < 6) {
+    Vec6 x = body.target;
+    for (Index i = 0; i < body.rank; ++i) x += body.motions.col(Eigen::Index(i)) * at[i];
+    return x;
+  }
+  const Vec3 along(at[0], at[1], at[2]);
+  const Vec3 about(at[3], at[4], at[5]);
+  return body.target + column(body.per_displacement * along, body.turns * about);
+}
+
+Vec3 ContactProblem::target_turn(int body) const noexcept {
+  const ProblemBody* const found = find(body);
+  return found != nullptr ? Vec3(found->target.tail<3>()) : Vec3::Zero();
+}
+
+Vec6 ContactProblem::displacement(int body) const noexcept {
+  const ProblemBody* const found = find(body);
+  if (found == nullptr) return Vec6::Zero();
+  return at_point(displacement_at_centre(*found), found->origin - found->centre);
+}
+
+}  // namespace tactum

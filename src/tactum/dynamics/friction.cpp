@@ -1,0 +1,372 @@
+#include "tactum/dynamics/friction.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactum {
+namespace {
+
+using Index = std::size_t;
+
+/// A patch that left one piece of a surface for the next is in the same plane within so many skins.
+constexpr double kSamePlaneSkins = 20.0;
+
+/// How much less than the gap a row asks for, by the anchor's distance.
+double allowance(const FrictionPatch& patch, Index k) {
+  if (k >= Friction::kDirections || patch.anchor.apart_W.isZero(0.0)) return 0.0;
+  return (cone_edge(patch, k).force - patch.n_BA_W).dot(patch.anchor.apart_W);
+}
+
+/// How far the patch's anchor has come apart in the surface.
+Vec3 apart(const FrictionPatch& patch, const Pose& X_WA, const Pose& X_W_B) {
+  const Vec3 difference = X_WA * patch.anchor.on_A - X_W_B * patch.anchor.on_B;
+  return difference - patch.n_BA_W * patch.n_BA_W.dot(difference);
+}
+
+/// How far a row may close; a gap that is too small to count is none.
+double gap_of(double asked_m, const ContactScale& scale) {
+  return std::abs(asked_m) > scale.settled_m ? -asked_m : 0.0;
+}
+
+}  // namespace
+
+const FrictionAnchor* take_anchor(const FrictionAnchors& anchors, std::span<const Pose> X_WB,
+                                  const ContactScale& scale, FrictionPatch& patch) noexcept {
+  const Pose& X_WA = X_WB[Index(patch.surfaces.body_a)];
+  const Pose& X_W_B = X_WB[Index(patch.surfaces.body_b)];
+  const FrictionAnchor* const last = anchors.find(patch, X_WB, kSamePlaneSkins * scale.skin_m);
+  if (last == nullptr) {
+    patch.anchor.on_A = X_WA.inverse() * patch.centre_W;
+    patch.anchor.on_B = X_W_B.inverse() * patch.centre_W;
+    return nullptr;
+  }
+  patch.anchor.on_A = last->on_A;
+  patch.anchor.on_B = last->on_B;
+  patch.anchor.apart_W = apart(patch, X_WA, X_W_B);
+  if (patch.anchor.apart_W.norm() <= scale.settled_m) patch.anchor.apart_W.setZero();
+  const Vec3 centre = X_WA * last->centre_A;
+  patch.centre_W = centre + patch.n_BA_W * patch.n_BA_W.dot(patch.centre_W - centre);
+  return last;
+}
+
+FrictionAnchor next_anchor(const FrictionPatch& patch, const Vec3& centre_W, bool pushed,
+                           std::span<const Pose> X_WB) noexcept {
+  const Pose& X_WA = X_WB[Index(patch.surfaces.body_a)];
+  const Pose& X_W_B = X_WB[Index(patch.surfaces.body_b)];
+  // By where the bodies are: the answer, being of first order, has never come apart.
+  Vec3 on_A_W = centre_W;
+  if (patch.anchor.used && !(patch.slip.displacement_m > 0.0)) on_A_W += apart(patch, X_WA, X_W_B);
+  return {.surfaces = patch.surfaces,
+          .n_A = rotated_back(X_WA.R, patch.n_BA_W),
+          .on_A = X_WA.inverse() * on_A_W,
+          .on_B = X_W_B.inverse() * centre_W,
+          .centre_A = X_WA.inverse() * centre_W,
+          .radius_m = patch.radius_m,
+          .sticking = patch.rows.sticking,
+          .pushed = pushed};
+}
+
+FrictionPatch* Friction::patch_of(const SurfacePair& surfaces) noexcept {
+  const auto found = std::find_if(patches_.begin(), patches_.end(),
+                                  [&](const FrictionPatch& other) { return other.surfaces == surfaces; });
+  return found == patches_.end() ? nullptr : found;
+}
+
+/// The patches that push in the last answer.
+void Friction::find_pushing(const ContactRows& contacts, const ContactProblem& problem) noexcept {
+  const auto for_pushing_rows = [&](const auto& visit) {
+    for (const QpActive& active : problem.answer().active) {
+      const ContactRow* const row = contacts.row(active.row);
+      if (row == nullptr || !(active.multiplier > 0.0) || !(row->friction > 0.0)) continue;
+      FrictionPatch* found = patch_of(*row);
+      if (found == nullptr) {
+        FrictionPatch next;
+        next.surfaces = *row;
+        next.source_patch = row->patch;
+        next.coefficient = row->friction;
+        if (!patches_.push_back(next)) continue;
+        found = &patches_.back();
+      }
+      visit(*found, *row, active.multiplier);
+    }
+  };
+  for_pushing_rows([](FrictionPatch& patch, const ContactRow& row, double force) {
+    patch.load_N += force;
+    patch.centre_W += force * row.p_W;
+    patch.n_BA_W += force * row.n_BA_W;
+    patch.gap_m += force * row.asked;
+  });
+  for (FrictionPatch& patch : patches_) {
+    patch.centre_W /= patch.load_N;
+    patch.gap_m = gap_of(patch.gap_m / patch.load_N, scale_);
+    patch.n_BA_W.normalize();
+  }
+  for_pushing_rows([](FrictionPatch& patch, const ContactRow& row, double force) {
+    patch.radius_m += force / patch.load_N * (row.p_W - patch.centre_W).norm();
+  });
+}
+
+/// The patches whose cone pushed in the last frame, do not push by themselves, and touch.
+void Friction::find_last_pushing(const ContactRows& contacts, const FrictionAnchors& anchors,
+                                 std::span<const Pose> X_WB) noexcept {
+  const Index pushing = patches_.size();
+  for (const ContactRow& row : contacts.rows) {
+    if (!(row.friction > 0.0) || gap_of(row.asked, scale_) > 0.0) continue;
+    FrictionPatch* found = patch_of(row);
+    if (found == nullptr) {
+      const FrictionAnchor* const last = anchors.find(row);
+      if (last == nullptr || !last->pushed) continue;
+      FrictionPatch patch;
+      patch.surfaces = row;
+      patch.coefficient = row.friction;
+      patch.centre_W = X_WB[Index(row.body_a)] * last->centre_A;
+      patch.radius_m = last->radius_m;
+      if (!patches_.push_back(patch)) break;
+      found = &patches_.back();
+    } else if (found < patches_.begin() + pushing) {
+      continue;
+    }
+    found->source_patch = row.patch;
+    found->n_BA_W += row.n_BA_W;
+  }
+  for (Index i = pushing; i < patches_.size(); ++i) patches_[i].n_BA_W.normalize();
+}
+
+/// How fast the turning that is the bodies' target takes the patch off, about the middle of all patches on
+/// the body; negative: it squeezes it.
+double Friction::taken_off(const FrictionPatch& patch, const ContactProblem& problem) const noexcept {
+  double off = 0.0;
+  for (const int body : {patch.surfaces.body_a, patch.surfaces.body_b}) {
+    const Vec3 turn = problem.target_turn(body);
+    if (turn.isZero(0.0)) continue;
+    Vec3 sum = Vec3::Zero();
+    int count = 0;
+    for (const FrictionPatch& other : patches_) {
+      if (other.surfaces.body_a != body && other.surfaces.body_b != body) continue;
+      sum += other.centre_W;
+      ++count;
+    }
+    const double rate = patch.n_BA_W.dot(turn.cross(patch.centre_W - sum / count));
+    off += body == patch.surfaces.body_a ? rate : -rate;
+  }
+  return off;
+}
+
+/// Takes those out that only pushed in the last frame and that no turning squeezes.
+void Friction::drop_unsqueezed(const ContactProblem& problem) noexcept {
+  std::array<bool, kMostPatches> stays{};
+  for (Index i = 0; i < patches_.size(); ++i)
+    stays[i] = patches_[i].load_N > 0.0 || !(taken_off(patches_[i], problem) > 0.0);
+  Index kept = 0;
+  for (Index i = 0; i < patches_.size(); ++i)
+    if (stays[i]) patches_[kept++] = patches_[i];
+  while (patches_.size() > kept) patches_.pop_back();
+}
+
+bool Friction::begin(const ContactRows& contacts, std::span<const Pose> X_WB, const ContactScale& scale,
+                     const FrictionAnchors& anchors, ContactProblem& problem) noexcept {
+  patches_.clear();
+  scale_ = scale;
+  find_pushing(contacts, problem);
+  find_last_pushing(contacts, anchors, X_WB);
+  drop_unsqueezed(problem);
+  for (FrictionPatch& patch : patches_) {
+    if (const FrictionAnchor* const last = take_anchor(anchors, X_WB, scale, patch))
+      patch.rows.sticking = last->sticking;
+    patch.motion = motion_of(patch, any_orthogonal(patch.n_BA_W), problem);
+    const Vec3 displacement = slide_of(patch, problem).displacement;
+    if (const double length = displacement.norm(); length > 0.0)
+      turn_directions(displacement / length, patch.motion);
+    patch.rows.first = problem.add_cone(cone_now(patch));
+  }
+  return acts();
+}
+
+/// The cone of a patch, with what its edges ask for.
+QpCone Friction::cone_now(const FrictionPatch& patch) noexcept {
+  QpCone cone = cone_of(patch);
+  const double slip = patch.coefficient * patch.slip.displacement_m;
+  const double turn = patch.coefficient * patch.radius_m * patch.slip.turn_rad;
+  for (Index k = 0; k < kRowsAPatch; ++k)
+    cone.more[k] = -patch.gap_m - allowance(patch, k) - (k < kDirections ? slip : turn);
+  return cone;
+}
+
+FrictionPatch* Friction::patch_of_row(Index row) noexcept {
+  const auto found = std::find_if(patches_.begin(), patches_.end(), [&](const FrictionPatch& patch) {
+    return row >= patch.rows.first && row < patch.rows.first + kRowsAPatch;
+  });
+  return found == patches_.end() ? nullptr : found;
+}
+
+void Friction::rows_that_stuck(StaticVector<int, kMostUnknowns>& rows) const noexcept {
+  for (const FrictionPatch& patch : patches_)
+    for (Index k = 0; k < kRowsAPatch; ++k)
+      if ((patch.rows.sticking >> k & 1u) != 0) rows.push_back(static_cast<int>(patch.rows.first + k));
+}
+
+void Friction::note_sticking(const ContactProblem& problem) noexcept {
+  for (FrictionPatch& patch : patches_) patch.rows.sticking = 0;
+  for (const QpActive& active : problem.answer().active) {
+    const Index row = Index(active.row);
+    if (FrictionPatch* const patch = patch_of_row(row))
+      patch->rows.sticking |= 1u << (row - patch->rows.first);
+  }
+}
+
+/// Its rows ask for nothing that a part could miss.
+void Friction::release_cone(const FrictionPatch& patch, ContactProblem& problem) noexcept {
+  constexpr double kAnywhere_m = 1e3;  // [m]
+  QpCone cone = cone_now(patch);
+  for (double& more : cone.more) more -= kAnywhere_m;
+  problem.set_cone(patch.rows.first, cone);
+}
+
+void Friction::release(FrictionPatch& patch, ContactProblem& problem) noexcept {
+  release_cone(patch, problem);
+  patch.acts = false;
+}
+
+/// What the cone and the corners of a patch carry in the last answer.
+Friction::Loads Friction::loads_of(const FrictionPatch& patch, const ContactRows& contacts,
+                                   const ContactProblem& problem) noexcept {
+  Loads loads;
+  for (const QpActive& active : problem.answer().active) {
+    const Index row = Index(active.row);
+    const ContactRow* const contact = contacts.row(active.row);
+    if (row >= patch.rows.first && row < patch.rows.first + kRowsAPatch) {
+      const Push push = cone_edge(patch, row - patch.rows.first);
+      loads.cone_N += active.multiplier;
+      loads.cone_force += active.multiplier * (push.force - patch.n_BA_W);
+      loads.cone_torque += active.multiplier * push.torque;
+    } else if (contact != nullptr && *contact == patch.surfaces) {
+      loads.corners_N += active.multiplier;
+      loads.corners_moment += active.multiplier * contact->p_W;
+    }
+  }
+  return loads;
+}
+
+/// What slides without lifting (on the way to a wall that it has not reached) needs no slip: of a wedged
+/// part, every slip would lead to another. And what a wedged part could move by in such gaps would grow
+/// without bound near the limit.
+bool Friction::update_slip(ContactProblem& problem) noexcept {
+  bool changed = false;
+  for (FrictionPatch& patch : patches_) {
+    if (!patch.acts || patch.sliding.acts) continue;
+    const Slide slide = slide_of(patch, problem);
+    const double arm = patch.coefficient * patch.radius_m;
+    double further =
+        std::min(slide.lift, patch.coefficient * (slide.displacement.norm() - patch.slip.displacement_m));
+    double turned = std::min(slide.lift, arm * (std::abs(slide.turn) - patch.slip.turn_rad));
+    if (further <= scale_.settled_m) further = 0.0;
+    if (turned <= scale_.settled_m) turned = 0.0;
+    if (further == 0.0 && turned == 0.0) continue;
+    changed = true;
+    if (patch.load_N == 0.0) {
+      release(patch, problem);
+      continue;
+    }
+    patch.slip.displacement_m += further / patch.coefficient;
+    if (turned > 0.0) patch.slip.turn_rad += turned / arm;
+    problem.set_cone(patch.rows.first, cone_now(patch));
+  }
+  return changed;
+}
+
+void Friction::set_load(const SlidingForce& force, FrictionPatch& patch, ContactProblem& problem) noexcept {
+  const Vec3 more = force.force_W - patch.sliding.force_W;
+  problem.add_load(patch.motion.along, more.dot(patch.motion.along_W));
+  problem.add_load(patch.motion.across, more.dot(patch.motion.across_W));
+  problem.add_load(patch.motion.about, force.torque_Nm - patch.sliding.torque_Nm);
+  patch.sliding = force;
+}
+
+/// The patch sticks, or slips by what its cone allows, as before it had a load.
+void Friction::refuse_load(FrictionPatch& patch, ContactProblem& problem) noexcept {
+  set_load({}, patch, problem);
+  problem.set_cone(patch.rows.first, cone_now(patch));
+}
+
+/// How stiffly a patch's bodies resist its friction: the force that changes no more than what is asked,
+/// whether along the surface or, at the patch's radius, about its normal [N/m].
+double Friction::give_of(const FrictionPatch& patch) noexcept {
+  const double along = std::max(mobility(patch.motion.along), mobility(patch.motion.across));
+  const double about = patch.radius_m * patch.radius_m * mobility(patch.motion.about);
+  const double most = std::max(along, about);
+  return most > 0.0 ? 1.0 / most : 0.0;
+}
+
+/// The friction that the last answer's slide makes of the friction it had: against the slide, force and torque
+/// sharing mu N as on an area all of whose points slide, an ellipse [Howe and Cutkosky 1996]. Where it stays
+/// what it was, it is mu N against the slide, or less and nothing slides.
+SlidingForce Friction::next_force(const FrictionPatch& patch, const SlidingForce& last, double most_N,
+                                  const ContactProblem& problem) noexcept {
+  const PatchMotion& motion = patch.motion;
+  const double give = give_of(patch);
+  const double r = patch.radius_m;
+  SlidingForce next{.acts = true};
+  next.force_W = last.force_W - give * (problem.opening(motion.along) * motion.along_W +
+                                        problem.opening(motion.across) * motion.across_W);
+  next.torque_Nm = last.torque_Nm - give * r * r * problem.opening(motion.about);
+  const double size = r > 0.0 ? std::hypot(next.force_W.norm(), next.torque_Nm / r) : next.force_W.norm();
+  if (size > most_N) {
+    next.force_W *= most_N / size;
+    next.torque_Nm *= most_N / size;
+  }
+  return next;
+}
+
+bool Friction::update_sliding(const ContactRows& contacts, ContactProblem& problem) noexcept {
+  constexpr double kSameForce = 1e-6;  // share of mu N
+  bool changed = false;
+  for (FrictionPatch& patch : patches_) {
+    if (!patch.acts || !patch.slip.any()) continue;
+    const Loads loads = loads_of(patch, contacts, problem);
+    const double most_N = patch.coefficient * (loads.cone_N + loads.corners_N);
+    SlidingForce last = patch.sliding;
+    if (!last.acts) {  // the cone's force, which its edges and its diamond hold inside the ellipse
+      last.force_W = loads.cone_force;
+      last.torque_Nm = loads.cone_torque.dot(patch.n_BA_W);
+    }
+    const SlidingForce next = next_force(patch, last, most_N, problem);
+    const double arm = patch.radius_m > 0.0 ? 1.0 / patch.radius_m : 0.0;
+    const double difference =
+        (next.force_W - last.force_W).norm() + arm * std::abs(next.torque_Nm - last.torque_Nm);
+    if (patch.sliding.acts && difference <= kSameForce * most_N) continue;
+    if (!patch.sliding.acts) release_cone(patch, problem);
+    set_load(next, patch, problem);
+    changed = true;
+  }
+  return changed;
+}
+
+void Friction::refuse_loads(ContactProblem& problem) noexcept {
+  for (FrictionPatch& patch : patches_)
+    if (patch.sliding.acts) refuse_load(patch, problem);
+}
+
+void Friction::forget_anchors(ContactProblem& problem) noexcept {
+  for (FrictionPatch& patch : patches_) {
+    if (!patch.acts) continue;
+    patch.anchor.apart_W.setZero();
+    patch.anchor.used = false;
+    if (!patch.sliding.acts) problem.set_cone(patch.rows.first, cone_now(patch));
+  }
+}
+
+void Friction::end(const ContactRows& contacts, const ContactProblem& problem, std::span<const Pose> X_WB,
+                   FrictionAnchors& anchors) const noexcept {
+  for (const FrictionPatch& patch : patches_) {
+    if (!patch.acts) continue;
+    // The centre of all forces of the patch: its corners', and the cone's at the centre so far.
+    const Loads loads = loads_of(patch, contacts, problem);
+    const double load = loads.cone_N + loads.corners_N;
+    const Vec3 centre =
+        load > 0.0 ? Vec3((loads.corners_moment + loads.cone_N * patch.centre_W) / load) : patch.centre_W;
+    const bool pushed = loads.cone_N > 0.0 || (patch.sliding.acts && load > 0.0);
+    anchors.add(next_anchor(patch, centre, pushed, X_WB));
+  }
+}
+
+}  // namespace tactum

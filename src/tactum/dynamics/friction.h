@@ -1,0 +1,123 @@
+#pragma once
+/// Dry friction of the contact problem: one cone per patch of contact, at its centre of pressure.
+///
+///        \  |n /       a row per direction d:   n . s - mu d . (s_t + a) >= -(gap) - mu slip
+///         \ | /        its force on A is along  n - mu d:  the edges of the cone
+///     A    \|/
+///     -----(c)-----    s  displacement of A's point at c against B's,  s_t  its part in the plane
+///     B                a  how far the anchor, a point of each body, has come apart in the plane
+///
+/// With slip = 0 these rows let the point move sideways only if it lifts by mu times as much, so no force
+/// within the cone moves it: it sticks. A step is answered to first order and a turn leaves that by its
+/// square, always to the same side: the anchor takes the patch back, or a part rocked on its edge would walk.
+/// Where the force lies on the cone, it lifts; slip is then set to the sideways motion it made and the
+/// problem solved again, which ends with no lift, sliding, and the force mu N against the motion [Anitescu
+/// and Potra 1997; De Saxce and Feng 1998]. A patch that slid is anchored where it came to rest. The forces
+/// of a patch's corners count to N, as c is the centre of them all; found from the last frame's, it settles
+/// within a few.
+///
+/// Turning about the normal has two rows of the same kind, with the torque mu N r of the patch's mean radius
+/// r; force and torque share the cone linearly, a diamond inside the ellipse that an area has.
+///
+/// Patches have a cone that would push without friction, and those whose cone pushed in the last frame and
+/// that still touch: where the line between two of these lies inside both cones no motion is left, and the
+/// part is wedged though nothing presses it there [Simunovic 1975; Whitney 1982]. Forces within the cones
+/// could hold it against a turn that takes the points off their walls as well, for ever; so of those that
+/// only pushed in the last frame, one that would have to slip is released, and one that the target's turn
+/// does not squeeze: a force through two contacts on opposite walls is what a torque has pressed in, as a
+/// push or a pull takes off the one wall what it adds to the other.
+///
+/// This file is friction in the exact solver. The sweeps (solve_by_sweeps.h) take the same patches.
+
+#include "tactum/dynamics/friction_anchors.h"
+#include "tactum/dynamics/friction_patch.h"
+
+namespace tactum {
+
+class Friction {
+ public:
+  static constexpr std::size_t kMostPatches = ContactProblem::kMostCones;
+  static constexpr std::size_t kDirections = QpCone::kAround;
+  static constexpr std::size_t kRowsAPatch = QpCone::kEdges;
+
+  /// Finds the patches that push in the last answer; their rows are added to the problem. False when there is
+  /// none.
+  bool begin(const ContactRows& contacts, std::span<const Pose> X_WB, const ContactScale& scale,
+             const FrictionAnchors& anchors, ContactProblem& problem) noexcept;
+  /// Appends the rows that pushed in the last frame while the patches stuck.
+  void rows_that_stuck(StaticVector<int, kMostUnknowns>& rows) const noexcept;
+  /// Notes which rows push: the last answer is that of patches that stick.
+  void note_sticking(const ContactProblem& problem) noexcept;
+  /// Lets patches slip by what they slid in the last answer. True when that changed a row.
+  bool update_slip(ContactProblem& problem) noexcept;
+  /// Gives patches that slip the friction of the last answer as a load, in place of their cone: exactly mu N
+  /// against the motion, whichever corners carry N. True when that changed a load.
+  bool update_sliding(const ContactRows& contacts, ContactProblem& problem) noexcept;
+  /// Takes all loads back.
+  void refuse_loads(ContactProblem& problem) noexcept;
+  /// Takes the anchors off, when they ask for what cannot be.
+  void forget_anchors(ContactProblem& problem) noexcept;
+  /// Keeps anchors and centres; the step led to X_WB.
+  void end(const ContactRows& contacts, const ContactProblem& problem, std::span<const Pose> X_WB,
+           FrictionAnchors& anchors) const noexcept;
+  /// Visits what cones and sliding patches push with in the last answer: visit(patch number, push,
+  /// multiplier [N]).
+  template <class Visit>
+  void for_each_force(const ContactProblem& problem, const Visit& visit) const {
+    for (const QpActive& active : problem.answer().active)
+      for (std::size_t i = 0; i < patches_.size(); ++i) {
+        const std::size_t edge = static_cast<std::size_t>(active.row) - patches_[i].rows.first;
+        if (patches_[i].acts && static_cast<std::size_t>(active.row) >= patches_[i].rows.first &&
+            edge < kRowsAPatch)
+          visit(i, cone_edge(patches_[i], edge), active.multiplier);
+      }
+    for (std::size_t i = 0; i < patches_.size(); ++i)
+      if (const SlidingForce& sliding = patches_[i].sliding; patches_[i].acts && sliding.acts)
+        visit(i, Push{patches_[i].centre_W, sliding.force_W, sliding.torque_Nm * patches_[i].n_BA_W}, 1.0);
+  }
+
+  bool acts() const noexcept { return !patches_.empty(); }
+  std::span<const FrictionPatch> patches() const noexcept { return {patches_.begin(), patches_.end()}; }
+  /// Nothing acts.
+  void clear() noexcept { patches_.clear(); }
+
+ private:
+  struct Loads {
+    double cone_N = 0.0, corners_N = 0.0;
+    Vec3 corners_moment = Vec3::Zero();  // about the world's origin [N m]
+    Vec3 cone_force = Vec3::Zero();      // in the surface [N]
+    Vec3 cone_torque = Vec3::Zero();     // about the normal [N m]
+  };
+  static Loads loads_of(const FrictionPatch& patch, const ContactRows& contacts,
+                        const ContactProblem& problem) noexcept;
+  static double give_of(const FrictionPatch& patch) noexcept;
+  static SlidingForce next_force(const FrictionPatch& patch, const SlidingForce& last, double most_N,
+                                 const ContactProblem& problem) noexcept;
+  static void set_load(const SlidingForce& force, FrictionPatch& patch, ContactProblem& problem) noexcept;
+  static void refuse_load(FrictionPatch& patch, ContactProblem& problem) noexcept;
+  static void release_cone(const FrictionPatch& patch, ContactProblem& problem) noexcept;
+  void find_pushing(const ContactRows& contacts, const ContactProblem& problem) noexcept;
+  void find_last_pushing(const ContactRows& contacts, const FrictionAnchors& anchors,
+                         std::span<const Pose> X_WB) noexcept;
+  double taken_off(const FrictionPatch& patch, const ContactProblem& problem) const noexcept;
+  void drop_unsqueezed(const ContactProblem& problem) noexcept;
+  FrictionPatch* patch_of(const SurfacePair& surfaces) noexcept;
+  FrictionPatch* patch_of_row(std::size_t row) noexcept;
+  static QpCone cone_now(const FrictionPatch& patch) noexcept;
+  void release(FrictionPatch& patch, ContactProblem& problem) noexcept;
+
+  StaticVector<FrictionPatch, kMostPatches> patches_;
+  ContactScale scale_;
+};
+
+/// Sets the anchor of a patch, and its centre in the patch's plane, to the last frame's; a patch that had none
+/// is anchored at its centre. Returns the last frame's, or null.
+const FrictionAnchor* take_anchor(const FrictionAnchors& anchors, std::span<const Pose> X_WB,
+                                  const ContactScale& scale, FrictionPatch& patch) noexcept;
+
+/// What a patch keeps for the next frame, when its forces had their centre at `centre_W` and the step led to
+/// X_WB: the anchor of a patch that stuck stays, that of one that slid is at the centre.
+FrictionAnchor next_anchor(const FrictionPatch& patch, const Vec3& centre_W, bool pushed,
+                           std::span<const Pose> X_WB) noexcept;
+
+}  // namespace tactum

@@ -1,0 +1,57 @@
+#include "tactum/dynamics/friction_anchors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+namespace tactum {
+namespace {
+
+using Index = std::size_t;
+
+/// Patches of one plane have normals at no larger angle than a step may turn a body by, and some.
+constexpr double kSameDirection = 0.998;  // cosine
+
+auto key(const SurfacePair& pair) { return std::tuple(pair.body_a, pair.body_b, pair.group_a, pair.group_b); }
+
+}  // namespace
+
+const FrictionAnchor* FrictionAnchors::find(const SurfacePair& surfaces) const noexcept {
+  const auto found = std::lower_bound(
+      last_.begin(), last_.end(), surfaces,
+      [](const FrictionAnchor& anchor, const SurfacePair& pair) { return key(anchor.surfaces) < key(pair); });
+  return found != last_.end() && found->surfaces == surfaces ? &*found : nullptr;
+}
+
+const FrictionAnchor* FrictionAnchors::find(const FrictionPatch& patch, std::span<const Pose> X_WB,
+                                            double same_plane_m) const noexcept {
+  if (const FrictionAnchor* const same = find(patch.surfaces)) return same;
+  const int body_a = patch.surfaces.body_a;
+  const int body_b = patch.surfaces.body_b;
+  const Pose& X_WA = X_WB[Index(body_a)];
+  const FrictionAnchor* nearest = nullptr;
+  double most_alike = kSameDirection;
+  auto anchor = std::lower_bound(last_.begin(), last_.end(), std::pair(body_a, body_b),
+                                 [](const FrictionAnchor& a, const std::pair<int, int>& bodies) {
+                                   return std::pair(a.surfaces.body_a, a.surfaces.body_b) < bodies;
+                                 });
+  for (; anchor != last_.end() && anchor->surfaces.body_a == body_a && anchor->surfaces.body_b == body_b;
+       ++anchor) {
+    const double alike = patch.n_BA_W.dot(X_WA.R * anchor->n_A);
+    const double off_plane = patch.n_BA_W.dot(X_WA * anchor->centre_A - patch.centre_W);
+    if (!(alike > most_alike) || std::abs(off_plane) > same_plane_m) continue;
+    most_alike = alike;
+    nearest = &*anchor;
+  }
+  return nearest;
+}
+
+void FrictionAnchors::sort_and_exchange() noexcept {
+  std::sort(now_.begin(), now_.end(), [](const FrictionAnchor& a, const FrictionAnchor& b) {
+    return key(a.surfaces) < key(b.surfaces);
+  });
+  last_.swap(now_);
+  now_.clear();
+}
+
+}  // namespace tactum

@@ -1,0 +1,55 @@
+#pragma once
+/// What contact rows keep from frame to frame for the sweeps: the force each ended with, by the row's name.
+
+#include <algorithm>
+#include <cstdint>
+
+#include "tactum/base/reserved_vector.h"
+
+namespace tactum {
+
+struct RowState {
+  std::uint64_t name = 0;
+  double force_N = 0.0;   ///< along the normal; not negative [N]
+  int closed_frames = 0;  ///< in so many frames its gap is not asked to open
+};
+
+class RowMemory {
+ public:
+  explicit RowMemory(std::size_t most_rows) {
+    last_.reserve(most_rows);
+    now_.reserve(most_rows);
+  }
+  /// Begins a frame.
+  void begin() noexcept {
+    last_.swap(now_);
+    now_.clear();
+    next_ = 0;
+  }
+  /// The next row of this frame, with what the row of the same name had in the last one. Rows come in the
+  /// same order from frame to frame but for those that come and go; so many may at once before a force is
+  /// forgotten.
+  void recall(std::uint64_t name) noexcept {
+    if (now_.size() == now_.capacity()) return;
+    RowState state{.name = name};
+    for (std::size_t ahead = 0; ahead < std::min(kLookAhead, last_.size()); ++ahead) {
+      const std::size_t i = (next_ + ahead) % last_.size();
+      if (last_[i].name != name) continue;
+      next_ = i + 1;
+      state = last_[i];
+      state.closed_frames = std::max(0, state.closed_frames - 1);
+      break;
+    }
+    now_.push_back(state);
+  }
+  /// The rows of this frame, in the order of recall().
+  RowState& operator[](std::size_t row) noexcept { return now_[row]; }
+
+ private:
+  static constexpr std::size_t kLookAhead = 64;
+
+  ReservedVector<RowState> last_, now_;
+  std::size_t next_ = 0;  // in last_
+};
+
+}  // namespace tactum

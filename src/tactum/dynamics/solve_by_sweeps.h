@@ -1,0 +1,93 @@
+#pragma once
+/// The solver of the contact problem for any number of bodies: projected Gauss-Seidel from the last frame's
+/// forces [Stewart 1996], with momentum from sweep to sweep [Nesterov 1983; Mazhar 2015]: plain sweeps carry
+/// a load through a stack of ten boxes too slowly. A force acts on both bodies, so momentum is kept to
+/// rounding however few sweeps there were; what sweeps are for is that no contact closes too far. A heap at
+/// rest begins at its answer and stays there.
+///
+/// Friction is that of the exact solver (friction.h): a patch for all contacts on one pair of surfaces, at
+/// their centre of pressure of the last frame, with its anchor; its force in the surface and its torque about
+/// the normal are bounded together by what the patch's rows push.
+///
+/// Contacts that overlap are asked to open. If a body is wedged, that makes the rows infeasible, and each
+/// sweep would add as much to the forces as the one before. A problem whose sweeps have not converged after a
+/// third of their number is therefore set back to the forces it began with; from then on, and for some time
+/// after, its contacts are only kept from closing further. Forces that friction makes grow from sweep to sweep
+/// are bounded in the last sweeps, in which friction may not exceed what it was.
+
+#include "tactum/dynamics/friction.h"
+#include "tactum/dynamics/row_memory.h"
+
+namespace tactum {
+
+class Sweeps {
+ public:
+  Sweeps(std::size_t most_rows, std::size_t bodies);
+
+  /// Takes a problem whose contact rows are `contacts`; `memory` has their states from `first_state` on.
+  /// Steps are of `h` seconds.
+  void begin(const ContactRows& contacts, const ContactScale& scale, std::span<const Pose> X_WB,
+             const FrictionAnchors& anchors, std::size_t first_state, RowMemory& memory, double h,
+             ContactProblem& problem) noexcept;
+  /// Asks of a contact to close by `by_m` less.
+  void tighten(std::size_t contact, double by_m, ContactProblem& problem) noexcept;
+  /// At most so many sweeps; may be called again after tighten(). They have converged when the last one changed
+  /// no displacement by more than `harmless_m`, with friction as the last sweeps have it; sweeps go on to far
+  /// less.
+  SolverResult solve(int max_sweeps, double harmless_m, ContactProblem& problem) noexcept;
+  /// Sets the rows' impulses and their states.
+  void end(std::span<ContactRow> rows, std::size_t first_state, RowMemory& memory) const noexcept;
+  /// Keeps the anchors; the step led to X_WB.
+  void keep_anchors(const ContactRows& contacts, std::span<const Pose> X_WB,
+                    FrictionAnchors& anchors) noexcept;
+
+  /// The patches with friction, and the force in the surface that acts on body_a of each [N].
+  std::span<const FrictionPatch> patches() const noexcept { return patches_; }
+  Vec3 friction_force(std::size_t patch) const noexcept;
+  /// ... and the torque beside it.
+  Vec3 friction_torque(std::size_t patch) const noexcept;
+
+ private:
+  /// How a force has gone from sweep to sweep.
+  struct Force {
+    double now = 0.0, before = 0.0, swept = 0.0, begun = 0.0;
+  };
+  struct Row {
+    Force force;
+    double mobility = 0.0;  // |g|^2 [m/N]
+    double opening = 0.0;   // how much of the row's offset is to open a gap [m]
+    bool wedged = false;    // it was asked to open, and had no room to
+    int patch = -1;         // of friction
+  };
+  struct Friction3 {
+    Force along, across, about;  // [N, N, N m]
+    double load = 0.0;           // of the patch's rows, in this sweep [N]
+    double most = 0.0;           // of the force, beside the cone [N]
+  };
+  /// How far the sweeps have come since they began anew.
+  struct Pace {
+    double sweeps = 0.0;
+    double last_change = 0.0;  // of the forces, squared
+  };
+
+  void make_patches(const ContactRows& contacts, const ContactScale& scale, std::span<const Pose> X_WB,
+                    const FrictionAnchors& anchors, ContactProblem& problem) noexcept;
+  double sweep(ContactProblem& problem) noexcept;
+  double relax_joint(std::size_t joint, ContactProblem& problem) noexcept;
+  double relax_friction(std::size_t patch, ContactProblem& problem) noexcept;
+  bool close_only(ContactProblem& problem) noexcept;
+  void limit_friction() noexcept;
+  void accelerate(Pace& pace, ContactProblem& problem) noexcept;
+  template <class Visit>
+  void for_each_force(ContactProblem& problem, const Visit& visit) noexcept;
+
+  ReservedVector<Row> rows_;      // as the problem's
+  ReservedVector<Force> joints_;  // as its joint frictions
+  ReservedVector<FrictionPatch> patches_;
+  ReservedVector<Friction3> frictions_;  // as patches_
+  ReservedVector<int> order_;            // contact rows by their surfaces; scratch
+  std::size_t first_contact_ = 0;
+  double h_ = 0.0;  // of the step [s]
+};
+
+}  // namespace tactum
