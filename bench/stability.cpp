@@ -117,7 +117,7 @@ WallTrial try_wall(const WallSetup& setup, double stiffness, double seconds) {
   const double felt = setup.turning ? kFelt_m_per_s / kLever_m : kFelt_m_per_s;
   trial.pressed /= std::max(1.0, frames[2]);
   trial.rest_speed = fastest[2];
-  trial.held = fastest[2] < felt || fastest[2] < 0.9 * fastest[1];
+  trial.at_rest = fastest[2] < felt || fastest[2] < 0.9 * fastest[1];
   trial.passive = trial.lowest_J > -kMade_J;
   return trial;
 }
@@ -132,7 +132,7 @@ WallRow stiffest_wall(const WallSetup& setup) {
   row.alone = wall_bound_alone(setup);
   row.bound = wall_bound(setup);
   constexpr double kHighest = 4.0;  // times the bound: nobody looks farther
-  row.held = largest(kHighest * row.bound, [&](double k) { return try_wall(setup, k).held; });
+  row.at_rest = largest(kHighest * row.bound, [&](double k) { return try_wall(setup, k).at_rest; });
   row.passive = largest(kHighest * row.bound, [&](double k) { return try_wall(setup, k).passive; });
   return row;
 }
@@ -173,7 +173,7 @@ nlohmann::ordered_json to_json(const WallRow& row) {
           {"bound_alone", row.alone},
           {"bound", row.bound},
           {"passive", row.passive},
-          {"held", row.held}};
+          {"at_rest", row.at_rest}};
 }
 
 }  // namespace tactum::bench

@@ -194,21 +194,22 @@ TEST(ContactFinder, PairsOfTheHeldPartAreTestedBeforeAllOthers) {
     bodies.push_back({&part, true});
   }
   const std::vector<double> reach(6, 1e-3);
-  const std::vector<std::uint8_t> urgency = {urgency::kOther, urgency::kOther,       urgency::kOther,
-                                             urgency::kHeld,  urgency::kTouchesHeld, urgency::kOther};
+  const std::vector<std::uint8_t> urgency = {urgency::kOther,   urgency::kOther,          urgency::kOther,
+                                             urgency::kGrasped, urgency::kTouchesGrasped, urgency::kOther};
   ContactFinder finder(bodies, X);
   ContactFinder all(bodies, X);
   for (ContactFinder* each : {&finder, &all}) each->find_near_pairs(X, reach, 1e-4);
   all.find_patches(X, 1 << 20);
-  int of_held = 0;
-  for (const ContactPatch& patch : all.patches()) of_held += patch.body_a == 3 || patch.body_b == 3 ? 1 : 0;
+  int of_grasped = 0;
+  for (const ContactPatch& patch : all.patches())
+    of_grasped += patch.body_a == 3 || patch.body_b == 3 ? 1 : 0;
   const int budget = all.work().exact_tests / 2;
   finder.find_patches(X, budget, PatchPoints::kQuadrature, urgency);
   int found = 0;
   for (const ContactPatch& patch : finder.patches()) found += patch.body_a == 3 || patch.body_b == 3 ? 1 : 0;
-  EXPECT_GT(of_held, 5);
-  EXPECT_EQ(found, of_held);
-  EXPECT_EQ(finder.work().left_of_held, 0);
+  EXPECT_GT(of_grasped, 5);
+  EXPECT_EQ(found, of_grasped);
+  EXPECT_EQ(finder.work().left_of_grasped, 0);
   EXPECT_FALSE(finder.blocked(3) && finder.work().left_unproven == 0);
   EXPECT_GT(finder.work().left_unproven, 0);
   // With less than its own pairs need, it is told that it must not move.
@@ -216,7 +217,7 @@ TEST(ContactFinder, PairsOfTheHeldPartAreTestedBeforeAllOthers) {
   poor.find_near_pairs(X, reach, 1e-4);
   poor.find_patches(X, 3, PatchPoints::kQuadrature, urgency);
   EXPECT_EQ(poor.work().exact_tests, 3);
-  EXPECT_GT(poor.work().left_of_held, 0);
+  EXPECT_GT(poor.work().left_of_grasped, 0);
   EXPECT_TRUE(poor.blocked(3));
 }
 

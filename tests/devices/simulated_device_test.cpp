@@ -94,8 +94,8 @@ TEST(SimulatedDevice, CoulombFrictionHoldsAndBrakes) {
   model.friction_N = 0.5;
   SimulatedDevice device(model, no_hand(), nullptr);
   ASSERT_TRUE(device.open());
-  const DeviceSample held = run(device, 0, 1000, {{0.499, 0, 0}, {0, 0, 0}});
-  EXPECT_EQ(held.X_DH.p, Vec3(Vec3::Zero())) << "a push below the friction moves nothing, not even slowly";
+  const DeviceSample stuck = run(device, 0, 1000, {{0.499, 0, 0}, {0, 0, 0}});
+  EXPECT_EQ(stuck.X_DH.p, Vec3(Vec3::Zero())) << "a push below the friction moves nothing, not even slowly";
   // Thrown at 0.4 m/s it stops after v^2 m / (2 F) = 16 mm and stays.
   ASSERT_TRUE(device.write({}));
   device.place({}, {{0, 0.4, 0}, {0, 0, 0}});

@@ -304,12 +304,12 @@ TEST(FreeBodies, LimitsSpringsAndFrictionOfJoints) {
       .kind = JointKind::kHinge, .axis_W = Vec3::UnitY(), .anchor_W = {0.57, 0, 0}, .friction = 0.01};
   const int sprung = box.add(cube(0.01), at(0, 0, 0), {}, spring);
   const int dropped = box.add(cube(0.01), at(0.3, 0, 0), {}, stopped);
-  const int held = box.add(cube(0.01), at(0.6, 0, 0), {}, stiff);  // 0.0024 N m of gravity
+  const int braked = box.add(cube(0.01), at(0.6, 0, 0), {}, stiff);  // 0.0024 N m of gravity
   box.run(5.0);
   const double weight = box.world.bodies[0].mass_kg * 9.81;
   EXPECT_NEAR(box.X(sprung).p.z(), -weight / 20.0, 1e-9);
   EXPECT_NEAR(box.X(dropped).p.z(), -0.03, 1e-9);
-  EXPECT_NEAR(box.X(held).p.z(), 0.0, 1e-12);
+  EXPECT_NEAR(box.X(braked).p.z(), 0.0, 1e-12);
 }
 
 TEST(FreeBodies, FastAndSmallDoesNotPassThroughThin) {

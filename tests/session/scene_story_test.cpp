@@ -120,7 +120,7 @@ TEST(SceneStory, MovingObjectsKeepTheirMomentum) {
   const RunRecord& record = session->record();
   EXPECT_EQ(record.penetrating_frames, 0u);
   EXPECT_GT(blows, 0);
-  EXPECT_TRUE(!whole || record.held_contact_frames > 0);
+  EXPECT_TRUE(!whole || record.grasped_contact_frames > 0);
   EXPECT_LT(record.max_momentum_off_Ns, 1e-9);
   EXPECT_LT(record.forced_short_frames, frames / 100);
 }

@@ -220,11 +220,11 @@ TEST(FrameFeed, TheForcesOfAPictureAddUpToTheContactStage) {
       while (feed_.pop(sample)) {
       }
       if (!feed_.look() || feed_.picture().index != session_.last_report().index) return true;
-      const int held = session_.scene().settings.tool.body;
+      const int grasped = session_.scene().settings.tool.body;
       Vec3 sum = Vec3::Zero();
       for (const ShownContact& contact : feed_.picture().contacts) {
-        if (contact.body_a == held) sum += contact.force_N * contact.n_W;
-        if (contact.body_b == held) sum -= contact.force_N * contact.n_W;
+        if (contact.body_a == grasped) sum += contact.force_N * contact.n_W;
+        if (contact.body_b == grasped) sum -= contact.force_N * contact.n_W;
       }
       const Vec3 told(sample.values[0], sample.values[1], sample.values[2]);
       worst = std::max(worst, (sum - told).norm());

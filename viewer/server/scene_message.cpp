@@ -261,7 +261,7 @@ std::string run_message(const Session& session, const UserSettings& settings, co
                         {"real_time", facts.loop_in_real_time},
                         {"bodies", bodies_json(scene.world)},
                         {"field", field_json(scene.world)},
-                        {"held", tool.body},
+                        {"grasped", tool.body},
                         {"picks", tool.picks},
                         {"X_BH", pose_json(tool.X_BH)},
                         {"device", device_json(session, facts)},
@@ -299,7 +299,7 @@ std::string geometry_of(const World& world) {
 
 void write_picture(const FramePicture& picture, std::string& out) {
   wire::put(out, static_cast<std::uint32_t>(picture.index));
-  wire::put(out, static_cast<std::uint32_t>(picture.held + 1));
+  wire::put(out, static_cast<std::uint32_t>(picture.grasped_body + 1));
   wire::put(out, static_cast<std::uint32_t>(picture.X_WB.size()));
   wire::put(out, static_cast<std::uint32_t>(picture.contacts.size()));
   wire::put(out, static_cast<std::uint32_t>(picture.contacts_left_out));

@@ -88,9 +88,9 @@ void ContactFinder::find_patches(std::span<const Pose> X_WB, int budget, PatchPo
   candidate_order_.clear();
   for (SeamCandidate& candidate : candidates_) candidate_order_.push_back(&candidate);
   work_.capacity_reached |= !settle_seams(candidate_order_, X_WB, steady_, patches_);
-  for (const bool held : {true, false})
+  for (const bool grasped : {true, false})
     for (const SweepAndPrune::Pair& near : sweep_.pairs())
-      if (meet_by_surfaces(near.a, near.b) && of_held(near.a, near.b) == held)
+      if (meet_by_surfaces(near.a, near.b) && of_grasped(near.a, near.b) == grasped)
         test_surfaces(near.a, near.b, X_WB);
   work_.patches = static_cast<int>(patches_.size());
 }
@@ -146,7 +146,7 @@ double ContactFinder::bound_at(const Pair& pair, const Answer& answer, const Pos
 /// Removes the pairs whose last answer still holds from those that are due. Returns how many of the others
 /// may be tested.
 int ContactFinder::skip_still_valid(std::span<const Pose> X_WB) noexcept {
-  int held = 0;
+  int grasped = 0;
   const auto needs_no_test = [&](const DuePair& due) {
     Pair& pair = pairs_[Index(due.pair)];
     const Pose X_AB = relative_pose(X_WB[Index(pair.body_a)], X_WB[Index(pair.body_b)]);
@@ -167,12 +167,12 @@ int ContactFinder::skip_still_valid(std::span<const Pose> X_WB) noexcept {
       emitted_.push_back(due.pair);
       return true;
     }
-    held += due.urgency == urgency::kHeld ? 1 : 0;
+    grasped += due.urgency == urgency::kGrasped ? 1 : 0;
     return false;
   };
   due_.erase(std::remove_if(due_.begin(), due_.end(), needs_no_test), due_.end());
   work_.known = static_cast<int>(emitted_.size());
-  return std::min(tests_left_, held + std::max(0, tests_left_ - held) / 2);
+  return std::min(tests_left_, grasped + std::max(0, tests_left_ - grasped) / 2);
 }
 
 /// Counts a pair that is not tested in this frame, and blocks its bodies where that is not safe.
@@ -181,7 +181,7 @@ void ContactFinder::skip(int a, int b, double gap, std::int64_t last_checked) no
   ++work_.unchecked;
   if (gap > moves_by(a) + moves_by(b)) return;
   ++work_.left_unproven;
-  work_.left_of_held += of_held(a, b) ? 1 : 0;
+  work_.left_of_grasped += of_grasped(a, b) ? 1 : 0;
   if (last_checked >= 0)
     work_.longest_unchecked = std::max(work_.longest_unchecked, static_cast<int>(frame_ - last_checked));
   blocked_[Index(a)] = blocked_[Index(b)] = 1;
@@ -275,14 +275,14 @@ int ContactFinder::distances_at(std::span<const Pose> X_WB, std::span<double> di
                                 std::span<GapAnswer> asked, std::span<const double> enough,
                                 int keep_back) noexcept {
   const int before = tests_left_;
-  for (const bool held : {true, false}) {
+  for (const bool grasped : {true, false}) {
     for (Index i = 0; i < patches_.size();) {
       const ContactPatch& patch = patches_[i];
       Index end = i + 1;
       while (patch.of_surfaces && end < patches_.size() && patches_[end].of_surfaces &&
              patches_[end].body_a == patch.body_a && patches_[end].body_b == patch.body_b)
         ++end;
-      if (asked[i] == GapAnswer::kAsked && of_held(patch.body_a, patch.body_b) == held) {
+      if (asked[i] == GapAnswer::kAsked && of_grasped(patch.body_a, patch.body_b) == grasped) {
         if (patch.of_surfaces) {
           surface_distances_at({patches_.data() + i, end - i}, X_WB, distance.subspan(i, end - i),
                                asked.subspan(i, end - i), keep_back);

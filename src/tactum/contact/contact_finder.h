@@ -128,7 +128,7 @@ class ContactFinder final : public GapOracle {
   void list_due_pairs() noexcept;
   int skip_still_valid(std::span<const Pose> X_WB) noexcept;
   void skip(int a, int b, double gap, std::int64_t last_checked) noexcept;
-  bool of_held(int a, int b) const noexcept { return urgency_of(a, b) == urgency::kHeld; }
+  bool of_grasped(int a, int b) const noexcept { return urgency_of(a, b) == urgency::kGrasped; }
   std::uint8_t urgency_of(int a, int b) const noexcept;
   void test(Pair& pair, const Pose& X_AB) noexcept;
   void emit_patch(Pair& pair, const PairDistance& found, const Pose& X_AB) noexcept;

@@ -17,7 +17,7 @@ namespace tactum {
 
 /// How a body's pairs stand in the order: what the hand feels, what it feels next, the rest.
 namespace urgency {
-inline constexpr std::uint8_t kHeld = 0, kTouchesHeld = 1, kOther = 2;
+inline constexpr std::uint8_t kGrasped = 0, kTouchesGrasped = 1, kOther = 2;
 }  // namespace urgency
 
 /// A pair that may need an exact test this frame.

@@ -15,15 +15,15 @@ std::vector<CollisionBody> collision_bodies(const World& world) {
   return bodies;
 }
 
-void find_urgency(int held, ContactStage& stage) {
+void find_urgency(int grasped, ContactStage& stage) {
   std::vector<std::uint8_t>& urgency = stage.urgency;
   std::fill(urgency.begin(), urgency.end(), urgency::kOther);
-  if (held < 0) return;
+  if (grasped < 0) return;
   for (const ContactPatch& patch : stage.finder.patches()) {
-    if (patch.body_a == held) urgency[Index(patch.body_b)] = urgency::kTouchesHeld;
-    if (patch.body_b == held) urgency[Index(patch.body_a)] = urgency::kTouchesHeld;
+    if (patch.body_a == grasped) urgency[Index(patch.body_b)] = urgency::kTouchesGrasped;
+    if (patch.body_b == grasped) urgency[Index(patch.body_a)] = urgency::kTouchesGrasped;
   }
-  urgency[Index(held)] = urgency::kHeld;
+  urgency[Index(grasped)] = urgency::kGrasped;
 }
 
 /// Distances are those the frame found, before anything moved.
@@ -57,8 +57,8 @@ ContactStage::ContactStage(const World& world, const FrameSettings& settings, st
 }
 
 void find_near_pairs(const FrameSettings& settings, std::span<const Pose> X_WB,
-                     std::span<const double> motion_bound, int held, ContactStage& stage) noexcept {
-  find_urgency(held, stage);
+                     std::span<const double> motion_bound, int grasped, ContactStage& stage) noexcept {
+  find_urgency(grasped, stage);
   stage.finder.find_near_pairs(X_WB, motion_bound, settings.penalty.min_tolerance_m);
 }
 

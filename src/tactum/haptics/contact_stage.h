@@ -20,7 +20,7 @@ struct ContactStage {
 /// Finds which pairs could touch, when no point of body i moves farther than `motion_bound[i]` [m]. What is
 /// held, and what touched it in the last frame, is urgent: fills stage.urgency.
 void find_near_pairs(const FrameSettings& settings, std::span<const Pose> X_WB,
-                     std::span<const double> motion_bound, int held, ContactStage& stage) noexcept;
+                     std::span<const double> motion_bound, int grasped, ContactStage& stage) noexcept;
 
 /// Finds where the near pairs touch. Adds the work, the smallest distance and the flags to the report.
 std::span<const ContactPatch> find_patches(const World& world, const FrameSettings& settings,

@@ -9,7 +9,7 @@
 #include "tactum/response/constraint_trial.h"
 #include "tactum/response/field_pull.h"
 #include "tactum/response/free_bodies.h"
-#include "tactum/response/held_part.h"
+#include "tactum/response/grasped_part.h"
 #include "tactum/response/momentum.h"
 #include "tactum/response/waiting.h"
 
@@ -32,22 +32,22 @@ constexpr double kStands_s = 0.002;
 void add_bodies(bool at_rest, ConstraintStep& step) {
   ConstraintProblem& problem = step.own.constraint.problem;
   problem.clear();
-  const int held = step.held.body;
+  const int grasped = step.grasped.body;
   bool room = true;
-  if (held >= 0) {
-    const Pose& X_WB = step.bodies.X_WB[Index(held)];
+  if (grasped >= 0) {
+    const Pose& X_WB = step.bodies.X_WB[Index(grasped)];
     Vec6 wanted = Vec6::Zero();
     step.own.constraint.wanted = wanted;
     if (!at_rest) {
       step.own.constraint.wanted = wanted_by_hand(step);
       wanted = with_load(step, step.own.constraint.wanted);
     }
-    room &= problem.add_held(held, step.world.bodies[Index(held)], X_WB, X_WB * step.held.X_BH.p,
-                             step_metric(step.settings.coupling, step.held, step.dt_s), wanted);
+    room &= problem.add_grasped(grasped, step.world.bodies[Index(grasped)], X_WB, X_WB * step.grasped.X_BH.p,
+                                step_metric(step.settings.coupling, step.grasped, step.dt_s), wanted);
   }
   for (Index i = 0; i < step.world.bodies.size(); ++i) {
     const int b = static_cast<int>(i);
-    if (b == held || !step.own.free.near_held[i]) continue;
+    if (b == grasped || !step.own.free.near_grasped[i]) continue;
     const Vec6 on = at_rest ? Vec6(Vec6::Zero()) : to_vector(step.bodies.V_WB[i] * step.dt_s);
     room &= problem.add_free(b, step.world.bodies[i], step.bodies.X_WB[i], on, step.dt_s);
   }
@@ -65,7 +65,7 @@ bool solved(const QpAnswer& answer, FrameReport& report) {
 using RowNames = StaticVector<std::uint64_t, kMostUnknowns>;
 
 /// The names of the contact rows that hold in the last answer.
-void note_held(const ConstraintState& c, RowNames& names) {
+void note_active_rows(const ConstraintState& c, RowNames& names) {
   names.clear();
   for (const QpActive& active : c.problem.answer().active) {
     const Index row = Index(active.row) - c.rows.first;
@@ -115,7 +115,7 @@ bool solve_sliding(const FrameSettings& settings, ConstraintState& c, FrameRepor
       return solve_on(settings, c.problem, report);
     }
     if (round == 0) {
-      note_held(c, c.warm_start.sticking);
+      note_active_rows(c, c.warm_start.sticking);
       c.friction.note_sticking(c.problem);
     }
     if (!c.friction.let_slip(c.skin_m, c.problem)) break;
@@ -126,7 +126,7 @@ bool solve_sliding(const FrameSettings& settings, ConstraintState& c, FrameRepor
 /// Keeps what the answer says of forces: impulses, the rows that hold, the wrench at the handle.
 void keep_forces(ConstraintStep& step) {
   ConstraintState& c = step.own.constraint;
-  note_held(c, c.warm_start.in_the_end);
+  note_active_rows(c, c.warm_start.in_the_end);
   for (ContactRow& row : own_rows(step)) row.impulse = 0.0;
   for (const QpActive& active : c.problem.answer().active) {
     const Index row = Index(active.row) - c.rows.first;
@@ -151,7 +151,7 @@ double trusted_share(const ConstraintStep& step) {
     const double way = way_of(step, mover);
     const double trusted = step.own.reach[Index(mover.body)] - kReachMargin * c.skin_m;
     if (way * share > trusted) share = trusted / way;
-    if (mover.body != step.held.body) continue;
+    if (mover.body != step.grasped.body) continue;
     const double turn = c.step_problem().displacement(mover.body).tail<3>().norm();
     if (turn * share > step.settings.constraint.max_turn_rad)
       share = step.settings.constraint.max_turn_rad / turn;
@@ -189,7 +189,7 @@ void restore(ConstraintStep& step) {
   bool tight = false;
   for (Index p = 0; p < c.trial.gap_now.size(); ++p)
     tight |= step.own.free.patch_asked[p] && c.trial.gap_now[p] < 0.5 * c.skin_m;
-  if (!tight || step.gaps.blocked(step.held.body)) return;
+  if (!tight || step.gaps.blocked(step.grasped.body)) return;
   add_bodies(true, step);
   c.rows.first = add_contact_rows(true, c.problem, step);
   begin(rows_of(c.warm_start.in_the_end, c.rows.first, c), c.problem);
@@ -210,7 +210,7 @@ bool find_forces(ConstraintStep& step) {
   c.friction.clear();
   begin(rows_of(c.warm_start.without_friction, c.rows.first, c), c.problem);
   bool found = solve_on(step.settings, c.problem, step.report);
-  note_held(c, c.warm_start.without_friction);
+  note_active_rows(c, c.warm_start.without_friction);
   if (found && c.friction.begin(step.world, step.settings.friction, own_rows(step), step.patches,
                                 step.bodies.X_WB, c.skin_m, c.rows.first, c.problem)) {
     begin_sticking(c);
@@ -238,7 +238,7 @@ bool find_again(ConstraintStep& step) {
 /// Goes where the hand wants as far as everything stays open; returns the share of the answer that was taken.
 double advance(ConstraintStep& step) {
   if (!find_forces(step)) return 0.0;
-  if (step.gaps.blocked(step.held.body)) return 0.0;
+  if (step.gaps.blocked(step.grasped.body)) return 0.0;
   double share = 0.0;
   for (int round = 0; round <= kFeedbacks; ++round) {
     if (round > 0) {
@@ -260,11 +260,11 @@ double advance(ConstraintStep& step) {
 
 /// The island of the held part: its bodies' velocities are what they did, but for what only opened a gap,
 /// which no force did. Returns the share of the answer that was taken.
-double move_held_island(ConstraintStep& step) {
+double move_grasped_island(ConstraintStep& step) {
   ConstraintState& c = step.own.constraint;
   step.own.free.patch_asked.clear();
   for (const ContactPatch& patch : step.patches)
-    step.own.free.patch_asked.push_back(step.own.free.of_held(patch) ? 1 : 0);
+    step.own.free.patch_asked.push_back(step.own.free.of_grasped(patch) ? 1 : 0);
   restore(step);
   const double share = advance(step);
   c.trust.consecutive_rejections = share > 0.0 ? 0 : c.trust.consecutive_rejections + 1;
@@ -273,7 +273,7 @@ double move_held_island(ConstraintStep& step) {
   c.friction.end(step.world, own_rows(step), step.patches, c.rows.first, c.problem, step.bodies.X_WB);
   const std::vector<Pose>& before = share > 0.0 ? c.trial.X_WB : step.bodies.X_WB;  // take_trial swaps them
   for (Index i = 0; i < step.world.bodies.size(); ++i)
-    if (step.own.free.near_held[i])
+    if (step.own.free.near_grasped[i])
       step.bodies.V_WB[i] = twist_between(before[i], step.bodies.X_WB[i], step.dt_s);
   return share;
 }
@@ -281,8 +281,8 @@ double move_held_island(ConstraintStep& step) {
 /// The length that is trusted in the next frame, from what the held part's island did in this one.
 void trust_step(ConstraintStep& step) {
   double way = 0.0;
-  for (Index i = 0; i < step.own.free.near_held.size(); ++i) {
-    if (!step.own.free.near_held[i]) continue;
+  for (Index i = 0; i < step.own.free.near_grasped.size(); ++i) {
+    if (!step.own.free.near_grasped[i]) continue;
     const Twist moved = twist_between(step.X_WB_start[i], step.bodies.X_WB[i], 1.0);
     way = std::max(way, moved.v.norm() + moved.w.norm() * step.radius_m[i]);
   }
@@ -312,23 +312,23 @@ int pushing_points(std::span<const ContactRow> corners, int body, const Constrai
 
 /// The contacts as they push: normal forces of corners, and of friction the edges of its cones.
 void report_rows(ConstraintStep& step) {
-  const int held = step.held.body;
+  const int grasped = step.grasped.body;
   const ConstraintState& c = step.own.constraint;
   if (c.rows.shades) exchange_normals(step);
   step.report.contact_points = static_cast<int>(c.rows.names.size());
   use_of_friction(step.world, c.friction, step.patches, c.rows.first, c.problem, own_rows(step),
                   step.own.constraint.friction_uses);
   step.report.friction = sum_of(c.friction_uses);
-  step.report.held_contact_points =
-      pushing_points({step.own.contact_rows.rows.data(), c.rows.names.size()}, held, c);
+  step.report.grasped_contact_points =
+      pushing_points({step.own.contact_rows.rows.data(), c.rows.names.size()}, grasped, c);
   Vec3 torque = Vec3::Zero();
-  Vec3 origin = held < 0 ? Vec3(Vec3::Zero()) : step.X_WB_start[Index(held)].p;
-  if (step.own.free.held_island >= 0) {
+  Vec3 origin = grasped < 0 ? Vec3(Vec3::Zero()) : step.X_WB_start[Index(grasped)].p;
+  if (step.own.free.grasped_island >= 0) {
     origin = c.problem.movers().front().origin;
-    torque = c.friction.add_forces(held, step.dt_s, c.problem, step.own.contact_rows.rows);
+    torque = c.friction.add_forces(grasped, step.dt_s, c.problem, step.own.contact_rows.rows);
   }
-  if (held < 0) return;
-  step.report.restoring = contact_wrench(step.own.contact_rows.rows, held, origin, step.dt_s);
+  if (grasped < 0) return;
+  step.report.restoring = contact_wrench(step.own.contact_rows.rows, grasped, origin, step.dt_s);
   step.report.restoring.t += torque;
 }
 
@@ -341,9 +341,9 @@ void trusted_reach(const MotionInput& input, const WorldState& bodies, Constrain
     own.reach[i] = kReachMargin * c.skin_m;
     if (!input.world.bodies[i].moves()) continue;
     const Twist& V = bodies.V_WB[i];
-    const bool held = static_cast<int>(i) == input.held.body;
-    if (!held) own.reach[i] += (V.v.norm() + pull + V.w.norm() * input.radius_m[i]) * input.dt_s;
-    if (held || own.free.near_held[i]) own.reach[i] += c.trust.length_m;
+    const bool grasped = static_cast<int>(i) == input.grasped.body;
+    if (!grasped) own.reach[i] += (V.v.norm() + pull + V.w.norm() * input.radius_m[i]) * input.dt_s;
+    if (grasped || own.free.near_grasped[i]) own.reach[i] += c.trust.length_m;
   }
 }
 
@@ -355,7 +355,7 @@ void respond_constrained(ConstraintStep& step) noexcept {
   c.trial.gap_least.resize(c.trial.gap_now.size());
   c.trial.gap_answer.resize(c.trial.gap_now.size());
 
-  step.own.free.others = others_move(step.world, step.held.body);
+  step.own.free.others = others_move(step.world, step.grasped.body);
   let_wait(step);
   find_islands(step);
   begin_balance(step);
@@ -363,8 +363,8 @@ void respond_constrained(ConstraintStep& step) noexcept {
   strike(step);
   move_free_bodies(step);
   double share = 1.0;  // of the held island's step
-  if (step.own.free.held_island >= 0) {
-    share = move_held_island(step);
+  if (step.own.free.grasped_island >= 0) {
+    share = move_grasped_island(step);
   } else {
     c.friction.forget();
   }

@@ -52,7 +52,7 @@ double work(const Push& push, const Vec3& centre, const Vec6& x) {
 
 Index unknowns_of(const Joint& joint) noexcept { return rank_of(joint) + (joint.friction > 0.0 ? 1 : 0); }
 
-HeldMetric held_metric(const Coupling& coupling, double dt_s) noexcept {
+GraspMetric grasp_metric(const Coupling& coupling, double dt_s) noexcept {
   return {coupling.stiffness_N_per_m + coupling.damping_Ns_per_m / dt_s,
           coupling.stiffness_Nm_per_rad + coupling.damping_Nms_per_rad / dt_s};
 }
@@ -60,7 +60,7 @@ HeldMetric held_metric(const Coupling& coupling, double dt_s) noexcept {
 Vec6 balanced_step(const Coupling& coupling, double dt_s, const Pose& X_WH_proxy, const Pose& X_WH,
                    const Twist& V_WH) noexcept {
   // k (x - way) + b (x / dt - v) = 0.
-  const HeldMetric metric = held_metric(coupling, dt_s);
+  const GraspMetric metric = grasp_metric(coupling, dt_s);
   const Twist way = twist_between(X_WH_proxy, X_WH, 1.0);
   return column(
       (coupling.stiffness_N_per_m * way.v + coupling.damping_Ns_per_m * V_WH.v) / metric.stiffness_N_per_m,
@@ -133,8 +133,8 @@ void ConstraintProblem::add_joint(const Mover& mover, const Body& what, const Po
         {mover.body, {along.p_W, -along.force, -along.torque}, std::max(0.0, joint.upper - position)});
 }
 
-bool ConstraintProblem::add_held(int body, const Body& what, const Pose& X_WB, const Vec3& p_WH,
-                                 const HeldMetric& metric, const Vec6& wanted) noexcept {
+bool ConstraintProblem::add_grasped(int body, const Body& what, const Pose& X_WB, const Vec3& p_WH,
+                                    const GraspMetric& metric, const Vec6& wanted) noexcept {
   const double k_t = metric.stiffness_N_per_m;
   const double k_r = metric.stiffness_Nm_per_rad;
   Mover* const mover = next_mover(body, rank_of(what.joint), X_WB.p, p_WH);

@@ -28,12 +28,12 @@
 namespace tactum {
 
 /// The coupling as the proxy feels it over one frame: F = M (x - x*) at the handle, diagonal.
-struct HeldMetric {
+struct GraspMetric {
   double stiffness_N_per_m = 0.0;     ///< k_t + b_t / dt [N/m]
   double stiffness_Nm_per_rad = 0.0;  ///< k_r + b_r / dt [N m/rad]
 };
 
-HeldMetric held_metric(const Coupling& coupling, double dt_s) noexcept;
+GraspMetric grasp_metric(const Coupling& coupling, double dt_s) noexcept;
 
 /// The displacement of the handle, (m, rad), at which the coupling's spring and damper are in balance.
 Vec6 balanced_step(const Coupling& coupling, double dt_s, const Pose& X_WH_proxy, const Pose& X_WH,
@@ -72,8 +72,8 @@ class ConstraintProblem {
   void clear() noexcept;
   /// The held part. `wanted` is told at the handle p_WH. False, and the body stays where it is, when there is
   /// no room for its unknowns.
-  bool add_held(int body, const Body& what, const Pose& X_WB, const Vec3& p_WH, const HeldMetric& metric,
-                const Vec6& wanted) noexcept;
+  bool add_grasped(int body, const Body& what, const Pose& X_WB, const Vec3& p_WH, const GraspMetric& metric,
+                   const Vec6& wanted) noexcept;
   /// A body that resists with its inertia; `wanted` is where it goes when nothing touches it.
   bool add_free(int body, const Body& what, const Pose& X_WB, const Vec6& wanted, double dt_s) noexcept;
   /// The same bodies, each wanting to go where the other problem's answer has it, and the rows of their

@@ -33,7 +33,7 @@ FreeBodies::FreeBodies(const World& world, const FrameSettings& settings)
     : islands(world),
       resting(Index(settings.budget.max_contact_points), world.bodies.size()),
       momentum(world),
-      near_held(world.bodies.size(), 0),
+      near_grasped(world.bodies.size(), 0),
       w_start(world.bodies.size(), Vec3::Zero()),
       w_free(world.bodies.size(), Vec3::Zero()),
       share(world.bodies.size(), 1.0),

@@ -99,15 +99,15 @@ struct FreeBodies {
   Islands islands;
   RestingContact resting;
   Momentum momentum;
-  int held_island = -1;         ///< the island that constraint.h answers for; -1: none
-  bool held_here = false;       ///< the held part's island had no room there
-  bool others = false;          ///< some body moves by itself
-  bool alone = true;            ///< nothing but the held part's island moves
-  std::vector<char> near_held;  ///< of each body: in the held part's island in the last frame
+  int grasped_island = -1;         ///< the island that constraint.h answers for; -1: none
+  bool grasped_here = false;       ///< the held part's island had no room there
+  bool others = false;             ///< some body moves by itself
+  bool alone = true;               ///< nothing but the held part's island moves
+  std::vector<char> near_grasped;  ///< of each body: in the held part's island in the last frame
 
   /// Whether a patch belongs to the island that constraint.h answers for.
-  bool of_held(const ContactPatch& patch) const noexcept {
-    return held_island >= 0 && islands.of_contact(patch.body_a, patch.body_b) == held_island;
+  bool of_grasped(const ContactPatch& patch) const noexcept {
+    return grasped_island >= 0 && islands.of_contact(patch.body_a, patch.body_b) == grasped_island;
   }
 
   // Scratch of one frame, one entry per body, or per patch.

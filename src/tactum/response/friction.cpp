@@ -80,7 +80,7 @@ void Friction::find_holding(const World& world, const PairCoefficients& settings
                             std::span<const ContactRow> rows, std::span<const ContactPatch> patches,
                             std::span<const Pose> X_WB, double skin_m) noexcept {
   for (const Anchor& last : anchors_) {
-    if (!last.held || patch_of(last.key) != nullptr) continue;
+    if (!last.pushed || patch_of(last.key) != nullptr) continue;
     FrictionPatch patch;
     patch.key = last.key;
     patch.coefficient = settings.between(last.key.body_a, last.key.body_b);
@@ -245,13 +245,13 @@ void Friction::end(const World& world, std::span<const ContactRow> rows,
     // The centre of all forces of the patch: its corners', and the cone's at the centre so far.
     double load = 0.0;
     Vec3 moment = Vec3::Zero();
-    bool held = false;
+    bool pushed = false;
     for (const QpActive& active : problem.answer().active) {
       const Index row = Index(active.row);
       if (row >= patch.first_row && row < patch.first_row + kRowsAPatch) {
         load += active.multiplier;
         moment += active.multiplier * patch.centre_W;
-        held |= active.multiplier > 0.0;
+        pushed |= active.multiplier > 0.0;
       } else if (row >= first_row && row - first_row < rows.size() &&
                  key_of(world, patches[Index(rows[row - first_row].patch)]) == patch.key) {
         load += active.multiplier;
@@ -265,7 +265,7 @@ void Friction::end(const World& world, std::span<const ContactRow> rows,
     Vec3 on_A_W = centre;
     if (patch.anchored && patch.slip_m == 0.0) on_A_W += apart(patch, X_WA, X_W_B);
     anchors_.push_back({patch.key, X_WA.inverse() * on_A_W, X_W_B.inverse() * centre, X_WA.inverse() * centre,
-                        patch.radius_m, patch.sticks_by, held});
+                        patch.radius_m, patch.sticks_by, pushed});
   }
 }
 

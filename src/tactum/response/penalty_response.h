@@ -42,7 +42,7 @@ class PenaltyResponse {
   bool rows_full() const noexcept { return contacts_.full; }
 
  private:
-  void pull_held(const StepInput& input, double rest_s, WorldState& bodies) noexcept;
+  void pull_grasped(const StepInput& input, double rest_s, WorldState& bodies) noexcept;
   void slow_joints(const World& world, double h_s, int spared, WorldState& bodies) noexcept;
 
   ContactRows contacts_;

@@ -27,7 +27,7 @@ struct GraspedPart {
 struct MotionInput {
   const World& world;
   const FrameSettings& settings;
-  const GraspedPart& held;
+  const GraspedPart& grasped;
   std::span<const double> radius_m;  ///< of each body: farthest point from its origin [m]
   double dt_s;                       ///< time from frame to frame [s]
 };

@@ -92,7 +92,7 @@ void let_go(ConstraintStep& step) {
   w.order.clear();
   for (Index i = 0; i < step.world.bodies.size(); ++i)
     if (step.world.bodies[i].moves() && !asleep(w, i) &&
-        (!step.gaps.blocked(static_cast<int>(i)) || static_cast<int>(i) == step.held.body))
+        (!step.gaps.blocked(static_cast<int>(i)) || static_cast<int>(i) == step.grasped.body))
       w.order.push_back(static_cast<int>(i));
   std::sort(w.order.begin(), w.order.end(), [&](int a, int b) {
     const Index i = Index(a);
@@ -106,7 +106,7 @@ void let_go(ConstraintStep& step) {
     const auto end = w.patch_of.begin() + w.first_patch[Index(body) + 1];
     const auto tests =
         static_cast<int>(std::count_if(begin, end, [&](int p) { return w.counted[Index(p)] == 0; }));
-    if (tests > left && body != step.held.body) continue;
+    if (tests > left && body != step.grasped.body) continue;
     left = std::max(0, left - tests);
     std::for_each(begin, end, [&](int p) { w.counted[Index(p)] = 1; });
     w.waits[Index(body)] = 0;

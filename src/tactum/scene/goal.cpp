@@ -54,14 +54,14 @@ double GoalRecord::measure(const Goal& goal, const World& world, const WorldStat
   return 0.0;
 }
 
-void GoalRecord::watch(const World& world, const WorldState& state, int held,
+void GoalRecord::watch(const World& world, const WorldState& state, int grasped,
                        std::span<const ContactRow> rows) noexcept {
-  if (held >= 0) {
-    picked_[Index(held)] = 1;
+  if (grasped >= 0) {
+    picked_[Index(grasped)] = 1;
     for (const ContactRow& row : rows) {
       if (!(row.impulse > 0.0) && !row.hit) continue;
-      if (row.body_a == held) touched_[Index(row.body_b)] = 1;
-      if (row.body_b == held) touched_[Index(row.body_a)] = 1;
+      if (row.body_a == grasped) touched_[Index(row.body_b)] = 1;
+      if (row.body_b == grasped) touched_[Index(row.body_a)] = 1;
     }
   }
   for (Index b = 0; b < angles_.size(); ++b) {

@@ -38,8 +38,8 @@ class GoalRecord {
   GoalRecord(const World& world, std::vector<Goal> goals);
 
   /// Takes one frame in. Hinges must turn by less than half a turn from frame to frame. No allocation.
-  /// `held` is the body in the hand, -1: none; `rows` are the frame's contacts.
-  void watch(const World& world, const WorldState& state, int held = -1,
+  /// `grasped` is the body in the hand, -1: none; `rows` are the frame's contacts.
+  void watch(const World& world, const WorldState& state, int grasped = -1,
              std::span<const ContactRow> rows = {}) noexcept;
 
   bool met(std::size_t goal) const noexcept;

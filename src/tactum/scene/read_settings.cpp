@@ -132,15 +132,15 @@ void read_tool(const TomlReader& root, Scene& scene) {
       return;
     }
     if (table.has("reach_m")) table.fail("reach_m", "\"reach_m\" is for picks = true only");
-    const int held = body_called(table, "body", scene.world);
-    if (held < 0) return;
-    const Body& body = scene.world.bodies[static_cast<std::size_t>(held)];
+    const int grasped = body_called(table, "body", scene.world);
+    if (grasped < 0) return;
+    const Body& body = scene.world.bodies[static_cast<std::size_t>(grasped)];
     if (!body.moves()) {
       table.fail("body", "a fixed body cannot be held", fmt::format("\"{}\"", body.name),
                  "a free or hinged body");
       return;
     }
-    tool.body = held;
+    tool.body = grasped;
     tool.X_BH.p = read_grasp(table, body);
     tool.X_BH.R = body.X_WB.R.transpose() * workspace.X_WD.R;
     handle_W = body.X_WB * tool.X_BH.p;

@@ -60,8 +60,8 @@ export class Why {
     const time = performance.now();
     if (!this.run || !picture || (!now && time - this.last < 120)) return;
     this.last = time;
-    const pushes = pushesOf(picture, this.run.held).sort((a, b) => Number(b.onHeld) - Number(a.onHeld) || size(b.force) - size(a.force));
-    const felt = pushes.filter((push) => push.onHeld);
+    const pushes = pushesOf(picture, this.run.grasped).sort((a, b) => Number(b.onGrasped) - Number(a.onGrasped) || size(b.force) - size(a.force));
+    const felt = pushes.filter((push) => push.onGrasped);
     const sum = felt.reduce((total, push) => total.map((v, i) => v + push.force[i]), [0, 0, 0]);
     this.showSentence(samples, sample, felt, sum);
     this.showContacts(pushes, sum, picture);
@@ -86,11 +86,11 @@ export class Why {
     const active = felt.filter((push) => size(push.force) > 0);
     const field = this.fieldText(samples, sample);
     let text: string;
-    if (run.held < 0) text = "Nothing is held, so nothing is felt.";
-    else if (active.length === 0) text = `You feel ${wrench}. Nothing touches ${this.called(run.held)}${field ? `; ${field}.` : ": this is its own weight, joint and damping."}`;
+    if (run.grasped < 0) text = "Nothing is held, so nothing is felt.";
+    else if (active.length === 0) text = `You feel ${wrench}. Nothing touches ${this.called(run.grasped)}${field ? `; ${field}.` : ": this is its own weight, joint and damping."}`;
     else {
-      const others = [...new Set(active.map((push) => this.called(push.contact.bodies.find((b) => b !== run.held) ?? run.held)))];
-      text = `You feel ${wrench}: ${this.called(run.held)} touches ${others.join(" and ")} in ` +
+      const others = [...new Set(active.map((push) => this.called(push.contact.bodies.find((b) => b !== run.grasped) ?? run.grasped)))];
+      text = `You feel ${wrench}: ${this.called(run.grasped)} touches ${others.join(" and ")} in ` +
         `${active.length} ${active.length === 1 ? "place" : "places"}, together they push ${withUnit(size(sum), "N")} ${direction(sum)}${field ? `; ${field}` : ""}.`;
     }
     this.sentence.textContent = `${samples.timeOf(sample).toFixed(3)} s. ${text}`;
@@ -121,7 +121,7 @@ export class Why {
       const push = shown[i];
       row.hidden = !push;
       if (!push) return;
-      const share = push.onHeld && total > 1e-9 ? dot(push.force, sum) / (total * total) : Number.NaN;
+      const share = push.onGrasped && total > 1e-9 ? dot(push.force, sum) / (total * total) : Number.NaN;
       const chosen = push.patch === this.chosen;
       row.classList.toggle("chosen", chosen);
       const [button, force, place] = [...row.cells].map((cell) => cell.firstElementChild as HTMLElement);
