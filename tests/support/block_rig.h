@@ -23,7 +23,7 @@ struct BlockRig : Rig {
   /// The sum of the contact forces at the handle less the wrench that is felt.
   Wrench unaccounted() const {
     const auto& grasped =
-        simulation->state().response.constraint()->memory().constraint.problem.movers().front();
+        simulation->state().response.constraint()->memory().constraint.problem.bodies().front();
     const Wrench at_handle = moved(report.restoring, grasped.centre - grasped.origin);
     return at_handle - report.coupling;
   }

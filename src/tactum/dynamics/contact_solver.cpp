@@ -65,8 +65,8 @@ class MotionProblem {
     const double per_h = 1.0 / h;
     double most_wanted = 0.0;
     for (const ContactRow& row : rows) {
-      const int a = mover(row.body_a, W);
-      const int b = mover(row.body_b, W);
+      const int a = body_of(row.body_a, W);
+      const int b = body_of(row.body_b, W);
       if (a < 0 || b < 0) return false;
       Row& r = rows_[n_];
       const Vec3& n = row.n_BA_W;
@@ -74,12 +74,12 @@ class MotionProblem {
       const Vec3 turn_b = (row.p_W - X_WB[Index(row.body_b)].p).cross(n);
       r.size = 0;
       // In the order of the columns, for H is kept below its diagonal.
-      if (mover_[Index(a)].first < mover_[Index(b)].first) {
-        project(mover_[Index(a)], n, turn_a, r);
-        project(mover_[Index(b)], -n, -turn_b, r);
+      if (bodies_[Index(a)].first < bodies_[Index(b)].first) {
+        project(bodies_[Index(a)], n, turn_a, r);
+        project(bodies_[Index(b)], -n, -turn_b, r);
       } else {
-        project(mover_[Index(b)], -n, -turn_b, r);
-        project(mover_[Index(a)], n, turn_a, r);
+        project(bodies_[Index(b)], -n, -turn_b, r);
+        project(bodies_[Index(a)], n, turn_a, r);
       }
       r.stiffness = row.stiffness * h * h;
       const Twist& V_a = V[Index(row.body_a)];
@@ -133,21 +133,21 @@ class MotionProblem {
   }
 
   void add_motion(std::span<Twist> V) const {
-    for (Index m = 0; m < movers_; ++m) {
-      const Mover& mover = mover_[m];
+    for (Index m = 0; m < body_count_; ++m) {
+      const ColumnBody& column_body = bodies_[m];
       Vec6 change = Vec6::Zero();
-      for (Index k = 0; k < mover.rank; ++k) change += mover.B[k] * z_[mover.first + k];
-      V[Index(mover.body)].v += change.head<3>();
-      V[Index(mover.body)].w += change.tail<3>();
+      for (Index k = 0; k < column_body.rank; ++k) change += column_body.B[k] * z_[column_body.first + k];
+      V[Index(column_body.body)].v += change.head<3>();
+      V[Index(column_body.body)].w += change.tail<3>();
     }
   }
 
  private:
   static constexpr int kTries = 3;
   static constexpr int kMostRounds = 24;  // two are usual
-  static constexpr Index kMostMovers = 16;
+  static constexpr Index kMostBodies = 16;
 
-  struct Mover {
+  struct ColumnBody {
     int body = -1;
     Index first = 0, rank = 0;  // its columns
     Vec6 B[6];
@@ -163,18 +163,18 @@ class MotionProblem {
     bool active;
   };
 
-  /// The mover of a body, made when it is met first; -1 when there is no room.
-  int mover(int body, std::span<const Mobility> W) {
-    for (Index m = 0; m < movers_; ++m)
-      if (mover_[m].body == body) return static_cast<int>(m);
-    if (movers_ == kMostMovers) return -1;
-    Mover& next = mover_[movers_];
+  /// The columns of a body, made when it is met first; -1 when there is no room.
+  int body_of(int body, std::span<const Mobility> W) {
+    for (Index m = 0; m < body_count_; ++m)
+      if (bodies_[m].body == body) return static_cast<int>(m);
+    if (body_count_ == kMostBodies) return -1;
+    ColumnBody& next = bodies_[body_count_];
     next.body = body;
     next.first = columns_;
     next.rank = factor(W[Index(body)], next.B);
     if (columns_ + next.rank > kMostColumns) return -1;
     columns_ += next.rank;
-    return static_cast<int>(movers_++);
+    return static_cast<int>(body_count_++);
   }
 
   /// W = sum_k B_k B_k^T by Cholesky with the largest pivot first; a hinge has one column, what is fixed
@@ -199,10 +199,10 @@ class MotionProblem {
   }
 
   /// Adds what a push along `n`, with its turning part, is in a mover's columns.
-  static void project(const Mover& mover, const Vec3& n, const Vec3& turn, Row& row) {
-    for (Index k = 0; k < mover.rank; ++k) {
-      row.column[row.size] = static_cast<std::uint8_t>(mover.first + k);
-      row.g[row.size++] = mover.B[k].head<3>().dot(n) + mover.B[k].tail<3>().dot(turn);
+  static void project(const ColumnBody& column_body, const Vec3& n, const Vec3& turn, Row& row) {
+    for (Index k = 0; k < column_body.rank; ++k) {
+      row.column[row.size] = static_cast<std::uint8_t>(column_body.first + k);
+      row.g[row.size++] = column_body.B[k].head<3>().dot(n) + column_body.B[k].tail<3>().dot(turn);
     }
   }
 
@@ -251,10 +251,10 @@ class MotionProblem {
     return row.active ? !(row.slack >= -allowed_) : !(row.slack <= allowed_);  // NaN is wrong
   }
 
-  Index n_ = 0, movers_ = 0, columns_ = 0;
+  Index n_ = 0, body_count_ = 0, columns_ = 0;
   double allowed_ = 0.0;  // so much of a slack may stay [m/s]
   Row rows_[kMostRows];
-  Mover mover_[kMostMovers];
+  ColumnBody bodies_[kMostBodies];
   double H_[kMostColumns][kMostColumns], L_[kMostColumns][kMostColumns];
   double right_[kMostColumns], z_[kMostColumns], inverse_[kMostColumns];
 };

@@ -93,7 +93,7 @@ bool solve_on(const FrameSettings& settings, ConstraintProblem& problem, FrameRe
 /// Begins with what held in the last frame while every patch stuck, if any did. One body has so few rows that
 /// to go on from the answer without friction costs no more.
 void begin_sticking(ConstraintState& c) {
-  if (c.problem.movers().size() == 1) return;
+  if (c.problem.bodies().size() == 1) return;
   StaticVector<int, kMostUnknowns> rows = rows_of(c.warm_start.sticking, c.rows.first, c);
   const Index of_contacts = rows.size();
   c.friction.rows_that_stuck(rows);
@@ -134,25 +134,25 @@ void keep_forces(ConstraintStep& step) {
       step.own.contact_rows.rows[row].impulse = active.multiplier * step.dt_s;
   }
   step.report.active_constraints = static_cast<int>(c.warm_start.in_the_end.size());
-  feel(c.problem.displacement_at_centre(c.problem.movers().front()), step);
+  feel(c.problem.displacement_at_centre(c.problem.bodies().front()), step);
 }
 
 /// The farthest way of a point of the body in the last answer [m].
-double way_of(const ConstraintStep& step, const Mover& mover) {
-  const Vec6 x = step.own.constraint.step_problem().displacement(mover.body);
-  return x.head<3>().norm() + x.tail<3>().norm() * step.radius_m[Index(mover.body)];
+double way_of(const ConstraintStep& step, const ProblemBody& problem_body) {
+  const Vec6 x = step.own.constraint.step_problem().displacement(problem_body.body);
+  return x.head<3>().norm() + x.tail<3>().norm() * step.radius_m[Index(problem_body.body)];
 }
 
 /// The share of the answer's step that is trusted.
 double trusted_share(const ConstraintStep& step) {
   const ConstraintState& c = step.own.constraint;
   double share = 1.0;
-  for (const Mover& mover : c.step_problem().movers()) {
-    const double way = way_of(step, mover);
-    const double trusted = step.own.reach[Index(mover.body)] - kReachMargin * c.skin_m;
+  for (const ProblemBody& problem_body : c.step_problem().bodies()) {
+    const double way = way_of(step, problem_body);
+    const double trusted = step.own.reach[Index(problem_body.body)] - kReachMargin * c.skin_m;
     if (way * share > trusted) share = trusted / way;
-    if (mover.body != step.grasped.body) continue;
-    const double turn = c.step_problem().displacement(mover.body).tail<3>().norm();
+    if (problem_body.body != step.grasped.body) continue;
+    const double turn = c.step_problem().displacement(problem_body.body).tail<3>().norm();
     if (turn * share > step.settings.constraint.max_turn_rad)
       share = step.settings.constraint.max_turn_rad / turn;
   }
@@ -163,9 +163,9 @@ double trusted_share(const ConstraintStep& step) {
 bool open_after(double share, ConstraintStep& step) {
   ConstraintState& c = step.own.constraint;
   c.trial.X_WB = step.bodies.X_WB;  // same size: nothing is allocated
-  for (const Mover& mover : c.step_problem().movers()) {
-    const Index i = Index(mover.body);
-    const Twist displacement = to_twist(c.step_problem().displacement(mover.body) * share);
+  for (const ProblemBody& problem_body : c.step_problem().bodies()) {
+    const Index i = Index(problem_body.body);
+    const Twist displacement = to_twist(c.step_problem().displacement(problem_body.body) * share);
     c.trial.X_WB[i] =
         constrained_pose(step.world.bodies[i], advanced(step.bodies.X_WB[i], displacement, 1.0));
     if (!c.trial.X_WB[i].finite()) return false;
@@ -324,7 +324,7 @@ void report_rows(ConstraintStep& step) {
   Vec3 torque = Vec3::Zero();
   Vec3 origin = grasped < 0 ? Vec3(Vec3::Zero()) : step.X_WB_start[Index(grasped)].p;
   if (step.own.free.grasped_island >= 0) {
-    origin = c.problem.movers().front().origin;
+    origin = c.problem.bodies().front().origin;
     torque = c.friction.add_forces(grasped, step.dt_s, c.problem, step.own.contact_rows.rows);
   }
   if (grasped < 0) return;

@@ -68,12 +68,12 @@ Vec6 balanced_step(const Coupling& coupling, double dt_s, const Pose& X_WH_proxy
           metric.stiffness_Nm_per_rad);
 }
 
-ConstraintProblem::ConstraintProblem(std::size_t most_rows) : most_rows_(most_rows + 4 * kMostMovers) {
+ConstraintProblem::ConstraintProblem(std::size_t most_rows) : most_rows_(most_rows + 4 * kMostBodies) {
   rows_.reserve(most_rows_);
 }
 
 void ConstraintProblem::clear() noexcept {
-  mover_count_ = 0;
+  body_count_ = 0;
   unknowns_ = 0;
   brakes_.clear();
   limits_.clear();
@@ -81,31 +81,33 @@ void ConstraintProblem::clear() noexcept {
   cones_.clear();
 }
 
-const Mover* ConstraintProblem::mover_of(int body) const noexcept {
-  for (Index m = 0; m < mover_count_; ++m)
-    if (movers_[m].body == body) return &movers_[m];
+const ProblemBody* ConstraintProblem::find_body(int body) const noexcept {
+  for (Index m = 0; m < body_count_; ++m)
+    if (bodies_[m].body == body) return &bodies_[m];
   return nullptr;
 }
 
-Mover* ConstraintProblem::next_mover(int body, std::size_t rank, const Vec3& origin,
-                                     const Vec3& centre) noexcept {
+ProblemBody* ConstraintProblem::next_body(int body, std::size_t rank, const Vec3& origin,
+                                          const Vec3& centre) noexcept {
   if (unknowns_ + rank > kMostUnknowns) return nullptr;
-  Mover& mover = movers_[mover_count_++];
-  mover.body = body;
-  mover.first = unknowns_;
-  mover.rank = rank;
-  mover.origin = origin;
-  mover.centre = centre;
+  ProblemBody& problem_body = bodies_[body_count_++];
+  problem_body.body = body;
+  problem_body.first = unknowns_;
+  problem_body.rank = rank;
+  problem_body.origin = origin;
+  problem_body.centre = centre;
   unknowns_ += rank;
-  return &mover;
+  return &problem_body;
 }
 
 /// The unknowns of a jointed body: what is nearest to `wanted` in the metric and with the joint's spring and
-/// damping is where it goes by itself. All told at the mover's centre.
-void ConstraintProblem::set_motions(Mover& mover, const Body& what, const Pose& X_WB, const Mat6& metric,
-                                    const Vec6& wanted, double spring, double damping) noexcept {
+/// damping is where it goes by itself. All are given at the body's centre.
+void ConstraintProblem::set_motions(ProblemBody& problem_body, const Body& what, const Pose& X_WB,
+                                    const Mat6& metric, const Vec6& wanted, double spring,
+                                    double damping) noexcept {
   JointMotions S = joint_motions(what.joint, X_WB);
-  for (Eigen::Index i = 0; i < S.cols(); ++i) S.col(i) = at_point(S.col(i), mover.centre - mover.origin);
+  for (Eigen::Index i = 0; i < S.cols(); ++i)
+    S.col(i) = at_point(S.col(i), problem_body.centre - problem_body.origin);
   using Reduced = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 3, 3>;
   using Few = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 3, 1>;
   Reduced M = S.transpose() * metric * S;
@@ -114,69 +116,71 @@ void ConstraintProblem::set_motions(Mover& mover, const Body& what, const Pose& 
   if (spring > 0.0) pull[0] -= spring * (joint_position(what, X_WB) - what.joint.rest);
   const Eigen::LLT<Reduced> factor(M);
   factor.solveInPlace(pull);
-  mover.wanted = S * pull;
-  mover.motions = factor.matrixL().solve(S.transpose()).transpose();  // M^-1 = L^-T L^-1
+  problem_body.wanted = S * pull;
+  problem_body.motions = factor.matrixL().solve(S.transpose()).transpose();  // M^-1 = L^-T L^-1
 }
 
-void ConstraintProblem::add_joint(const Mover& mover, const Body& what, const Pose& X_WB) noexcept {
+void ConstraintProblem::add_joint(const ProblemBody& problem_body, const Body& what,
+                                  const Pose& X_WB) noexcept {
   const Joint& joint = what.joint;
   const Vec6 rate = joint_rate(what, X_WB);
-  const Push along{mover.centre, rate.head<3>(), rate.tail<3>()};
-  if (joint.friction > 0.0 && mover.rank == 1 && unknowns_ < kMostUnknowns)
-    brakes_.push_back({&mover, joint.friction, work(along, mover.centre, mover.motions.col(0)), unknowns_++});
+  const Push along{problem_body.centre, rate.head<3>(), rate.tail<3>()};
+  if (joint.friction > 0.0 && problem_body.rank == 1 && unknowns_ < kMostUnknowns)
+    brakes_.push_back({&problem_body, joint.friction,
+                       work(along, problem_body.centre, problem_body.motions.col(0)), unknowns_++});
   if (!joint.limited()) return;
   const double position = joint_position(what, X_WB);
   if (std::isfinite(joint.lower))
-    limits_.push_back({mover.body, along, std::max(0.0, position - joint.lower)});
+    limits_.push_back({problem_body.body, along, std::max(0.0, position - joint.lower)});
   if (std::isfinite(joint.upper))
     limits_.push_back(
-        {mover.body, {along.p_W, -along.force, -along.torque}, std::max(0.0, joint.upper - position)});
+        {problem_body.body, {along.p_W, -along.force, -along.torque}, std::max(0.0, joint.upper - position)});
 }
 
 bool ConstraintProblem::add_grasped(int body, const Body& what, const Pose& X_WB, const Vec3& p_WH,
                                     const GraspMetric& metric, const Vec6& wanted) noexcept {
   const double k_t = metric.stiffness_N_per_m;
   const double k_r = metric.stiffness_Nm_per_rad;
-  Mover* const mover = next_mover(body, rank_of(what.joint), X_WB.p, p_WH);
-  if (mover == nullptr) return false;
-  if (mover->rank < 6) {
+  ProblemBody* const problem_body = next_body(body, rank_of(what.joint), X_WB.p, p_WH);
+  if (problem_body == nullptr) return false;
+  if (problem_body->rank < 6) {
     Mat6 M = Mat6::Zero();
     M.diagonal() << k_t, k_t, k_t, k_r, k_r, k_r;
-    set_motions(*mover, what, X_WB, M, wanted, 0.0, 0.0);
-    add_joint(*mover, what, X_WB);
+    set_motions(*problem_body, what, X_WB, M, wanted, 0.0, 0.0);
+    add_joint(*problem_body, what, X_WB);
     return true;
   }
-  mover->wanted = wanted;
-  mover->per_way = 1.0 / std::sqrt(k_t);
-  mover->turns = Mat3::Identity() / std::sqrt(k_r);
+  problem_body->wanted = wanted;
+  problem_body->per_way = 1.0 / std::sqrt(k_t);
+  problem_body->turns = Mat3::Identity() / std::sqrt(k_r);
   return true;
 }
 
 bool ConstraintProblem::add_free(int body, const Body& what, const Pose& X_WB, const Vec6& wanted,
                                  double dt_s) noexcept {
-  Mover* const mover = next_mover(body, rank_of(what.joint), X_WB.p, X_WB.p);
-  if (mover == nullptr) return false;
+  ProblemBody* const problem_body = next_body(body, rank_of(what.joint), X_WB.p, X_WB.p);
+  if (problem_body == nullptr) return false;
   const Resistance M = inertial_resistance(what, X_WB) / (dt_s * dt_s);
-  if (mover->rank < 6) {
-    set_motions(*mover, what, X_WB, M, wanted, what.joint.stiffness, what.joint.damping / dt_s);
-    add_joint(*mover, what, X_WB);
+  if (problem_body->rank < 6) {
+    set_motions(*problem_body, what, X_WB, M, wanted, what.joint.stiffness, what.joint.damping / dt_s);
+    add_joint(*problem_body, what, X_WB);
     return true;
   }
-  mover->wanted = wanted;
-  mover->per_way = 1.0 / std::sqrt(M(0, 0));
+  problem_body->wanted = wanted;
+  problem_body->per_way = 1.0 / std::sqrt(M(0, 0));
   const Eigen::LLT<Mat3> inertia(M.bottomRightCorner<3, 3>());
-  mover->turns = inertia.matrixU().solve(Mat3::Identity());  // I^-1 = U^-1 U^-T
+  problem_body->turns = inertia.matrixU().solve(Mat3::Identity());  // I^-1 = U^-1 U^-T
   return true;
 }
 
 void ConstraintProblem::follow(const ConstraintProblem& led) noexcept {
   clear();
-  for (const Mover& other : led.movers()) {
-    Mover& mover = movers_[mover_count_++];
-    mover = other;
-    mover.first = unknowns_;
-    mover.wanted = led.displacement_at_centre(other);
-    unknowns_ += mover.rank;
+  for (const ProblemBody& other : led.bodies()) {
+    ProblemBody& problem_body = bodies_[body_count_++];
+    problem_body = other;
+    problem_body.first = unknowns_;
+    problem_body.wanted = led.displacement_at_centre(other);
+    unknowns_ += problem_body.rank;
   }
   limits_ = led.limits_;
   add_joint_rows();
@@ -186,13 +190,13 @@ void ConstraintProblem::add_joint_rows() noexcept {
   for (const Brake& brake : brakes_) {
     const double spring = kBrakeSoftness * brake.friction / kFarthestWay;
     const double unpulled = -brake.friction / spring;  // t*
-    const Mover& mover = *brake.mover;
-    const double wanted =
-        brake.per_unknown * mover.wanted.dot(mover.motions.col(0)) / mover.motions.col(0).squaredNorm();
+    const ProblemBody& problem_body = *brake.problem_body;
+    const double wanted = brake.per_unknown * problem_body.wanted.dot(problem_body.motions.col(0)) /
+                          problem_body.motions.col(0).squaredNorm();
     for (const double side : {1.0, -1.0}) {
       QpRow& row = rows_.emplace_back();
       row.runs[0] = {static_cast<std::uint32_t>(brake.unknown), 1, {1.0 / std::sqrt(spring)}};
-      row.runs[1] = {static_cast<std::uint32_t>(mover.first), 1, {-side * brake.per_unknown}};
+      row.runs[1] = {static_cast<std::uint32_t>(problem_body.first), 1, {-side * brake.per_unknown}};
       row.offset = side * wanted - unpulled;
     }
   }
@@ -202,21 +206,22 @@ void ConstraintProblem::add_joint_rows() noexcept {
 QpRow ConstraintProblem::row_of(int body_a, int body_b, const Push& push) const noexcept {
   QpRow row;
   const auto project = [&](int body, double sign, QpRow::Run& run) {
-    const Mover* const mover = mover_of(body);
-    if (mover == nullptr) return;
-    run.first = static_cast<std::uint32_t>(mover->first);
-    run.count = static_cast<std::uint32_t>(mover->rank);
+    const ProblemBody* const problem_body = find_body(body);
+    if (problem_body == nullptr) return;
+    run.first = static_cast<std::uint32_t>(problem_body->first);
+    run.count = static_cast<std::uint32_t>(problem_body->rank);
     std::array<double, QpRow::kLongestRun>& g = run.g;
-    const Vec3 torque = push.torque + (push.p_W - mover->centre).cross(push.force);
-    row.offset -= sign * (push.force.dot(mover->wanted.head<3>()) + torque.dot(mover->wanted.tail<3>()));
-    if (mover->rank < 6) {
-      for (Index i = 0; i < mover->rank; ++i)
-        g[i] = sign * work(push, mover->centre, mover->motions.col(Eigen::Index(i)));
+    const Vec3 torque = push.torque + (push.p_W - problem_body->centre).cross(push.force);
+    row.offset -=
+        sign * (push.force.dot(problem_body->wanted.head<3>()) + torque.dot(problem_body->wanted.tail<3>()));
+    if (problem_body->rank < 6) {
+      for (Index i = 0; i < problem_body->rank; ++i)
+        g[i] = sign * work(push, problem_body->centre, problem_body->motions.col(Eigen::Index(i)));
       return;
     }
     for (int i = 0; i < 3; ++i) {
-      g[Index(i)] = sign * mover->per_way * push.force[i];
-      g[Index(3 + i)] = sign * torque.dot(mover->turns.col(i));
+      g[Index(i)] = sign * problem_body->per_way * push.force[i];
+      g[Index(3 + i)] = sign * torque.dot(problem_body->turns.col(i));
     }
   };
   project(body_a, 1.0, row.runs[0]);
@@ -247,27 +252,27 @@ const QpAnswer& ConstraintProblem::solve_on(int max_iterations) noexcept {
   return qp_.solve_on(nearest_point(), max_iterations);
 }
 
-Vec6 ConstraintProblem::displacement_at_centre(const Mover& mover) const noexcept {
-  const double* const z = answer().z.data() + mover.first;
-  if (mover.rank < 6) {
-    Vec6 x = mover.wanted;
-    for (Index i = 0; i < mover.rank; ++i) x += mover.motions.col(Eigen::Index(i)) * z[i];
+Vec6 ConstraintProblem::displacement_at_centre(const ProblemBody& problem_body) const noexcept {
+  const double* const z = answer().z.data() + problem_body.first;
+  if (problem_body.rank < 6) {
+    Vec6 x = problem_body.wanted;
+    for (Index i = 0; i < problem_body.rank; ++i) x += problem_body.motions.col(Eigen::Index(i)) * z[i];
     return x;
   }
   const Vec3 along(z[0], z[1], z[2]);
   const Vec3 about(z[3], z[4], z[5]);
-  return mover.wanted + column(mover.per_way * along, mover.turns * about);
+  return problem_body.wanted + column(problem_body.per_way * along, problem_body.turns * about);
 }
 
 Vec3 ConstraintProblem::wanted_turn(int body) const noexcept {
-  const Mover* const mover = mover_of(body);
-  return mover != nullptr ? Vec3(mover->wanted.tail<3>()) : Vec3::Zero();
+  const ProblemBody* const problem_body = find_body(body);
+  return problem_body != nullptr ? Vec3(problem_body->wanted.tail<3>()) : Vec3::Zero();
 }
 
 Vec6 ConstraintProblem::displacement(int body) const noexcept {
-  const Mover* const mover = mover_of(body);
-  if (mover == nullptr) return Vec6::Zero();
-  return at_point(displacement_at_centre(*mover), mover->origin - mover->centre);
+  const ProblemBody* const problem_body = find_body(body);
+  if (problem_body == nullptr) return Vec6::Zero();
+  return at_point(displacement_at_centre(*problem_body), problem_body->origin - problem_body->centre);
 }
 
 }  // namespace tactum

@@ -44,7 +44,7 @@ std::size_t unknowns_of(const Joint& joint) noexcept;
 
 /// A body whose displacement is unknown. Its six unknowns are the way of `centre`, each times `per_way`, and
 /// the turn, the columns of `turns`; or the fewer ones of a jointed body are the columns of `motions`.
-struct Mover {
+struct ProblemBody {
   int body = -1;
   std::size_t first = 0, rank = 0;  ///< its unknowns
   Vec3 origin = Vec3::Zero();       ///< of the body, in W [m]
@@ -107,19 +107,19 @@ class ConstraintProblem {
   const QpAnswer& solve_on(int max_iterations) noexcept;
 
   const QpAnswer& answer() const noexcept { return qp_.answer(); }
-  std::span<const Mover> movers() const noexcept { return {movers_, mover_count_}; }
+  std::span<const ProblemBody> bodies() const noexcept { return {bodies_, body_count_}; }
   /// Displacement of a body's origin in the last answer; zero when it was not added [m, rad].
   Vec6 displacement(int body) const noexcept;
   /// How far a body wants to turn; not at all when it was not added [rad].
   Vec3 wanted_turn(int body) const noexcept;
-  /// The displacement at the mover's centre.
-  Vec6 displacement_at_centre(const Mover& mover) const noexcept;
+  /// The displacement at the body's centre.
+  Vec6 displacement_at_centre(const ProblemBody& problem_body) const noexcept;
 
  private:
   QpProblem nearest_point() const noexcept;
 
   struct Brake {
-    const Mover* mover;
+    const ProblemBody* problem_body;
     double friction;     // [N m or N]
     double per_unknown;  // the joint's way for its body's unknown [rad or m]
     std::size_t unknown;
@@ -129,19 +129,19 @@ class ConstraintProblem {
     Push push;              // along the joint's position
     double way_left = 0.0;  // [rad or m], not negative
   };
-  static constexpr std::size_t kMostMovers = kMostUnknowns;
+  static constexpr std::size_t kMostBodies = kMostUnknowns;
 
-  const Mover* mover_of(int body) const noexcept;
-  Mover* next_mover(int body, std::size_t rank, const Vec3& origin, const Vec3& centre) noexcept;
-  void set_motions(Mover& mover, const Body& what, const Pose& X_WB, const Mat6& metric, const Vec6& wanted,
-                   double spring, double damping) noexcept;
-  void add_joint(const Mover& mover, const Body& what, const Pose& X_WB) noexcept;
+  const ProblemBody* find_body(int body) const noexcept;
+  ProblemBody* next_body(int body, std::size_t rank, const Vec3& origin, const Vec3& centre) noexcept;
+  void set_motions(ProblemBody& problem_body, const Body& what, const Pose& X_WB, const Mat6& metric,
+                   const Vec6& wanted, double spring, double damping) noexcept;
+  void add_joint(const ProblemBody& problem_body, const Body& what, const Pose& X_WB) noexcept;
 
-  Mover movers_[kMostMovers];
-  std::size_t mover_count_ = 0;
+  ProblemBody bodies_[kMostBodies];
+  std::size_t body_count_ = 0;
   std::size_t unknowns_ = 0;
-  StaticVector<Brake, kMostMovers> brakes_;
-  StaticVector<Limit, 2 * kMostMovers> limits_;
+  StaticVector<Brake, kMostBodies> brakes_;
+  StaticVector<Limit, 2 * kMostBodies> limits_;
   ReservedVector<QpRow> rows_;
   StaticVector<QpCone, kMostCones> cones_;
   std::size_t most_rows_;
