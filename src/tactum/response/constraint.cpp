@@ -137,8 +137,8 @@ void keep_forces(ConstraintStep& step) {
   feel(c.problem.displacement_at_centre(c.problem.bodies().front()), step);
 }
 
-/// The farthest way of a point of the body in the last answer [m].
-double way_of(const ConstraintStep& step, const ProblemBody& problem_body) {
+/// The farthest that a point of the body travels in the last answer [m].
+double travel_of(const ConstraintStep& step, const ProblemBody& problem_body) {
   const Vec6 x = step.own.constraint.step_problem().displacement(problem_body.body);
   return x.head<3>().norm() + x.tail<3>().norm() * step.radius_m[Index(problem_body.body)];
 }
@@ -148,9 +148,9 @@ double trusted_share(const ConstraintStep& step) {
   const ConstraintState& c = step.own.constraint;
   double share = 1.0;
   for (const ProblemBody& problem_body : c.step_problem().bodies()) {
-    const double way = way_of(step, problem_body);
+    const double travel = travel_of(step, problem_body);
     const double trusted = step.own.reach[Index(problem_body.body)] - kReachMargin * c.skin_m;
-    if (way * share > trusted) share = trusted / way;
+    if (travel * share > trusted) share = trusted / travel;
     if (problem_body.body != step.grasped.body) continue;
     const double turn = c.step_problem().displacement(problem_body.body).tail<3>().norm();
     if (turn * share > step.settings.constraint.max_turn_rad)
@@ -280,16 +280,16 @@ double move_grasped_island(ConstraintStep& step) {
 
 /// The length that is trusted in the next frame, from what the held part's island did in this one.
 void trust_step(ConstraintStep& step) {
-  double way = 0.0;
+  double travel = 0.0;
   for (Index i = 0; i < step.own.free.near_grasped.size(); ++i) {
     if (!step.own.free.near_grasped[i]) continue;
     const Twist moved = twist_between(step.X_WB_start[i], step.bodies.X_WB[i], 1.0);
-    way = std::max(way, moved.v.norm() + moved.w.norm() * step.radius_m[i]);
+    travel = std::max(travel, moved.v.norm() + moved.w.norm() * step.radius_m[i]);
   }
   const Constraint& limits = step.settings.constraint;
   const double most = step.work.minima > 0 ? limits.max_step_on_surfaces_m : limits.max_step_m;
   step.own.constraint.trust.length_m =
-      std::clamp(kTrustGrowth * way, std::min(limits.least_step_m, most), most);
+      std::clamp(kTrustGrowth * travel, std::min(limits.least_step_m, most), most);
 }
 
 /// The points at which something pushes the body: corners, and the centre of a patch whose load friction's

@@ -11,13 +11,14 @@ namespace {
 
 using Index = std::size_t;
 
-/// A brake's spring turns its torque by less than this share over the farthest way of a frame.
-constexpr double kBrakeSoftness = 1e-3;
-constexpr double kFarthestWay = 0.05;  // [rad or m]
+/// The spring of a joint's friction changes its torque by less than this share over the farthest displacement
+/// of a frame.
+constexpr double kFrictionSoftness = 1e-3;
+constexpr double kFarthestTravel = 0.05;  // [rad or m]
 
-Vec6 column(const Vec3& way, const Vec3& turn) {
+Vec6 column(const Vec3& translation, const Vec3& turn) {
   Vec6 c;
-  c << way, turn;
+  c << translation, turn;
   return c;
 }
 
@@ -59,13 +60,13 @@ GraspMetric grasp_metric(const Coupling& coupling, double dt_s) noexcept {
 
 Vec6 balanced_step(const Coupling& coupling, double dt_s, const Pose& X_WH_proxy, const Pose& X_WH,
                    const Twist& V_WH) noexcept {
-  // k (x - way) + b (x / dt - v) = 0.
+  // k (x - stretch) + b (x / dt - v) = 0.
   const GraspMetric metric = grasp_metric(coupling, dt_s);
-  const Twist way = twist_between(X_WH_proxy, X_WH, 1.0);
-  return column(
-      (coupling.stiffness_N_per_m * way.v + coupling.damping_Ns_per_m * V_WH.v) / metric.stiffness_N_per_m,
-      (coupling.stiffness_Nm_per_rad * way.w + coupling.damping_Nms_per_rad * V_WH.w) /
-          metric.stiffness_Nm_per_rad);
+  const Twist stretch = twist_between(X_WH_proxy, X_WH, 1.0);
+  return column((coupling.stiffness_N_per_m * stretch.v + coupling.damping_Ns_per_m * V_WH.v) /
+                    metric.stiffness_N_per_m,
+                (coupling.stiffness_Nm_per_rad * stretch.w + coupling.damping_Nms_per_rad * V_WH.w) /
+                    metric.stiffness_Nm_per_rad);
 }
 
 ConstraintProblem::ConstraintProblem(std::size_t most_rows) : most_rows_(most_rows + 4 * kMostBodies) {
@@ -75,7 +76,7 @@ ConstraintProblem::ConstraintProblem(std::size_t most_rows) : most_rows_(most_ro
 void ConstraintProblem::clear() noexcept {
   body_count_ = 0;
   unknowns_ = 0;
-  brakes_.clear();
+  joint_frictions_.clear();
   limits_.clear();
   rows_.clear();
   cones_.clear();
@@ -126,8 +127,8 @@ void ConstraintProblem::add_joint(const ProblemBody& problem_body, const Body& w
   const Vec6 rate = joint_rate(what, X_WB);
   const Push along{problem_body.centre, rate.head<3>(), rate.tail<3>()};
   if (joint.friction > 0.0 && problem_body.rank == 1 && unknowns_ < kMostUnknowns)
-    brakes_.push_back({&problem_body, joint.friction,
-                       work(along, problem_body.centre, problem_body.motions.col(0)), unknowns_++});
+    joint_frictions_.push_back({&problem_body, joint.friction,
+                                work(along, problem_body.centre, problem_body.motions.col(0)), unknowns_++});
   if (!joint.limited()) return;
   const double position = joint_position(what, X_WB);
   if (std::isfinite(joint.lower))
@@ -151,7 +152,7 @@ bool ConstraintProblem::add_grasped(int body, const Body& what, const Pose& X_WB
     return true;
   }
   problem_body->wanted = wanted;
-  problem_body->per_way = 1.0 / std::sqrt(k_t);
+  problem_body->per_translation = 1.0 / std::sqrt(k_t);
   problem_body->turns = Mat3::Identity() / std::sqrt(k_r);
   return true;
 }
@@ -167,7 +168,7 @@ bool ConstraintProblem::add_free(int body, const Body& what, const Pose& X_WB, c
     return true;
   }
   problem_body->wanted = wanted;
-  problem_body->per_way = 1.0 / std::sqrt(M(0, 0));
+  problem_body->per_translation = 1.0 / std::sqrt(M(0, 0));
   const Eigen::LLT<Mat3> inertia(M.bottomRightCorner<3, 3>());
   problem_body->turns = inertia.matrixU().solve(Mat3::Identity());  // I^-1 = U^-1 U^-T
   return true;
@@ -187,20 +188,20 @@ void ConstraintProblem::follow(const ConstraintProblem& led) noexcept {
 }
 
 void ConstraintProblem::add_joint_rows() noexcept {
-  for (const Brake& brake : brakes_) {
-    const double spring = kBrakeSoftness * brake.friction / kFarthestWay;
-    const double unpulled = -brake.friction / spring;  // t*
-    const ProblemBody& problem_body = *brake.problem_body;
-    const double wanted = brake.per_unknown * problem_body.wanted.dot(problem_body.motions.col(0)) /
+  for (const JointFriction& joint_friction : joint_frictions_) {
+    const double spring = kFrictionSoftness * joint_friction.friction / kFarthestTravel;
+    const double unpulled = -joint_friction.friction / spring;  // t*
+    const ProblemBody& problem_body = *joint_friction.problem_body;
+    const double wanted = joint_friction.per_unknown * problem_body.wanted.dot(problem_body.motions.col(0)) /
                           problem_body.motions.col(0).squaredNorm();
     for (const double side : {1.0, -1.0}) {
       QpRow& row = rows_.emplace_back();
-      row.runs[0] = {static_cast<std::uint32_t>(brake.unknown), 1, {1.0 / std::sqrt(spring)}};
-      row.runs[1] = {static_cast<std::uint32_t>(problem_body.first), 1, {-side * brake.per_unknown}};
+      row.runs[0] = {static_cast<std::uint32_t>(joint_friction.unknown), 1, {1.0 / std::sqrt(spring)}};
+      row.runs[1] = {static_cast<std::uint32_t>(problem_body.first), 1, {-side * joint_friction.per_unknown}};
       row.offset = side * wanted - unpulled;
     }
   }
-  for (const Limit& limit : limits_) add_row(row_of(limit.body, -1, limit.push), -limit.way_left);
+  for (const Limit& limit : limits_) add_row(row_of(limit.body, -1, limit.push), -limit.travel_left);
 }
 
 QpRow ConstraintProblem::row_of(int body_a, int body_b, const Push& push) const noexcept {
@@ -220,7 +221,7 @@ QpRow ConstraintProblem::row_of(int body_a, int body_b, const Push& push) const 
       return;
     }
     for (int i = 0; i < 3; ++i) {
-      g[Index(i)] = sign * problem_body->per_way * push.force[i];
+      g[Index(i)] = sign * problem_body->per_translation * push.force[i];
       g[Index(3 + i)] = sign * torque.dot(problem_body->turns.col(i));
     }
   };
@@ -261,7 +262,7 @@ Vec6 ConstraintProblem::displacement_at_centre(const ProblemBody& problem_body) 
   }
   const Vec3 along(z[0], z[1], z[2]);
   const Vec3 about(z[3], z[4], z[5]);
-  return problem_body.wanted + column(problem_body.per_way * along, problem_body.turns * about);
+  return problem_body.wanted + column(problem_body.per_translation * along, problem_body.turns * about);
 }
 
 Vec3 ConstraintProblem::wanted_turn(int body) const noexcept {

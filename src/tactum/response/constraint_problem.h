@@ -4,15 +4,15 @@
 ///
 ///     least  sum over bodies |x - x*|^2_M / 2     with   n . (x_a(p) - x_b(p)) >= skin - distance
 ///
-/// x is a body's displacement over the frame at its origin, axes of W: (way [m], turn [rad]). Its metric M is
+/// x is a body's displacement over the frame at its origin, axes of W: (translation [m], turn [rad]). Its metric M is
 /// what resists it: for the held part the coupling itself, spring and damper over one frame, told at the
 /// handle; for a free body its inertia over the square of the frame's time. So the multipliers are the
 /// contact forces in newtons, and M (x - x*) is their sum: what the hand feels, and nothing else.
 ///
 /// With x = x* + B z and M^-1 = B B^T it is the nearest point to the origin in a polyhedron (small_qp.h): six
 /// unknowns for a free body, one for a hinged or sliding one, three for one on a ball. A joint with dry
-/// friction has a brake, one more unknown t that may not be less than the way a of its position, either way,
-/// and that the friction pulls down:
+/// friction has one more unknown t, that may not be less than the displacement a of its position, in either
+/// sense, and that the friction pulls down:
 ///
 ///     t >= a,  t >= -a,   energy  T t + e t^2 / 2      so |T_a| <= T + e t, with e t a thousandth of T
 ///
@@ -42,15 +42,15 @@ Vec6 balanced_step(const Coupling& coupling, double dt_s, const Pose& X_WH_proxy
 /// How many unknowns a body needs, with the one for its joint's friction.
 std::size_t unknowns_of(const Joint& joint) noexcept;
 
-/// A body whose displacement is unknown. Its six unknowns are the way of `centre`, each times `per_way`, and
-/// the turn, the columns of `turns`; or the fewer ones of a jointed body are the columns of `motions`.
+/// A body whose displacement is unknown. Its six unknowns are the translation of `centre`, each times
+/// `per_translation`, and the turn, the columns of `turns`; or the fewer ones of a jointed body are the columns of `motions`.
 struct ProblemBody {
   int body = -1;
   std::size_t first = 0, rank = 0;  ///< its unknowns
   Vec3 origin = Vec3::Zero();       ///< of the body, in W [m]
   Vec3 centre = Vec3::Zero();       ///< in W: the handle of the held body, the origin of others [m]
   Vec6 wanted = Vec6::Zero();       ///< x* at the centre [m, rad]
-  double per_way = 0.0;
+  double per_translation = 0.0;
   Mat3 turns = Mat3::Zero();
   JointMotions motions;
 };
@@ -65,7 +65,7 @@ struct Push {
 class ConstraintProblem {
  public:
   static constexpr std::size_t kMostCones = 16;
-  /// Room for `most_rows` rows beside those of brakes and cones.
+  /// Room for `most_rows` rows beside those of joint friction and cones.
   explicit ConstraintProblem(std::size_t most_rows);
 
   /// Forgets everything; then the bodies are added, then the rows.
@@ -79,7 +79,7 @@ class ConstraintProblem {
   /// The same bodies, each wanting to go where the other problem's answer has it, and the rows of their
   /// joints' limits; friction has had its say.
   void follow(const ConstraintProblem& led) noexcept;
-  /// The rows of brakes and limits: after the bodies, before other rows.
+  /// The rows of the joints' friction and limits: after the bodies, before other rows.
   void add_joint_rows() noexcept;
 
   /// The row  push . (x_a - x_b) >= 0. A body that was not added does not move.
@@ -118,16 +118,16 @@ class ConstraintProblem {
  private:
   QpProblem nearest_point() const noexcept;
 
-  struct Brake {
+  struct JointFriction {
     const ProblemBody* problem_body;
     double friction;     // [N m or N]
-    double per_unknown;  // the joint's way for its body's unknown [rad or m]
+    double per_unknown;  // the joint's travel for its body's unknown [rad or m]
     std::size_t unknown;
   };
   struct Limit {
     int body = -1;
-    Push push;              // along the joint's position
-    double way_left = 0.0;  // [rad or m], not negative
+    Push push;                 // along the joint's position
+    double travel_left = 0.0;  // [rad or m], not negative
   };
   static constexpr std::size_t kMostBodies = kMostUnknowns;
 
@@ -140,7 +140,7 @@ class ConstraintProblem {
   ProblemBody bodies_[kMostBodies];
   std::size_t body_count_ = 0;
   std::size_t unknowns_ = 0;
-  StaticVector<Brake, kMostBodies> brakes_;
+  StaticVector<JointFriction, kMostBodies> joint_frictions_;
   StaticVector<Limit, 2 * kMostBodies> limits_;
   ReservedVector<QpRow> rows_;
   StaticVector<QpCone, kMostCones> cones_;

@@ -46,7 +46,7 @@ FreeBodies::FreeBodies(const World& world, const FrameSettings& settings)
 Waiting::Waiting(const World& world, const FrameSettings& settings)
     : waits(world.bodies.size(), 0),
       waited(world.bodies.size(), 0),
-      way(world.bodies.size(), 0.0),
+      travel(world.bodies.size(), 0.0),
       X_rest(world.bodies.size()),
       rested(world.bodies.size(), 0),
       contacts_at_rest(world.bodies.size(), 0),

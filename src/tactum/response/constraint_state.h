@@ -31,7 +31,7 @@ struct WarmStart {
 struct CornerRows {
   std::size_t own = 0;                  ///< the first so many contact rows are the island's
   std::size_t first = 0;                ///< the first of them in the problem of the forces
-  std::size_t first_of_positions = 0;   ///< ... and in the position problem, which has no rows of brakes
+  std::size_t first_of_positions = 0;   ///< ... and in the position problem, without rows of joint friction
   bool bent = false;                    ///< some normal is bent by shading
   bool shades = false;                  ///< ... so the step is the answer of the position problem
   ReservedVector<Vec3> shaded;          ///< normals of the own rows; empty without shading [-]
@@ -126,7 +126,7 @@ struct Waiting {
 
   std::vector<char> waits;            ///< in this frame
   std::vector<int> waited;            ///< how many frames on end [-]
-  std::vector<double> way;            ///< of the last step it took or tried [m]
+  std::vector<double> travel;         ///< of the last step it took or tried [m]
   std::vector<Pose> X_rest;           ///< the place it has hardly left
   std::vector<int> rested;            ///< frames that it moved in since [-]
   std::vector<int> contacts_at_rest;  ///< of those that sleep; 0: awake [-]

@@ -118,10 +118,10 @@ void limit_shares(ConstraintStep& step) {
   for (Index i = 0; i < f.share.size(); ++i) {
     if (!moves_here(step, i)) continue;
     const Twist& V = step.bodies.V_WB[i];
-    const double way = (V.v.norm() + V.w.norm() * step.radius_m[i]) * step.dt_s;
+    const double travel = (V.v.norm() + V.w.norm() * step.radius_m[i]) * step.dt_s;
     double& share = f.share[Index(f.islands.of(static_cast<int>(i)))];
-    if (way * share > step.own.reach[i]) share = step.own.reach[i] / way;
-    step.own.waiting.way[i] = way;
+    if (travel * share > step.own.reach[i]) share = step.own.reach[i] / travel;
+    step.own.waiting.travel[i] = travel;
   }
   // An island's number is its first body.
   for (Index i = 0; i < f.share.size(); ++i)
@@ -310,8 +310,8 @@ void strike(ConstraintStep& step) noexcept {
   for (Index i = 0; i < step.world.bodies.size(); ++i) {
     if (!step.world.bodies[i].moves()) continue;
     // The hand decides where the held part goes: a blow does not move it, it is felt.
-    const bool given_way = is_grasped(step, i) || !step.own.free.islands.moves(static_cast<int>(i));
-    step.own.mobility[i] = given_way ? Mobility::Zero() : inertial_mobility(step.world.bodies[i], X_WB[i]);
+    const bool immovable = is_grasped(step, i) || !step.own.free.islands.moves(static_cast<int>(i));
+    step.own.mobility[i] = immovable ? Mobility::Zero() : inertial_mobility(step.world.bodies[i], X_WB[i]);
     if (step.world.bodies[i].joint.kind != JointKind::kFree && !is_grasped(step, i))
       V_WB[i] = constrained_velocity(step.world.bodies[i].joint, X_WB[i],
                                      inertial_resistance(step.world.bodies[i], X_WB[i]), V_WB[i]);

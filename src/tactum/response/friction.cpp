@@ -21,8 +21,8 @@ constexpr double kSettled = 0.25;
 
 /// How far the patch's anchor has come apart in the surface.
 Vec3 apart(const FrictionPatch& patch, const Pose& X_WA, const Pose& X_W_B) {
-  const Vec3 way = X_WA * patch.on_A - X_W_B * patch.on_B;
-  return way - patch.n_BA_W * patch.n_BA_W.dot(way);
+  const Vec3 offset = X_WA * patch.on_A - X_W_B * patch.on_B;
+  return offset - patch.n_BA_W * patch.n_BA_W.dot(offset);
 }
 
 /// How far beyond the skin a patch is.
@@ -140,8 +140,9 @@ bool Friction::begin(const World& world, const PairCoefficients& settings, std::
   for (FrictionPatch& patch : patches_) {
     anchor(patch, X_WB, kSettled * skin_m);
     patch.motion = motion_of(patch, any_orthogonal(patch.n_BA_W), problem);
-    const Vec3 way = slide_of(patch, problem).way;
-    if (const double length = way.norm(); length > 0.0) turn_directions(way / length, patch.motion);
+    const Vec3 displacement = slide_of(patch, problem).displacement;
+    if (const double length = displacement.norm(); length > 0.0)
+      turn_directions(displacement / length, patch.motion);
     add_cone(patch, problem);
   }
   return acts();
@@ -208,7 +209,7 @@ bool Friction::let_slip(double skin_m, ConstraintProblem& problem) noexcept {
     if (!patch.acts) continue;
     const Slide slide = slide_of(patch, problem);
     const double arm = patch.coefficient * patch.radius_m;
-    double further = std::min(slide.lift, patch.coefficient * (slide.way.norm() - patch.slip_m));
+    double further = std::min(slide.lift, patch.coefficient * (slide.displacement.norm() - patch.slip_m));
     double turned = std::min(slide.lift, arm * (std::abs(slide.turn) - patch.slip_rad));
     if (further <= settled) further = 0.0;
     if (turned <= settled) turned = 0.0;

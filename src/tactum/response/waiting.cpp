@@ -64,7 +64,7 @@ void watch_rest(ConstraintStep& step) {
 /// tested.
 bool needs_test(const ContactPatch& patch, const ConstraintStep& step) {
   const Waiting& w = step.own.waiting;
-  return w.way[Index(patch.body_a)] + w.way[Index(patch.body_b)] >= 0.5 * patch.distance;
+  return w.travel[Index(patch.body_a)] + w.travel[Index(patch.body_b)] >= 0.5 * patch.distance;
 }
 
 /// The patches of each body that need a test: patch_of[first_patch[i] .. first_patch[i + 1]).
@@ -147,10 +147,10 @@ void let_wait(ConstraintStep& step) noexcept {
     if (asleep(w, i)) {
       ++step.report.asleep;
       w.V_kept[i] = step.bodies.V_WB[i] = {};
-      w.way[i] = 0.0;
+      w.travel[i] = 0.0;
       continue;
     }
-    w.way[i] *= fading;
+    w.travel[i] *= fading;
     ++step.report.waiting;
     step.report.flags |= frame_flag::kBudgetShort;
     step.report.longest_wait = std::max(step.report.longest_wait, w.waited[i]);
