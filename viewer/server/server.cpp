@@ -151,12 +151,12 @@ class Page : public std::enable_shared_from_this<Page> {
     open_ = false;
     hub_.pages.erase(number_);
     hub_.count([](ServerStatus& status) { --status.pages; });
-    if (hub_.steering == number_) let_go();
+    if (hub_.steering == number_) end_steering();
     ++hub_.statuses;
   }
 
   /// Nobody leads the hand now: it stays where it is.
-  void let_go() {
+  void end_steering() {
     hub_.steering = 0;
     Request rest;
     rest.what = Request::What::kRest;
@@ -204,10 +204,10 @@ class Page : public std::enable_shared_from_this<Page> {
     }
     if (request.what == What::kSteer || request.what == What::kRelease) {
       if (request.what == What::kSteer && hub_.steering != number_) {
-        if (hub_.steering != 0) let_go();
+        if (hub_.steering != 0) end_steering();
         hub_.steering = number_;
       } else if (request.what == What::kRelease && hub_.steering == number_) {
-        let_go();
+        end_steering();
       }
       ++hub_.statuses;
       return hub_.feed_pages();

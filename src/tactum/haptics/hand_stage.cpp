@@ -30,7 +30,7 @@ GraspedPart track_hand(const World& world, const FrameSettings& settings, const 
   const bool was_known = hand.known;
   follow_hand(settings.workspace, sample, settings.dt_s, hand);
   if (!was_known && hand.known) take_first(settings.tool.X_BH.p, X_WB, hand);
-  if (sample.valid) pick_or_let_go(world, X_WB, settings.tool, hand.X_WH, sample.buttons, hand.grasp);
+  if (sample.valid) pick_or_release(world, X_WB, settings.tool, hand.X_WH, sample.buttons, hand.grasp);
   GraspedPart grasped{.hand_known = hand.known,
                       .body = hand.grasp.body,
                       .X_BH = hand.grasp.X_BH,

@@ -45,8 +45,8 @@ int nearest_body(const World& world, std::span<const Pose> X_WB, const Vec3& p_W
   return nearest;
 }
 
-void pick_or_let_go(const World& world, std::span<const Pose> X_WB, const Tool& tool, const Pose& X_WH,
-                    std::uint32_t buttons, Grasp& grasp) noexcept {
+void pick_or_release(const World& world, std::span<const Pose> X_WB, const Tool& tool, const Pose& X_WH,
+                     std::uint32_t buttons, Grasp& grasp) noexcept {
   const bool pressed = (buttons & 1u) != 0;
   const bool was_pressed = grasp.pressed;
   grasp.pressed = pressed;

@@ -25,7 +25,7 @@ struct Grasp {
 };
 
 /// When the button has been pressed or let go since the last frame. `X_WH` is the hand.
-void pick_or_let_go(const World& world, std::span<const Pose> X_WB, const Tool& tool, const Pose& X_WH,
-                    std::uint32_t buttons, Grasp& grasp) noexcept;
+void pick_or_release(const World& world, std::span<const Pose> X_WB, const Tool& tool, const Pose& X_WH,
+                     std::uint32_t buttons, Grasp& grasp) noexcept;
 
 }  // namespace tactum

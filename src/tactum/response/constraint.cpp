@@ -23,7 +23,7 @@ constexpr int kSlipRounds = 6;
 /// The trusted length after a step, in lengths of that step.
 constexpr double kTrustGrowth = 2.0;
 /// The tolerance of contact determination is so much more than the trusted length, in skins.
-constexpr double kReachMargin = 4.0;
+constexpr double kBoundMargin = 4.0;
 /// A part whose steps have been refused for so long is felt where it stands, not where the forces would
 /// have it: what is felt would be the same however far the hand goes away.
 constexpr double kStands_s = 0.002;
@@ -149,7 +149,7 @@ double trusted_share(const ConstraintStep& step) {
   double share = 1.0;
   for (const ProblemBody& problem_body : c.step_problem().bodies()) {
     const double travel = travel_of(step, problem_body);
-    const double trusted = step.own.reach[Index(problem_body.body)] - kReachMargin * c.skin_m;
+    const double trusted = step.own.motion_bound[Index(problem_body.body)] - kBoundMargin * c.skin_m;
     if (travel * share > trusted) share = trusted / travel;
     if (problem_body.body != step.grasped.body) continue;
     const double turn = c.step_problem().displacement(problem_body.body).tail<3>().norm();
@@ -244,13 +244,13 @@ double advance(ConstraintStep& step) {
     if (round > 0) {
       if (!(share > 0.0)) return 0.0;  // nothing may move: no exact gap says more
       ++step.report.validation_retries;
-      feed_back(share, step);
+      correct_rows(share, step);
       if (!find_again(step)) break;
     }
     share = trusted_share(step);
     if (open_after(share, step)) return share;
   }
-  for (int halving = 0; halving < kHalvings; ++halving) {
+  for (int halving = 0; halving < kBacktracks; ++halving) {
     ++step.report.validation_retries;
     share *= 0.5;
     if (open_after(share, step)) return share;
@@ -279,7 +279,7 @@ double move_grasped_island(ConstraintStep& step) {
 }
 
 /// The length that is trusted in the next frame, from what the held part's island did in this one.
-void trust_step(ConstraintStep& step) {
+void update_trust_length(ConstraintStep& step) {
   double travel = 0.0;
   for (Index i = 0; i < step.own.free.near_grasped.size(); ++i) {
     if (!step.own.free.near_grasped[i]) continue;
@@ -334,16 +334,17 @@ void report_rows(ConstraintStep& step) {
 
 }  // namespace
 
-void trusted_reach(const MotionInput& input, const WorldState& bodies, ConstraintMemory& own) noexcept {
+void bound_constrained_motion(const MotionInput& input, const WorldState& bodies,
+                              ConstraintMemory& own) noexcept {
   const ConstraintState& c = own.constraint;
   const double pull = input.world.gravity_W.norm() * input.dt_s;
-  for (Index i = 0; i < own.reach.size(); ++i) {
-    own.reach[i] = kReachMargin * c.skin_m;
+  for (Index i = 0; i < own.motion_bound.size(); ++i) {
+    own.motion_bound[i] = kBoundMargin * c.skin_m;
     if (!input.world.bodies[i].moves()) continue;
     const Twist& V = bodies.V_WB[i];
     const bool grasped = static_cast<int>(i) == input.grasped.body;
-    if (!grasped) own.reach[i] += (V.v.norm() + pull + V.w.norm() * input.radius_m[i]) * input.dt_s;
-    if (grasped || own.free.near_grasped[i]) own.reach[i] += c.trust.length_m;
+    if (!grasped) own.motion_bound[i] += (V.v.norm() + pull + V.w.norm() * input.radius_m[i]) * input.dt_s;
+    if (grasped || own.free.near_grasped[i]) own.motion_bound[i] += c.trust.length_m;
   }
 }
 
@@ -356,11 +357,11 @@ void respond_constrained(ConstraintStep& step) noexcept {
   c.trial.gap_answer.resize(c.trial.gap_now.size());
 
   step.own.free.others = others_move(step.world, step.grasped.body);
-  let_wait(step);
+  defer_bodies(step);
   find_islands(step);
   begin_balance(step);
   make_corner_rows(step);
-  strike(step);
+  apply_impacts(step);
   move_free_bodies(step);
   double share = 1.0;  // of the held island's step
   if (step.own.free.grasped_island >= 0) {
@@ -368,7 +369,7 @@ void respond_constrained(ConstraintStep& step) noexcept {
   } else {
     c.friction.forget();
   }
-  trust_step(step);
+  update_trust_length(step);
   end_turning(step);
   end_balance(share == 1.0 && !c.rows.shades, step);
   go_on(step);

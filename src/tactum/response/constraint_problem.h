@@ -4,10 +4,11 @@
 ///
 ///     least  sum over bodies |x - x*|^2_M / 2     with   n . (x_a(p) - x_b(p)) >= skin - distance
 ///
-/// x is a body's displacement over the frame at its origin, axes of W: (translation [m], turn [rad]). Its metric M is
-/// what resists it: for the held part the coupling itself, spring and damper over one frame, told at the
-/// handle; for a free body its inertia over the square of the frame's time. So the multipliers are the
-/// contact forces in newtons, and M (x - x*) is their sum: what the hand feels, and nothing else.
+/// x is a body's displacement over the frame at its origin, axes of W: (translation [m], turn [rad]). Its
+/// metric M is what resists it: for the held part the coupling itself, spring and damper over one frame,
+/// told at the handle; for a free body its inertia over the square of the frame's time. So the
+/// multipliers are the contact forces in newtons, and M (x - x*) is their sum: what the hand feels, and
+/// nothing else.
 ///
 /// With x = x* + B z and M^-1 = B B^T it is the nearest point to the origin in a polyhedron (small_qp.h): six
 /// unknowns for a free body, one for a hinged or sliding one, three for one on a ball. A joint with dry
@@ -43,7 +44,8 @@ Vec6 balanced_step(const Coupling& coupling, double dt_s, const Pose& X_WH_proxy
 std::size_t unknowns_of(const Joint& joint) noexcept;
 
 /// A body whose displacement is unknown. Its six unknowns are the translation of `centre`, each times
-/// `per_translation`, and the turn, the columns of `turns`; or the fewer ones of a jointed body are the columns of `motions`.
+/// `per_translation`, and the turn, the columns of `turns`; or the fewer ones of a jointed body are the
+/// columns of `motions`.
 struct ProblemBody {
   int body = -1;
   std::size_t first = 0, rank = 0;  ///< its unknowns

@@ -13,8 +13,8 @@ ConstraintResponse::ConstraintResponse(const World& world, const FrameSettings& 
 std::span<const double> ConstraintResponse::bound_motion(const MotionInput& input,
                                                          WorldState& bodies) noexcept {
   pull_free_bodies(input, bodies);
-  trusted_reach(input, bodies, memory_);
-  return memory_.reach;
+  bound_constrained_motion(input, bodies, memory_);
+  return memory_.motion_bound;
 }
 
 void ConstraintResponse::step(const StepInput& input, GapOracle& gaps, WorldState& bodies,

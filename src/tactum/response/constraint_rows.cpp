@@ -172,7 +172,7 @@ double overstated_at_trial(std::span<const ContactRow> rows_of_patch, const Cons
   return std::max(0.0, least - step.own.constraint.trial.gap[Index(rows_of_patch.front().patch)]);
 }
 
-void feed_back(double share, ConstraintStep& step) noexcept {
+void correct_rows(double share, ConstraintStep& step) noexcept {
   ConstraintState& c = step.own.constraint;
   ConstraintProblem& problem = c.step_problem();
   const Index first_row = c.rows.shades ? c.rows.first_of_positions : c.rows.first;

@@ -75,6 +75,6 @@ ConstraintMemory::ConstraintMemory(const World& world, const FrameSettings& sett
       sleep(world),
       contact_rows(settings.budget.capacity.patches, Index(settings.budget.max_contact_points)),
       mobility(world.bodies.size(), Mobility::Zero()),
-      reach(world.bodies.size(), 0.0) {}
+      motion_bound(world.bodies.size(), 0.0) {}
 
 }  // namespace tactum

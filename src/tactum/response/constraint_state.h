@@ -163,9 +163,9 @@ struct ConstraintMemory {
   Waiting waiting;             ///< waiting.h
   Sleep sleep;                 ///< sleep.h
   ContactRows contact_rows;
-  ImpulseDisplay impulses;         ///< blows on the held part that are being felt
-  std::vector<Mobility> mobility;  ///< by body; scratch of one frame
-  std::vector<double> reach;       ///< by body: how far it may move [m]
+  ImpulseDisplay impulses;           ///< blows on the held part that are being felt
+  std::vector<Mobility> mobility;    ///< by body; scratch of one frame
+  std::vector<double> motion_bound;  ///< by body: how far it may move [m]
 };
 
 /// One step while it is made: its inputs, what it may ask, and what it changes.

@@ -62,7 +62,7 @@ GraspMetric step_metric(const Coupling& coupling, const GraspedPart& grasped, do
           std::max(metric.stiffness_Nm_per_rad, coupling.stiffness_Nm_per_rad * needed)};
 }
 
-Pose loaded_hand(const Coupling& coupling, const GraspedPart& grasped, const Pose& X_WB) noexcept {
+Pose equilibrium_pose(const Coupling& coupling, const GraspedPart& grasped, const Pose& X_WB) noexcept {
   if (!grasped.in_field) return grasped.X_WH;
   const double stiffer = std::max(1.0, (1.0 + stiffness_beside(coupling, grasped.field)) / kOvershoot);
   const Pose X_WH_proxy = X_WB * grasped.X_BH;

@@ -44,7 +44,7 @@ GraspMetric step_metric(const Coupling& coupling, const GraspedPart& grasped, do
 
 /// In the penalty response: the pose of the handle at which the coupling carries the load, or as far towards
 /// it as is safe. X_WB is the held body's.
-Pose loaded_hand(const Coupling& coupling, const GraspedPart& grasped, const Pose& X_WB) noexcept;
+Pose equilibrium_pose(const Coupling& coupling, const GraspedPart& grasped, const Pose& X_WB) noexcept;
 
 /// How steep the scene's fields are beside the coupling, in a sentence for people; empty without fields.
 std::string field_sentence(const World& world, const Coupling& coupling);

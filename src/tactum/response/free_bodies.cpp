@@ -17,18 +17,18 @@ namespace {
 
 using Index = std::size_t;
 
-/// Blows in a frame, for every contact point and in all; what is left then is taken as rest, without
+/// Impacts in a frame, for every contact point and in all; what is left then is taken as rest, without
 /// restitution.
-constexpr int kBlowsAPoint = 8;
-constexpr int kMostBlows = 128;
+constexpr int kImpactsAPoint = 8;
+constexpr int kMostImpacts = 128;
 /// A gap below the skin opens by this share of what is missing in a frame.
 constexpr double kOpening = 0.1;
-/// After the halvings, how often those that are in the way of what stays may be found, before all stay.
+/// After the backtracking, how often those that are in the way of what stays may be found, before all stay.
 constexpr int kMostStops = 12;
 /// Tests of each gap of the held part's island that are kept for it.
 constexpr int kRoundsOfGrasped = 4;
 
-/// The books of all blows; those on the held part told at the handle.
+/// The sums of all impacts; those on the grasped part are given at the handle.
 class ImpactsOnGrasped final : public ImpactObserver {
  public:
   ImpactsOnGrasped(int grasped, const Vec3& p_WH, Momentum& momentum)
@@ -111,7 +111,7 @@ void add_rows(ConstraintStep& step) {
                           X_WB[i], step.own.mobility[i], step.dt_s);
 }
 
-/// The share of every island's step that its bodies' reach allows, and how far each would go.
+/// The share of every island's step that its bodies' motion bounds allow, and how far each would go.
 void limit_shares(ConstraintStep& step) {
   FreeBodies& f = step.own.free;
   std::fill(f.share.begin(), f.share.end(), 1.0);
@@ -120,7 +120,7 @@ void limit_shares(ConstraintStep& step) {
     const Twist& V = step.bodies.V_WB[i];
     const double travel = (V.v.norm() + V.w.norm() * step.radius_m[i]) * step.dt_s;
     double& share = f.share[Index(f.islands.of(static_cast<int>(i)))];
-    if (travel * share > step.own.reach[i]) share = step.own.reach[i] / travel;
+    if (travel * share > step.own.motion_bound[i]) share = step.own.motion_bound[i] / travel;
     step.own.waiting.travel[i] = travel;
   }
   // An island's number is its first body.
@@ -240,7 +240,7 @@ void correct(ConstraintStep& step) {
 }
 
 /// What the contacts did, for the report.
-void tell_forces(ConstraintStep& step) {
+void report_forces(ConstraintStep& step) {
   std::vector<ContactRow>& rows = step.own.contact_rows.rows;
   step.own.free.resting.for_each([&](int index, double normal, const Vec3& impulse_W) {
     ContactRow& row = rows[Index(index)];
@@ -302,14 +302,14 @@ void find_islands(ConstraintStep& step) noexcept {
   if (!f.grasped_here) f.grasped_island = island;
 }
 
-void strike(ConstraintStep& step) noexcept {
+void apply_impacts(ConstraintStep& step) noexcept {
   if (!step.own.free.others) return;
   std::vector<Twist>& V_WB = step.bodies.V_WB;
   const std::vector<Pose>& X_WB = step.bodies.X_WB;
   const int grasped = step.grasped.body;
   for (Index i = 0; i < step.world.bodies.size(); ++i) {
     if (!step.world.bodies[i].moves()) continue;
-    // The hand decides where the held part goes: a blow does not move it, it is felt.
+    // The hand decides where the held part goes: an impact does not move it, it is felt.
     const bool immovable = is_grasped(step, i) || !step.own.free.islands.moves(static_cast<int>(i));
     step.own.mobility[i] = immovable ? Mobility::Zero() : inertial_mobility(step.world.bodies[i], X_WB[i]);
     if (step.world.bodies[i].joint.kind != JointKind::kFree && !is_grasped(step, i))
@@ -317,13 +317,14 @@ void strike(ConstraintStep& step) noexcept {
                                      inertial_resistance(step.world.bodies[i], X_WB[i]), V_WB[i]);
   }
   const double energy_J = grasped < 0 ? 0.0 : bodies_energy(step.world, step.bodies, grasped);
-  ImpactsOnGrasped blows(grasped, grasped < 0 ? Vec3::Zero() : X_WB[Index(grasped)] * step.grasped.X_BH.p,
-                         step.own.free.momentum);
+  ImpactsOnGrasped impacts(grasped, grasped < 0 ? Vec3::Zero() : X_WB[Index(grasped)] * step.grasped.X_BH.p,
+                           step.own.free.momentum);
   step.report.impacts = resolve_impacts(
       step.own.contact_rows.rows, X_WB, step.own.mobility, step.dt_s,
-      std::min(kMostBlows, kBlowsAPoint * static_cast<int>(step.own.contact_rows.rows.size())), V_WB, &blows);
-  if (blows.sum())
-    step.own.impulses.add(step.settings.impacts, step.dt_s, *blows.sum(),
+      std::min(kMostImpacts, kImpactsAPoint * static_cast<int>(step.own.contact_rows.rows.size())), V_WB,
+      &impacts);
+  if (impacts.sum())
+    step.own.impulses.add(step.settings.impacts, step.dt_s, *impacts.sum(),
                           std::max(0.0, energy_J - bodies_energy(step.world, step.bodies, grasped)));
 
   for (Index i = 0; i < step.world.bodies.size(); ++i) {
@@ -360,7 +361,7 @@ void move_free_bodies(ConstraintStep& step) noexcept {
   bool all = true;
   for (int round = 0, cuts = 0;; ++round) {
     try_steps(step);
-    if (cuts > kHalvings + kMostStops) break;  // those stayed
+    if (cuts > kBacktracks + kMostStops) break;  // those stayed
     const int tests = step.report.validation_tests;
     if (look(all, keep_back, step)) break;
     ++step.report.validation_retries;
@@ -370,9 +371,9 @@ void move_free_bodies(ConstraintStep& step) noexcept {
       correct(step);
       solve();
       limit_shares(step);
-    } else if (++cuts <= kHalvings + kMostStops) {
+    } else if (++cuts <= kBacktracks + kMostStops) {
       round = kFeedbacks;
-      cut(cuts <= kHalvings, step);
+      cut(cuts <= kBacktracks, step);
     } else {
       stay(step);
     }
@@ -386,7 +387,7 @@ void move_free_bodies(ConstraintStep& step) noexcept {
     ++step.report.cut_short;
   }
   f.resting.end();
-  tell_forces(step);
+  report_forces(step);
 }
 
 void end_turning(ConstraintStep& step) noexcept {

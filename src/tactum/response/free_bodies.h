@@ -28,9 +28,9 @@ bool others_move(const World& world, int grasped) noexcept;
 /// Finds the islands, from the patches of the frame.
 void find_islands(ConstraintStep& step) noexcept;
 
-/// Strikes blows, and gives gravity's other half: afterwards every body that is not held
+/// Applies impacts, and gives gravity's other half: afterwards every body that is not held
 /// has the velocity with which it would go on if nothing held it.
-void strike(ConstraintStep& step) noexcept;
+void apply_impacts(ConstraintStep& step) noexcept;
 
 /// Moves all islands but `grasped_island`.
 void move_free_bodies(ConstraintStep& step) noexcept;

@@ -196,7 +196,7 @@ void Friction::note_sticking(const ConstraintProblem& problem) noexcept {
 }
 
 /// Its rows ask for nothing that a part could miss.
-void Friction::let_go(FrictionPatch& patch, ConstraintProblem& problem) noexcept {
+void Friction::drop_cone(FrictionPatch& patch, ConstraintProblem& problem) noexcept {
   constexpr double kAnywhere_m = 1e3;  // [m]
   for (double& more : problem.cone(patch.first_row).more) more -= kAnywhere_m;
   patch.acts = false;
@@ -216,7 +216,7 @@ bool Friction::let_slip(double skin_m, ConstraintProblem& problem) noexcept {
     if (further == 0.0 && turned == 0.0) continue;
     changed = true;
     if (patch.load_N == 0.0) {
-      let_go(patch, problem);
+      drop_cone(patch, problem);
       continue;
     }
     QpCone& cone = problem.cone(patch.first_row);

@@ -89,7 +89,7 @@ class Friction {
   FrictionPatch* patch_of(const PatchKey& key) noexcept;
   FrictionPatch* patch_of_row(std::size_t row) noexcept;
   void add_cone(FrictionPatch& patch, ConstraintProblem& problem) noexcept;
-  void let_go(FrictionPatch& patch, ConstraintProblem& problem) noexcept;
+  void drop_cone(FrictionPatch& patch, ConstraintProblem& problem) noexcept;
   void anchor(FrictionPatch& patch, std::span<const Pose> X_WB, double settled_m) noexcept;
 
   StaticVector<FrictionPatch, kMostPatches> patches_;

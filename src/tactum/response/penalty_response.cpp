@@ -45,7 +45,7 @@ PenaltyResponse::PenaltyResponse(const World& world, const FrameSettings& settin
     : contacts_(settings.budget.capacity.patches, Index(settings.budget.max_contact_points)),
       resistance_(world.bodies.size(), Resistance::Zero()),
       mobility_(world.bodies.size(), Mobility::Zero()),
-      reach_(world.bodies.size(), 0.0) {}
+      motion_bound_(world.bodies.size(), 0.0) {}
 
 std::span<const double> PenaltyResponse::bound_motion(const MotionInput& input, WorldState& bodies) noexcept {
   const World& world = input.world;
@@ -56,7 +56,7 @@ std::span<const double> PenaltyResponse::bound_motion(const MotionInput& input, 
     Twist& V_WB = bodies.V_WB[i];
     resistance_[i] = resistance_of(input, X_WB, i, input.dt_s);
     if (static_cast<int>(i) == input.grasped.body) {
-      const Pose X_WH = loaded_hand(input.settings.coupling, input.grasped, X_WB);
+      const Pose X_WH = equilibrium_pose(input.settings.coupling, input.grasped, X_WB);
       V_WB = velocity_to_hand(input.grasped, X_WB, X_WH, input.dt_s);
     } else {
       V_WB.v += world.gravity_W * input.dt_s;
@@ -65,11 +65,11 @@ std::span<const double> PenaltyResponse::bound_motion(const MotionInput& input, 
     mobility_[i] = mobility(body.joint, X_WB, resistance_[i]);
   }
   limit_grasped(input, bodies);
-  for (Index i = 0; i < reach_.size(); ++i) {
+  for (Index i = 0; i < motion_bound_.size(); ++i) {
     const Twist& V = bodies.V_WB[i];
-    reach_[i] = (V.v.norm() + V.w.norm() * input.radius_m[i]) * input.dt_s;
+    motion_bound_[i] = (V.v.norm() + V.w.norm() * input.radius_m[i]) * input.dt_s;
   }
-  return reach_;
+  return motion_bound_;
 }
 
 /// Gives the held part the whole way that is left to the hand over the rest of the frame, and what resists
@@ -81,7 +81,7 @@ void PenaltyResponse::pull_grasped(const StepInput& input, double rest_s, WorldS
   const Joint& joint = input.world.bodies[i].joint;
   resistance_[i] = resistance_of(input, X_WB, i, rest_s);
   mobility_[i] = mobility(joint, X_WB, resistance_[i]);
-  const Pose X_WH = loaded_hand(input.settings.coupling, input.grasped, X_WB);
+  const Pose X_WH = equilibrium_pose(input.settings.coupling, input.grasped, X_WB);
   const Twist pull = velocity_to_hand(input.grasped, X_WB, X_WH, rest_s);
   bodies.V_WB[i] = constrained_velocity(joint, X_WB, resistance_[i], pull);
 }

@@ -48,7 +48,7 @@ class PenaltyResponse {
   ContactRows contacts_;
   std::vector<Resistance> resistance_;  // by body; scratch of one frame
   std::vector<Mobility> mobility_;
-  std::vector<double> reach_;
+  std::vector<double> motion_bound_;
 };
 
 }  // namespace tactum

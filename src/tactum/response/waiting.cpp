@@ -85,7 +85,7 @@ void list_patches(ConstraintStep& step) {
 }
 
 /// Lets bodies go while the tests reach, the most urgent first.
-void let_go(ConstraintStep& step) {
+void admit_bodies(ConstraintStep& step) {
   Waiting& w = step.own.waiting;
   list_patches(step);
   w.counted.assign(step.patches.size(), 0);
@@ -115,7 +115,7 @@ void let_go(ConstraintStep& step) {
 
 }  // namespace
 
-void let_wait(ConstraintStep& step) noexcept {
+void defer_bodies(ConstraintStep& step) noexcept {
   Waiting& w = step.own.waiting;
   if (w.ran_out) {
     w.rounds = std::min(2 * w.rounds, kMostRounds);
@@ -139,7 +139,7 @@ void let_wait(ConstraintStep& step) noexcept {
   wake(step.own.sleep);
   watch_rest(step);
   std::fill(w.waits.begin(), w.waits.end(), 1);
-  let_go(step);
+  admit_bodies(step);
   const double fading = std::pow(kFading, step.dt_s / kReferenceStep_s);
   for (Index i = 0; i < step.world.bodies.size(); ++i) {
     w.waited[i] = w.waits[i] && !asleep(w, i) ? w.waited[i] + 1 : 0;

@@ -60,7 +60,7 @@ export class Hand {
   /** Somebody else has the hand now. */
   lose() {
     this.aimed = false;
-    this.letGo();
+    this.release();
   }
   get dragging() {
     return this.drag !== null;
@@ -175,9 +175,9 @@ export class Hand {
   }
 
   private up(event: PointerEvent) {
-    if (event.pointerId === this.drag?.pointer) this.letGo();
+    if (event.pointerId === this.drag?.pointer) this.release();
   }
-  private letGo() {
+  private release() {
     this.drag = null;
     this.reaching = false;
     if (this.run?.picks && this.buttons !== 0) {
