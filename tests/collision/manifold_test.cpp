@@ -224,13 +224,13 @@ TEST(Manifold, EdgeOverAFaceAgreesWithCounting) {
         };
         const double first = place(c.patch.points[0]);
         const double second = place(c.patch.points[1]);
-        const double reach = 0.5 * std::sqrt(3.0) * (second - first);  // of Gauss points, to the ends
-        if (expected.empty()) {                                        // between two steps
-          EXPECT_LT(2.0 * reach, 1.0 / kSteps) << i;
+        const double half_length = 0.5 * std::sqrt(3.0) * (second - first);  // of Gauss points, to the ends
+        if (expected.empty()) {                                              // between two steps
+          EXPECT_LT(2.0 * half_length, 1.0 / kSteps) << i;
           continue;
         }
-        EXPECT_NEAR(0.5 * (first + second) - reach, expected.low, 2.0 / kSteps) << i;
-        EXPECT_NEAR(0.5 * (first + second) + reach, expected.high, 2.0 / kSteps) << i;
+        EXPECT_NEAR(0.5 * (first + second) - half_length, expected.low, 2.0 / kSteps) << i;
+        EXPECT_NEAR(0.5 * (first + second) + half_length, expected.high, 2.0 / kSteps) << i;
         ++(on_face.face_share < 1.0 ? leaning : level);
         cut += expected.high - expected.low < 0.99 ? 1 : 0;
       }

@@ -155,7 +155,7 @@ TEST(FieldPull, OnlyWhatIsHeldIsPulledAndLettingGoEndsIt) {
   FieldRig rig(in_the_air(kDipole));
   rig.settings.tool.body = -1;
   rig.settings.tool.picks = true;
-  rig.settings.tool.reach_m = 1.0;
+  rig.settings.tool.pick_distance_m = 1.0;
   rig.step({});
   EXPECT_TRUE(rig.report.field.f.isZero(0.0));
   EXPECT_EQ(rig.begun().hand.field.body, -1);

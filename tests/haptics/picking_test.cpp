@@ -47,8 +47,8 @@ struct Hand : Sandbox {
 
 TEST(Picking, TheNearestBodyWithinReach) {
   Hand hand;
-  const auto nearest = [&](const Vec3& p, double reach) {
-    return nearest_body(hand.world, hand.begun().world.X_WB, p, reach);
+  const auto nearest = [&](const Vec3& p, double most) {
+    return nearest_body(hand.world, hand.begun().world.X_WB, p, most);
   };
   EXPECT_EQ(nearest({0.004, 0, 0.025}, 0.01), hand.near_block);
   EXPECT_EQ(nearest({0.045, 0, 0.01}, 0.01), hand.far_block);

@@ -42,7 +42,7 @@ Wrench haptic_frame(const World& world, const FrameSettings& settings, const Dev
 
     // How do the held part and the world answer?
     state.X_WB_start = bodies.X_WB;  // same size: nothing is allocated
-    const StepInput step{motion, patches, contacts.urgency, report.work, contacts.shading, state.X_WB_start};
+    const StepInput step{motion, patches, contacts.priority, report.work, contacts.shading, state.X_WB_start};
     state.response.step(step, contacts.finder, bodies, report);
     add_field_work(bodies.X_WB, state.hand.field);
     state.ended(Stage::kResponse);

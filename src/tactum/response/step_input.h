@@ -34,7 +34,7 @@ struct MotionInput {
 
 struct StepInput : MotionInput {
   std::span<const ContactPatch> patches;
-  std::span<const std::uint8_t> urgency;       ///< of each body (contact/schedule.h)
+  std::span<const std::uint8_t> priority;      ///< of each body (contact/schedule.h)
   const ContactWork& work;                     ///< what was looked at, and what was left
   const std::vector<ShadingNormals>& shading;  ///< one per body; empty when shading is off
   std::span<const Pose> X_WB_start;            ///< poses at the start of the frame [m]

@@ -51,7 +51,7 @@ void watch_rest(ConstraintStep& step) {
     const Twist moved = twist_between(w.X_rest[i], X_WB, 1.0);
     const bool left = moved.v.norm() + moved.w.norm() * radius > kRestShare * radius;
     const bool lost = 2 * w.contacts[i] < std::max(1, w.contacts_at_rest[i]);
-    if (left || lost || w.hit[i] || step.urgency[i] != urgency::kOther) {
+    if (left || lost || w.hit[i] || step.priority[i] != priority::kOther) {
       w.X_rest[i] = X_WB;
       w.rested[i] = w.contacts_at_rest[i] = 0;
     } else if (!w.waits[i] && ++w.rested[i] >= rest_frames) {
@@ -84,7 +84,7 @@ void list_patches(ConstraintStep& step) {
         w.patch_of[Index(w.next_patch[Index(body)]++)] = static_cast<int>(p);
 }
 
-/// Lets bodies go while the tests reach, the most urgent first.
+/// Admits bodies while the tests suffice, those of the highest priority first.
 void admit_bodies(ConstraintStep& step) {
   Waiting& w = step.own.waiting;
   list_patches(step);
@@ -97,7 +97,7 @@ void admit_bodies(ConstraintStep& step) {
   std::sort(w.order.begin(), w.order.end(), [&](int a, int b) {
     const Index i = Index(a);
     const Index k = Index(b);
-    if (step.urgency[i] != step.urgency[k]) return step.urgency[i] < step.urgency[k];
+    if (step.priority[i] != step.priority[k]) return step.priority[i] < step.priority[k];
     return w.waited[i] != w.waited[k] ? w.waited[i] > w.waited[k] : a < b;
   });
   int left = step.gaps.tests_left() / w.rounds;

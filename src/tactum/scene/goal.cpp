@@ -49,7 +49,7 @@ double GoalRecord::measure(const Goal& goal, const World& world, const WorldStat
     case GoalKind::kPicked:
       return picked_[body];
     case GoalKind::kFollowed:
-      return std::abs(angles_[body] + goal.amount * angles_[Index(goal.leader)]);
+      return std::abs(angles_[body] + goal.amount * angles_[Index(goal.driver)]);
   }
   return 0.0;
 }
@@ -116,7 +116,7 @@ std::string GoalRecord::describe(const World& world, std::size_t goal) const {
       return fmt::format("{} was {}: {}", body, best > 0.0 ? "picked up" : "not picked up", verdict);
     case GoalKind::kFollowed:
       return fmt::format("{} followed {}: off by {:.2f} degrees, allowed {:.2f}: {}", body,
-                         world.bodies[Index(g.leader)].name, degrees(best), degrees(g.tolerance), verdict);
+                         world.bodies[Index(g.driver)].name, degrees(best), degrees(g.tolerance), verdict);
   }
   return {};
 }

@@ -18,13 +18,13 @@ enum class GoalKind {
   kMovedTo,   ///< at some time the point was within `tolerance` of `vector_W`
   kTouched,   ///< at some time the held part pushed it
   kPicked,    ///< at some time it was held
-  kFollowed   ///< at the end the angle is -`amount` times the leader's, within `tolerance`
+  kFollowed   ///< at the end the angle is -`amount` times the driver's, within `tolerance`
 };
 
 struct Goal {
   GoalKind kind = GoalKind::kTurned;
   int body = 0;                  ///< whose it is
-  int leader = 0;                ///< kFollowed: the driving body
+  int driver = 0;                ///< kFollowed: the driving body
   Vec3 p_BQ = Vec3::Zero();      ///< kMoved*: the point of the body that is watched [m]
   Vec3 vector_W = Vec3::Zero();  ///< kMovedBy: unit direction [-]; kMovedTo: the place [m]
   double amount = 0.0;           ///< [rad], [m] or the ratio [-]

@@ -111,7 +111,7 @@ std::shared_ptr<const HandMotion> with_tremor(const TomlReader& hand,
 }
 
 /// The hand must not be sent where the device ends.
-void check_reach(const TomlReader& hand, const HandMotion& motion, const SimulatedDeviceModel& device) {
+void check_workspace(const TomlReader& hand, const HandMotion& motion, const SimulatedDeviceModel& device) {
   constexpr double kLook_s = 0.01;
   double farthest = 0.0;
   for (double t = 0.0; t <= motion.duration_s(); t += kLook_s)
@@ -145,7 +145,7 @@ void read_hand(const TomlReader& root, Scene& scene) {
     for (const TomlReader& step : steps) add_step(step, scene, map, motion);
   if (hand.errors()) return;
   scene.hand = with_tremor(hand, std::make_shared<ScriptedMotion>(std::move(motion)));
-  check_reach(hand, *scene.hand, *device);
+  check_workspace(hand, *scene.hand, *device);
 }
 
 }  // namespace tactum

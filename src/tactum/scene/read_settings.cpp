@@ -120,10 +120,10 @@ void read_tool(const TomlReader& root, Scene& scene) {
   Vec3 handle_W = Vec3::Zero();
   if (root.has("tool")) {
     const TomlReader table =
-        root.table("tool", {"body", "grasp", "radius_m", "angle_deg", "pos_m", "picks", "reach_m"});
+        root.table("tool", {"body", "grasp", "radius_m", "angle_deg", "pos_m", "picks", "pick_distance_m"});
     Tool& tool = scene.settings.tool;
     tool.picks = table.flag("picks", false);
-    tool.reach_m = table.number("reach_m", tool.reach_m, kPositive);
+    tool.pick_distance_m = table.number("pick_distance_m", tool.pick_distance_m, kPositive);
     if (tool.picks) {
       for (const char* key : {"body", "grasp", "radius_m", "angle_deg", "pos_m"})
         if (table.has(key))
@@ -131,7 +131,8 @@ void read_tool(const TomlReader& root, Scene& scene) {
       workspace.X_WD.p = space.vector3("pos_m", handle_W);
       return;
     }
-    if (table.has("reach_m")) table.fail("reach_m", "\"reach_m\" is for picks = true only");
+    if (table.has("pick_distance_m"))
+      table.fail("pick_distance_m", "\"pick_distance_m\" is for picks = true only");
     const int grasped = body_called(table, "body", scene.world);
     if (grasped < 0) return;
     const Body& body = scene.world.bodies[static_cast<std::size_t>(grasped)];

@@ -143,8 +143,8 @@ void SurfaceWalk::compare_leaves(const Pair& pair) noexcept {
       features_.vertex_edge(swapped_, one, other);
     if constexpr (One == Tree::kVertices && Other == Tree::kVertices) features_.vertex_vertex(one, other);
   }
-  bounds_.reach = static_cast<float>(features_.reach()) + bounds_.grown;
-  bounds_.far = std::max(bounds_.reach, bounds_.depth);
+  bounds_.max_distance = static_cast<float>(features_.max_distance()) + bounds_.grown;
+  bounds_.far = std::max(bounds_.max_distance, bounds_.depth);
 }
 
 template void SurfaceWalk::run<Tree::kEdges, Tree::kEdges>() noexcept;

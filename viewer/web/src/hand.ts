@@ -253,7 +253,7 @@ export class Hand {
   }
 
   /** Presses the button when the hand has come near enough, and drags from there once something is held. */
-  private reach(picture: Picture) {
+  private grabWhenNear(picture: Picture) {
     const drag = this.drag as Drag;
     const away = this.p.distanceTo(new THREE.Vector3(picture.hand[0], picture.hand[1], picture.hand[2]));
     if (this.buttons === 0 && away < nearEnough_m) {
@@ -275,7 +275,7 @@ export class Hand {
   drawPull(picture: Picture) {
     const drag = this.drag;
     if (!drag || !this.run) return;
-    if (this.reaching) this.reach(picture);
+    if (this.reaching) this.grabWhenNear(picture);
     const grasped = this.view.bodies?.matrices[this.run.grasped];
     if (!grasped) return;
     const from = drag.grabbed.clone().applyMatrix4(grasped);

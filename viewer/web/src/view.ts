@@ -195,13 +195,13 @@ export class View {
     this.spacing = round125(radius / 3);
     const step = this.spacing * this.scale;
     const lines = Math.ceil(3.4 / step);
-    const reach = lines * step;
+    const gridHalf = lines * step;
     const points: number[] = [];
     const colours: number[] = [];
     const { r, g, b } = new THREE.Color(this.look.grid);
     const put = (x: number, y: number) => {
       points.push(x, y, this.floorZ);
-      colours.push(r, g, b, 0.75 * Math.max(0, 1 - (x * x + y * y) / (reach * reach)));
+      colours.push(r, g, b, 0.75 * Math.max(0, 1 - (x * x + y * y) / (gridHalf * gridHalf)));
     };
     for (let i = -lines; i <= lines; ++i)
       for (let k = -lines; k < lines; ++k) {
