@@ -29,7 +29,7 @@ class TwoBodies {
     for (SeamCandidate* candidate : candidates_)
       if (!candidate->settled && !answered(*candidate)) find_again(*candidate);
     while (SeamCandidate* nearest = shallowest())
-      if (!answered(*nearest) && find_beside_leaders(*nearest)) lead(*nearest);
+      if (!answered(*nearest) && find_beside_representatives(*nearest)) lead(*nearest);
     for (SeamCandidate* candidate : candidates_)
       if (!candidate->settled) *candidate->shown = {};
   }
@@ -70,7 +70,7 @@ class TwoBodies {
   /// inside the other, as deep as that one is entered, so the search goes that far beside the covered place.
   /// The depth on the pieces is taken where rounding leaves no true face or edge there, or where the contact
   /// is true in its middle. Returns false when nothing is in contact.
-  bool find_beside_leaders(SeamCandidate& candidate) noexcept {
+  bool find_beside_representatives(SeamCandidate& candidate) noexcept {
     const PairDistance& on_pieces = candidate.on_pieces;
     const double entered = deepest_representative();
     const double beside = candidate.margin + entered;
