@@ -321,10 +321,10 @@ TEST(SimulatedDevice, PresetsOpenAndFollowEveryGrip) {
       const DeviceSample sample = run(device, 0, 3000, {});
       const HandModel hand = *hand_model(grip);
       // It rests where friction holds it against the hand's spring.
-      const double slack = 1e-4 + model.friction_N / hand.stiffness_N_per_m;
-      const double slack_rad = 2e-3 + model.friction_Nm / hand.stiffness_Nm_per_rad;
-      EXPECT_LT((sample.X_DH.p - motion->end_pose().p).norm(), slack) << model.name << " " << grip;
-      EXPECT_LT(log_rotation(sample.X_DH.R * motion->end_pose().R.transpose()).norm(), slack_rad)
+      const double tolerance = 1e-4 + model.friction_N / hand.stiffness_N_per_m;
+      const double tolerance_rad = 2e-3 + model.friction_Nm / hand.stiffness_Nm_per_rad;
+      EXPECT_LT((sample.X_DH.p - motion->end_pose().p).norm(), tolerance) << model.name << " " << grip;
+      EXPECT_LT(log_rotation(sample.X_DH.R * motion->end_pose().R.transpose()).norm(), tolerance_rad)
           << model.name << " " << grip;
     }
   }

@@ -16,7 +16,7 @@ namespace {
 
 using Vector = Eigen::VectorXd;
 
-constexpr double kSlack = 1e-12;
+constexpr double kTolerance = 1e-12;
 
 struct Rows {
   std::size_t unknowns = 0;
@@ -37,7 +37,7 @@ struct Rows {
   QpProblem problem() const {
     made.clear();
     for (std::size_t row = 0; row < offsets.size(); ++row) made.push_back(in_runs(row));
-    return {unknowns, made, {}, kSlack};
+    return {unknowns, made, {}, kTolerance};
   }
 
  private:
@@ -317,7 +317,7 @@ TEST(SmallQp, AConeIsItsEdgesWrittenOut) {
                 1e-14);
     SmallQp by_cones, by_rows;
     by_cones.begin(with_cones, {});
-    const QpProblem written_out{unknowns, rows, {}, kSlack};
+    const QpProblem written_out{unknowns, rows, {}, kTolerance};
     by_rows.begin(written_out, {});
     const QpAnswer& one = by_cones.solve_on(with_cones, 1000);
     const QpAnswer& other = by_rows.solve_on(written_out, 1000);

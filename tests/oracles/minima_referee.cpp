@@ -151,13 +151,13 @@ class Features {
   }
 };
 
-double edge_margin(const Edge& edge, const Vec3& u, double slack) {
+double edge_margin(const Edge& edge, const Vec3& u, double inflation) {
   const double at = std::atan2(u.dot(edge.side), u.dot(edge.from));
   // The middle of the arc is where both ends are as far: measure from there.
   double off = at - 0.5 * edge.width;
   if (off > kPi) off -= 2.0 * kPi;
   if (off < -kPi) off += 2.0 * kPi;
-  return 0.5 * edge.width - std::abs(off) + slack;
+  return 0.5 * edge.width - std::abs(off) + inflation;
 }
 
 /// Sine of the angle from u to the cone of these rays: to one of them, or to the sector between two.
@@ -177,11 +177,11 @@ double sine_to_cone(const std::vector<Vec3>& rays, const Vec3& u) {
   return least;
 }
 
-double corner_margin(const Corner& corner, const Vec3& u, double slack) {
+double corner_margin(const Corner& corner, const Vec3& u, double inflation) {
   double inside = 1.0;
   for (const Vec3& e : corner.edges) inside = std::min(inside, -e.dot(u));
-  const double margin = inside >= 0.0 ? inside + slack : slack - sine_to_cone(corner.rays, u);
-  return std::min({margin, u.dot(corner.outward) + slack, corner.thin ? 0.0 : 1.0});
+  const double margin = inside >= 0.0 ? inside + inflation : inflation - sine_to_cone(corner.rays, u);
+  return std::min({margin, u.dot(corner.outward) + inflation, corner.thin ? 0.0 : 1.0});
 }
 
 /// Boxes of features in a grid of cells: which may be near another box. A feature stands in every cell its

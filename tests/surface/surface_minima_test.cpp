@@ -143,9 +143,9 @@ TEST(SurfaceMinima, AreThoseOfEveryPairOfFeatures) {
       const Mat3 R = cases::random_rotation(random);
       const Pose X = approached(pair.a, pair.b, R, cases::random_unit(random),
                                 random.uniform(0.05, 0.9) * pair.max_distance);
-      const double slack = i % 3 == 0 ? 0.0 : random.uniform(0.0, 0.05);
+      const double inflation = i % 3 == 0 ? 0.0 : random.uniform(0.0, 0.05);
       found += expect_as_referee(pair.a, pair.b, X,
-                                 {pair.max_distance, i % 2 ? 0.3 * pair.max_distance : 0.0, slack});
+                                 {pair.max_distance, i % 2 ? 0.3 * pair.max_distance : 0.0, inflation});
     }
     EXPECT_GT(found, poses / 5);
   }
@@ -310,7 +310,7 @@ TEST(SurfaceMinima, OfFlatContactSupportAllItsCorners) {
       EXPECT_EQ(corners.size(), 4u) << angle << " " << tilt;
     }
   }
-  // Without the slack only the lowest corner of a tilted cube is one.
+  // Without the inflation only the lowest corner of a tilted cube is one.
   Pose X = flat_on_top(0.3, 3e-5, 0.01);
   X.R = exp_rotation(Vec3(1e-3, 5e-4, 0)) * X.R;
   EXPECT_EQ(query(plate, cube, X, {6e-5, 0.0, 0.0}).size(), 1u);

@@ -109,7 +109,7 @@ class MotionProblem {
       newton_step();
       Index wrong = 0;
       for (Index i = 0; i < n_; ++i) {
-        rows_[i].slack = slack(rows_[i]);
+        rows_[i].residual = residual(rows_[i]);
         wrong += is_wrong(rows_[i]) ? 1 : 0;
       }
       if (wrong == 0) return round;
@@ -129,7 +129,7 @@ class MotionProblem {
   }
 
   double impulse(Index i) const {
-    return rows_[i].active ? std::max(0.0, rows_[i].slack) * rows_[i].stiffness : 0.0;
+    return rows_[i].active ? std::max(0.0, rows_[i].residual) * rows_[i].stiffness : 0.0;
   }
 
   void add_motion(std::span<Twist> V) const {
@@ -159,7 +159,7 @@ class MotionProblem {
     std::array<double, 12> g;
     double stiffness;  // 1 / c
     double wanted;     // b
-    double slack;      // b - g z, since the last step
+    double residual;   // b - g z, since the last step
     bool active;
   };
 
@@ -242,17 +242,17 @@ class MotionProblem {
   }
 
   /// b - g z: by how much the row still approaches too fast.
-  double slack(const Row& row) const {
+  double residual(const Row& row) const {
     double sum = row.wanted;
     for (Index i = 0; i < row.size; ++i) sum -= row.g[i] * z_[row.column[i]];
     return sum;
   }
   bool is_wrong(const Row& row) const {
-    return row.active ? !(row.slack >= -allowed_) : !(row.slack <= allowed_);  // NaN is wrong
+    return row.active ? !(row.residual >= -allowed_) : !(row.residual <= allowed_);  // NaN is wrong
   }
 
   Index n_ = 0, body_count_ = 0, columns_ = 0;
-  double allowed_ = 0.0;  // so much of a slack may stay [m/s]
+  double allowed_ = 0.0;  // so much of a residual may stay [m/s]
   Row rows_[kMostRows];
   ColumnBody bodies_[kMostBodies];
   double H_[kMostColumns][kMostColumns], L_[kMostColumns][kMostColumns];
