@@ -118,7 +118,7 @@ double lead(const FeelScene& scene, FeelEngine& engine, const std::function<void
 }
 
 /// The energy that the hand has put in, with the mean of the forces at the two ends of each step [J].
-class Ledger {
+class EnergyBalance {
  public:
   void add(const Run& run) {
     if (known_) {
@@ -225,15 +225,15 @@ FeelRow feel(const FeelSceneEntry& what, const FeelEngineEntry& entry, const Fee
   row.setup = setup;
   const std::unique_ptr<FeelEngine> engine = entry.make(scene, setup);
   const Referee depth(scene);
-  Ledger ledger;
+  EnergyBalance balance;
   Sliding sliding(scene);
   row.frame_us = lead(scene, *engine, [&](const Run& run) {
     row.penetration_m = std::max(row.penetration_m, depth(run.X_WB));
-    ledger.add(run);
+    balance.add(run);
     if (scene.begins_to_slide) sliding.look(run, row);
     if (run.time_s >= scene.judged_from_s && run.time_s <= scene.judged_to_s) judge(scene, *engine, run, row);
   });
-  row.energy_made_J = std::max(0.0, -ledger.put_in_J);
+  row.energy_made_J = std::max(0.0, -balance.put_in_J);
   return row;
 }
 

@@ -106,7 +106,8 @@ WallTrial try_wall(const WallSetup& setup, double stiffness, double seconds) {
     (setup.turning ? input.spring_turning_J : input.spring_J) =
         stored(setup, stiffness, sample.X_DH, input.wanted);
     device.write(passive_wrench(port, state, sample, input, report));
-    trial.lowest_J = std::min(trial.lowest_J, setup.turning ? report.ledger_turning_J : report.ledger_J);
+    trial.lowest_J =
+        std::min(trial.lowest_J, setup.turning ? report.energy_balance_turning_J : report.energy_balance_J);
     if (now_s < kPressed_s) continue;
     const auto third = static_cast<std::size_t>(3.0 * (now_s - kPressed_s) / (seconds - kPressed_s));
     const double speed = setup.turning ? device.true_twist().w.norm() : device.true_twist().v.norm();

@@ -7,7 +7,7 @@
 ///   hand: taps it twice, then presses and stays                          2.4 s of virtual time
 ///
 /// The handle is *at rest* when, in the last third of the pressing, it moves by less than it did in the third
-/// before, or by less than a hand can feel. The wall is *passive* when the ledger of the port
+/// before, or by less than a hand can feel. The wall is *passive* when the balance of the port
 /// (loop/passivity.h), with the damping of device and hand and no credit but what the spring has stored,
 /// never falls 0.01 mJ below zero: no energy was made. The stiffest of each kind
 /// is found by bisection.
@@ -40,7 +40,7 @@ struct WallTrial {
   bool at_rest = false;
   bool passive = false;
   double rest_speed = 0.0;  ///< fastest in the last third [m/s or rad/s]
-  double lowest_J = 0.0;    ///< of the ledger [J]
+  double lowest_J = 0.0;    ///< of the balance [J]
   double pressed = 0.0;     ///< mean force (torque) in the last third [N or N m]
 };
 

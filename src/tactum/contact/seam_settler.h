@@ -7,8 +7,9 @@
 ///                                        patch of the first, which is then that of the uncut part
 ///                                        (manifold.h).
 ///   then internal contacts:              dropped when they are apart or a representative stands
-///                                        for them; else they lead by the least depth on the true surface, or in a corner by that
-///                                        beside it, or as they were found.
+///                                        for them; else they lead by the least depth on the true
+///                                        surface, or in a corner by that beside it, or as they
+///                                        were found.
 ///
 /// The memory of what was shown goes from the representative to all it answers for, so that a contact slides
 /// over a seam without forgetting. Cost: what the patches cost, and a look-up for each representative and

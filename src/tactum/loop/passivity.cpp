@@ -8,22 +8,22 @@
 namespace tactum {
 namespace {
 
-/// One of the two ledgers over one step.
+/// One of the two balances over one step.
 struct Step {
   Vec3 displacement;  // made since the last frame
   Vec3 sent;          // force (torque) held meanwhile
   double damping;     // the device's own
   double given_J;     // by the scene's bodies
-  double highest_J;   // the ledger may become
+  double highest_J;   // the balance may become
   double credit_J;
   double max_injected;
   double dt_s;
 };
 
-void book(const Step& step, double& ledger_J) noexcept {
+void book(const Step& step, double& energy_balance_J) noexcept {
   const double passed_J = -step.sent.dot(step.displacement) +
                           step.damping * step.displacement.squaredNorm() / step.dt_s + step.given_J;
-  ledger_J = std::clamp(ledger_J + passed_J, -step.credit_J, step.highest_J);
+  energy_balance_J = std::clamp(energy_balance_J + passed_J, -step.credit_J, step.highest_J);
 }
 
 /// What the wrench and the controller's part of it have done over the way.
@@ -33,19 +33,19 @@ void add_up(const Vec3& displacement, const Vec3& sent, const Vec3& damper, Ener
   total.damped_J -= damper.dot(displacement);
 }
 
-/// A thread turns one kind of work into the other: what one ledger owes, the other pays as far as it can.
-void settle(double& ledger_J, double& other_J) noexcept {
-  const double paid_J = std::max(0.0, std::min(-ledger_J, other_J));
-  ledger_J += paid_J;
+/// A thread turns one kind of work into the other: what one balance owes, the other pays as far as it can.
+void settle(double& energy_balance_J, double& other_J) noexcept {
+  const double paid_J = std::max(0.0, std::min(-energy_balance_J, other_J));
+  energy_balance_J += paid_J;
   other_J -= paid_J;
 }
 
 /// The damping to add.
-double injected(const Step& step, double ledger_J) noexcept {
+double injected(const Step& step, double energy_balance_J) noexcept {
   const double length_sq = step.displacement.squaredNorm();
-  if (!(ledger_J < 0.0) || length_sq == 0.0) return 0.0;
-  // a |V|^2 dt = - ledger, with V = displacement / dt; a huge quotient is cut to what is allowed
-  return std::min(-ledger_J * step.dt_s / length_sq, step.max_injected);
+  if (!(energy_balance_J < 0.0) || length_sq == 0.0) return 0.0;
+  // a |V|^2 dt = - balance, with V = displacement / dt; a huge quotient is cut to what is allowed
+  return std::min(-energy_balance_J * step.dt_s / length_sq, step.max_injected);
 }
 
 }  // namespace
@@ -76,14 +76,14 @@ Wrench passive_wrench(const PortSettings& settings, PortState& state, const Devi
                       input.dt_s};
     add_up(displacement.v, input.sent.f, state.damper.f, state.total);
     add_up(displacement.w, input.sent.t, state.damper.t, state.total_turning);
-    book(moved, state.ledger_J);
-    book(turned, state.ledger_turning_J);
+    book(moved, state.energy_balance_J);
+    book(turned, state.energy_balance_turning_J);
     if (settings.actuates_torque) {
-      settle(state.ledger_J, state.ledger_turning_J);
-      settle(state.ledger_turning_J, state.ledger_J);
+      settle(state.energy_balance_J, state.energy_balance_turning_J);
+      settle(state.energy_balance_turning_J, state.energy_balance_J);
     }
-    report.injected_Ns_per_m = injected(moved, state.ledger_J);
-    report.injected_Nms_per_rad = injected(turned, state.ledger_turning_J);
+    report.injected_Ns_per_m = injected(moved, state.energy_balance_J);
+    report.injected_Nms_per_rad = injected(turned, state.energy_balance_turning_J);
     state.damper = {-report.injected_Ns_per_m / input.dt_s * displacement.v,
                     -report.injected_Nms_per_rad / input.dt_s * displacement.w};
     F = F + state.damper;
@@ -95,8 +95,8 @@ Wrench passive_wrench(const PortSettings& settings, PortState& state, const Devi
   }
   report.total = state.total;
   report.total_turning = state.total_turning;
-  report.ledger_J = state.ledger_J;
-  report.ledger_turning_J = state.ledger_turning_J;
+  report.energy_balance_J = state.energy_balance_J;
+  report.energy_balance_turning_J = state.energy_balance_turning_J;
   return F;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// What a scene has stored, for the ledger of the passivity stage: springs and moving bodies.
+/// What a scene has stored, for the balance of the passivity stage: springs and moving bodies.
 
 #include "tactum/loop/passivity.h"
 #include "tactum/response/frame_report.h"

@@ -15,7 +15,7 @@ const energyRows: [string, string, string][] = [
   ["from the hand", "energy_from_hand_J", "work the hand put in, moving against the wrench"],
   ["to the hand", "energy_to_hand_J", "work the hand was given, moved along by the wrench"],
   ["taken out by the controller", "energy_damped_J", "by the damping that the passivity controller added"],
-  ["ledger now", "port_ledger_J", "what the scene may give back; below zero, energy was made and the controller takes it out"],
+  ["energy balance now", "port_energy_balance_J", "what the scene may give back; below zero, energy was made and the controller takes it out"],
 ];
 
 const size = (v: number[]) => Math.hypot(v[0], v[1], v[2]);
