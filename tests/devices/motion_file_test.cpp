@@ -38,8 +38,9 @@ class TextFile {
 
 /// The folder of shared real data, or empty.
 fs::path data_folder() {
-  const char* told = std::getenv("TACTUM_DATA");
-  const fs::path folder = told ? fs::path(told) : fs::path(TACTUM_SOURCE_DIR) / ".." / "shared" / "data";
+  const char* variable = std::getenv("TACTUM_DATA");
+  const fs::path folder =
+      variable ? fs::path(variable) : fs::path(TACTUM_SOURCE_DIR) / ".." / "shared" / "data";
   return fs::exists(folder) ? folder : fs::path();
 }
 

@@ -227,7 +227,7 @@ TEST(Passivity, NeitherCreditNorDebtOutlivesItsBound) {
 
 TEST(Passivity, EnergyThatBodiesGiveUpIsNoneThatWasMade) {
   // A weight of 1 N is lowered by 0.1 m: the hand is pushed all the way.
-  for (const bool told : {true, false}) {
+  for (const bool bodies_known : {true, false}) {
     PortSettings settings;
     settings.max_injected_Ns_per_m = 10.0;
     PortState state;
@@ -239,11 +239,11 @@ TEST(Passivity, EnergyThatBodiesGiveUpIsNoneThatWasMade) {
       DeviceSample sample;
       sample.valid = true;
       sample.X_DH.p.z() = -1e-4 * i;
-      if (told) input.bodies_J = 1.0 * sample.X_DH.p.z();
+      if (bodies_known) input.bodies_J = 1.0 * sample.X_DH.p.z();
       input.sent = passive_wrench(settings, state, sample, input, report);
       injected = std::max(injected, report.injected_Ns_per_m);
     }
-    if (told) {
+    if (bodies_known) {
       EXPECT_EQ(injected, 0.0);
     } else {
       EXPECT_GT(injected, 0.0) << "or this test could not fail";

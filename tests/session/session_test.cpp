@@ -224,9 +224,9 @@ body = "block"
       EXPECT_EQ(chosen.damping_Nms_per_rad, gains.coupling.damping_Nms_per_rad) << device;
       EXPECT_LE(chosen.stiffness_N_per_m, gains.translation.loose_hand) << device;
     }
-  const auto told = opened("sigma.7", 1000.0, "[coupling]\nstiffness_N_per_m = 432\n");
-  ASSERT_TRUE(told);
-  EXPECT_EQ((*told)->scene().settings.coupling.stiffness_N_per_m, 432.0);
+  const auto given = opened("sigma.7", 1000.0, "[coupling]\nstiffness_N_per_m = 432\n");
+  ASSERT_TRUE(given);
+  EXPECT_EQ((*given)->scene().settings.coupling.stiffness_N_per_m, 432.0);
 }
 
 TEST(Session, WithTheChosenCouplingEveryDeviceReachesTheGoalsOfTheBlock) {

@@ -38,7 +38,7 @@ std::vector<int> corners_of(const SurfaceTree& tree, const Feature& feature) {
   return corners;
 }
 
-std::string told(const oracles::RefereeMinimum& m) {
+std::string described(const oracles::RefereeMinimum& m) {
   std::string text = "(";
   for (int v : m.a) text += std::to_string(v) + " ";
   text += "| ";
@@ -84,7 +84,7 @@ int expect_as_referee(const TriangleMesh& mesh_a, const TriangleMesh& mesh_b, co
   }
   for (std::size_t i = 0; i < truth.size(); ++i) {
     if (truth[i].margin < kErrorBound || claimed[i] != 0) continue;
-    ADD_FAILURE() << "missed " << told(truth[i]) << ", " << cases::describe(X_AB);
+    ADD_FAILURE() << "missed " << described(truth[i]) << ", " << cases::describe(X_AB);
     break;
   }
   return static_cast<int>(found.size());

@@ -68,8 +68,8 @@ void GoalRecord::watch(const World& world, const WorldState& state, int grasped,
     const Body& body = world.bodies[b];
     if (body.joint.kind != JointKind::kHinge) continue;
     // The whole turns that bring the told angle nearest to the last one.
-    const double told = hinge_angle(body, state.X_WB[b]);
-    angles_[b] = told + 2.0 * kPi * std::round((angles_[b] - told) / (2.0 * kPi));
+    const double measured = hinge_angle(body, state.X_WB[b]);
+    angles_[b] = measured + 2.0 * kPi * std::round((angles_[b] - measured) / (2.0 * kPi));
   }
   for (Index g = 0; g < goals_.size(); ++g) {
     const double now = measure(goals_[g], world, state);

@@ -58,9 +58,9 @@ void read_pairs(const TomlReader& root, const char* key, Range range, const Scen
   const auto pairs = root.tables(key, {"material_a", "material_b", "coefficient"});
   if (pairs.empty()) return;
   for (const TomlReader& pair : pairs) {
-    const MaterialPair told{pair.text("material_a"), pair.text("material_b"),
-                            pair.number("coefficient", {}, range)};
-    const Result<void> set = set_coefficient(scene.world, told, table);
+    const MaterialPair material_pair{pair.text("material_a"), pair.text("material_b"),
+                                     pair.number("coefficient", {}, range)};
+    const Result<void> set = set_coefficient(scene.world, material_pair, table);
     if (!set)
       pair.fail(set.error().where.c_str(), set.error().what, set.error().found, "the material of a [[body]]");
   }

@@ -469,7 +469,7 @@ const topics = {
     const program = await Program.start(tactum, "gears");
     const page = await openPage(browser, program);
     await until("the gears touch", async () => (await page.textContent(".sentence")).includes("touches"));
-    const stages = await page.locator(".ladder tr").count();
+    const stages = await page.locator(".stages tr").count();
     check(stages === 5, `every stage has its row: ${stages - 1}`);
     await page.click(".contacts button");
     check((await page.locator(".contacts tr.chosen").count()) <= 1, "one contact can be chosen");

@@ -6,7 +6,7 @@ import { download, get, make } from "./dom";
 import { Hand } from "./hand";
 import { edgeKinds } from "./look";
 import { Panel } from "./panel";
-import { readShapes, type Frames, type Picture, type Run, type Shape, type Status, type Told } from "./protocol";
+import { readShapes, type Frames, type Picture, type Run, type Shape, type Status, type ServerMessage } from "./protocol";
 import { Samples } from "./samples";
 import { withUnit } from "./units";
 import { View, type ViewName } from "./view";
@@ -24,7 +24,7 @@ let shapes: Shape[] = [];
 let waitingFrames: Frames[] = []; // of a run whose geometry is on its way
 let stopped = false;
 
-const connection = new Connection({ told, frames, linked });
+const connection = new Connection({ received, frames, linked });
 const ask = (message: Record<string, unknown>) => connection.send(message);
 const panel = new Panel(get("panel"), (message) => {
   if (maySteer()) ask(message);
@@ -51,10 +51,10 @@ function notice(text: string) {
 
 // ---- what the program says
 
-function told(message: Told) {
+function received(message: ServerMessage) {
   if (message.type === "run") void begin(message);
   else if (message.type === "settings") panel.showSettings(message);
-  else if (message.type === "told") notice(message.sentence);
+  else if (message.type === "notice") notice(message.sentence);
   else showStatus(message);
 }
 

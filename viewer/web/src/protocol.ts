@@ -36,8 +36,8 @@ export interface Status {
     samples_dropped?: number; frame_us?: Times; safety?: string; remarks?: string[];
   };
 }
-export type Told =
-  | Run | Status | { type: "settings"; settings: Setting[]; margin: string; toml: string } | { type: "told"; sentence: string };
+export type ServerMessage =
+  | Run | Status | { type: "settings"; settings: Setting[]; margin: string; toml: string } | { type: "notice"; sentence: string };
 
 export interface Contact {
   bodies: [number, number]; pieces: [number, number]; kinds: [number, number]; features: [number, number];

@@ -315,9 +315,9 @@ export class View {
     this.label(this.torqueLabel, tips.torque, torque, "N m", tips.torque !== null);
     this.grips = pushes.filter((push) => push.grip !== "none" && Math.hypot(...push.force) > 0).map((push) => push.grip);
     const newton = 1 / (this.arrowForce / this.scale);
-    const told = this.run.grasped < 0 ? "" :
+    const note = this.run.grasped < 0 ? "" :
       ` · arrow ${withUnit(newton * 0.01, "N")} per cm · arc ${withUnit(1 / this.arrowTorque * Math.PI, "N m")} per half turn`;
-    this.scaleNote.textContent = `grid ${withUnit(this.spacing, "m")}${told}`;
+    this.scaleNote.textContent = `grid ${withUnit(this.spacing, "m")}${note}`;
   }
 
   private label(element: HTMLElement, at: THREE.Vector3 | null, value: number, unit: string, visible: boolean) {

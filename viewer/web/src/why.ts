@@ -40,14 +40,14 @@ export class Why {
       make("th", { scope: "col" }, "distance, normal"))), make("tbody"));
   private readonly more = make("p", { class: "quiet" });
   private rows: Push[] = [];
-  private readonly ladder = make("table", { class: "ladder" });
+  private readonly stages = make("table", { class: "stages" });
   private readonly energy = make("table", { class: "energy" });
   private readonly flags = make("ul", { class: "flags" });
   private readonly numbers = make("dl", { class: "numbers" });
 
   constructor(root: HTMLElement) {
     const more = make("details", {}, make("summary", {}, "Every number of this frame"), this.numbers);
-    root.append(this.sentence, make("h2", {}, "What pushes"), this.table, this.more, make("h2", {}, "From the contact to your hand"), this.ladder,
+    root.append(this.sentence, make("h2", {}, "What pushes"), this.table, this.more, make("h2", {}, "From the contact to your hand"), this.stages,
       this.flags, make("h2", {}, "Energy since the start"), this.energy, more);
   }
 
@@ -65,7 +65,7 @@ export class Why {
     const sum = felt.reduce((total, push) => total.map((v, i) => v + push.force[i]), [0, 0, 0]);
     this.showSentence(samples, sample, felt, sum);
     this.showContacts(pushes, sum, picture);
-    this.showLadder(samples, sample);
+    this.showStages(samples, sample);
     this.showFlags(samples, sample);
     this.showEnergy(samples, sample);
     this.showNumbers(samples, sample);
@@ -164,7 +164,7 @@ export class Why {
     this.energy.replaceChildren(head, ...rows);
   }
 
-  private showLadder(samples: Samples, sample: number) {
+  private showStages(samples: Samples, sample: number) {
     const run = this.run as Run;
     const wrenches = run.stages.map((_stage, i) => samples.wrench(i, sample));
     const most = Math.max(1e-9, ...wrenches.map((w) => size(w)));
@@ -183,7 +183,7 @@ export class Why {
         make("td", { class: "number" }, withUnit(size(w.slice(3)), "N m")),
         make("td", { class: "number" }, before ? `${withUnit(change, "N")}` : "", before ? make("br") : null, before ? withUnit(turn, "N m") : ""));
     });
-    this.ladder.replaceChildren(head, ...rows);
+    this.stages.replaceChildren(head, ...rows);
   }
 
   private showFlags(samples: Samples, sample: number) {
