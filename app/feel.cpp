@@ -137,7 +137,7 @@ Summary feel_viewed_virtually(Viewer& viewer, std::uint64_t frames) {
   return watch.frame_times.summary();
 }
 
-void tell_what_is_felt(std::FILE* out, const Session& session, const std::string& grip) {
+void report_what_is_felt(std::FILE* out, const Session& session, const std::string& grip) {
   const Scene& scene = session.scene();
   fmt::print(out, "{}: {}\n{} at {:.0f} Hz, hand {}, response {}\n", scene.name, scene.description,
              session.device().name, session.rate_Hz(), grip.empty() ? scene.grip : grip,
@@ -171,7 +171,7 @@ void feel_with_pages(const FeelOptions& options, Scene scene, std::FILE* out) {
       std::move(scene), {.device = options.device, .grip = options.hand, .rate_Hz = 0.0}, options.port);
   if (!opened) fail(opened.error());
   Viewer& viewer = **opened;
-  tell_what_is_felt(out, viewer.session(), options.hand);
+  report_what_is_felt(out, viewer.session(), options.hand);
   open_page(out, viewer.server().address());
   const std::uint64_t asked =
       options.updates > 0 ? options.updates
@@ -194,7 +194,7 @@ void feel(const FeelOptions& options) {
 
   StageClock stages;
   session.time_stages(&stages);
-  tell_what_is_felt(out, session, options.hand);
+  report_what_is_felt(out, session, options.hand);
   const std::uint64_t frames = frames_asked_for(options, session);
   const Summary times =
       options.virtual_clock ? feel_virtually(options, session, frames) : feel_live(session, frames);

@@ -23,8 +23,8 @@ class Engine {
   Engine(const Engine&) = delete;
   Engine& operator=(const Engine&) = delete;
 
-  virtual bool tells_distances() const { return true; }  ///< of pieces that are apart
-  virtual bool tells_depths() const { return true; }     ///< of pieces that overlap
+  virtual bool reports_distances() const { return true; }  ///< of pieces that are apart
+  virtual bool reports_depths() const { return true; }     ///< of pieces that overlap
   /// May refuse pairs that it cannot hold, or would take minutes for.
   virtual bool hold(const Shape& a, const Shape& b) = 0;
   virtual void forget() = 0;                                          ///< what is known from earlier queries

@@ -33,7 +33,7 @@ class Ours final : public FeelEngine {
     X_start_ = scene.hand->at(0.0).X_DH;
     World world;
     world.bodies.resize(2);
-    world.bodies[0].part = part_of(scene.held);
+    world.bodies[0].part = part_of(scene.grasped);
     world.bodies[0].mass_kg = kFeltMass_kg;  // as every engine is given them, whatever the part
     world.bodies[0].inertia_B = kFeltInertia_kg_m2 * Mat3::Identity();
     world.bodies[0].X_WB = X_start_;
@@ -70,15 +70,15 @@ std::unique_ptr<FeelEngine> make_ours(const FeelScene& scene, const FeelSetup&) 
 class Referee {
  public:
   explicit Referee(const FeelScene& scene) : depth_(scene.depth) {
-    for (const FeelPiece& piece : scene.held)
-      held_.push_back(overlap_piece(piece.shape.polytope, piece.X_BP));
+    for (const FeelPiece& piece : scene.grasped)
+      grasped_.push_back(overlap_piece(piece.shape.polytope, piece.X_BP));
     for (const FeelPiece& piece : scene.fixed)
       fixed_.push_back(overlap_piece(piece.shape.polytope, piece.X_BP));
   }
   double operator()(const Pose& X_WB) const {
     if (depth_) return depth_(X_WB);
     double deepest = 0.0;
-    for (const OverlapPiece& piece : held_) {
+    for (const OverlapPiece& piece : grasped_) {
       const OverlapPiece here = carried(piece, X_WB);
       for (const OverlapPiece& other : fixed_) deepest = std::max(deepest, overlap(here, other));
     }
@@ -87,7 +87,7 @@ class Referee {
 
  private:
   std::function<double(const Pose&)> depth_;
-  std::vector<OverlapPiece> held_, fixed_;
+  std::vector<OverlapPiece> grasped_, fixed_;
 };
 
 /// One run, frame by frame: what is asked of every engine and scene.
@@ -118,7 +118,7 @@ double lead(const FeelScene& scene, FeelEngine& engine, const std::function<void
 }
 
 /// The energy that the hand has put in, with the mean of the forces at the two ends of each step [J].
-class Ledger {
+class EnergyBalance {
  public:
   void add(const Run& run) {
     if (known_) {
@@ -225,15 +225,15 @@ FeelRow feel(const FeelSceneEntry& what, const FeelEngineEntry& entry, const Fee
   row.setup = setup;
   const std::unique_ptr<FeelEngine> engine = entry.make(scene, setup);
   const Referee depth(scene);
-  Ledger ledger;
+  EnergyBalance balance;
   Sliding sliding(scene);
   row.frame_us = lead(scene, *engine, [&](const Run& run) {
     row.penetration_m = std::max(row.penetration_m, depth(run.X_WB));
-    ledger.add(run);
+    balance.add(run);
     if (scene.begins_to_slide) sliding.look(run, row);
     if (run.time_s >= scene.judged_from_s && run.time_s <= scene.judged_to_s) judge(scene, *engine, run, row);
   });
-  row.energy_made_J = std::max(0.0, -ledger.put_in_J);
+  row.energy_made_J = std::max(0.0, -balance.put_in_J);
   return row;
 }
 

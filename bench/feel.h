@@ -32,7 +32,7 @@ struct FeelPiece {
 
 /// The held part's origin is the handle; the other part stands still, its frame is the world's.
 struct FeelScene {
-  std::vector<FeelPiece> held, fixed;
+  std::vector<FeelPiece> grasped, fixed;
   std::shared_ptr<const HandMotion> hand;  ///< X_WH over time; the part starts at its beginning
   Coupling coupling;
   double friction = 0.0;  ///< mu [-]

@@ -68,7 +68,7 @@ Wrench stretch(const Coupling& k, const Vec3& displacement, const Vec3& turn) {
 
 FeelScene block_on_plane() {
   FeelScene scene;
-  scene.held = {box(kBlock)};
+  scene.grasped = {box(kBlock)};
   scene.fixed = {plate()};
   const Vec3 turn(0.02, -0.03, 0.0);
   press_and_release(scene, at({0, 0, kBlock.z() + 0.002}), at({0.004, 0.002, kBlock.z() - 0.008}, turn));
@@ -86,7 +86,7 @@ FeelScene wedge_in_groove() {
   std::vector<Vec3> corners;
   for (const double y : {-0.01, 0.01})
     corners.insert(corners.end(), {{-0.01, y, 0.01 - kTip}, {0.01, y, 0.01 - kTip}, {0, y, -kTip}});
-  scene.held = {hull(corners)};
+  scene.grasped = {hull(corners)};
   for (const double side : {1.0, -1.0}) {
     const Mat3 R = exp_rotation({0, -side * kPi / 4.0, 0});  // its x axis goes up along the face
     scene.fixed.push_back(box({0.02, 0.02, 0.01}, {R, R * Vec3(side * 0.02, 0, -0.01)}));
@@ -116,7 +116,7 @@ Wrench tilted_contact(const Coupling& k, const Pose& X_WH, double skin, double x
 
 FeelScene edge_on_plane() {
   FeelScene scene;
-  scene.held = {box(kBlock)};
+  scene.grasped = {box(kBlock)};
   scene.fixed = {plate()};
   press_and_release(scene, at({0, 0, 0.012}, {0, 0.5, 0}), at({0.002, 0, 0.005}, {0, 0.5, 0}));
   scene.truth = [k = scene.coupling](const Pose& X, double skin) {
@@ -128,7 +128,7 @@ FeelScene edge_on_plane() {
 FeelScene corner_on_plane() {
   FeelScene scene;
   constexpr double kTip = 0.008;
-  scene.held = {octahedron(kTip)};
+  scene.grasped = {octahedron(kTip)};
   scene.fixed = {plate()};
   press_and_release(scene, at({0, 0, 0.010}, {0, 0.25, 0}), at({0.002, 0, 0.003}, {0, 0.25, 0}));
   scene.truth = [k = scene.coupling](const Pose& X, double skin) {
@@ -147,7 +147,7 @@ FeelScene cylinder_in_hole() {
   Polytope cylinder = peg_pieces(peg)->front();
   std::vector<Vec3> corners;
   for (const Vec3& v : cylinder.vertices) corners.push_back(v - Vec3(0, 0, 0.01));
-  scene.held = {hull(corners)};
+  scene.grasped = {hull(corners)};
   const auto ring = *hole_block_pieces({64, kWidth, kWidth, kClearance, 0.01, 0.03, 0.0});
   scene.fixed = pieces_of(ring);
   double middle = 0.0;
@@ -187,7 +187,7 @@ FeelScene cylinder_in_hole() {
 FeelScene sliding_over_facets() {
   FeelScene scene;
   static constexpr double kRadius = 0.02, kTip = 0.001, kForce_N = 5.0;
-  scene.held = {octahedron(kTip)};
+  scene.grasped = {octahedron(kTip)};
   std::vector<Vec3> corners;
   for (const Vec3& v : make_prism(64, kRadius, 0.04).vertices) corners.emplace_back(v.x(), v.z(), v.y());
   scene.fixed = {hull(corners)};
@@ -211,7 +211,7 @@ FeelScene sliding_over_facets() {
 
 FeelScene rubbed_block() {
   FeelScene scene;
-  scene.held = {box(kBlock)};
+  scene.grasped = {box(kBlock)};
   scene.fixed = {plate()};
   scene.friction = 0.3;
   return scene;
@@ -279,7 +279,7 @@ FeelScene peg_scene(double clearance_m, int hand) {
   Polytope peg = peg_pieces({0, 0.025, 0.025, 0.06, 0.001})->front();
   std::vector<Vec3> corners;
   for (const Vec3& v : peg.vertices) corners.push_back(v - Vec3(0, 0, 0.03));  // held in its middle
-  scene.held = {hull(corners)};
+  scene.grasped = {hull(corners)};
   scene.fixed = pieces_of(*hole_block_pieces({0, 0.025, 0.025, clearance_m, 0.025, 0.03, 0.005}));
   scene.coupling.stiffness_Nm_per_rad = 0.6;
   scene.coupling.damping_Nms_per_rad = 0.001;

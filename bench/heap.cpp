@@ -77,17 +77,17 @@ Result<void> add_bin(double width, double height, World& world) {
 }
 
 /// Down into the heap, a square through it, and up again. `depth` is from the start to the lowest place.
-std::shared_ptr<const HandMotion> stirring(double depth, double reach, double calm_s) {
+std::shared_ptr<const HandMotion> stirring(double depth, double radius, double calm_s) {
   auto motion = std::make_shared<ScriptedMotion>();
   const auto to = [&](double time, double x, double y, double z) {
     motion->move_to(time, {Mat3::Identity(), {x, y, z}});
   };
   motion->hold(calm_s);
   to(0.8, 0.0, 0.0, -depth);
-  to(0.4, reach, 0.0, -depth);
-  to(0.4, reach, reach, -depth);
-  to(0.7, -reach, reach, -depth);
-  to(0.7, -reach, -reach, -depth);
+  to(0.4, radius, 0.0, -depth);
+  to(0.4, radius, radius, -depth);
+  to(0.7, -radius, radius, -depth);
+  to(0.7, -radius, -radius, -depth);
   to(0.6, 0.0, 0.0, 0.0);
   motion->hold(calm_s);
   return motion;

@@ -69,7 +69,7 @@ class Watch {
     return closest_features(a_, b_, advanced(X_AB_, V_AB_, time_s), cache_).distance;
   }
   std::optional<double> first_contact() {
-    constexpr int kInstants = 200, kHalvings = 40;
+    constexpr int kInstants = 200, kBisections = 40;
     double clear = 0.0;
     for (int i = 0; i <= kInstants; ++i) {
       double met = kFrame_s * i / kInstants;
@@ -77,7 +77,7 @@ class Watch {
         clear = met;
         continue;
       }
-      for (int k = 0; k < kHalvings; ++k) {
+      for (int k = 0; k < kBisections; ++k) {
         const double middle = 0.5 * (clear + met);
         (gap(middle) > kTarget_m ? clear : met) = middle;
       }

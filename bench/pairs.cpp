@@ -54,7 +54,7 @@ class Run {
     for (const EngineEntry& entry : peers()) {
       if (!wanted(options_.engines, entry.name)) continue;
       const std::unique_ptr<Engine> peer = entry.make();
-      const bool answers = regime.overlapping() ? peer->tells_depths() : peer->tells_distances();
+      const bool answers = regime.overlapping() ? peer->reports_depths() : peer->reports_distances();
       if (answers && peer->hold(a, b))
         measure(*peer, entry.name, options_.quick ? 0.01 : options_.peer_budget_s);
     }

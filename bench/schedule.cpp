@@ -86,7 +86,7 @@ class HeapReferee {
         if ((X_WB[a].p - X_WB[b].p).norm() > radius_[a] + radius_[b]) continue;
         const double depth = deepest(a, b, relative_pose(X_WB[a], X_WB[b]));
         row.overlap_m = std::max(row.overlap_m, depth);
-        if (a == 0) row.overlap_of_held_m = std::max(row.overlap_of_held_m, depth);
+        if (a == 0) row.overlap_of_grasped_m = std::max(row.overlap_of_grasped_m, depth);
       }
   }
 
@@ -165,7 +165,7 @@ ScheduleRow run_with(const Scene& scene, double share, int pairs, int frames, in
     const ContactWork& work = report.work;
     row.most_near = std::max(row.most_near, work.near_pairs);
     row.most_tests = std::max(row.most_tests, report.tests());
-    row.left_of_held += work.left_of_held;
+    row.left_of_grasped += work.left_of_grasped;
     row.unchecked_mean += static_cast<double>(work.unchecked) / frames;
     row.unproven_mean += static_cast<double>(work.left_unproven) / frames;
     row.waiting_mean += static_cast<double>(report.waiting) / frames;
@@ -173,11 +173,11 @@ ScheduleRow run_with(const Scene& scene, double share, int pairs, int frames, in
     row.unproven_max = std::max(row.unproven_max, work.left_unproven);
     row.longest_unchecked = std::max(row.longest_unchecked, work.longest_unchecked);
     row.longest_wait = std::max(row.longest_wait, report.longest_wait);
-    row.held_frames += report.held_contact_points > 0 ? 1 : 0;
+    row.grasped_frames += report.grasped_contact_points > 0 ? 1 : 0;
     row.unchecked_at_end = work.unchecked;
     if (!look) continue;
     referee.look(run.at().X_WB, row);
-    if (report.held_contact_points == 0) continue;
+    if (report.grasped_contact_points == 0) continue;
     const double error = (report.coupling.f - truth.f).norm();
     ++compared;
     row.force_error_mean_N += (error - row.force_error_mean_N) / compared;
@@ -331,9 +331,9 @@ nlohmann::ordered_json to_json(const ScheduleReport& report) {
                                {"budget", row.budget},
                                {"most_near", row.most_near},
                                {"most_tests", row.most_tests},
-                               {"left_of_held", row.left_of_held},
+                               {"left_of_grasped", row.left_of_grasped},
                                {"frames", row.frames},
-                               {"held_frames", row.held_frames},
+                               {"grasped_frames", row.grasped_frames},
                                {"force_error_mean_N", row.force_error_mean_N},
                                {"force_error_max_N", row.force_error_max_N},
                                {"unchecked_mean", row.unchecked_mean},
@@ -346,7 +346,7 @@ nlohmann::ordered_json to_json(const ScheduleReport& report) {
                                {"unchecked_at_end", row.unchecked_at_end},
                                {"fastest_at_end_m_per_s", row.fastest_at_end},
                                {"overlap_m", row.overlap_m},
-                               {"overlap_of_held_m", row.overlap_of_held_m},
+                               {"overlap_of_grasped_m", row.overlap_of_grasped_m},
                                {"p50_us", row.p50_us},
                                {"p99_us", row.p99_us},
                                {"frame_hash", fmt::format("{:016x}", row.frame_hash)}});
@@ -365,7 +365,7 @@ Table table_of(const std::vector<ScheduleRow>& rows) {
          fmt::format("{:.2g} N", row.force_error_max_N), number(row.unchecked_mean),
          fmt::format("{}", row.unchecked_max), number(row.unproven_mean), fmt::format("{}", row.unproven_max),
          number(row.waiting_mean), fmt::format("{} frames", row.longest_wait),
-         fmt::format("{}", row.left_of_held), length_text(row.overlap_m), time_text(row.p50_us * 1e3),
+         fmt::format("{}", row.left_of_grasped), length_text(row.overlap_m), time_text(row.p50_us * 1e3),
          time_text(row.p99_us * 1e3)});
   return table;
 }

@@ -34,8 +34,8 @@ struct ScheduleOptions {
 /// One run with one budget.
 struct ScheduleRow {
   double share = 0.0;
-  int budget = 0, most_near = 0, most_tests = 0, left_of_held = 0;
-  int frames = 0, held_frames = 0;  ///< ... with contact of the held part
+  int budget = 0, most_near = 0, most_tests = 0, left_of_grasped = 0;
+  int frames = 0, grasped_frames = 0;  ///< ... with contact of the held part
   double force_error_mean_N = 0.0,
          force_error_max_N = 0.0;  ///< over frames with contact of the held part [N]
   double unchecked_mean = 0.0, unproven_mean = 0.0, waiting_mean = 0.0;
@@ -43,7 +43,7 @@ struct ScheduleRow {
   int unchecked_at_end = 0;           ///< in the last frame
   double fastest_at_end = 0.0;        ///< body in the last frame [m/s]
   double overlap_m = 0.0;             ///< worst that the referee found [m]
-  double overlap_of_held_m = 0.0;     ///< [m]
+  double overlap_of_grasped_m = 0.0;  ///< [m]
   double p50_us = 0.0, p99_us = 0.0;  ///< [us]
   std::uint64_t frame_hash = 0;       ///< of what every frame computed
 };

@@ -106,7 +106,8 @@ WallTrial try_wall(const WallSetup& setup, double stiffness, double seconds) {
     (setup.turning ? input.spring_turning_J : input.spring_J) =
         stored(setup, stiffness, sample.X_DH, input.wanted);
     device.write(passive_wrench(port, state, sample, input, report));
-    trial.lowest_J = std::min(trial.lowest_J, setup.turning ? report.ledger_turning_J : report.ledger_J);
+    trial.lowest_J =
+        std::min(trial.lowest_J, setup.turning ? report.energy_balance_turning_J : report.energy_balance_J);
     if (now_s < kPressed_s) continue;
     const auto third = static_cast<std::size_t>(3.0 * (now_s - kPressed_s) / (seconds - kPressed_s));
     const double speed = setup.turning ? device.true_twist().w.norm() : device.true_twist().v.norm();
@@ -117,7 +118,7 @@ WallTrial try_wall(const WallSetup& setup, double stiffness, double seconds) {
   const double felt = setup.turning ? kFelt_m_per_s / kLever_m : kFelt_m_per_s;
   trial.pressed /= std::max(1.0, frames[2]);
   trial.rest_speed = fastest[2];
-  trial.held = fastest[2] < felt || fastest[2] < 0.9 * fastest[1];
+  trial.at_rest = fastest[2] < felt || fastest[2] < 0.9 * fastest[1];
   trial.passive = trial.lowest_J > -kMade_J;
   return trial;
 }
@@ -132,7 +133,7 @@ WallRow stiffest_wall(const WallSetup& setup) {
   row.alone = wall_bound_alone(setup);
   row.bound = wall_bound(setup);
   constexpr double kHighest = 4.0;  // times the bound: nobody looks farther
-  row.held = largest(kHighest * row.bound, [&](double k) { return try_wall(setup, k).held; });
+  row.at_rest = largest(kHighest * row.bound, [&](double k) { return try_wall(setup, k).at_rest; });
   row.passive = largest(kHighest * row.bound, [&](double k) { return try_wall(setup, k).passive; });
   return row;
 }
@@ -173,7 +174,7 @@ nlohmann::ordered_json to_json(const WallRow& row) {
           {"bound_alone", row.alone},
           {"bound", row.bound},
           {"passive", row.passive},
-          {"held", row.held}};
+          {"at_rest", row.at_rest}};
 }
 
 }  // namespace tactum::bench

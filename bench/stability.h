@@ -6,8 +6,8 @@
 ///         on the encoder's readings, nothing else in the loop: no proxy, smoothing, ramp
 ///   hand: taps it twice, then presses and stays                          2.4 s of virtual time
 ///
-/// A wall is *held* when the handle comes to rest: in the last third of the pressing it moves by less than it
-/// did in the third before, or by less than a hand can feel. It is *passive* when the ledger of the port
+/// The handle is *at rest* when, in the last third of the pressing, it moves by less than it did in the third
+/// before, or by less than a hand can feel. The wall is *passive* when the balance of the port
 /// (loop/passivity.h), with the damping of device and hand and no credit but what the spring has stored,
 /// never falls 0.01 mJ below zero: no energy was made. The stiffest of each kind
 /// is found by bisection.
@@ -37,10 +37,10 @@ double wall_bound(const WallSetup& setup);
 double wall_bound_alone(const WallSetup& setup);
 
 struct WallTrial {
-  bool held = false;
+  bool at_rest = false;
   bool passive = false;
   double rest_speed = 0.0;  ///< fastest in the last third [m/s or rad/s]
-  double lowest_J = 0.0;    ///< of the ledger [J]
+  double lowest_J = 0.0;    ///< of the balance [J]
   double pressed = 0.0;     ///< mean force (torque) in the last third [N or N m]
 };
 
@@ -55,7 +55,7 @@ struct WallRow {
   double alone = 0.0;    ///< bound, nobody holds it [N/m or N m/rad]
   double bound = 0.0;    ///< bound, with the hand's damping
   double passive = 0.0;  ///< stiffest that made no energy
-  double held = 0.0;     ///< stiffest that came to rest
+  double at_rest = 0.0;  ///< stiffest that came to rest
 };
 
 /// The stiffest walls of one set-up, to 1 %.

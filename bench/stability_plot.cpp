@@ -33,8 +33,8 @@ void draw(Svg& svg, const Panel& panel, double left) {
   const std::string small = R"(font-size="12" fill="#4b5563")";
   double low = 1e300, high = 0.0, longest_s = 0.0;
   for (const WallRow* row : panel.rows) {
-    low = std::min({low, row->bound, row->held});
-    high = std::max({high, row->bound, row->held});
+    low = std::min({low, row->bound, row->at_rest});
+    high = std::max({high, row->bound, row->at_rest});
     longest_s = std::max(longest_s, row->delay_s);
   }
   const LogScale stiffness = {low * 0.8, high * 1.25, kPanelBottom, kPanelTop};
@@ -53,16 +53,16 @@ void draw(Svg& svg, const Panel& panel, double left) {
   for (const WallRow* row : panel.rows)
     if (std::find(rates.begin(), rates.end(), row->rate_Hz) == rates.end()) rates.push_back(row->rate_Hz);
   for (std::size_t i = 0; i < rates.size(); ++i) {
-    std::vector<SheetPoint> bound, held;
+    std::vector<SheetPoint> bound, at_rest;
     for (const WallRow* row : panel.rows)
       if (row->rate_Hz == rates[i]) {
         bound.push_back({at(row->delay_s), stiffness(row->bound)});
-        held.push_back({at(row->delay_s), stiffness(row->held)});
+        at_rest.push_back({at(row->delay_s), stiffness(row->at_rest)});
       }
     const std::string& colour = colours()[i % colours().size()];
     svg.path(bound, fmt::format(R"(stroke="{}" stroke-width="1.5" stroke-dasharray="5 4")", colour));
-    svg.path(held, fmt::format(R"(stroke="{}" stroke-width="2.5")", colour));
-    for (const SheetPoint& p : held) svg.dot(p, 3, fmt::format(R"(fill="{}")", colour));
+    svg.path(at_rest, fmt::format(R"(stroke="{}" stroke-width="2.5")", colour));
+    for (const SheetPoint& p : at_rest) svg.dot(p, 3, fmt::format(R"(fill="{}")", colour));
     svg.text({left + kPanelWidth - 66, kPanelTop + 16 + 18 * static_cast<double>(i)},
              fmt::format("{:g} kHz", rates[i] / 1000),
              fmt::format(R"(font-size="13" font-weight="600" fill="{}")", colour));

@@ -46,6 +46,6 @@ int main() {
     rail.write((*simulation)->step(rail.read()));
   const FrameReport& report = (*simulation)->report();
   std::printf("handle at %.4f m, force %.3f N, %d contact points\n", rail.z_m, report.shown.f.z(),
-              report.held_contact_points);
-  return std::abs(report.shown.f.z() - 2.0) < 0.1 && report.held_contact_points > 0 ? 0 : 1;
+              report.grasped_contact_points);
+  return std::abs(report.shown.f.z() - 2.0) < 0.1 && report.grasped_contact_points > 0 ? 0 : 1;
 }

@@ -19,7 +19,7 @@ struct Job {
   std::string json, markdown, svg;
 };
 
-void tell_progress(const std::string& what) { fmt::print(stderr, "{}\n", what); }
+void report_progress(const std::string& what) { fmt::print(stderr, "{}\n", what); }
 
 /// The tables for people, the rows for machines; `mark` names the place in the Markdown page.
 template <class Rows>
@@ -36,7 +36,7 @@ void put_out(const Job& job, const std::string& mark, const Rows& rows, const st
 }
 
 void run_pairs(const Job& job) {
-  const bench::PairsReport report = bench_pairs(job.options, tell_progress);
+  const bench::PairsReport report = bench_pairs(job.options, report_progress);
   const std::string how = fmt::format("{}\nDistances proved by the referee: {} of {} poses.\n", report.how,
                                       report.proved, report.recorded);
   const bench::Table summary = against_peers(report.rows);
@@ -49,7 +49,7 @@ void run_pairs(const Job& job) {
 }
 
 void run_penetration(const Job& job) {
-  const bench::PairsReport report = bench_penetration(job.options, tell_progress);
+  const bench::PairsReport report = bench_penetration(job.options, report_progress);
   const std::string how =
       fmt::format("{}\nDepths proved to be the smallest by the referee: {} of {} poses.\n", report.how,
                   report.proved, report.recorded);
@@ -60,14 +60,14 @@ void run_penetration(const Job& job) {
 }
 
 void run_manifold(const Job& job) {
-  const bench::ManifoldReport report = bench_manifold(job.options, tell_progress);
+  const bench::ManifoldReport report = bench_manifold(job.options, report_progress);
   const bench::Table table = table_of(report);
   put_out(job, "manifold", report.rows, table.text() + "\n" + report.how + "\n",
           table.markdown() + "\n" + report.how + "\n");
 }
 
 void run_impact(const Job& job) {
-  const bench::ImpactReport report = bench_impact(job.options, tell_progress);
+  const bench::ImpactReport report = bench_impact(job.options, report_progress);
   const bench::Table table = table_of(report);
   put_out(job, "impact", report.rows, table.text() + "\n" + report.how + "\n",
           table.markdown() + "\n" + report.how + "\n");

@@ -26,7 +26,7 @@ void run(const Job& job) {
     for (const bench::WallRow& row : *rows)
       fmt::print("{:<17}{:<8}{:<9}{:>7g}{:>9g}{:>12.4g}{:>12.4g}{:>12.4g}{:>12.4g}\n", row.device, row.hand,
                  row.turning ? "turning" : "plane", row.rate_Hz / 1000, row.delay_s * 1000, row.alone,
-                 row.bound, row.passive, row.held);
+                 row.bound, row.passive, row.at_rest);
   }
   if (!job.json.empty()) {
     nlohmann::ordered_json json = nlohmann::ordered_json::array();

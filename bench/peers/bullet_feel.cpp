@@ -19,9 +19,9 @@ class BulletFeel final : public FeelEngine {
     world_.getSolverInfo().m_numIterations = kIterations;
     world_.getSolverInfo().m_erp2 = setup.erp;
     for (const FeelPiece& piece : scene.fixed) add(piece, piece.X_BP, 0.0, scene.friction);
-    held_ = add(scene.held.front(), X_WH_, kFeltMass_kg, 1.0);
-    held_->setDamping(0, 0);
-    held_->setActivationState(DISABLE_DEACTIVATION);
+    grasped_ = add(scene.grasped.front(), X_WH_, kFeltMass_kg, 1.0);
+    grasped_->setDamping(0, 0);
+    grasped_->setActivationState(DISABLE_DEACTIVATION);
   }
   ~BulletFeel() override {
     for (const auto& body : bodies_) world_.removeRigidBody(body.get());
@@ -32,14 +32,14 @@ class BulletFeel final : public FeelEngine {
     for (int i = 1; i <= substeps_; ++i) {
       X_WH_ = interpolated(X_before, X_WH, static_cast<double>(i) / substeps_);
       const Wrench F = coupling_.on_hand(X_WH_, V_WH, X_WB(), V_WB());
-      held_->applyCentralForce(to(-F.f));
-      held_->applyTorque(to(-F.t));
+      grasped_->applyCentralForce(to(-F.f));
+      grasped_->applyTorque(to(-F.t));
       world_.stepSimulation(kFeelStep_s / substeps_, 0);
     }
     felt_ = coupling_.on_hand(X_WH, V_WH, X_WB(), V_WB());
   }
   Pose X_WB() const override {
-    const btTransform& X = held_->getWorldTransform();
+    const btTransform& X = grasped_->getWorldTransform();
     Pose pose;
     for (int i = 0; i < 3; ++i) pose.R.row(i) = from(X.getBasis()[i]).transpose();
     pose.p = from(X.getOrigin());
@@ -48,7 +48,7 @@ class BulletFeel final : public FeelEngine {
   Wrench felt() const override { return felt_; }
 
  private:
-  Twist V_WB() const { return {from(held_->getLinearVelocity()), from(held_->getAngularVelocity())}; }
+  Twist V_WB() const { return {from(grasped_->getLinearVelocity()), from(grasped_->getAngularVelocity())}; }
   btRigidBody* add(const FeelPiece& piece, const Pose& X, double mass_kg, double friction) {
     shapes_.push_back(bullet_shape(piece.shape));
     const double inertia = mass_kg > 0.0 ? kFeltInertia_kg_m2 : 0.0;
@@ -72,7 +72,7 @@ class BulletFeel final : public FeelEngine {
   std::vector<std::unique_ptr<btConvexShape>> shapes_;
   std::vector<std::unique_ptr<btRigidBody>> bodies_;
   btDiscreteDynamicsWorld world_{&dispatcher_, &broadphase_, &solver_, &configuration_};
-  btRigidBody* held_ = nullptr;
+  btRigidBody* grasped_ = nullptr;
 };
 
 }  // namespace

@@ -38,7 +38,7 @@ class Libccd final : public Engine {
     ccd_.max_iterations = 500;
     ccd_.epa_tolerance = 1e-9;  // [m]
   }
-  bool tells_distances() const override { return false; }
+  bool reports_distances() const override { return false; }
   bool hold(const Shape& a, const Shape& b) override {
     a_ = {&a.polytope, {}, 0};
     b_ = {&b.polytope, {}, 0};

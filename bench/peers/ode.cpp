@@ -14,7 +14,7 @@ class Ode final : public Engine {
     b_.reset();
     dCloseODE();
   }
-  bool tells_distances() const override { return false; }
+  bool reports_distances() const override { return false; }
   bool hold(const Shape& a, const Shape& b) override {
     // Its collider tries every pair of edges, 0.1 us each.
     constexpr std::size_t kMostEdgePairs = 1'000'000;

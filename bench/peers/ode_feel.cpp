@@ -33,12 +33,12 @@ class OdeFeel final : public FeelEngine {
     dMassSetParameters(&mass, kFeltMass_kg, 0, 0, 0, kFeltInertia_kg_m2, kFeltInertia_kg_m2,
                        kFeltInertia_kg_m2, 0, 0, 0);
     dBodySetMass(body_, &mass);
-    held_ = std::make_unique<OdeGeometry>(scene.held.front().shape);
-    dGeomSetBody(held_->id(), body_);
-    held_->place(X_WH_);  // and the body with it
+    grasped_ = std::make_unique<OdeGeometry>(scene.grasped.front().shape);
+    dGeomSetBody(grasped_->id(), body_);
+    grasped_->place(X_WH_);  // and the body with it
   }
   ~OdeFeel() override {
-    held_.reset();
+    grasped_.reset();
     fixed_.clear();
     dJointGroupDestroy(contacts_);
     dWorldDestroy(world_);
@@ -77,7 +77,7 @@ class OdeFeel final : public FeelEngine {
   void touch() {
     std::array<dContact, 32> found{};
     for (const auto& piece : fixed_) {
-      const int count = dCollide(held_->id(), piece->id(), static_cast<int>(found.size()), &found[0].geom,
+      const int count = dCollide(grasped_->id(), piece->id(), static_cast<int>(found.size()), &found[0].geom,
                                  sizeof(dContact));
       for (int i = 0; i < count; ++i) {
         dContact& contact = found[static_cast<std::size_t>(i)];
@@ -99,7 +99,7 @@ class OdeFeel final : public FeelEngine {
   dBodyID body_ = nullptr;
   dJointGroupID contacts_ = nullptr;
   std::vector<std::unique_ptr<OdeGeometry>> fixed_;
-  std::unique_ptr<OdeGeometry> held_;
+  std::unique_ptr<OdeGeometry> grasped_;
 };
 
 }  // namespace

@@ -8,7 +8,7 @@
 namespace tactum {
 namespace {
 
-void tell(void* context) noexcept { std::fprintf(stderr, "%s\n", static_cast<const char*>(context)); }
+void print_text(void* context) noexcept { std::fprintf(stderr, "%s\n", static_cast<const char*>(context)); }
 
 /// Fails in turn: a hook that asserts itself must not be called for ever.
 void fail_again(void*) noexcept {
@@ -35,7 +35,7 @@ TEST_F(AssertDeathTest, TheHookComesBeforeTheMessage) {
   static char text[] = "the hand is free";
   EXPECT_DEATH(
       {
-        set_zero_wrench_hook(tell, text);
+        set_zero_wrench_hook(print_text, text);
         TACTUM_DEMAND(false);
       },
       "the hand is free\n(.|\n)*assertion failed");
@@ -45,7 +45,7 @@ TEST_F(AssertDeathTest, ARemovedHookIsNotCalled) {
   static char text[] = "the hand is free";
   EXPECT_EXIT(
       {
-        set_zero_wrench_hook(tell, text);
+        set_zero_wrench_hook(print_text, text);
         set_zero_wrench_hook(nullptr, nullptr);
         TACTUM_DEMAND(false);
       },

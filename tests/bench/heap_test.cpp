@@ -68,7 +68,7 @@ struct HeapWatch {
   void frame(HeapRig& rig) {
     const FrameReport& report = rig.step();
     ASSERT_LE(report.tests(), budget) << "frame " << rig.frames();
-    ASSERT_EQ(report.work.left_of_held, 0) << "frame " << rig.frames();
+    ASSERT_EQ(report.work.left_of_grasped, 0) << "frame " << rig.frames();
     ASSERT_FALSE(report.penetrating) << "frame " << rig.frames();
     ASSERT_EQ(report.flags & (frame_flag::kCapacityReached | frame_flag::kPointsFull), 0u)
         << "frame " << rig.frames();
@@ -76,7 +76,7 @@ struct HeapWatch {
     short_frames += report.work.unchecked > 0 ? 1 : 0;
     unproven += report.work.left_unproven;
     longest = std::max(longest, report.longest_wait);
-    met += report.held_contact_points > 0 ? 1 : 0;
+    met += report.grasped_contact_points > 0 ? 1 : 0;
     asleep = report.asleep;
     const std::size_t bodies = rig.simulation->world().bodies.size();
     for (std::size_t b = 1; b < bodies && rig.frames() % 25 == 0; ++b) {

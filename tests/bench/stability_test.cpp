@@ -41,14 +41,14 @@ TEST(Stability, NearlyTheWholeBoundComesToRestWhereFrictionStopsTheEncodersChatt
         setup.device.encoder_step_m /= 20;
         setup.device.encoder_step_rad /= 20;
       }
-      EXPECT_TRUE(try_wall(setup, 0.95 * wall_bound(setup)).held) << named(setup);
+      EXPECT_TRUE(try_wall(setup, 0.95 * wall_bound(setup)).at_rest) << named(setup);
     }
 }
 
 TEST(Stability, ACoarseEncoderChattersWithoutMakingEnergy) {
   WallSetup setup{*simulated_device_preset("premium-1.5-6dof"), *hand_model("firm"), 1000.0, false};
   const WallTrial trial = try_wall(setup, 0.95 * wall_bound(setup));
-  EXPECT_FALSE(trial.held);
+  EXPECT_FALSE(trial.at_rest);
   EXPECT_TRUE(trial.passive);
 }
 
@@ -56,7 +56,7 @@ TEST(Stability, ThePublishedStiffnessAndOneNewtonAMillimetreAreHeldByAll) {
   for (const WallSetup& setup : every_setup(false))
     for (const double stiffness : {600.0, 1000.0}) {
       const WallTrial trial = try_wall(setup, stiffness);
-      EXPECT_TRUE(trial.held && trial.passive) << named(setup) << " " << stiffness;
+      EXPECT_TRUE(trial.at_rest && trial.passive) << named(setup) << " " << stiffness;
     }
 }
 

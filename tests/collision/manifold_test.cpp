@@ -72,14 +72,14 @@ void expect_kinds(const Manifold& patch, Kind a, Kind b, std::size_t points) {
 }
 
 /// What holds for every patch.
-void expect_sound(const Contact& c, double tolerance, double slack) {
+void expect_sound(const Contact& c, double tolerance, double error) {
   ASSERT_FALSE(c.patch.points.empty());
   double weight = 0.0;
   for (const ContactPoint& p : c.patch.points) {
     weight += p.weight;
-    EXPECT_NEAR(p.distance, c.patch.normal.dot(p.p_a - p.p_b), slack);
-    EXPECT_LE(p.distance, tolerance + slack);
-    EXPECT_GE(p.distance, c.closest.distance - slack);
+    EXPECT_NEAR(p.distance, c.patch.normal.dot(p.p_a - p.p_b), error);
+    EXPECT_LE(p.distance, tolerance + error);
+    EXPECT_GE(p.distance, c.closest.distance - error);
   }
   EXPECT_NEAR(weight, 1.0, 1e-14);
 }
@@ -224,13 +224,13 @@ TEST(Manifold, EdgeOverAFaceAgreesWithCounting) {
         };
         const double first = place(c.patch.points[0]);
         const double second = place(c.patch.points[1]);
-        const double reach = 0.5 * std::sqrt(3.0) * (second - first);  // of Gauss points, to the ends
-        if (expected.empty()) {                                        // between two steps
-          EXPECT_LT(2.0 * reach, 1.0 / kSteps) << i;
+        const double half_length = 0.5 * std::sqrt(3.0) * (second - first);  // of Gauss points, to the ends
+        if (expected.empty()) {                                              // between two steps
+          EXPECT_LT(2.0 * half_length, 1.0 / kSteps) << i;
           continue;
         }
-        EXPECT_NEAR(0.5 * (first + second) - reach, expected.low, 2.0 / kSteps) << i;
-        EXPECT_NEAR(0.5 * (first + second) + reach, expected.high, 2.0 / kSteps) << i;
+        EXPECT_NEAR(0.5 * (first + second) - half_length, expected.low, 2.0 / kSteps) << i;
+        EXPECT_NEAR(0.5 * (first + second) + half_length, expected.high, 2.0 / kSteps) << i;
         ++(on_face.face_share < 1.0 ? leaning : level);
         cut += expected.high - expected.low < 0.99 ? 1 : 0;
       }
@@ -439,13 +439,13 @@ TEST(Manifold, NamesPlaceAndScaleDoNotMatter) {
     const Contact here = contact(A, B, X, 5e-4);
     if (here.patch.points.size() != 4) continue;
     ++patches;
-    const auto expect_same = [&](const Contact& other, double by, double slack) {
+    const auto expect_same = [&](const Contact& other, double by, double error) {
       EXPECT_LT((other.patch.normal - here.patch.normal).norm(), 1e-9);
-      EXPECT_NEAR(other.patch.area, here.patch.area * by * by, 0.02 * slack * by * by);
-      EXPECT_LT((centroid(other.patch) - by * centroid(here.patch)).norm(), slack * by);
+      EXPECT_NEAR(other.patch.area, here.patch.area * by * by, 0.02 * error * by * by);
+      EXPECT_LT((centroid(other.patch) - by * centroid(here.patch)).norm(), error * by);
       const Vec3 u = any_orthogonal(here.patch.normal);
       EXPECT_NEAR(second_moment(other.patch, u, u), by * by * second_moment(here.patch, u, u),
-                  0.02 * slack * by * by);
+                  0.02 * error * by * by);
     };
     expect_same(contact(cases::renamed(A, random), cases::renamed(B, random), X, 5e-4), 1.0, 1e-9);
     const Pose X_WA{cases::random_rotation(random), cases::random_unit(random) * 1000.0};

@@ -15,8 +15,8 @@ namespace {
 /// An overlapping pose: centres nearer than the smaller radius.
 Pose overlapping(Random& random, const Polytope& A, const Polytope& B) {
   Pose X{cases::random_rotation(random), Vec3::Zero()};
-  const double reach = 0.6 * std::min(A.radius, B.radius);
-  const Vec3 offset = cases::random_unit(random) * random.uniform(0.0, reach);
+  const double radius = 0.6 * std::min(A.radius, B.radius);
+  const Vec3 offset = cases::random_unit(random) * random.uniform(0.0, radius);
   X.p = A.center - X.R * B.center + offset;
   return X;
 }

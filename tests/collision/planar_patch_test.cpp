@@ -120,10 +120,11 @@ TEST(PlanarPatch, ClippingTheMostCornersByABoxKeepsThem) {
     polygon.push_back({std::cos(angle), std::sin(angle)});
   }
   const double beside = std::cos(2.0 * kPi / kPatchCorners);
-  const double reach = 0.5 * (1.0 + beside);
-  const double cut_off = (1.0 - reach) * (1.0 - reach) * std::sin(2.0 * kPi / kPatchCorners) / (1.0 - beside);
+  const double half_width = 0.5 * (1.0 + beside);
+  const double cut_off =
+      (1.0 - half_width) * (1.0 - half_width) * std::sin(2.0 * kPi / kPatchCorners) / (1.0 - beside);
   const double area = 0.5 * twice_area(polygon);
-  clip_polygon(polygon, PatchBox{{-reach, -reach}, {reach, reach}}, 3.0);
+  clip_polygon(polygon, PatchBox{{-half_width, -half_width}, {half_width, half_width}}, 3.0);
   EXPECT_EQ(polygon.size(), std::size_t{kPatchCorners + 4});
   EXPECT_NEAR(0.5 * twice_area(polygon), area - 4.0 * cut_off, 1e-14);
 }

@@ -128,7 +128,7 @@ TEST(TrackedDepth, MissesFewGlobalMinimaUnderAHandsMotion) {
 Count push_on(const Polytope& A, const Polytope& B, std::uint64_t seed, int rounds, double most) {
   constexpr double kGraze = 1e-6;
   constexpr double kPush = 1e-4;
-  constexpr int kHeld = 300;
+  constexpr int kResting = 300;
   constexpr int kPushed = 60;
   Random random(seed);
   Count count;
@@ -140,17 +140,17 @@ Count push_on(const Polytope& A, const Polytope& B, std::uint64_t seed, int roun
       PairCache same = cache;
       return penetration_depth(A, B, X, same);
     };
-    for (int i = 0; i < kHeld + kPushed; ++i) {
+    for (int i = 0; i < kResting + kPushed; ++i) {
       hand.move(B, i, X);
-      const bool held = i < kHeld;
-      for (int again = 0; held && again < 4; ++again) {
+      const bool resting = i < kResting;
+      for (int again = 0; resting && again < 4; ++again) {
         const PairDistance now = without_a_trace();
         X.p += now.normal * (now.distance + kGraze);
       }
-      if (const PairDistance now = without_a_trace(); !held && -now.distance < most)
+      if (const PairDistance now = without_a_trace(); !resting && -now.distance < most)
         X.p += now.normal * kPush;
       const PairDistance tracked = penetration_depth(A, B, X, cache);
-      if (held || tracked.distance > 0.0) continue;
+      if (resting || tracked.distance > 0.0) continue;
       const double least = penetration_exhaustive(A, B, X).distance;
       if (least >= 0.0) continue;
       ++count.frames;

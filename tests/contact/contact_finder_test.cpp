@@ -61,7 +61,7 @@ TEST(ContactFinder, FindsEveryPatchThatTestingAllPairsFinds) {
     }
     for (int i = 0; i < 4; ++i) bodies.push_back({&parts[std::size_t(i)], i != 2});
     ContactFinder finder(bodies, X);
-    std::vector<double> reach(4, 0.0);
+    std::vector<double> motion_bound(4, 0.0);
     const double min_tolerance = 1e-4;
     int patches = 0;
     int runs = 0;
@@ -73,9 +73,9 @@ TEST(ContactFinder, FindsEveryPatchThatTestingAllPairsFinds) {
         }
         V[i].v -= 0.005 * X[i].p;  // stay together
         if (!bodies[i].moves) V[i] = {};
-        reach[i] = (V[i].v.norm() + V[i].w.norm() * finder.radius(static_cast<int>(i))) * 1e-3;
+        motion_bound[i] = (V[i].v.norm() + V[i].w.norm() * finder.radius(static_cast<int>(i))) * 1e-3;
       }
-      finder.find_near_pairs(X, reach, min_tolerance);
+      finder.find_near_pairs(X, motion_bound, min_tolerance);
       finder.find_patches(X, 1 << 20);
       runs += finder.work().broad_phase_runs;
       std::map<Key, double> found;
@@ -85,7 +85,8 @@ TEST(ContactFinder, FindsEveryPatchThatTestingAllPairsFinds) {
       for (int a = 0; a < 4; ++a)
         for (int b = a + 1; b < 4; ++b) {
           const Pose X_AB = relative_pose(X[std::size_t(a)], X[std::size_t(b)]);
-          const double tolerance = std::max(min_tolerance, reach[std::size_t(a)] + reach[std::size_t(b)]);
+          const double tolerance =
+              std::max(min_tolerance, motion_bound[std::size_t(a)] + motion_bound[std::size_t(b)]);
           for (int p = 0; p < 14; ++p)
             for (int q = 0; q < 14; ++q) {
               PairCache cold;
@@ -126,12 +127,12 @@ TEST(ContactFinder, AsksSurfacesThatAreApartSeldom) {
   ContactFinder finder({body, body}, X);
   std::vector<SurfaceMinimum> minima;
   minima.reserve(10000);
-  const std::vector<double> reach(2, 0.0);
+  const std::vector<double> motion_bound(2, 0.0);
   std::array<int, 2> queries{};  // apart, near
   std::array<int, 2> frames{};
   for (int frame = 0; frame < 2000; ++frame) {
     X[1] = pose(frame);
-    finder.find_near_pairs(X, reach, tolerance);
+    finder.find_near_pairs(X, motion_bound, tolerance);
     finder.find_patches(X, 1000, PatchPoints::kClosest);
     surface_minima(ring->tree, ring->tree, X[1], {tolerance, 0.0, tolerances::kConeInflation}, minima);
     ASSERT_EQ(finder.patches().empty(), minima.empty()) << frame;
@@ -156,8 +157,8 @@ TEST(ContactFinder, WithABudgetEveryPairsTurnComes) {
   parts.push_back(cluttered_part(random));
   const std::vector<Pose> X(2);
   ContactFinder finder({{&parts[0], true}, {&parts[1], true}}, X);
-  const std::vector<double> reach(2, 0.001);
-  finder.find_near_pairs(X, reach, 1e-4);
+  const std::vector<double> motion_bound(2, 0.001);
+  finder.find_near_pairs(X, motion_bound, 1e-4);
   finder.find_patches(X, 1 << 20);
   const int all = finder.work().exact_tests;
   const std::size_t patches = finder.patches().size();
@@ -166,7 +167,7 @@ TEST(ContactFinder, WithABudgetEveryPairsTurnComes) {
   ContactFinder limited({{&parts[0], true}, {&parts[1], true}}, X);
   int tests = 0;
   for (int frame = 0; frame * 5 < all + 5; ++frame) {
-    limited.find_near_pairs(X, reach, 1e-4);
+    limited.find_near_pairs(X, motion_bound, 1e-4);
     limited.find_patches(X, 10);
     const ContactWork& work = limited.work();
     EXPECT_TRUE(limited.budget_limited());
@@ -193,30 +194,32 @@ TEST(ContactFinder, PairsOfTheHeldPartAreTestedBeforeAllOthers) {
     X.push_back({exp_rotation(random_vector(random, 1)), random_vector(random, 0.02)});
     bodies.push_back({&part, true});
   }
-  const std::vector<double> reach(6, 1e-3);
-  const std::vector<std::uint8_t> urgency = {urgency::kOther, urgency::kOther,       urgency::kOther,
-                                             urgency::kHeld,  urgency::kTouchesHeld, urgency::kOther};
+  const std::vector<double> motion_bound(6, 1e-3);
+  const std::vector<std::uint8_t> priority = {priority::kOther,          priority::kOther,
+                                              priority::kOther,          priority::kGrasped,
+                                              priority::kTouchesGrasped, priority::kOther};
   ContactFinder finder(bodies, X);
   ContactFinder all(bodies, X);
-  for (ContactFinder* each : {&finder, &all}) each->find_near_pairs(X, reach, 1e-4);
+  for (ContactFinder* each : {&finder, &all}) each->find_near_pairs(X, motion_bound, 1e-4);
   all.find_patches(X, 1 << 20);
-  int of_held = 0;
-  for (const ContactPatch& patch : all.patches()) of_held += patch.body_a == 3 || patch.body_b == 3 ? 1 : 0;
+  int of_grasped = 0;
+  for (const ContactPatch& patch : all.patches())
+    of_grasped += patch.body_a == 3 || patch.body_b == 3 ? 1 : 0;
   const int budget = all.work().exact_tests / 2;
-  finder.find_patches(X, budget, PatchPoints::kQuadrature, urgency);
+  finder.find_patches(X, budget, PatchPoints::kQuadrature, priority);
   int found = 0;
   for (const ContactPatch& patch : finder.patches()) found += patch.body_a == 3 || patch.body_b == 3 ? 1 : 0;
-  EXPECT_GT(of_held, 5);
-  EXPECT_EQ(found, of_held);
-  EXPECT_EQ(finder.work().left_of_held, 0);
+  EXPECT_GT(of_grasped, 5);
+  EXPECT_EQ(found, of_grasped);
+  EXPECT_EQ(finder.work().left_of_grasped, 0);
   EXPECT_FALSE(finder.blocked(3) && finder.work().left_unproven == 0);
   EXPECT_GT(finder.work().left_unproven, 0);
   // With less than its own pairs need, it is told that it must not move.
   ContactFinder poor(bodies, X);
-  poor.find_near_pairs(X, reach, 1e-4);
-  poor.find_patches(X, 3, PatchPoints::kQuadrature, urgency);
+  poor.find_near_pairs(X, motion_bound, 1e-4);
+  poor.find_patches(X, 3, PatchPoints::kQuadrature, priority);
   EXPECT_EQ(poor.work().exact_tests, 3);
-  EXPECT_GT(poor.work().left_of_held, 0);
+  EXPECT_GT(poor.work().left_of_grasped, 0);
   EXPECT_TRUE(poor.blocked(3));
 }
 
@@ -226,7 +229,7 @@ TEST(ContactFinder, WhatFoundNoRoomIsLookedForAgain) {
   Random random(9);
   const Part part = cluttered_part(random);
   const std::vector<CollisionBody> bodies(2, {&part, true});
-  const std::vector<double> reach(2, 2e-4);
+  const std::vector<double> motion_bound(2, 2e-4);
   for (const std::size_t room : {5, 20}) {
     std::vector<Pose> X = {{Mat3::Identity(), Vec3(0, 0, 0.01)}, {}};
     ContactFinder finder(bodies, X, {.pairs = room});
@@ -235,7 +238,7 @@ TEST(ContactFinder, WhatFoundNoRoomIsLookedForAgain) {
     for (int frame = 0; frame < 1200; ++frame) {
       // Apart, until hardly a pair is near, and together again.
       X[0].p.x() = 0.07 * (0.5 - 0.5 * std::cos(2 * kPi * frame / 400.0));
-      finder.find_near_pairs(X, reach, 1e-3);
+      finder.find_near_pairs(X, motion_bound, 1e-3);
       finder.find_patches(X, 1 << 20, PatchPoints::kClosest);
       ASSERT_LE(finder.work().near_pairs, int(room));
       if (finder.work().capacity_reached) {
@@ -243,7 +246,7 @@ TEST(ContactFinder, WhatFoundNoRoomIsLookedForAgain) {
         continue;
       }
       ContactFinder fresh(bodies, X);
-      fresh.find_near_pairs(X, reach, 1e-3);
+      fresh.find_near_pairs(X, motion_bound, 1e-3);
       fresh.find_patches(X, 1 << 20, PatchPoints::kClosest);
       ASSERT_EQ(finder.patches().size(), fresh.patches().size()) << "frame " << frame;
       for (std::size_t i = 0; i < fresh.patches().size(); ++i) {
@@ -273,15 +276,15 @@ TEST(ContactFinder, WhatABudgetLeavesIsNotEntered) {
                    0.11 * Vec3(double(i % 2), double(i / 2), 0.3 * double(i % 3))});
     const Vec3 middle(0.055, 0.11, 0.033);
     ContactFinder finder(bodies, X);
-    std::vector<double> reach(kBodies);
+    std::vector<double> motion_bound(kBodies);
     int safely = 0;
     int unproven = 0;
     for (int frame = 0; frame < 1500; ++frame) {
       for (std::size_t i = 0; i < kBodies; ++i) {
         if (frame % 40 == 0) V[i] = {2.0 * (middle - X[i].p), random_vector(random, 3.0)};
-        reach[i] = (V[i].v.norm() + V[i].w.norm() * finder.radius(static_cast<int>(i))) * 1e-3;
+        motion_bound[i] = (V[i].v.norm() + V[i].w.norm() * finder.radius(static_cast<int>(i))) * 1e-3;
       }
-      finder.find_near_pairs(X, reach, 1.5e-3);  // more than they go
+      finder.find_near_pairs(X, motion_bound, 1.5e-3);  // more than they go
       finder.find_patches(X, budget, PatchPoints::kClosest);
       ASSERT_LE(finder.work().exact_tests, budget);
       safely += finder.work().unchecked - finder.work().left_unproven;
@@ -293,7 +296,7 @@ TEST(ContactFinder, WhatABudgetLeavesIsNotEntered) {
       for (std::size_t i = 0; i < kBodies; ++i) {
         // Who goes nearly half of each gap is soon so near that rounding decides the sign.
         ASSERT_GE(room[i], -1e-13 * part.size) << "budget " << budget << " frame " << frame;
-        const double share = std::clamp(room[i] / reach[i], 0.0, 1.0);
+        const double share = std::clamp(room[i] / motion_bound[i], 0.0, 1.0);
         if (!finder.blocked(static_cast<int>(i))) X[i] = renormalized(advanced(X[i], V[i], 1e-3 * share));
       }
       if (frame % 50 != 0) continue;
@@ -320,13 +323,13 @@ TEST(Schedule, TheMostUrgentComeFirst) {
   const std::vector<DuePair> all = due;
   const int budget = 40;
   ASSERT_EQ(prioritise(due, budget, kHeadStartFrames), budget);
-  const auto urgency = [](const DuePair& d) {
-    return std::tuple(d.urgency, d.last_checked - (d.was_in_contact ? kHeadStartFrames : 0), d.pair);
+  const auto priority = [](const DuePair& d) {
+    return std::tuple(d.priority, d.last_checked - (d.was_in_contact ? kHeadStartFrames : 0), d.pair);
   };
-  auto least_urgent_taken = urgency(due[0]);
+  auto lowest_priority_taken = priority(due[0]);
   for (int i = 0; i < budget; ++i)
-    least_urgent_taken = std::max(least_urgent_taken, urgency(due[std::size_t(i)]));
-  for (std::size_t i = budget; i < due.size(); ++i) EXPECT_GT(urgency(due[i]), least_urgent_taken);
+    lowest_priority_taken = std::max(lowest_priority_taken, priority(due[std::size_t(i)]));
+  for (std::size_t i = budget; i < due.size(); ++i) EXPECT_GT(priority(due[i]), lowest_priority_taken);
   for (int i = 1; i < budget; ++i) EXPECT_LT(due[std::size_t(i) - 1].pair, due[std::size_t(i)].pair);
   EXPECT_EQ(prioritise(due, 1000, kHeadStartFrames), 100);
   EXPECT_EQ(prioritise(due, 0, kHeadStartFrames), 0);

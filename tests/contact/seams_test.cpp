@@ -30,8 +30,8 @@ std::vector<ContactPatch> patches_on(const Part& part, const Pose& X, double tol
   const Part block = part_of({make_box({0.01, 0.01, 0.005}).vertices});
   const std::vector<Pose> poses = {X, Pose{}};
   ContactFinder finder({{&block, true}, {&part, false}}, poses);
-  const std::vector<double> reach = {tolerance, 0.0};
-  finder.find_near_pairs(poses, reach, tolerance);
+  const std::vector<double> motion_bound = {tolerance, 0.0};
+  finder.find_near_pairs(poses, motion_bound, tolerance);
   finder.find_patches(poses, 1000);
   return {finder.patches().begin(), finder.patches().end()};
 }

@@ -16,12 +16,12 @@ void expect_velocity_is_the_derivative(const HandMotion& motion, double toleranc
   Random random(21);
   for (int i = 0; i < 500; ++i) {
     const double t = random.uniform(0.0, motion.duration_s());
-    const Twist told = motion.at(t).V_DH;
+    const Twist analytic = motion.at(t).V_DH;
     const Pose before = motion.at(t - kStep).X_DH;
     const Pose after = motion.at(t + kStep).X_DH;
     const Twist seen = twist_between(before, after, 2 * kStep);
-    EXPECT_LT((told.v - seen.v).norm(), tolerance) << "seed 21, t = " << t;
-    EXPECT_LT((told.w - seen.w).norm(), tolerance) << "seed 21, t = " << t;
+    EXPECT_LT((analytic.v - seen.v).norm(), tolerance) << "seed 21, t = " << t;
+    EXPECT_LT((analytic.w - seen.w).norm(), tolerance) << "seed 21, t = " << t;
   }
 }
 

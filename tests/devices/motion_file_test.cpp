@@ -38,8 +38,9 @@ class TextFile {
 
 /// The folder of shared real data, or empty.
 fs::path data_folder() {
-  const char* told = std::getenv("TACTUM_DATA");
-  const fs::path folder = told ? fs::path(told) : fs::path(TACTUM_SOURCE_DIR) / ".." / "shared" / "data";
+  const char* variable = std::getenv("TACTUM_DATA");
+  const fs::path folder =
+      variable ? fs::path(variable) : fs::path(TACTUM_SOURCE_DIR) / ".." / "shared" / "data";
   return fs::exists(folder) ? folder : fs::path();
 }
 
@@ -227,9 +228,9 @@ TEST(MotionFile, PlaysARealHandheldTrajectory) {
   ASSERT_TRUE(motion) << motion.error().message();
   EXPECT_NEAR(motion->time_s.back(), 30.0, 1.0);
   const Motion small = fitted(*motion, 0.1);
-  double reach = 0.0;
-  for (const Pose& X : small.X) reach = std::max(reach, X.p.norm());
-  EXPECT_NEAR(reach, 0.1, 1e-12);
+  double extent = 0.0;
+  for (const Pose& X : small.X) extent = std::max(extent, X.p.norm());
+  EXPECT_NEAR(extent, 0.1, 1e-12);
   EXPECT_LT(log_rotation(small.X.front().R).norm(), 1e-12);
   const RecordedMotion hand(small);
   for (double t = 0.0; t < hand.duration_s(); t += 0.0137) ASSERT_TRUE(hand.at(t).X_DH.finite());

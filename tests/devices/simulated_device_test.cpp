@@ -94,8 +94,8 @@ TEST(SimulatedDevice, CoulombFrictionHoldsAndBrakes) {
   model.friction_N = 0.5;
   SimulatedDevice device(model, no_hand(), nullptr);
   ASSERT_TRUE(device.open());
-  const DeviceSample held = run(device, 0, 1000, {{0.499, 0, 0}, {0, 0, 0}});
-  EXPECT_EQ(held.X_DH.p, Vec3(Vec3::Zero())) << "a push below the friction moves nothing, not even slowly";
+  const DeviceSample stuck = run(device, 0, 1000, {{0.499, 0, 0}, {0, 0, 0}});
+  EXPECT_EQ(stuck.X_DH.p, Vec3(Vec3::Zero())) << "a push below the friction moves nothing, not even slowly";
   // Thrown at 0.4 m/s it stops after v^2 m / (2 F) = 16 mm and stays.
   ASSERT_TRUE(device.write({}));
   device.place({}, {{0, 0.4, 0}, {0, 0, 0}});
@@ -321,10 +321,10 @@ TEST(SimulatedDevice, PresetsOpenAndFollowEveryGrip) {
       const DeviceSample sample = run(device, 0, 3000, {});
       const HandModel hand = *hand_model(grip);
       // It rests where friction holds it against the hand's spring.
-      const double slack = 1e-4 + model.friction_N / hand.stiffness_N_per_m;
-      const double slack_rad = 2e-3 + model.friction_Nm / hand.stiffness_Nm_per_rad;
-      EXPECT_LT((sample.X_DH.p - motion->end_pose().p).norm(), slack) << model.name << " " << grip;
-      EXPECT_LT(log_rotation(sample.X_DH.R * motion->end_pose().R.transpose()).norm(), slack_rad)
+      const double tolerance = 1e-4 + model.friction_N / hand.stiffness_N_per_m;
+      const double tolerance_rad = 2e-3 + model.friction_Nm / hand.stiffness_Nm_per_rad;
+      EXPECT_LT((sample.X_DH.p - motion->end_pose().p).norm(), tolerance) << model.name << " " << grip;
+      EXPECT_LT(log_rotation(sample.X_DH.R * motion->end_pose().R.transpose()).norm(), tolerance_rad)
           << model.name << " " << grip;
     }
   }

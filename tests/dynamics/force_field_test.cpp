@@ -20,12 +20,12 @@ const DipoleField kDipole{.moment_Nm3 = 2e-6, .core_m = 0.01};
 const WellField kWell{.depth_J = 0.02, .width_m = 0.02};
 const VortexField kVortex{.circulation_J = 0.1, .core_m = 0.015};
 
-Vec3 random_point(Random& random, double reach) {
-  return {random.uniform(-reach, reach), random.uniform(-reach, reach), random.uniform(-reach, reach)};
+Vec3 random_point(Random& random, double range) {
+  return {random.uniform(-range, range), random.uniform(-range, range), random.uniform(-range, range)};
 }
 
-Pose random_pose(Random& random, double reach) {
-  return {exp_rotation(random_point(random, 2.0)), random_point(random, reach)};
+Pose random_pose(Random& random, double range) {
+  return {exp_rotation(random_point(random, 2.0)), random_point(random, range)};
 }
 
 /// Minus the gradient of a potential by central differences.

@@ -69,7 +69,7 @@ TEST(Constraint, ContactForcesAddUpToWhatIsFelt) {
         EXPECT_LT(bench.unaccounted().f.norm(), 1e-9 * force);
         EXPECT_LT(bench.unaccounted().t.norm(), 1e-9 * force);
         EXPECT_FALSE(bench.report.penetrating);
-        touching += bench.report.held_contact_points > 0 ? 1 : 0;
+        touching += bench.report.grasped_contact_points > 0 ? 1 : 0;
       }
     }
     EXPECT_GT(touching, 800);

@@ -66,7 +66,7 @@ TEST(CouplingGains, EveryPresetGetsWhatALooseHandAllows) {
       EXPECT_GE(c.stiffness_N_per_m, 400.0) << "something to feel";
       if (model.max_torque_Nm > 0.0) {
         EXPECT_LE(c.stiffness_Nm_per_rad, model.max_stiffness_Nm_per_rad);
-        EXPECT_LE(c.stiffness_Nm_per_rad, gains.rotation.held);
+        EXPECT_LE(c.stiffness_Nm_per_rad, gains.rotation.loose_hand);
       } else {
         EXPECT_TRUE(std::isinf(gains.rotation.alone)) << "there is no loop around it";
         EXPECT_EQ(c.damping_Nms_per_rad, 0.0);

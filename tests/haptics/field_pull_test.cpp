@@ -111,7 +111,7 @@ TEST(FieldPull, AWellGivesBackWhatItTookAndAVortexGivesEveryTurn) {
       const double angle = 2.0 * kPi * i / 2000.0;
       rig.step(above({0.02 * std::cos(angle), 0.02 * std::sin(angle), 0.0}));
       EXPECT_EQ(rig.report.port.injected_Ns_per_m, 0.0) << "what a field gives is damped away";
-      EXPECT_GT(rig.report.port.ledger_J, -1e-4);
+      EXPECT_GT(rig.report.port.energy_balance_J, -1e-4);
     }
     for (int i = 0; i < 300; ++i) rig.step(rig.X_DH);
     EXPECT_LT((rig.X_WB().p - place).norm(), 1e-9);
@@ -155,7 +155,7 @@ TEST(FieldPull, OnlyWhatIsHeldIsPulledAndLettingGoEndsIt) {
   FieldRig rig(in_the_air(kDipole));
   rig.settings.tool.body = -1;
   rig.settings.tool.picks = true;
-  rig.settings.tool.reach_m = 1.0;
+  rig.settings.tool.pick_distance_m = 1.0;
   rig.step({});
   EXPECT_TRUE(rig.report.field.f.isZero(0.0));
   EXPECT_EQ(rig.begun().hand.field.body, -1);

@@ -99,7 +99,7 @@ TEST(Frame, PressedFlatTheForceIsThePublishedLaw) {
   EXPECT_NEAR(report.shown.f.z(), k_c * (pressed + d), 1e-3);
   EXPECT_LT(report.shown.f.head<2>().norm(), 1e-6);
   EXPECT_LT(report.shown.t.norm(), 1e-6);
-  EXPECT_EQ(report.held_contact_points, 4);
+  EXPECT_EQ(report.grasped_contact_points, 4);
   EXPECT_TRUE(report.penetrating);
   EXPECT_LT((report.restoring.f - report.coupling.f).norm(),
             1e-3);  // what pushes the part is what the hand feels

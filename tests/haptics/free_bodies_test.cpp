@@ -54,20 +54,20 @@ TEST(FreeBodies, AFreeTopKeepsItsMomentumAndPrecessesAsEulerSays) {
 TEST(FreeBodies, AHeavyTopPrecesses) {
   Sandbox box;
   box.world.gravity_W = kGravity;
-  const double reach = 0.03;  // from the tip to the centre of mass [m]
+  const double lever = 0.03;  // from the tip to the centre of mass [m]
   const Vec3 tip = Vec3::Zero();
   const Vec3 axis(1, 0, 0);
   const double spin = 400.0;
   const Polytope disc = make_prism(24, 0.02, 0.006);
-  const int b = box.add(disc, {exp_rotation({0, kPi / 2, 0}), axis * reach}, {Vec3::Zero(), axis * spin},
+  const int b = box.add(disc, {exp_rotation({0, kPi / 2, 0}), axis * lever}, {Vec3::Zero(), axis * spin},
                         {.kind = JointKind::kBall, .anchor_W = tip});
   const Body& body = box.world.bodies[0];
-  const double slow = body.mass_kg * 9.81 * reach / (body.inertia_B(2, 2) * spin);  // [rad/s]
+  const double slow = body.mass_kg * 9.81 * lever / (body.inertia_B(2, 2) * spin);  // [rad/s]
   // Started with the precession's rate, there is no nutation to the first order.
   box.world.bodies[0].V_WB.w += Vec3(0, 0, slow);
-  box.world.bodies[0].V_WB.v = Vec3(0, 0, slow).cross(axis * reach);
+  box.world.bodies[0].V_WB.v = Vec3(0, 0, slow).cross(axis * lever);
   box.run(1.0);
-  const Vec3 now = box.X(b).p / reach;
+  const Vec3 now = box.X(b).p / lever;
   EXPECT_NEAR(now.norm(), 1.0, 1e-9);
   EXPECT_NEAR(std::remainder(std::atan2(now.y(), now.x()) - slow, 2.0 * kPi), 0.0, 0.02 * slow);
   EXPECT_NEAR(now.z(), 0.0, 0.02);
@@ -304,12 +304,12 @@ TEST(FreeBodies, LimitsSpringsAndFrictionOfJoints) {
       .kind = JointKind::kHinge, .axis_W = Vec3::UnitY(), .anchor_W = {0.57, 0, 0}, .friction = 0.01};
   const int sprung = box.add(cube(0.01), at(0, 0, 0), {}, spring);
   const int dropped = box.add(cube(0.01), at(0.3, 0, 0), {}, stopped);
-  const int held = box.add(cube(0.01), at(0.6, 0, 0), {}, stiff);  // 0.0024 N m of gravity
+  const int braked = box.add(cube(0.01), at(0.6, 0, 0), {}, stiff);  // 0.0024 N m of gravity
   box.run(5.0);
   const double weight = box.world.bodies[0].mass_kg * 9.81;
   EXPECT_NEAR(box.X(sprung).p.z(), -weight / 20.0, 1e-9);
   EXPECT_NEAR(box.X(dropped).p.z(), -0.03, 1e-9);
-  EXPECT_NEAR(box.X(held).p.z(), 0.0, 1e-12);
+  EXPECT_NEAR(box.X(braked).p.z(), 0.0, 1e-12);
 }
 
 TEST(FreeBodies, FastAndSmallDoesNotPassThroughThin) {

@@ -34,7 +34,7 @@ TEST(FrictionUse, IsTheShareOfTheConeWhileItSticksAndAllOfItWhileItSlips) {
       EXPECT_EQ(report.friction.cone_used, use.cone_used);
       EXPECT_NEAR(use.cone_used, sideways / (mu * use.load_N), 1e-6);
       EXPECT_NEAR(use.cone_used, std::min(1.0, share), 0.01) << mu << " " << share;
-      EXPECT_GT(report.held_contact_points, 0) << "also when the cone carries all of the load";
+      EXPECT_GT(report.grasped_contact_points, 0) << "also when the cone carries all of the load";
       for (const ContactRow& row : bench.simulation->state().response.rows())
         EXPECT_TRUE(row.grip == 0 || row.impulse == 0.0) << "what pushes belongs to the patch";
     }

@@ -48,7 +48,7 @@ TEST(Lessons, APartThatTurnsOverARimFollowsTheHandEitherWay) {
       bench.step(hand(std::sin(kPi * 0.01 * i)));
       lag = std::max(lag, log_rotation(bench.X_DH.R.transpose() * bench.X_WB().R).norm());
     }
-    EXPECT_GT(bench.report.held_contact_points, 0);
+    EXPECT_GT(bench.report.grasped_contact_points, 0);
     EXPECT_EQ(bench.penetrating_frames, 0);
     EXPECT_LT(lag, 0.02) << "rad, " << sense;
   }

@@ -47,8 +47,8 @@ struct Hand : Sandbox {
 
 TEST(Picking, TheNearestBodyWithinReach) {
   Hand hand;
-  const auto nearest = [&](const Vec3& p, double reach) {
-    return nearest_body(hand.world, hand.begun().world.X_WB, p, reach);
+  const auto nearest = [&](const Vec3& p, double most) {
+    return nearest_body(hand.world, hand.begun().world.X_WB, p, most);
   };
   EXPECT_EQ(nearest({0.004, 0, 0.025}, 0.01), hand.near_block);
   EXPECT_EQ(nearest({0.045, 0, 0.01}, 0.01), hand.far_block);
@@ -60,10 +60,10 @@ TEST(Picking, TheNearestBodyWithinReach) {
 TEST(Picking, LiftsWithoutAStepFeelsTheWeightAndThrows) {
   Hand hand;
   hand.go({0, 0, 0.025}, 200, false);
-  EXPECT_EQ(hand.report.held, -1);
+  EXPECT_EQ(hand.report.grasped_body, -1);
   EXPECT_EQ(hand.report.coupling.f.norm(), 0.0);
   EXPECT_LT(hand.go({0, 0, 0.025}, 1, true), 0.2);  // at most what it weighs: 78 mN
-  EXPECT_EQ(hand.report.held, hand.near_block);
+  EXPECT_EQ(hand.report.grasped_body, hand.near_block);
   hand.go({0, 0, 0.08}, 300, true);
   hand.go({0, 0, 0.08}, 300, true);
   const Body& block = hand.world.bodies[std::size_t(hand.near_block)];
@@ -74,7 +74,7 @@ TEST(Picking, LiftsWithoutAStepFeelsTheWeightAndThrows) {
   const Vec3 start = hand.X(hand.near_block).p;
   EXPECT_NEAR(hand.V(hand.near_block).v.y(), 0.5, 0.01);
   hand.go({0, 0.1, 0.08}, 1, false);
-  EXPECT_EQ(hand.report.held, -1);
+  EXPECT_EQ(hand.report.grasped_body, -1);
   EXPECT_EQ(hand.report.coupling.f.norm(), 0.0);
   hand.go({0, 0.1, 0.08}, 49, false);
   const Vec3 flown = hand.X(hand.near_block).p - start;
@@ -96,7 +96,7 @@ TEST(Picking, ABlowOnTheHeldBlockIsFeltAsAPulseOfTheSameMomentum) {
   hand.world.bodies[std::size_t(hand.near_block)].X_WB.p = {0, 0, 0.1};
   hand.settings.workspace.X_WD.p = {0, 0, 0.1};
   hand.go({0, 0, 0.1}, 2, true);
-  ASSERT_EQ(hand.report.held, hand.near_block);
+  ASSERT_EQ(hand.report.grasped_body, hand.near_block);
   const double mass = hand.world.bodies[std::size_t(hand.far_block)].mass_kg;
   Vec3 felt = Vec3::Zero();
   double largest = 0.0;

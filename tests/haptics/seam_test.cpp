@@ -344,8 +344,8 @@ TEST(Seams, AThinSheetOfTilesIsTouchedFromBothSides) {
 std::vector<ContactPatch> patches_of(const SharedPart& plate, const SharedPart& probe, const Pose& X_WA) {
   const std::vector<Pose> X_WB = {X_WA, Pose()};
   ContactFinder finder({{probe.get(), true}, {plate.get(), false}}, X_WB);
-  const std::vector<double> reach = {3e-4, 0.0};
-  finder.find_near_pairs(X_WB, reach, 0.0);
+  const std::vector<double> motion_bound = {3e-4, 0.0};
+  finder.find_near_pairs(X_WB, motion_bound, 0.0);
   finder.find_patches(X_WB, 1 << 20);
   return {finder.patches().begin(), finder.patches().end()};
 }

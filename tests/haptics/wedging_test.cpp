@@ -78,8 +78,8 @@ struct Pull {
     slot.go(slot.X_DH, 20);
     p_jammed = slot.X_WB().p;
     const Coupling& coupling = slot.settings.coupling;
-    const double held_N = 2.0 * mu * coupling.stiffness_Nm_per_rad * kSqueeze_rad / depth;
-    slot.go(turned(angle, {0, 0, 10.0 * held_N / coupling.stiffness_N_per_m}), 500);
+    const double wedged_N = 2.0 * mu * coupling.stiffness_Nm_per_rad * kSqueeze_rad / depth;
+    slot.go(turned(angle, {0, 0, 10.0 * wedged_N / coupling.stiffness_N_per_m}), 500);
     slot.go(slot.X_DH, 500);
     EXPECT_EQ(slot.penetrating_frames, 0);
   }

@@ -36,12 +36,12 @@ class FakeDevice final : public Device {
   bool write(const Wrench& F_D) noexcept override {
     ++writes;
     last = F_D;
-    if (tells_zero && is_zero(F_D)) std::fputs("zero wrench written\n", stderr);
+    if (reports_zero && is_zero(F_D)) std::fputs("zero wrench written\n", stderr);
     return is_open && (writes_before_lost < 0 || writes <= writes_before_lost);
   }
 
   bool refuses_open = false;
-  bool tells_zero = false;
+  bool reports_zero = false;
   bool is_open = false;
   int writes_before_lost = -1;
   int opened = 0;
@@ -316,7 +316,7 @@ TEST(LoopThreadDeathTest, AFailedAssertionWritesZeroFirst) {
   EXPECT_DEATH(
       {
         FakeDevice device;
-        device.tells_zero = true;
+        device.reports_zero = true;
         PushingFrame frame;
         LoopThread loop;
         if (!loop.start(device, frame, plain_settings())) return;

@@ -40,7 +40,7 @@ struct Spring {
   }
 };
 
-TEST(Passivity, TheLedgerOfASampledSpringIsKnownExactly) {
+TEST(Passivity, TheBalanceOfASampledSpringIsKnownExactly) {
   // - f_(n-1) (x_n - x_(n-1)), summed over a spring f = - K x, is  K x_N^2 / 2 - K / 2 sum (x_n - x_(n-1))^2:
   // what is stored, less what sampling has made.
   Random random(11);
@@ -59,9 +59,9 @@ TEST(Passivity, TheLedgerOfASampledSpringIsKnownExactly) {
     spring.go({Mat3::Identity(), x});
     turned.go({exp_rotation(turn), Vec3::Zero()});
   }
-  EXPECT_NEAR(spring.report.ledger_J, 500.0 * (x.squaredNorm() - squares), 1e-10);
-  EXPECT_NEAR(turned.report.ledger_turning_J, 5.0 * (turn.squaredNorm() - turned_squares), 1e-9);
-  EXPECT_LT(spring.report.ledger_J, spring.K * 0.5 * x.squaredNorm()) << "sampling makes energy";
+  EXPECT_NEAR(spring.report.energy_balance_J, 500.0 * (x.squaredNorm() - squares), 1e-10);
+  EXPECT_NEAR(turned.report.energy_balance_turning_J, 5.0 * (turn.squaredNorm() - turned_squares), 1e-9);
+  EXPECT_LT(spring.report.energy_balance_J, spring.K * 0.5 * x.squaredNorm()) << "sampling makes energy";
 }
 
 TEST(Passivity, TheTotalsAreTheWorkEitherWayAndWhatTheControllerTookOut) {
@@ -96,15 +96,15 @@ TEST(Passivity, TheTotalsAreTheWorkEitherWayAndWhatTheControllerTookOut) {
     EXPECT_NEAR(turning.to_hand_J - turning.from_hand_J, turned, 1e-9);
     EXPECT_NEAR(turning.damped_J, turned_damped, 1e-9);
     EXPECT_EQ(total.damped_J != 0.0, most > 0.0);
-    // Without bounds the two ledgers together are what came less what went.
+    // Without bounds the two balances together are what came less what went.
     const double kept = total.from_hand_J - total.to_hand_J + turning.from_hand_J - turning.to_hand_J;
-    EXPECT_NEAR(spring.report.ledger_J + spring.report.ledger_turning_J, kept, 1e-9);
+    EXPECT_NEAR(spring.report.energy_balance_J + spring.report.energy_balance_turning_J, kept, 1e-9);
     EXPECT_GT(total.to_hand_J, 0.1);
   }
 }
 
 TEST(Passivity, DampingOfHalfThePeriodTimesStiffnessIsEnoughAndNecessary) {
-  // [Colgate and Schenkel 1994]: b > K T / 2, here as an identity of the ledger, for any way whatever.
+  // [Colgate and Schenkel 1994]: b > K T / 2, here as an identity of the balance, for any way whatever.
   for (const double share : {1.0, 0.9}) {
     Random random(12);
     Spring spring;
@@ -115,7 +115,7 @@ TEST(Passivity, DampingOfHalfThePeriodTimesStiffnessIsEnoughAndNecessary) {
     for (int i = 0; i < 20000; ++i) {
       x = -0.2 * x + 1e-3 * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
       spring.go({Mat3::Identity(), x});
-      lowest = std::min(lowest, spring.report.ledger_J);
+      lowest = std::min(lowest, spring.report.energy_balance_J);
     }
     if (share == 1.0) {
       EXPECT_GE(lowest, -1e-9);
@@ -141,7 +141,7 @@ TEST(Passivity, WhereNoEnergyIsMadeTheWrenchPassesUntouched) {
 }
 
 TEST(Passivity, MadeEnergyIsTakenOutByDamping) {
-  // Led to and fro at 100 Hz a sampled spring makes energy all the time; with the controller the ledger
+  // Led to and fro at 100 Hz a sampled spring makes energy all the time; with the controller the balance
   // comes back to zero, and the wrench is the spring's and a damper's.
   for (const double most : {0.0, 50.0}) {
     Spring spring;
@@ -151,7 +151,7 @@ TEST(Passivity, MadeEnergyIsTakenOutByDamping) {
       spring.go({Mat3::Identity(), {1e-3 * std::sin(0.2 * kPi * i), 0, 0}});
       ASSERT_LE(spring.report.injected_Ns_per_m, most);
       ASSERT_GE(spring.report.injected_Ns_per_m, 0.0);
-      least = std::min(least, spring.report.ledger_J);
+      least = std::min(least, spring.report.energy_balance_J);
     }
     if (most == 0.0) {
       EXPECT_LT(least, -0.1) << "watching only";
@@ -219,15 +219,15 @@ TEST(Passivity, NeitherCreditNorDebtOutlivesItsBound) {
   spring.settings.damping_Ns_per_m = 50.0;  // eats a lot of energy in free motion
   spring.K = 0.0;
   for (int i = 0; i < 1000; ++i) spring.go({Mat3::Identity(), {0.01 * std::sin(0.1 * i), 0, 0}});
-  EXPECT_EQ(spring.report.ledger_J, 1e-3);
+  EXPECT_EQ(spring.report.energy_balance_J, 1e-3);
   spring.sent.f.x() = 10.0;
   spring.go({Mat3::Identity(), {1.0, 0, 0}});  // a leap: 10 J
-  EXPECT_GE(spring.report.ledger_J, -1e-3);
+  EXPECT_GE(spring.report.energy_balance_J, -1e-3);
 }
 
 TEST(Passivity, EnergyThatBodiesGiveUpIsNoneThatWasMade) {
   // A weight of 1 N is lowered by 0.1 m: the hand is pushed all the way.
-  for (const bool told : {true, false}) {
+  for (const bool bodies_known : {true, false}) {
     PortSettings settings;
     settings.max_injected_Ns_per_m = 10.0;
     PortState state;
@@ -239,11 +239,11 @@ TEST(Passivity, EnergyThatBodiesGiveUpIsNoneThatWasMade) {
       DeviceSample sample;
       sample.valid = true;
       sample.X_DH.p.z() = -1e-4 * i;
-      if (told) input.bodies_J = 1.0 * sample.X_DH.p.z();
+      if (bodies_known) input.bodies_J = 1.0 * sample.X_DH.p.z();
       input.sent = passive_wrench(settings, state, sample, input, report);
       injected = std::max(injected, report.injected_Ns_per_m);
     }
-    if (told) {
+    if (bodies_known) {
       EXPECT_EQ(injected, 0.0);
     } else {
       EXPECT_GT(injected, 0.0) << "or this test could not fail";
@@ -285,7 +285,7 @@ TEST(Passivity, ABadSampleIsNotBooked) {
   Spring spring;
   spring.go({});
   spring.go({Mat3::Identity(), {1e-3, 0, 0}});
-  const double before = spring.report.ledger_J;
+  const double before = spring.report.energy_balance_J;
   DeviceSample bad;
   bad.valid = true;
   bad.X_DH.p.x() = std::nan("");
@@ -296,7 +296,7 @@ TEST(Passivity, ABadSampleIsNotBooked) {
   bad.X_DH.p.x() = 0.5;
   bad.valid = false;
   passive_wrench(spring.settings, spring.state, bad, input, spring.report);
-  EXPECT_EQ(spring.report.ledger_J, before);
+  EXPECT_EQ(spring.report.energy_balance_J, before);
 }
 
 TEST(Passivity, AHandleThatCannotBeTurnedIsSentNoTorqueAndItsRotationFollows) {
@@ -322,7 +322,8 @@ TEST(Passivity, AHandleThatCannotBeTurnedIsSentNoTorqueAndItsRotationFollows) {
     computed = std::max(computed, report.smoothed.t.norm());
     ASSERT_EQ(report.shown.t.norm(), 0.0);
     ASSERT_EQ(report.safety & safety_flag::kTorqueLimited, 0u) << "not wanted, so not limited";
-    ASSERT_GE(report.port.ledger_turning_J, 0.0) << "no energy comes out of a motor that is not there";
+    ASSERT_GE(report.port.energy_balance_turning_J, 0.0)
+        << "no energy comes out of a motor that is not there";
     ASSERT_EQ(report.port.injected_Nms_per_rad, 0.0);
   }
   EXPECT_GT(computed, 1e-3) << "it is computed and can be shown on a screen";

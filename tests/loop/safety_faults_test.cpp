@@ -104,7 +104,8 @@ struct Experiment {
 
 /// What must hold in every frame whatever happens: limits; no step above the slew but to zero; and after a
 /// fault never more than the start ramp lets through.
-void expect_safe(const std::vector<Moment>& moments, const SafetyLimits& limits, bool motors_told = true) {
+void expect_safe(const std::vector<Moment>& moments, const SafetyLimits& limits,
+                 bool motors_reported = true) {
   Moment last;
   double fault_s = -1.0;  // of the last one; the loop's start is like one
   double last_fault_s = fault_s;
@@ -116,7 +117,7 @@ void expect_safe(const std::vector<Moment>& moments, const SafetyLimits& limits,
     ASSERT_LE(now.motors.t.norm(), limits.max_torque_Nm * kRounding) << where;
     const double force_step = limits.max_force_slew_N_per_s * kPeriod_s * kRounding;
     const double torque_step = limits.max_torque_slew_Nm_per_s * kPeriod_s * kRounding;
-    if (motors_told && !is_zero(now.motors)) {
+    if (motors_reported && !is_zero(now.motors)) {
       ASSERT_LE((now.motors.f - last.motors.f).norm(), force_step) << where;
       ASSERT_LE((now.motors.t - last.motors.t).norm(), torque_step) << where;
     }

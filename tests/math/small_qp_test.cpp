@@ -16,7 +16,7 @@ namespace {
 
 using Vector = Eigen::VectorXd;
 
-constexpr double kSlack = 1e-12;
+constexpr double kTolerance = 1e-12;
 
 struct Rows {
   std::size_t unknowns = 0;
@@ -37,7 +37,7 @@ struct Rows {
   QpProblem problem() const {
     made.clear();
     for (std::size_t row = 0; row < offsets.size(); ++row) made.push_back(in_runs(row));
-    return {unknowns, made, {}, kSlack};
+    return {unknowns, made, {}, kTolerance};
   }
 
  private:
@@ -84,11 +84,11 @@ void expect_optimal(const Rows& rows, const QpAnswer& answer) {
   Vector sum = Vector::Zero(z.size());
   for (std::size_t row = 0; row < rows.offsets.size(); ++row)
     EXPECT_GE(rows.normal(row).dot(z) - rows.offsets[row], -1e-10);
-  for (const QpActive& held : answer.active) {
-    const std::size_t row = static_cast<std::size_t>(held.row);
-    EXPECT_GE(held.multiplier, 0.0);
+  for (const QpActive& active : answer.active) {
+    const std::size_t row = static_cast<std::size_t>(active.row);
+    EXPECT_GE(active.multiplier, 0.0);
     EXPECT_NEAR(rows.normal(row).dot(z), rows.offsets[row], 1e-10);
-    sum += held.multiplier * rows.normal(row);
+    sum += active.multiplier * rows.normal(row);
   }
   EXPECT_LT((sum - z).norm(), 1e-10 * (1.0 + z.norm()));
 }
@@ -221,11 +221,11 @@ TEST(SmallQp, TheRowsThatHeldBeforeAreTheWholeWork) {
     for (std::size_t row = 0; row < rows.offsets.size(); ++row)
       rows.offsets[row] = rows.normal(row).sum() - rows.offsets[row];  // all ones keep them
     const QpAnswer cold = rows.solve();
-    std::vector<int> held;
-    for (const QpActive& row : cold.active) held.push_back(row.row);
+    std::vector<int> active;
+    for (const QpActive& row : cold.active) active.push_back(row.row);
     for (double& b : rows.offsets) b += random.uniform(-1e-4, 1e-4);
     const QpAnswer again = rows.solve();
-    const QpAnswer warm = rows.solve(held);
+    const QpAnswer warm = rows.solve(active);
     expect_optimal(rows, warm);
     EXPECT_LT((point(rows, warm) - point(rows, again)).norm(), 1e-9);
     cold_work += again.iterations;
@@ -317,7 +317,7 @@ TEST(SmallQp, AConeIsItsEdgesWrittenOut) {
                 1e-14);
     SmallQp by_cones, by_rows;
     by_cones.begin(with_cones, {});
-    const QpProblem written_out{unknowns, rows, {}, kSlack};
+    const QpProblem written_out{unknowns, rows, {}, kTolerance};
     by_rows.begin(written_out, {});
     const QpAnswer& one = by_cones.solve_on(with_cones, 1000);
     const QpAnswer& other = by_rows.solve_on(written_out, 1000);

@@ -196,7 +196,7 @@ TEST(MeshImport, GltfTransformsAreAppliedAndMirroringKeepsOutsideOut) {
 struct Broken {
   const char* name;
   std::string bytes;
-  const char* told;  ///< part of the message
+  const char* expected;  ///< part of the message
 };
 
 TEST(MeshImport, BrokenFilesAreToldClearly) {
@@ -242,7 +242,7 @@ TEST(MeshImport, BrokenFilesAreToldClearly) {
   for (const Broken& broken : cases) {
     const Result<ImportedMesh> mesh = import_mesh_bytes(broken.bytes, broken.name);
     ASSERT_FALSE(mesh) << broken.name;
-    EXPECT_NE(mesh.error().message().find(broken.told), std::string::npos) << mesh.error().message();
+    EXPECT_NE(mesh.error().message().find(broken.expected), std::string::npos) << mesh.error().message();
     EXPECT_NE(mesh.error().message().find(broken.name), std::string::npos) << mesh.error().message();
   }
   EXPECT_FALSE(import_mesh("/nowhere/at/all.obj"));

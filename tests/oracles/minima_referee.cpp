@@ -151,13 +151,13 @@ class Features {
   }
 };
 
-double edge_margin(const Edge& edge, const Vec3& u, double slack) {
+double edge_margin(const Edge& edge, const Vec3& u, double inflation) {
   const double at = std::atan2(u.dot(edge.side), u.dot(edge.from));
   // The middle of the arc is where both ends are as far: measure from there.
   double off = at - 0.5 * edge.width;
   if (off > kPi) off -= 2.0 * kPi;
   if (off < -kPi) off += 2.0 * kPi;
-  return 0.5 * edge.width - std::abs(off) + slack;
+  return 0.5 * edge.width - std::abs(off) + inflation;
 }
 
 /// Sine of the angle from u to the cone of these rays: to one of them, or to the sector between two.
@@ -177,11 +177,11 @@ double sine_to_cone(const std::vector<Vec3>& rays, const Vec3& u) {
   return least;
 }
 
-double corner_margin(const Corner& corner, const Vec3& u, double slack) {
+double corner_margin(const Corner& corner, const Vec3& u, double inflation) {
   double inside = 1.0;
   for (const Vec3& e : corner.edges) inside = std::min(inside, -e.dot(u));
-  const double margin = inside >= 0.0 ? inside + slack : slack - sine_to_cone(corner.rays, u);
-  return std::min({margin, u.dot(corner.outward) + slack, corner.thin ? 0.0 : 1.0});
+  const double margin = inside >= 0.0 ? inside + inflation : inflation - sine_to_cone(corner.rays, u);
+  return std::min({margin, u.dot(corner.outward) + inflation, corner.thin ? 0.0 : 1.0});
 }
 
 /// Boxes of features in a grid of cells: which may be near another box. A feature stands in every cell its
@@ -286,13 +286,13 @@ class Search {
       }
       return;
     }
-    Grid grid(boxes_of(g, others), 2.0 * std::max(query_.reach, query_.depth));
+    Grid grid(boxes_of(g, others), 2.0 * std::max(query_.max_distance, query_.depth));
     for (const auto& x : ones)
       grid.for_each_near(box_of(f, x), [&](std::size_t i) { compare(x, others[i]); });
   }
 
   double range_margin(double distance) const {
-    return std::min(query_.reach - distance, distance + query_.depth) / query_.reach;
+    return std::min(query_.max_distance - distance, distance + query_.depth) / query_.max_distance;
   }
   void take(std::vector<int> x, std::vector<int> y, double distance, const Vec3& p_x, const Vec3& p_y,
             const Vec3& n, double margin, bool swapped) {
@@ -331,7 +331,7 @@ class Search {
     const double t = along.dot(p - q) / along.squaredNorm();
     const Vec3 foot = q + t * along;
     const double distance = (p - foot).norm();
-    if (distance > 2.0 * query_.reach || distance < 1e-12) return;
+    if (distance > 2.0 * query_.max_distance || distance < 1e-12) return;
     const Vec3 n = (p - foot) / distance;
     const double margin = std::min({t, 1.0 - t, edge_margin(edge, n, query_.cone_inflation),
                                     corner_margin(corner, -n, query_.cone_inflation)});
@@ -341,7 +341,7 @@ class Search {
   void corner_corner(const Corner& x, const Corner& y) {
     const Vec3 off = a_.points[x.v] - b_.points[y.v];
     const double distance = off.norm();
-    if (distance > 2.0 * query_.reach || distance < 1e-12) return;
+    if (distance > 2.0 * query_.max_distance || distance < 1e-12) return;
     const Vec3 n = off / distance;
     take({x.v}, {y.v}, distance, a_.points[x.v], b_.points[y.v], n,
          std::min(corner_margin(x, -n, query_.cone_inflation), corner_margin(y, n, query_.cone_inflation)),
@@ -359,7 +359,7 @@ class Search {
     if (sine < 1e-8) return;
     const Vec3 n = c.normalized();
     const double height = n.dot(p - q);
-    if (std::abs(height) > 2.0 * query_.reach) return;
+    if (std::abs(height) > 2.0 * query_.max_distance) return;
     // Where the plane through one edge along n cuts the other.
     const Vec3 through_f = w.cross(n);
     const double s = through_f.dot(q - p) / through_f.dot(u);
@@ -389,7 +389,7 @@ class Search {
       const Vec3 p_a = p + s * u;
       const Vec3 p_b = q + std::clamp(w.dot(p_a - q) / w.squaredNorm(), 0.0, 1.0) * w;
       const double distance = (p_a - p_b).norm();
-      if (distance > 2.0 * query_.reach || distance < 1e-12) continue;
+      if (distance > 2.0 * query_.max_distance || distance < 1e-12) continue;
       const Vec3 n = (p_a - p_b) / distance;
       for (double sign : {1.0, -1.0}) {
         take({e.v, e.w}, {f.v, f.w}, sign * distance, p_a, p_b, sign * n,

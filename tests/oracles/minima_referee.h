@@ -15,7 +15,7 @@ struct RefereeMinimum {
   double distance = 0.0;
   Vec3 p_a = Vec3::Zero(), p_b = Vec3::Zero(), normal = Vec3::Zero();
   /// By how much the weakest of the conditions holds: angles [rad], shares of a feature, distances in shares
-  /// of the reach. Negative: it fails by so little that rounding may decide.
+  /// of the largest distance. Negative: it fails by so little that rounding may decide.
   double margin = 0.0;
 };
 

@@ -61,7 +61,7 @@ int main() {
     haptic_frame(world, settings, sample, tick, state, report);
     record.add(report, state.world);
   }
-  if (record.held_contact_frames == 0) {
+  if (record.grasped_contact_frames == 0) {
     std::fprintf(stderr, "the block never touched the plate\n");
     return 1;
   }

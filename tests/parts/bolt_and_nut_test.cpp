@@ -159,7 +159,7 @@ TEST(BoltAndNut, ThreadIsASheetAboutTheAxis) {
   for (const bool nut : {false, true}) {
     const ScrewShape shape = with_facets("M10", 32);
     const TriangleMesh mesh = nut ? *nut_mesh(shape) : *bolt_mesh(shape);
-    const double reach = 0.45 * metric_screw("M10")->across_flats_m;
+    const double radius = 0.45 * metric_screw("M10")->across_flats_m;
     int thread = 0;
     for (const Triangle& t : mesh.triangles) {
       const Vec3 a = mesh.vertices[t[0]];
@@ -167,7 +167,7 @@ TEST(BoltAndNut, ThreadIsASheetAboutTheAxis) {
       const Vec3 c = mesh.vertices[t[2]];
       const Vec3 middle = (a + b + c) / 3.0;
       const Vec3 normal = (b - a).cross(c - a).normalized();
-      if (middle.head<2>().norm() > reach || std::abs(normal.z()) > 0.99) continue;
+      if (middle.head<2>().norm() > radius || std::abs(normal.z()) > 0.99) continue;
       const double outward = normal.head<2>().dot(middle.head<2>().normalized());
       EXPECT_GT(nut ? -outward : outward, 0.4);  // flanks lean by 60 degrees: cos is 0.5
       ++thread;

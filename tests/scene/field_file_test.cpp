@@ -259,11 +259,11 @@ TEST(SceneFields, SamplePointsAreCountedOrTold) {
   const Result<Scene> counted = scene_with("pos_m = [0, 0, 0.1]", "pos_m = [0, 0, 0.1]\nfield_points = 7");
   ASSERT_TRUE(counted) << counted.error().message();
   EXPECT_EQ(counted->world.bodies[1].field_points.size(), 7u);
-  const Result<Scene> told = scene_with("pos_m = [0, 0, 0.1]",
-                                        "pos_m = [0, 0, 0.1]\nfield_point = [{ pos_m = [0, 0, 0.03] }, { "
-                                        "pos_m = [0, 0, -0.03], weight = -0.25 }]");
-  ASSERT_TRUE(told) << told.error().message();
-  const std::vector<FieldPoint>& points = told->world.bodies[1].field_points;
+  const Result<Scene> listed = scene_with("pos_m = [0, 0, 0.1]",
+                                          "pos_m = [0, 0, 0.1]\nfield_point = [{ pos_m = [0, 0, 0.03] }, { "
+                                          "pos_m = [0, 0, -0.03], weight = -0.25 }]");
+  ASSERT_TRUE(listed) << listed.error().message();
+  const std::vector<FieldPoint>& points = listed->world.bodies[1].field_points;
   ASSERT_EQ(points.size(), 2u);
   EXPECT_LT((points[0].p_B - Vec3(0, 0, 0.03)).norm(), 1e-12);
   EXPECT_EQ(points[0].weight, 0.5);

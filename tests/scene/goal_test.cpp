@@ -33,7 +33,7 @@ TEST(Goals, AnglesAreCountedOverManyTurns) {
       world, {{.kind = GoalKind::kTurned, .body = 0, .amount = 12.0},
               {.kind = GoalKind::kTurned, .body = 0, .amount = -1.0},
               {.kind = GoalKind::kTurnedTo, .body = 0, .amount = 3.0, .tolerance = 0.1},
-              {.kind = GoalKind::kFollowed, .body = 1, .leader = 0, .amount = 0.5, .tolerance = 0.01}});
+              {.kind = GoalKind::kFollowed, .body = 1, .driver = 0, .amount = 0.5, .tolerance = 0.01}});
   double angle = 0.0;
   for (; angle < 12.5; angle += 0.3) record.watch(world, turned(world, angle, -0.5 * angle));
   EXPECT_NEAR(record.angle(0), 12.3, 1e-9);
@@ -94,7 +94,7 @@ TEST(Goals, NonFinitePosesAreNoSuccess) {
   const World world = three_bodies();
   GoalRecord record(world,
                     {{.kind = GoalKind::kMovedTo, .body = 2, .vector_W = Vec3::UnitX(), .tolerance = 0.1},
-                     {.kind = GoalKind::kFollowed, .body = 1, .leader = 0, .amount = 1.0, .tolerance = 9.0}});
+                     {.kind = GoalKind::kFollowed, .body = 1, .driver = 0, .amount = 1.0, .tolerance = 9.0}});
   WorldState state = initial_state(world);
   state.X_WB[2].p.setConstant(std::nan(""));
   state.X_WB[1].R.setConstant(std::nan(""));

@@ -196,7 +196,7 @@ Outcome outcome_of(Session& session) {
   outcome.out_again = session.state().world.X_WB[1].p.z() > 0.069;
   std::printf("%s: in contact %llu of %llu frames, retries %d, most iterations %d\n",
               session.scene().name.c_str(),
-              static_cast<unsigned long long>(outcome.record.held_contact_frames),
+              static_cast<unsigned long long>(outcome.record.grasped_contact_frames),
               static_cast<unsigned long long>(outcome.frames), referee.retries, referee.worst_iterations);
   return outcome;
 }
@@ -215,7 +215,7 @@ TEST_P(PegInItsHole, IsInsertedByAnyHandAndNeverEntersNorSticks) {
     EXPECT_EQ(outcome.record.penetrating_frames, 0u);
     EXPECT_EQ(outcome.record.flags, 0u);
     EXPECT_LT(outcome.retries, static_cast<int>(outcome.frames / 10)) << "it creeps";
-    EXPECT_GT(outcome.record.held_contact_frames, outcome.frames / 20);
+    EXPECT_GT(outcome.record.grasped_contact_frames, outcome.frames / 20);
     EXPECT_TRUE(outcome.inserted);
     EXPECT_TRUE(outcome.out_again) << "it is stuck";
   }

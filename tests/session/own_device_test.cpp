@@ -54,7 +54,7 @@ TEST(OwnDevice, ASimulationGivesTheFramesOfASessionForTheSameSamples) {
       (*simulation)->step(samples[frame]);
       record.add((*simulation)->report(), (*simulation)->bodies());
     }
-    EXPECT_GT(record.held_contact_frames, 0u) << name;
+    EXPECT_GT(record.grasped_contact_frames, 0u) << name;
     EXPECT_EQ(record.hash(), (*named)->record().hash()) << name;
     EXPECT_EQ((*simulation)->next_index(), kFrames);
   }
@@ -69,7 +69,7 @@ TEST(OwnDevice, AStepAllocatesNothing) {
   for (int frame = 0; frame < 200; ++frame)
     (*simulation)->step(Pose{Mat3::Identity(), {0, 0, -1e-4 * frame}});
   EXPECT_EQ(guard.allocations(), 0u);
-  EXPECT_GT((*simulation)->report().held_contact_points, 0);
+  EXPECT_GT((*simulation)->report().grasped_contact_points, 0);
 }
 
 /// A device whose handle rests at the middle.

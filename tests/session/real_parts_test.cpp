@@ -51,12 +51,12 @@ class Referee final : public LoopObserver {
 
   void follow_thread(const Pose& X_WB) noexcept {
     const double angle = std::atan2(X_WB.R(1, 0), X_WB.R(0, 0));
-    if (session_.last_report().held_contact_points > 0 && !riding_) {
+    if (session_.last_report().grasped_contact_points > 0 && !riding_) {
       riding_ = true;
       z_first_ = X_WB.p.z();
     } else if (riding_) {
       turned_rad += std::remainder(angle - last_angle_, 2.0 * kPi);
-      if (session_.last_report().held_contact_points > 0)
+      if (session_.last_report().grasped_contact_points > 0)
         off_thread_m =
             std::max(off_thread_m, std::abs(X_WB.p.z() - z_first_ - 0.002 * turned_rad / (2.0 * kPi)));
     }
@@ -103,7 +103,7 @@ TEST_P(RealParts, AreFeltWithoutEverCrossing) {
   const RunRecord& record = session.record();
   std::printf(
       "%s: %llu of %llu frames pushed; never nearer than %.1f nm; %llu minima, at most %.0f a frame\n",
-      name.c_str(), static_cast<unsigned long long>(record.held_contact_frames),
+      name.c_str(), static_cast<unsigned long long>(record.grasped_contact_frames),
       static_cast<unsigned long long>(frames), referee.least_m * 1e9,
       static_cast<unsigned long long>(record.sum("work.minima")), record.largest("work.minima"));
   EXPECT_EQ(referee.crossing, 0);
@@ -112,7 +112,7 @@ TEST_P(RealParts, AreFeltWithoutEverCrossing) {
   EXPECT_EQ(record.non_finite_frames, 0u);
   EXPECT_EQ(record.flags, 0u);
   if (kSlowness == 1) {
-    EXPECT_GT(record.held_contact_frames, frames / 20) << "or nothing was felt";
+    EXPECT_GT(record.grasped_contact_frames, frames / 20) << "or nothing was felt";
   }
   if (name.find("nut") != std::string::npos) {
     // The nut follows the thread, and the thread alone: the hand does not move along the axis.

@@ -114,13 +114,13 @@ TEST(SceneStory, MovingObjectsKeepTheirMomentum) {
   ASSERT_TRUE(session);
   const bool whole = cases::kSlowness == 1;
   const std::uint64_t frames = whole ? std::uint64_t(frames_of_motion(session->scene())) : 1500;
-  int blows = 0;
-  Watch watch([&](const FrameRecord&) { blows += session->last_report().impacts; });
+  int impacts = 0;
+  Watch watch([&](const FrameRecord&) { impacts += session->last_report().impacts; });
   ASSERT_TRUE(session->run_virtual(frames, &watch));
   const RunRecord& record = session->record();
   EXPECT_EQ(record.penetrating_frames, 0u);
-  EXPECT_GT(blows, 0);
-  EXPECT_TRUE(!whole || record.held_contact_frames > 0);
+  EXPECT_GT(impacts, 0);
+  EXPECT_TRUE(!whole || record.grasped_contact_frames > 0);
   EXPECT_LT(record.max_momentum_off_Ns, 1e-9);
   EXPECT_LT(record.forced_short_frames, frames / 100);
 }

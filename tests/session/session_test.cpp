@@ -81,7 +81,7 @@ TEST_P(EveryScene, RunsWithoutAllocatingTwiceTheSameAndReachesItsGoals) {
   EXPECT_EQ(first->record().sum("work.unchecked"), 0u);
   EXPECT_EQ(first->record().flags, 0u);
   if (whole) {
-    EXPECT_GT(first->record().held_contact_frames, frames / 100) << "the hand must have something to feel";
+    EXPECT_GT(first->record().grasped_contact_frames, frames / 100) << "the hand must have something to feel";
   }
   for (std::size_t i = 0; whole && i < first->scene().goals.size(); ++i)
     EXPECT_TRUE(first->goals().met(i)) << first->goals().describe(first->scene().world, i);
@@ -157,7 +157,7 @@ TEST(Session, APushBelowTheFrictionOfAHingeMovesNothing) {
   ASSERT_TRUE(session);
   ASSERT_TRUE((*session)->run_virtual(4000, nullptr));
   EXPECT_GT((*session)->record().max_force_N, 0.4);
-  EXPECT_GT((*session)->record().held_contact_frames, 3000u);
+  EXPECT_GT((*session)->record().grasped_contact_frames, 3000u);
   for (std::size_t i = 0; i < (*session)->scene().world.bodies.size(); ++i) {
     EXPECT_LT(std::abs((*session)->goals().angle(i)), 1e-6) << (*session)->scene().world.bodies[i].name;
   }
@@ -222,11 +222,11 @@ body = "block"
       const CouplingGains gains = coupling_gains((*session)->device(), rate_Hz);
       EXPECT_EQ(chosen.stiffness_N_per_m, gains.coupling.stiffness_N_per_m) << device;
       EXPECT_EQ(chosen.damping_Nms_per_rad, gains.coupling.damping_Nms_per_rad) << device;
-      EXPECT_LE(chosen.stiffness_N_per_m, gains.translation.held) << device;
+      EXPECT_LE(chosen.stiffness_N_per_m, gains.translation.loose_hand) << device;
     }
-  const auto told = opened("sigma.7", 1000.0, "[coupling]\nstiffness_N_per_m = 432\n");
-  ASSERT_TRUE(told);
-  EXPECT_EQ((*told)->scene().settings.coupling.stiffness_N_per_m, 432.0);
+  const auto given = opened("sigma.7", 1000.0, "[coupling]\nstiffness_N_per_m = 432\n");
+  ASSERT_TRUE(given);
+  EXPECT_EQ((*given)->scene().settings.coupling.stiffness_N_per_m, 432.0);
 }
 
 TEST(Session, WithTheChosenCouplingEveryDeviceReachesTheGoalsOfTheBlock) {

@@ -22,9 +22,9 @@ struct BlockRig : Rig {
   double skin() { return begun().response.constraint()->memory().constraint.skin_m; }
   /// The sum of the contact forces at the handle less the wrench that is felt.
   Wrench unaccounted() const {
-    const auto& held =
-        simulation->state().response.constraint()->memory().constraint.problem.movers().front();
-    const Wrench at_handle = moved(report.restoring, held.centre - held.origin);
+    const auto& grasped =
+        simulation->state().response.constraint()->memory().constraint.problem.bodies().front();
+    const Wrench at_handle = moved(report.restoring, grasped.centre - grasped.origin);
     return at_handle - report.coupling;
   }
 };

@@ -59,8 +59,9 @@ double alternating_distance(const TrianglePoints& a, const TrianglePoints& b) {
   return (p - q).norm();
 }
 
-bool on_triangle(const Vec3& p, const TrianglePoints& t, double slack) {
-  return alternating_distance({p, p + Vec3(slack, 0, 0) * 1e-3, p + Vec3(0, slack, 0) * 1e-3}, t) < slack;
+bool on_triangle(const Vec3& p, const TrianglePoints& t, double tolerance) {
+  return alternating_distance({p, p + Vec3(tolerance, 0, 0) * 1e-3, p + Vec3(0, tolerance, 0) * 1e-3}, t) <
+         tolerance;
 }
 
 TEST(TriangleDistance, AgreesWithAlternatingProjections) {

@@ -113,9 +113,9 @@ TEST(SurfaceMinimaKernels, TellTheSameOfBoxesInFourLanesAndInEight) {
   int set = 0;
   constexpr int kRounds = 20000;
   for (int i = 0; i < kRounds; ++i) {
-    const SurfaceTree::Node held = draw.node();
+    const SurfaceTree::Node other = draw.node();
     const SurfaceTree::Node node = draw.node();
-    const lanes::Box box = {&held, &held.at, std::size_t(i) % lanes::kLanes};
+    const lanes::Box box = {&other, &other.at, std::size_t(i) % lanes::kLanes};
     const std::uint32_t bits = narrow.facing(box, node, node.at, kBounds);
     ASSERT_EQ(bits, wide->facing(box, node, node.at, kBounds)) << "round " << i;
     for (std::size_t lane = 0; lane < lanes::kLanes; ++lane) {

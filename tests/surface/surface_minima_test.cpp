@@ -38,7 +38,7 @@ std::vector<int> corners_of(const SurfaceTree& tree, const Feature& feature) {
   return corners;
 }
 
-std::string told(const oracles::RefereeMinimum& m) {
+std::string described(const oracles::RefereeMinimum& m) {
   std::string text = "(";
   for (int v : m.a) text += std::to_string(v) + " ";
   text += "| ";
@@ -84,7 +84,7 @@ int expect_as_referee(const TriangleMesh& mesh_a, const TriangleMesh& mesh_b, co
   }
   for (std::size_t i = 0; i < truth.size(); ++i) {
     if (truth[i].margin < kErrorBound || claimed[i] != 0) continue;
-    ADD_FAILURE() << "missed " << told(truth[i]) << ", " << cases::describe(X_AB);
+    ADD_FAILURE() << "missed " << described(truth[i]) << ", " << cases::describe(X_AB);
     break;
   }
   return static_cast<int>(found.size());
@@ -108,7 +108,7 @@ Pose approached(const TriangleMesh& mesh_a, const TriangleMesh& mesh_b, const Ma
 struct Pair {
   const char* name;
   TriangleMesh a, b;
-  double reach;
+  double max_distance;
 };
 
 std::vector<Pair> pairs(Random& random) {
@@ -141,10 +141,11 @@ TEST(SurfaceMinima, AreThoseOfEveryPairOfFeatures) {
     const int poses = std::max(2, cases::some_of(cases::full() ? 400 : 12));
     for (int i = 0; i < poses; ++i) {
       const Mat3 R = cases::random_rotation(random);
-      const Pose X =
-          approached(pair.a, pair.b, R, cases::random_unit(random), random.uniform(0.05, 0.9) * pair.reach);
-      const double slack = i % 3 == 0 ? 0.0 : random.uniform(0.0, 0.05);
-      found += expect_as_referee(pair.a, pair.b, X, {pair.reach, i % 2 ? 0.3 * pair.reach : 0.0, slack});
+      const Pose X = approached(pair.a, pair.b, R, cases::random_unit(random),
+                                random.uniform(0.05, 0.9) * pair.max_distance);
+      const double inflation = i % 3 == 0 ? 0.0 : random.uniform(0.0, 0.05);
+      found += expect_as_referee(pair.a, pair.b, X,
+                                 {pair.max_distance, i % 2 ? 0.3 * pair.max_distance : 0.0, inflation});
     }
     EXPECT_GT(found, poses / 5);
   }
@@ -158,9 +159,10 @@ TEST(SurfaceMinima, OfCrossedSurfacesAreThoseOfEveryPairOfFeatures) {
     int negative = 0;
     for (int i = 0; i < std::max(2, cases::some_of(6)); ++i) {
       const Vec3 direction = cases::random_unit(random);
-      Pose X = approached(pair.a, pair.b, cases::random_rotation(random), direction, 0.05 * pair.reach);
-      X.p -= 0.1 * pair.reach * direction;
-      const MinimaQuery what{pair.reach, 0.5 * pair.reach, 0.004};
+      Pose X =
+          approached(pair.a, pair.b, cases::random_rotation(random), direction, 0.05 * pair.max_distance);
+      X.p -= 0.1 * pair.max_distance * direction;
+      const MinimaQuery what{pair.max_distance, 0.5 * pair.max_distance, 0.004};
       expect_as_referee(pair.a, pair.b, X, what);
       for (const SurfaceMinimum& m : query(SurfaceTree(pair.a), SurfaceTree(pair.b), X, what))
         negative += int(m.distance < 0.0);
@@ -192,20 +194,20 @@ TEST(SurfaceMinima, OfANutOnABoltAreThoseOfEveryPairOfFeatures) {
 /// What surface_clearance() tells is no more than the distance, and no less than nine tenths of it. Of
 /// surfaces that cross it tells nothing: then this is false.
 bool expect_clearance(const Surface& of_a, const Surface& of_b, const SurfaceTree& a, const SurfaceTree& b,
-                      const Pose& X, double reach) {
+                      const Pose& X, double max_distance) {
   SurfacePairCache cache;
   const double distance = surface_distance(of_a, of_b, X, cache).distance;
   if (distance == 0.0) return false;
   MinimaWork work;
-  const double clearance = surface_clearance(a, b, X, {reach, 1e-3 * reach, 4e-3}, work);
+  const double clearance = surface_clearance(a, b, X, {max_distance, 1e-3 * max_distance, 4e-3}, work);
   EXPECT_LE(clearance, distance + 1e-9 * a.size());
-  EXPECT_GE(clearance, std::min(reach, 0.9 * distance) - 1e-9 * a.size()) << "of " << distance;
+  EXPECT_GE(clearance, std::min(max_distance, 0.9 * distance) - 1e-9 * a.size()) << "of " << distance;
   return true;
 }
 
 struct RealPair {
   const char *a, *b, *motion;
-  double reach;
+  double max_distance;
 };
 
 /// Slivers a hundred times as long as wide, edges parallel to a thousandth, flat sides side by side.
@@ -237,12 +239,12 @@ TEST(SurfaceMinima, OfRealPartsAreThoseOfEveryPairOfFeatures) {
     for (std::size_t i = step / 3; i < motion->frame.size(); i += step) {
       SCOPED_TRACE(i);
       const Pose X = relative_pose(motion->X_WA[i], motion->X_WB[i]);
-      found += expect_as_referee(a, b, X, {real.reach, 0.0, 4e-3});
+      found += expect_as_referee(a, b, X, {real.max_distance, 0.0, 4e-3});
     }
     for (std::size_t i = 0; i < motion->frame.size(); i += testing::full_run() ? 5 : 20) {
       SCOPED_TRACE(i);
       const Pose X = relative_pose(motion->X_WA[i], motion->X_WB[i]);
-      apart += int(expect_clearance(surface_a, surface_b, tree_a, tree_b, X, 8.0 * real.reach));
+      apart += int(expect_clearance(surface_a, surface_b, tree_a, tree_b, X, 8.0 * real.max_distance));
     }
     EXPECT_GT(found, 0);
     EXPECT_GT(apart, 0);
@@ -259,11 +261,11 @@ TEST(SurfaceMinima, HoldTheDistanceOfTheSurfaces) {
     const SurfaceTree b(pair.b);
     for (int i = 0; i < std::max(2, cases::some_of(20)); ++i) {
       const Pose X = approached(pair.a, pair.b, cases::random_rotation(random), cases::random_unit(random),
-                                random.uniform(0.05, 0.9) * pair.reach);
+                                random.uniform(0.05, 0.9) * pair.max_distance);
       SurfacePairCache cache;
       const double distance = surface_distance(Surface(pair.a), Surface(pair.b), X, cache).distance;
       double least = 1.0;
-      for (const SurfaceMinimum& m : query(a, b, X, {pair.reach, 0.0, 0.0})) {
+      for (const SurfaceMinimum& m : query(a, b, X, {pair.max_distance, 0.0, 0.0})) {
         EXPECT_TRUE(m.strict);
         least = std::min(least, m.distance);
       }
@@ -279,9 +281,9 @@ TEST(SurfaceMinima, TellHowFarApartSurfacesAre) {
     if (std::string(pair.name).find("sheet") != std::string::npos) continue;  // from behind not felt
     for (int i = 0; i < std::max(2, cases::some_of(20)); ++i) {
       const Pose X = approached(pair.a, pair.b, cases::random_rotation(random), cases::random_unit(random),
-                                random.uniform(0.05, 3.0) * pair.reach);
+                                random.uniform(0.05, 3.0) * pair.max_distance);
       EXPECT_TRUE(expect_clearance(Surface(pair.a), Surface(pair.b), SurfaceTree(pair.a), SurfaceTree(pair.b),
-                                   X, 2.0 * pair.reach));
+                                   X, 2.0 * pair.max_distance));
     }
   }
 }
@@ -308,7 +310,7 @@ TEST(SurfaceMinima, OfFlatContactSupportAllItsCorners) {
       EXPECT_EQ(corners.size(), 4u) << angle << " " << tilt;
     }
   }
-  // Without the slack only the lowest corner of a tilted cube is one.
+  // Without the inflation only the lowest corner of a tilted cube is one.
   Pose X = flat_on_top(0.3, 3e-5, 0.01);
   X.R = exp_rotation(Vec3(1e-3, 5e-4, 0)) * X.R;
   EXPECT_EQ(query(plate, cube, X, {6e-5, 0.0, 0.0}).size(), 1u);
@@ -383,8 +385,8 @@ TEST(SurfaceMinima, SwapWithTheirSurfaces) {
     const SurfaceTree a(pair.a);
     const SurfaceTree b(pair.b);
     const Pose X = approached(pair.a, pair.b, cases::random_rotation(random), cases::random_unit(random),
-                              0.3 * pair.reach);
-    const MinimaQuery what{pair.reach, 0.1 * pair.reach, 0.004};
+                              0.3 * pair.max_distance);
+    const MinimaQuery what{pair.max_distance, 0.1 * pair.max_distance, 0.004};
     const auto there = query(a, b, X, what);
     const auto back = query(b, a, X.inverse(), what);
     ASSERT_EQ(there.size(), back.size()) << pair.name;

@@ -232,14 +232,14 @@ TEST_F(ServerThread, StatusTellsThePageWhatItIsAndWhatWasRefused) {
   auto page = open_page();
   page->say("nonsense");
   ASSERT_TRUE(comes_true([&] { return refused(Refusal::kMalformed) == 1; }));
-  server->tell_status("{\"stopped\":false}");
+  server->send_status("{\"stopped\":false}");
   Json status;
   while (!status.contains("refused") || status["refused"]["malformed"] != 1) {
     const RawPage::Message message = page->next(3000);
     ASSERT_NE(message.kind, 0);
     const Json json = Json::parse(message.payload, nullptr, false);
     if (json.is_object() && json.value("type", "") == "status") status = json;
-    server->tell_status("{\"stopped\":false}");
+    server->send_status("{\"stopped\":false}");
   }
   EXPECT_EQ(status["steering"], true);
   EXPECT_EQ(status["pages"], 1);

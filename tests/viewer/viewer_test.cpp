@@ -162,7 +162,7 @@ TEST(ViewerThread, StopsResumesSetsAndSwitchesAsAsked) {
   ASSERT_TRUE(settings.is_object());
   EXPECT_NE(settings["toml"].get<std::string>().find("stiffness_N_per_m = 432"), std::string::npos);
   page.say("{\"do\":\"set\",\"key\":\"coupling.stiffness_N_per_m\",\"value\":1e9}");
-  EXPECT_TRUE(message_when(*viewer, page, "told", any).is_object());
+  EXPECT_TRUE(message_when(*viewer, page, "notice", any).is_object());
 
   page.say("{\"do\":\"stop\"}");
   EXPECT_TRUE(polled_until(*viewer, [&] { return (viewer->status().safety & safety_flag::kStopped) != 0; }));
@@ -176,10 +176,10 @@ TEST(ViewerThread, StopsResumesSetsAndSwitchesAsAsked) {
   page.say("{\"do\":\"resume\"}");
   EXPECT_TRUE(polled_until(*viewer, [&] { return (viewer->status().safety & safety_flag::kStopping) == 0; }));
   page.say("{\"do\":\"scene\",\"name\":\"/etc/passwd\"}");
-  const Json told = message_when(*viewer, page, "told", any);
-  EXPECT_NE(told.value("sentence", "").find("no scene"), std::string::npos);
+  const Json notice = message_when(*viewer, page, "notice", any);
+  EXPECT_NE(notice.value("sentence", "").find("no scene"), std::string::npos);
   page.say("{\"do\":\"device\",\"name\":\"replay:/etc/passwd\"}");
-  EXPECT_TRUE(message_when(*viewer, page, "told", any).is_object());
+  EXPECT_TRUE(message_when(*viewer, page, "notice", any).is_object());
   viewer->stop();
 }
 
@@ -220,15 +220,15 @@ TEST(FrameFeed, TheForcesOfAPictureAddUpToTheContactStage) {
       while (feed_.pop(sample)) {
       }
       if (!feed_.look() || feed_.picture().index != session_.last_report().index) return true;
-      const int held = session_.scene().settings.tool.body;
+      const int grasped = session_.scene().settings.tool.body;
       Vec3 sum = Vec3::Zero();
       for (const ShownContact& contact : feed_.picture().contacts) {
-        if (contact.body_a == held) sum += contact.force_N * contact.n_W;
-        if (contact.body_b == held) sum -= contact.force_N * contact.n_W;
+        if (contact.body_a == grasped) sum += contact.force_N * contact.n_W;
+        if (contact.body_b == grasped) sum -= contact.force_N * contact.n_W;
       }
-      const Vec3 told(sample.values[0], sample.values[1], sample.values[2]);
-      worst = std::max(worst, (sum - told).norm());
-      largest = std::max(largest, told.norm());
+      const Vec3 reported(sample.values[0], sample.values[1], sample.values[2]);
+      worst = std::max(worst, (sum - reported).norm());
+      largest = std::max(largest, reported.norm());
       return true;
     }
     double worst = 0.0, largest = 0.0;
@@ -265,8 +265,8 @@ TEST(FrameFeed, APictureTellsWhichContactsStickAndHowMuchOfTheirConeIsUsed) {
         most = std::max(most, contact.cone_used);
         slips |= contact.grip == Grip::kSlips;
       }
-      const FrictionReport& told = session_.last_report().friction;
-      disagree += most != told.cone_used || slips != (told.slipping > 0) ? 1 : 0;
+      const FrictionReport& reported = session_.last_report().friction;
+      disagree += most != reported.cone_used || slips != (reported.slipping > 0) ? 1 : 0;
       return true;
     }
     std::array<int, 3> by_grip{};

@@ -218,22 +218,22 @@ void write_shape(const Part& part, std::string& out) {
 
 /// A part whose surface is the pieces' own faces.
 Part with_surface_of_pieces(const Part& part) {
-  Part told;
-  told.pieces = part.pieces;
+  Part shown;
+  shown.pieces = part.pieces;
   for (const Polytope& piece : part.pieces) {
-    const int base = static_cast<int>(told.surface.vertices.size());
-    told.surface.vertices.insert(told.surface.vertices.end(), piece.vertices.begin(), piece.vertices.end());
+    const int base = static_cast<int>(shown.surface.vertices.size());
+    shown.surface.vertices.insert(shown.surface.vertices.end(), piece.vertices.begin(), piece.vertices.end());
     for (const Polytope::Face& face : piece.faces) {
       const int* loop = piece.face_vertices.data() + face.first;
       for (int i = 1; i + 1 < face.count; ++i)
-        told.surface.triangles.push_back({base + loop[0], base + loop[i], base + loop[i + 1]});
+        shown.surface.triangles.push_back({base + loop[0], base + loop[i], base + loop[i + 1]});
     }
   }
-  return told;
+  return shown;
 }
 
 /// Whether the pieces' faces, as `faces` has them, are the surface's triangles one after the other.
-bool told_by_pieces(const TriangleMesh& surface, const TriangleMesh& faces) {
+bool same_triangles(const TriangleMesh& surface, const TriangleMesh& faces) {
   if (surface.triangles.size() != faces.triangles.size()) return false;
   for (std::size_t t = 0; t < surface.triangles.size(); ++t)
     for (int corner = 0; corner < 3; ++corner)
@@ -261,7 +261,7 @@ std::string run_message(const Session& session, const UserSettings& settings, co
                         {"real_time", facts.loop_in_real_time},
                         {"bodies", bodies_json(scene.world)},
                         {"field", field_json(scene.world)},
-                        {"held", tool.body},
+                        {"grasped", tool.body},
                         {"picks", tool.picks},
                         {"X_BH", pose_json(tool.X_BH)},
                         {"device", device_json(session, facts)},
@@ -291,15 +291,15 @@ std::string geometry_of(const World& world) {
       write_shape(*part, out);
       continue;
     }
-    const Part told = with_surface_of_pieces(*part);
-    write_shape(told_by_pieces(part->surface, told.surface) ? *part : told, out);
+    const Part shown = with_surface_of_pieces(*part);
+    write_shape(same_triangles(part->surface, shown.surface) ? *part : shown, out);
   }
   return out;
 }
 
 void write_picture(const FramePicture& picture, std::string& out) {
   wire::put(out, static_cast<std::uint32_t>(picture.index));
-  wire::put(out, static_cast<std::uint32_t>(picture.held + 1));
+  wire::put(out, static_cast<std::uint32_t>(picture.grasped_body + 1));
   wire::put(out, static_cast<std::uint32_t>(picture.X_WB.size()));
   wire::put(out, static_cast<std::uint32_t>(picture.contacts.size()));
   wire::put(out, static_cast<std::uint32_t>(picture.contacts_left_out));

@@ -35,7 +35,7 @@ using namespace std::chrono_literals;
 constexpr std::size_t kLargestHeader = 8192;
 constexpr int kMostConnections = 64;
 constexpr int kMostMalformed = 20;  // of one page, then it is cut off
-constexpr std::uint32_t kOnTheirWay = 2;
+constexpr std::uint32_t kInFlight = 2;
 constexpr std::uint32_t kFramesMessage = 1;
 constexpr auto kPatience = 20s;  // with a client that says or takes nothing
 
@@ -55,7 +55,7 @@ struct Hub {
   std::uint32_t run = 0;
   Body run_message = shared("{}"), geometry = shared(""), picture = shared(""), settings = shared("");
   Body program_status = shared("{}"), sentence = shared("");
-  std::uint64_t pictures = 0, settings_told = 0, statuses = 0, sentences = 0;
+  std::uint64_t pictures = 0, settings_versions = 0, statuses = 0, sentences = 0;
   History history;
   std::map<std::uint64_t, Page*> pages;  // by their number, which is never used twice
   std::uint64_t next_page = 1;
@@ -114,18 +114,18 @@ class Page : public std::enable_shared_from_this<Page> {
       run_ = hub_.run;
       place_ = hub_.history.newcomers_place();
       picture_ = 0;
-      settings_ = hub_.settings_told;
+      settings_ = hub_.settings_versions;
       return send(hub_.run_message, false);
     }
-    if (settings_ != hub_.settings_told) {
-      settings_ = hub_.settings_told;
+    if (settings_ != hub_.settings_versions) {
+      settings_ = hub_.settings_versions;
       return send(hub_.settings, false);
     }
     if (sentence_ != hub_.sentences) {
       sentence_ = hub_.sentences;
       return send(hub_.sentence, false);
     }
-    if (sent_ - acknowledged_ >= kOnTheirWay) return;
+    if (sent_ - acknowledged_ >= kInFlight) return;
     if (status_ != hub_.statuses) {
       status_ = hub_.statuses;
       return send(shared(status_text()), false);
@@ -151,12 +151,12 @@ class Page : public std::enable_shared_from_this<Page> {
     open_ = false;
     hub_.pages.erase(number_);
     hub_.count([](ServerStatus& status) { --status.pages; });
-    if (hub_.steering == number_) let_go();
+    if (hub_.steering == number_) end_steering();
     ++hub_.statuses;
   }
 
   /// Nobody leads the hand now: it stays where it is.
-  void let_go() {
+  void end_steering() {
     hub_.steering = 0;
     Request rest;
     rest.what = Request::What::kRest;
@@ -204,10 +204,10 @@ class Page : public std::enable_shared_from_this<Page> {
     }
     if (request.what == What::kSteer || request.what == What::kRelease) {
       if (request.what == What::kSteer && hub_.steering != number_) {
-        if (hub_.steering != 0) let_go();
+        if (hub_.steering != 0) end_steering();
         hub_.steering = number_;
       } else if (request.what == What::kRelease && hub_.steering == number_) {
-        let_go();
+        end_steering();
       }
       ++hub_.statuses;
       return hub_.feed_pages();
@@ -463,12 +463,12 @@ void Server::begin_run(std::uint32_t run, std::string message, std::string geome
       });
 }
 
-void Server::tell_settings(std::string message, std::string run_message) {
+void Server::send_settings(std::string message, std::string run_message) {
   impl_->post([hub = &impl_->hub, message = shared(std::move(message)),
                run_message = shared(std::move(run_message))] {
     hub->settings = message;
     hub->run_message = run_message;
-    ++hub->settings_told;
+    ++hub->settings_versions;
     hub->feed_pages();
   });
 }
@@ -485,7 +485,7 @@ void Server::show(std::span<const ChartSample> samples, std::string picture) {
   });
 }
 
-void Server::tell_status(std::string json) {
+void Server::send_status(std::string json) {
   impl_->post([hub = &impl_->hub, json = shared(std::move(json))] {
     hub->program_status = json;
     ++hub->statuses;
@@ -493,8 +493,8 @@ void Server::tell_status(std::string json) {
   });
 }
 
-void Server::tell(const std::string& sentence) {
-  const nlohmann::json message = {{"type", "told"}, {"sentence", sentence}};
+void Server::send_notice(const std::string& sentence) {
+  const nlohmann::json message = {{"type", "notice"}, {"sentence", sentence}};
   impl_->post([hub = &impl_->hub,
                text = shared(message.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace))] {
     hub->sentence = text;

@@ -2,7 +2,7 @@
 /// HTTP and WebSocket on the loopback interface, on one thread of its own: serves the page, shows it what the
 /// loop has done, and takes in what it asks (access.h says who may; docs/viewer.md draws the messages).
 ///
-///   owner's thread: begin_run, show, tell_status ---posted--->  server's thread  <---> pages
+///   owner's thread: begin_run, show, send_status ---posted--->  server's thread  <---> pages
 ///                   take, wait                   <---inbox----
 ///
 /// A page acknowledges every message with frames. While two are on their way it is sent none, so that a slow
@@ -49,13 +49,13 @@ class Server {
   /// A run begins: its message and its geometry, for pages that are here and for those to come.
   void begin_run(std::uint32_t run, std::string message, std::string geometry);
   /// The settings as they are now, as a message; and the run's message with them, for those to come.
-  void tell_settings(std::string message, std::string run_message);
+  void send_settings(std::string message, std::string run_message);
   /// Frames that are over, and where everything is; an empty picture means no newer one.
   void show(std::span<const ChartSample> samples, std::string picture);
   /// A JSON object that every page is told, beside what the server itself knows.
-  void tell_status(std::string json);
+  void send_status(std::string json);
   /// A sentence for all pages, such as why a scene could not be opened.
-  void tell(const std::string& sentence);
+  void send_notice(const std::string& sentence);
 
   /// The next thing a page has asked; false when there is none.
   bool take(Request& request);

@@ -69,11 +69,11 @@ Result<void> Viewer::start() {
 
 /// The scene from its start, with the settings as they are now.
 void Viewer::restart() {
-  if (!threaded_) return server_->tell("a run on the virtual clock cannot be started anew");
+  if (!threaded_) return server_->send_notice("a run on the virtual clock cannot be started anew");
   session_->stop();
   Result<void> begun = begin_run();
   if (begun) begun = start();
-  if (!begun) server_->tell(begun.error().message());
+  if (!begun) server_->send_notice(begun.error().message());
 }
 
 void Viewer::poll(std::chrono::microseconds longest) {
@@ -124,7 +124,7 @@ void Viewer::show() {
   ready_.clear();
   if (now - last_status_ < kStatusEvery) return;
   last_status_ = now;
-  server_->tell_status(status_json());
+  server_->send_status(status_json());
 }
 
 double Viewer::alone_s() const noexcept {
@@ -138,7 +138,7 @@ void Viewer::obey(const Request& request) {
     case What::kResume:
       stopped_ = request.what == What::kStop;
       session_->hold_wrench_at_zero(stopped_);
-      server_->tell_status(status_json());
+      server_->send_status(status_json());
       return;
     case What::kAim:
       session_->ask({.kind = SessionCommand::Kind::kAim,
@@ -168,23 +168,23 @@ void Viewer::obey(const Request& request) {
 
 void Viewer::set(const Request& request) {
   const int index = setting_called(request.key);
-  if (index < 0) return server_->tell("there is no setting called " + request.key);
+  if (index < 0) return server_->send_notice("there is no setting called " + request.key);
   const SettingInfo& setting = setting_table()[static_cast<std::size_t>(index)];
   if (!in_range(setting, request.value)) {
-    server_->tell(fmt::format("{}: {} is not from {} to {} {}", setting.name, request.value, setting.low,
-                              setting.high, setting.unit));
-    return tell_settings();
+    server_->send_notice(fmt::format("{}: {} is not from {} to {} {}", setting.name, request.value,
+                                     setting.low, setting.high, setting.unit));
+    return send_settings();
   }
   setting.set(scene_.settings, scene_.safety, request.value);
   if (std::string_view(setting.section) == "coupling") scene_.coupling_by_device = false;
   if (!setting.live) return restart();
   session_->ask({.kind = SessionCommand::Kind::kSet, .setting = index, .value = request.value});
-  tell_settings();
+  send_settings();
 }
 
-void Viewer::tell_settings() {
+void Viewer::send_settings() {
   const RunFacts facts{run_, options_.device, options_.grip, true};
-  server_->tell_settings(settings_message(*session_, {scene_.settings, scene_.safety}),
+  server_->send_settings(settings_message(*session_, {scene_.settings, scene_.safety}),
                          run_message(*session_, {scene_.settings, scene_.safety}, facts));
 }
 
@@ -193,9 +193,9 @@ void Viewer::change_scene(const std::string& name) {
   if (name == scene_.name) return restart();
   const std::vector<SceneEntry> known = list_scenes();
   if (std::none_of(known.begin(), known.end(), [&](const SceneEntry& s) { return s.name == name; }))
-    return server_->tell("there is no scene called " + name);
+    return server_->send_notice("there is no scene called " + name);
   Result<Scene> scene = open_scene(name);
-  if (!scene) return server_->tell(scene.error().message());
+  if (!scene) return server_->send_notice(scene.error().message());
   const bool follows_scene = options_.device == "pointer:" + scene_.device;
   scene_ = std::move(*scene);
   if (follows_scene) options_.device = "pointer:" + scene_.device;
@@ -211,7 +211,7 @@ void Viewer::change_device(const std::string& name, std::string SessionOptions::
   const std::string& device = choice == &SessionOptions::device ? name : options_.device;
   const Result<std::unique_ptr<Device>> made = make_device(device, device_options);
   if (!simulated || !made)
-    return server_->tell(made ? "only simulated devices can be chosen here" : made.error().message());
+    return server_->send_notice(made ? "only simulated devices can be chosen here" : made.error().message());
   options_.*choice = name;
   restart();
 }

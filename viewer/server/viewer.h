@@ -48,7 +48,7 @@ class Viewer {
   void change_device(const std::string& name, std::string SessionOptions::*choice);
   void gather();
   void show();
-  void tell_settings();
+  void send_settings();
   std::string status_json();
 
   Scene scene_;  // as it starts, with the settings as they are now

@@ -82,8 +82,8 @@ std::pair<double, double> quadrature(const Intervals& kept) noexcept {
     const double off = 0.5 * (interval.high + interval.low) - middle;
     spread += own * (own * own / 12.0 + off * off);
   }
-  const double reach = std::sqrt(spread / length);
-  return {middle - reach, middle + reach};
+  const double half_length = std::sqrt(spread / length);
+  return {middle - half_length, middle + half_length};
 }
 
 /// Two points on the kept part of a strip.

@@ -383,9 +383,9 @@ class Tracker {
     offset[corner % 3] = 0.0;
     offset[(corner + 1) % 3] = (corner / 3) % 2 ? kShort : -kShort;
     offset[(corner + 2) % 3] = corner / 6 ? kLong : -kLong;
-    constexpr std::array<double, 3> kReach = {0.15, 0.3, 0.6};
-    const double reach = kReach[(turn + turn / kCorners) % kReach.size()];
-    return facet_near(pair_, current_.facet.n + offset * reach, vertex_of(pair_.A, current_.facet.a),
+    constexpr std::array<double, 3> kOffsets = {0.15, 0.3, 0.6};
+    const double offset_length = kOffsets[(turn + turn / kCorners) % kOffsets.size()];
+    return facet_near(pair_, current_.facet.n + offset * offset_length, vertex_of(pair_.A, current_.facet.a),
                       vertex_of(pair_.B, current_.facet.b));
   }
 

@@ -22,7 +22,7 @@ struct Cut {
   double offset;
   double scale = 1.0;
 
-  Cut(const Vec2& normal, double reach) noexcept : outward(normal), offset(reach) {}
+  Cut(const Vec2& normal, double distance) noexcept : outward(normal), offset(distance) {}
   Cut(const Vec2& from, const Vec2& to) noexcept
       : outward(to.y() - from.y(), from.x() - to.x()),
         offset(outward.x() * from.x() + outward.y() * from.y()),

@@ -102,10 +102,10 @@ Feature common_feature(const Polytope& P, std::array<int, 4> v, int count) noexc
     if (kinds == 2 && among(ray.far)) return {Kind::kEdge, ray.edge};
   for (const Polytope::Ray& ray : P.rays_at(v[0]))
     for (int f : {P.edges[ray.edge].left, P.edges[ray.edge].right}) {
-      int held = 0;
+      int members = 0;
       for (int slot = P.faces[f].first; slot < P.faces[f].first + P.faces[f].count; ++slot)
-        held += among(P.face_vertices[slot]);
-      if (held == kinds) return {Kind::kFace, f};
+        members += among(P.face_vertices[slot]);
+      if (members == kinds) return {Kind::kFace, f};
     }
   return {Kind::kVertex, v[0]};
 }

@@ -11,14 +11,14 @@ namespace tactum {
 namespace {
 
 /// One moving piece at the start of a step, in its own frame.
-struct Mover {
+struct MovingPiece {
   const Polytope& P;
   Vec3 n;          ///< the normal now
   Vec3 turning;    ///< n x w
   double curving;  ///< w^2 rho / 2: how fast a point can leave its tangent [m/s^2]
   int support = 0;
 
-  Mover(const Polytope& piece, const Pose& X_W, const Twist& V_W, const Vec3& n_W) noexcept
+  MovingPiece(const Polytope& piece, const Pose& X_W, const Twist& V_W, const Vec3& n_W) noexcept
       : P(piece), n(X_W.R.transpose() * n_W) {
     const Vec3 w = X_W.R.transpose() * V_W.w;
     turning = n.cross(w);
@@ -39,7 +39,7 @@ struct Mover {
 
 /// The concave lower bound L(t) on the gap along the normal.
 struct GapBound {
-  Mover a, b;
+  MovingPiece a, b;
   double start;    ///< n . (p_WA - p_WB)
   double opening;  ///< n . (v_A - v_B)
 

@@ -51,7 +51,7 @@ Step edges_along(const PiecePair& pair, double crossing_tolerance, int a, int b,
   if (of_p.slope > across.crossing_sine) return {Outcome::kMoved, face(of_p.face), edge(b)};
   const Toward of_q = face_toward(g, out_of_columns(S.Q, g, -1.0, S.turned_to_Q(across.direction)));
   if (of_q.slope > across.crossing_sine) return {Outcome::kMoved, edge(a), face(of_q.face)};
-  const double error_bound = reach_beyond(S.P, e, of_p.slope) + reach_beyond(S.Q, g, of_q.slope) +
+  const double error_bound = height_beyond(S.P, e, of_p.slope) + height_beyond(S.Q, g, of_q.slope) +
                              std::abs(e.direction.dot(across.direction)) * S.P.size +
                              std::abs(w.dot(across.direction)) * S.Q.size + across.aside;
   set_answer(at.p, -across.direction, at.gap, error_bound, x);

@@ -46,7 +46,7 @@ struct Sides {
 /// How far beyond a plane through `v` the piece may reach when the steepest of the edges at `v` rises by
 /// `slope` over it (sine). A point of the piece is v + sum c_i u_i, c_i >= 0 over the edges at v, and the sum
 /// of the c_i is at most its distance from v over the least cosine between an edge and their mean.
-inline double reach_beyond(const Polytope& P, int v, double slope) noexcept {
+inline double height_beyond(const Polytope& P, int v, double slope) noexcept {
   if (slope <= 0.0) return 0.0;
   Vec3 mean = Vec3::Zero();
   for (const Polytope::Ray& ray : P.rays_at(v)) mean += ray.direction;
@@ -58,7 +58,7 @@ inline double reach_beyond(const Polytope& P, int v, double slope) noexcept {
 /// The same at an edge whose steeper face rises by `slope`: the piece lies in the wedge of its two faces.
 /// What the edge's own line rises by comes on top, over the whole size: the wedge goes on beyond the edge's
 /// ends.
-inline double reach_beyond(const Polytope& P, const Polytope::Edge& e, double slope) noexcept {
+inline double height_beyond(const Polytope& P, const Polytope::Edge& e, double slope) noexcept {
   if (slope <= 0.0) return 0.0;
   const double cosine = P.sides[e.left_slot].normal.dot(P.sides[e.right_slot].normal);
   return cosine > -1.0 ? slope * P.size * std::sqrt(2.0 / (1.0 + cosine)) : kInfinity;
@@ -153,7 +153,7 @@ Step vertex_vertex(const Sides<Swapped>& S, Feature fp, Feature fq, Place& at, P
   } else {
     set_answer(
         S.of_A(at.p, at.q), S.normal(d_P, d_Q) / at.gap, at.gap,
-        reach_beyond(S.P, fp.index, at_p.slope / at.gap) + reach_beyond(S.Q, fq.index, at_q.slope / at.gap),
+        height_beyond(S.P, fp.index, at_p.slope / at.gap) + height_beyond(S.Q, fq.index, at_q.slope / at.gap),
         x);
   }
   return {Outcome::kClosest, fp, fq};
@@ -181,8 +181,8 @@ Step vertex_edge(const Sides<Swapped>& S, Feature fp, Feature fq, Place& at, Pai
   } else {
     // The normal itself is judged: over a small gap it is off by more than the point is.
     const double rise = std::max(left.normal.dot(d_Q), right.normal.dot(d_Q));
-    const double error_bound = reach_beyond(S.P, fp.index, at_p.slope / at.gap) +
-                               reach_beyond(S.Q, g, rise / at.gap) +
+    const double error_bound = height_beyond(S.P, fp.index, at_p.slope / at.gap) +
+                               height_beyond(S.Q, g, rise / at.gap) +
                                std::abs(g.direction.dot(d_Q)) / at.gap * S.Q.size;
     set_answer(S.of_A(at.p, at.q), S.normal(d_P, d_Q) / at.gap, at.gap, error_bound, x);
   }
@@ -237,7 +237,7 @@ Step vertex_face(const Sides<Swapped>& S, Feature fp, Feature fq, Place& at, Pai
     return {Outcome::kMoved, edge(at_p.edge), fq};
   }
   set_answer(S.of_A(p, p_Q - f.normal * height), S.normal(outward_P, -f.normal), std::abs(height),
-             reach_beyond(S.P, fp.index, at_p.slope), x);
+             height_beyond(S.P, fp.index, at_p.slope), x);
   return {Outcome::kClosest, fp, fq};
 }
 

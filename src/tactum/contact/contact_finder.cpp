@@ -35,16 +35,16 @@ void ContactFinder::list_due_pairs() noexcept {
         tolerance(pair.body_a, pair.body_b)) {
       pair.in_contact = false;
     } else {
-      due_.push_back({static_cast<std::int32_t>(i), urgency_of(pair.body_a, pair.body_b), pair.in_contact,
+      due_.push_back({static_cast<std::int32_t>(i), priority_of(pair.body_a, pair.body_b), pair.in_contact,
                       pair.last_checked});
     }
   }
 }
 
 void ContactFinder::find_patches(std::span<const Pose> X_WB, int budget, PatchPoints points,
-                                 std::span<const std::uint8_t> urgency) noexcept {
+                                 std::span<const std::uint8_t> priority) noexcept {
   points_ = points;
-  urgency_.assign(urgency.begin(), urgency.end());
+  priority_.assign(priority.begin(), priority.end());
   tests_left_ = budget;
   patches_.clear();
   candidates_.clear();
@@ -88,9 +88,9 @@ void ContactFinder::find_patches(std::span<const Pose> X_WB, int budget, PatchPo
   candidate_order_.clear();
   for (SeamCandidate& candidate : candidates_) candidate_order_.push_back(&candidate);
   work_.capacity_reached |= !settle_seams(candidate_order_, X_WB, steady_, patches_);
-  for (const bool held : {true, false})
+  for (const bool grasped : {true, false})
     for (const SweepAndPrune::Pair& near : sweep_.pairs())
-      if (meet_by_surfaces(near.a, near.b) && of_held(near.a, near.b) == held)
+      if (meet_by_surfaces(near.a, near.b) && of_grasped(near.a, near.b) == grasped)
         test_surfaces(near.a, near.b, X_WB);
   work_.patches = static_cast<int>(patches_.size());
 }
@@ -102,7 +102,7 @@ void ContactFinder::settle_internal_contact(ContactPatch& patch, std::span<const
   const PairView pair(part_a.pieces[Index(patch.piece_a)], part_b.pieces[Index(patch.piece_b)], X_AB);
   const PairDistance found{.a = patch.manifold.a, .b = patch.manifold.b};
   auto internal = internal_contacts_.begin();  // rising, as the patches
-  const auto leader = std::find_if(patches_.begin(), patches_.end(), [&](const ContactPatch& other) {
+  const auto representative = std::find_if(patches_.begin(), patches_.end(), [&](const ContactPatch& other) {
     if (internal != internal_contacts_.end() && &other == &patches_[Index(*internal)]) {
       ++internal;
       return false;
@@ -110,8 +110,8 @@ void ContactFinder::settle_internal_contact(ContactPatch& patch, std::span<const
     return other.body_a == patch.body_a && other.body_b == patch.body_b &&
            answered_by(pair, found, other.manifold.normal, other.distance);
   });
-  if (leader == patches_.end()) return;
-  const Manifold& leading = leader->manifold;
+  if (representative == patches_.end()) return;
+  const Manifold& leading = representative->manifold;
   patch.manifold.points.clear();
   patch.manifold.normal = leading.normal;
   const auto stretch = [](const Part& part, int of_piece, const Feature& feature, const Vec3& outward,
@@ -122,14 +122,14 @@ void ContactFinder::settle_internal_contact(ContactPatch& patch, std::span<const
     const int face = reference_face(part.pieces[Index(of_piece)], feature, outward);
     return same_feature(part, of_piece, {FeatureKind::kFace, face}, piece);
   };
-  patch.manifold.a =
-      stretch(part_a, leader->piece_a, leading.a, -leading.normal, patch.piece_a, patch.neighbour_face_a);
-  patch.manifold.b = stretch(part_b, leader->piece_b, leading.b, rotated_back(X_AB.R, leading.normal),
+  patch.manifold.a = stretch(part_a, representative->piece_a, leading.a, -leading.normal, patch.piece_a,
+                             patch.neighbour_face_a);
+  patch.manifold.b = stretch(part_b, representative->piece_b, leading.b, rotated_back(X_AB.R, leading.normal),
                              patch.piece_b, patch.neighbour_face_b);
 }
 
-std::uint8_t ContactFinder::urgency_of(int a, int b) const noexcept {
-  return urgency_.empty() ? urgency::kOther : std::min(urgency_[Index(a)], urgency_[Index(b)]);
+std::uint8_t ContactFinder::priority_of(int a, int b) const noexcept {
+  return priority_.empty() ? priority::kOther : std::min(priority_[Index(a)], priority_[Index(b)]);
 }
 
 /// A lower bound of the pair's distance: an answer less what the smaller body has moved since, as the other
@@ -146,7 +146,7 @@ double ContactFinder::bound_at(const Pair& pair, const Answer& answer, const Pos
 /// Removes the pairs whose last answer still holds from those that are due. Returns how many of the others
 /// may be tested.
 int ContactFinder::skip_still_valid(std::span<const Pose> X_WB) noexcept {
-  int held = 0;
+  int grasped = 0;
   const auto needs_no_test = [&](const DuePair& due) {
     Pair& pair = pairs_[Index(due.pair)];
     const Pose X_AB = relative_pose(X_WB[Index(pair.body_a)], X_WB[Index(pair.body_b)]);
@@ -167,29 +167,33 @@ int ContactFinder::skip_still_valid(std::span<const Pose> X_WB) noexcept {
       emitted_.push_back(due.pair);
       return true;
     }
-    held += due.urgency == urgency::kHeld ? 1 : 0;
+    grasped += due.priority == priority::kGrasped ? 1 : 0;
     return false;
   };
   due_.erase(std::remove_if(due_.begin(), due_.end(), needs_no_test), due_.end());
   work_.known = static_cast<int>(emitted_.size());
-  return std::min(tests_left_, held + std::max(0, tests_left_ - held) / 2);
+  return std::min(tests_left_, grasped + std::max(0, tests_left_ - grasped) / 2);
 }
 
 /// Counts a pair that is not tested in this frame, and blocks its bodies where that is not safe.
 void ContactFinder::skip(int a, int b, double gap, std::int64_t last_checked) noexcept {
-  const auto moves_by = [&](int body) { return bodies_[Index(body)].moves ? reach_[Index(body)] : 0.0; };
+  const auto moves_by = [&](int body) {
+    return bodies_[Index(body)].moves ? motion_bound_[Index(body)] : 0.0;
+  };
   ++work_.unchecked;
   if (gap > moves_by(a) + moves_by(b)) return;
   ++work_.left_unproven;
-  work_.left_of_held += of_held(a, b) ? 1 : 0;
+  work_.left_of_grasped += of_grasped(a, b) ? 1 : 0;
   if (last_checked >= 0)
     work_.longest_unchecked = std::max(work_.longest_unchecked, static_cast<int>(frame_ - last_checked));
   blocked_[Index(a)] = blocked_[Index(b)] = 1;
 }
 
 double ContactFinder::tolerance(int a, int b) const noexcept {
-  const auto reach_of = [&](int body) { return bodies_[Index(body)].moves ? reach_[Index(body)] : 0.0; };
-  return std::max(min_tolerance_, reach_of(a) + reach_of(b));
+  const auto bound_of = [&](int body) {
+    return bodies_[Index(body)].moves ? motion_bound_[Index(body)] : 0.0;
+  };
+  return std::max(min_tolerance_, bound_of(a) + bound_of(b));
 }
 
 void ContactFinder::answer(Pair& pair, const Pose& X_AB, Answer& into) noexcept {
@@ -220,8 +224,8 @@ void ContactFinder::emit_patch(Pair& pair, const PairDistance& found, const Pose
   const Part& part_b = *bodies_[Index(pair.body_b)].part;
   const Polytope& A = part_a.pieces[Index(pair.piece_a)];
   const Polytope& B = part_b.pieces[Index(pair.piece_b)];
-  const double reach = tolerance(pair.body_a, pair.body_b);
-  pair.in_contact = found.distance < reach;
+  const double margin = tolerance(pair.body_a, pair.body_b);
+  pair.in_contact = found.distance < margin;
   if (!pair.in_contact) {
     pair.shown = {};
     return;
@@ -242,7 +246,7 @@ void ContactFinder::emit_patch(Pair& pair, const PairDistance& found, const Pose
     candidate.part_a = &part_a;
     candidate.part_b = &part_b;
     candidate.shown = &pair.shown;
-    candidate.reach = reach;
+    candidate.margin = margin;
     candidate.found = found;
     candidate.internal = internal;
     return;
@@ -255,7 +259,7 @@ void ContactFinder::emit_patch(Pair& pair, const PairDistance& found, const Pose
   patch.pair = static_cast<int>(&pair - pairs_.data());
   patch.facet_a = part_a.surface_group[Index(pair.piece_a)];
   patch.facet_b = part_b.surface_group[Index(pair.piece_b)];
-  patch.tolerance = reach;
+  patch.tolerance = margin;
   if (points_ == PatchPoints::kClosest) {
     patch.distance = found.distance;
     patch.manifold.normal = found.normal;
@@ -267,7 +271,7 @@ void ContactFinder::emit_patch(Pair& pair, const PairDistance& found, const Pose
   }
   const PairDistance shown = steady_depth(A, B, X_AB, found, steady_, pair.shown);
   patch.distance = shown.distance;
-  contact_manifold(A, B, X_AB, shown, reach, patch.manifold);
+  contact_manifold(A, B, X_AB, shown, margin, patch.manifold);
   steady_centroid(X_AB, patch.manifold, steady_, pair.shown);
 }
 
@@ -275,14 +279,14 @@ int ContactFinder::distances_at(std::span<const Pose> X_WB, std::span<double> di
                                 std::span<GapAnswer> asked, std::span<const double> enough,
                                 int keep_back) noexcept {
   const int before = tests_left_;
-  for (const bool held : {true, false}) {
+  for (const bool grasped : {true, false}) {
     for (Index i = 0; i < patches_.size();) {
       const ContactPatch& patch = patches_[i];
       Index end = i + 1;
       while (patch.of_surfaces && end < patches_.size() && patches_[end].of_surfaces &&
              patches_[end].body_a == patch.body_a && patches_[end].body_b == patch.body_b)
         ++end;
-      if (asked[i] == GapAnswer::kAsked && of_held(patch.body_a, patch.body_b) == held) {
+      if (asked[i] == GapAnswer::kAsked && of_grasped(patch.body_a, patch.body_b) == grasped) {
         if (patch.of_surfaces) {
           surface_distances_at({patches_.data() + i, end - i}, X_WB, distance.subspan(i, end - i),
                                asked.subspan(i, end - i), keep_back);

@@ -9,7 +9,7 @@
 /// What holds from frame to frame is kept: no step is repeated while a bound on the motion proves that its
 /// answer cannot have changed. For every body the accumulated motion `travel` is kept: no point of it has
 /// moved farther than that since the start. With S the sum of two bodies' accumulated motions, a list of
-/// their pairs made with reach R at S0 holds all pairs within `tolerance` while  (S - S0) + tolerance <= R;
+/// their pairs made with range R at S0 holds all pairs within `tolerance` while  (S - S0) + tolerance <= R;
 /// a pair found d apart at S0 needs no test while  d - (S - S0) > tolerance. Both are proofs, not guesses;
 /// they are what makes a frame with coherent motion cheap.
 ///
@@ -66,17 +66,17 @@ class ContactFinder final : public GapOracle {
   ContactFinder(std::vector<CollisionBody> bodies, std::span<const Pose> X_WB,
                 const ContactFinderCapacity& capacity = {}, double dt_s = kReferenceStep_s);
 
-  /// Renews what the motion since the last frame has made stale. `reach[i]` [m] bounds how far any point of
-  /// body i moves in this frame; the tolerance of a pair is the sum of its reaches, at least `min_tolerance`
-  /// [m].
-  void find_near_pairs(std::span<const Pose> X_WB, std::span<const double> reach,
+  /// Renews what the motion since the last frame has made stale. `motion_bound[i]` [m] bounds how far any
+  /// point of body i moves in this frame; the tolerance of a pair is the sum of both bounds, at least
+  /// `min_tolerance` [m].
+  void find_near_pairs(std::span<const Pose> X_WB, std::span<const double> motion_bound,
                        double min_tolerance) noexcept;
 
   /// Exact tests of the near pairs that could be within tolerance, at most `budget` of them, and manifolds.
-  /// Of a budget that is not ample, half of what the held part leaves is kept for distances_at(). `urgency`
+  /// Of a budget that is not ample, half of what the held part leaves is kept for distances_at(). `priority`
   /// has an entry per body (schedule.h), or none.
   void find_patches(std::span<const Pose> X_WB, int budget, PatchPoints points = PatchPoints::kQuadrature,
-                    std::span<const std::uint8_t> urgency = {}) noexcept;
+                    std::span<const std::uint8_t> priority = {}) noexcept;
   bool budget_limited() const noexcept override { return budget_limited_; }
   int tests_left() const noexcept override { return tests_left_; }
   bool blocked(int body) const noexcept override { return blocked_[static_cast<std::size_t>(body)] != 0; }
@@ -110,7 +110,7 @@ class ContactFinder final : public GapOracle {
   struct BodyPair {
     std::int32_t first = 0, count = 0;
     double accumulated_motion = 0.0;  ///< S0
-    double reach = 0.0;               ///< R
+    double range = 0.0;               ///< R
     bool cut_short = false;           ///< the room was full: pairs are missing
     std::int64_t renewal = -1;        ///< the renewal it was last part of
     double free_until = -1e300;       ///< of two surfaces: as in Pair
@@ -120,7 +120,7 @@ class ContactFinder final : public GapOracle {
   void move_boxes(std::span<const Pose> X_WB) noexcept;
   bool list_holds(const BodyPair& list, int a, int b) const noexcept;
   void renew_lists(std::span<const Pose> X_WB) noexcept;
-  bool collect(int a, int b, const Pose& X_AB, double reach) noexcept;
+  bool collect(int a, int b, const Pose& X_AB, double range) noexcept;
   void append_pairs(int a, int b, const BodyPair& old) noexcept;
   double bound_at(const Pair& pair, const Answer& answer, const Pose& X_AB) const noexcept;
   void answer(Pair& pair, const Pose& X_AB, Answer& into) noexcept;
@@ -128,16 +128,16 @@ class ContactFinder final : public GapOracle {
   void list_due_pairs() noexcept;
   int skip_still_valid(std::span<const Pose> X_WB) noexcept;
   void skip(int a, int b, double gap, std::int64_t last_checked) noexcept;
-  bool of_held(int a, int b) const noexcept { return urgency_of(a, b) == urgency::kHeld; }
-  std::uint8_t urgency_of(int a, int b) const noexcept;
+  bool of_grasped(int a, int b) const noexcept { return priority_of(a, b) == priority::kGrasped; }
+  std::uint8_t priority_of(int a, int b) const noexcept;
   void test(Pair& pair, const Pose& X_AB) noexcept;
   void emit_patch(Pair& pair, const PairDistance& found, const Pose& X_AB) noexcept;
-  /// Settles an internal contact, `patch`. The leader is the neighbour across the seam that is nearer and
-  /// whose normal separates these two pieces as well. With a leader the patch loses its point and takes the
-  /// leader's normal; what counts of it is its stretch of the same true faces, or, where the leader touches
-  /// with an edge or corner, of the reference face there. Where there is no such stretch the patch keeps no
-  /// features, and only its distance is watched. Without a leader, as in the corner of two walls, the patch
-  /// is a contact of its own.
+  /// Settles an internal contact, `patch`. The representative is the neighbour across the seam that is nearer
+  /// and whose normal separates these two pieces as well. With a representative the patch loses its point and
+  /// takes the representative's normal; what counts of it is its stretch of the same true faces, or, where
+  /// the representative touches with an edge or corner, of the reference face there. Where there is no such
+  /// stretch the patch keeps no features, and only its distance is watched. Without a representative, as in
+  /// the corner of two walls, the patch is a contact of its own.
   void settle_internal_contact(ContactPatch& patch, std::span<const Pose> X_WB) const noexcept;
   GapAnswer distance_at(const ContactPatch& patch, std::span<const Pose> X_WB, double enough, int keep_back,
                         double& distance) noexcept;
@@ -145,7 +145,8 @@ class ContactFinder final : public GapOracle {
     return bodies_[std::size_t(a)].part->is_surface() || bodies_[std::size_t(b)].part->is_surface();
   }
   void test_surfaces(int a, int b, std::span<const Pose> X_WB) noexcept;
-  void add_surface_patch(int a, int b, const SurfaceMinimum& minimum, bool second_end, double reach) noexcept;
+  void add_surface_patch(int a, int b, const SurfaceMinimum& minimum, bool second_end,
+                         double margin) noexcept;
   void surface_distances_at(std::span<const ContactPatch> patches, std::span<const Pose> X_WB,
                             std::span<double> distance, std::span<GapAnswer> asked, int keep_back) noexcept;
   double accumulated_motion(int a, int b) const noexcept {
@@ -168,9 +169,9 @@ class ContactFinder final : public GapOracle {
   ReservedVector<Pair> pairs_, renewed_;
   ReservedVector<std::pair<std::int32_t, std::int32_t>> near_pieces_;  // of the two bodies in work
   ReservedVector<DuePair> due_;
-  ReservedVector<std::int32_t> emitted_;  // pairs with an answer, or that had one
-  std::vector<char> blocked_;             // by body
-  ReservedVector<std::uint8_t> urgency_;  // by body; empty: all alike
+  ReservedVector<std::int32_t> emitted_;   // pairs with an answer, or that had one
+  std::vector<char> blocked_;              // by body
+  ReservedVector<std::uint8_t> priority_;  // by body; empty: all alike
   bool budget_limited_ = false;
   int tests_left_ = 0;
   ReservedVector<ContactPatch> patches_;
@@ -182,8 +183,8 @@ class ContactFinder final : public GapOracle {
   ReservedVector<ReductionScratch> reduction_scratch_;
   std::size_t kept_minima_ = 0;
   SteadyLimits steady_;
-  int head_start_;                // frames
-  ReservedVector<double> reach_;  // by body
+  int head_start_;                       // frames
+  ReservedVector<double> motion_bound_;  // by body
   PatchPoints points_ = PatchPoints::kQuadrature;
   double min_tolerance_ = 0.0;
   std::int64_t frame_ = 0;

@@ -27,11 +27,11 @@ struct ContactWork {
   double dropped_error = 0.0;  ///< a dropped one can be overstepped by this at most [m]
   int patches = 0;             ///< M
   int uncertified = 0;         ///< answers without a certificate
-  int due = 0;            ///< pairs that may be within their tolerance, and whose last answer holds no more
-  int known = 0;          ///< ... and those whose last answer holds
-  int unchecked = 0;      ///< due pairs beyond the budget
-  int left_unproven = 0;  ///< ... that no bound proves to stay apart in this frame
-  int left_of_held = 0;   ///< ... of these, pairs of the held part
+  int due = 0;              ///< pairs that may be within their tolerance, and whose last answer holds no more
+  int known = 0;            ///< ... and those whose last answer holds
+  int unchecked = 0;        ///< due pairs beyond the budget
+  int left_unproven = 0;    ///< ... that no bound proves to stay apart in this frame
+  int left_of_grasped = 0;  ///< ... of these, pairs of the held part
   int longest_unchecked = 0;      ///< frames since the last check of a pair that was left unproven
   bool capacity_reached = false;  ///< something was dropped: raise the capacity
 };

@@ -56,8 +56,8 @@ ContactFinder::ContactFinder(std::vector<CollisionBody> bodies, std::span<const 
   pairs_.reserve(capacity.pairs);
   renewed_.reserve(capacity.pairs);
   near_pieces_.reserve(capacity.pairs);
-  urgency_.reserve(bodies_.size());
-  reach_.reserve(bodies_.size());
+  priority_.reserve(bodies_.size());
+  motion_bound_.reserve(bodies_.size());
   due_.reserve(capacity.pairs);
   emitted_.reserve(capacity.pairs);
   blocked_.assign(bodies_.size(), 0);
@@ -70,11 +70,11 @@ ContactFinder::ContactFinder(std::vector<CollisionBody> bodies, std::span<const 
   kept_minima_ = capacity.kept_minima;
 }
 
-void ContactFinder::find_near_pairs(std::span<const Pose> X_WB, std::span<const double> reach,
+void ContactFinder::find_near_pairs(std::span<const Pose> X_WB, std::span<const double> motion_bound,
                                     double min_tolerance) noexcept {
   work_ = {};
   work_.bodies = static_cast<int>(bodies_.size());
-  reach_.assign(reach.begin(), reach.end());  // within what was reserved
+  motion_bound_.assign(motion_bound.begin(), motion_bound.end());  // within what was reserved
   min_tolerance_ = min_tolerance;
   ++frame_;
   move_boxes(X_WB);
@@ -93,7 +93,7 @@ void ContactFinder::move_boxes(std::span<const Pose> X_WB) noexcept {
     if (!bodies_[i].moves) continue;
     travel_[i] += displacement(last_X_WB_[i], X_WB[i], radius_[i]);
     last_X_WB_[i] = X_WB[i];
-    const double needed = std::max(reach_[i], min_tolerance_);
+    const double needed = std::max(motion_bound_[i], min_tolerance_);
     const Aabb tight = turned(part_box_[i], X_WB[i], needed);
     if (inside(tight, fat_box_[i])) continue;
     fat_box_[i] = turned(part_box_[i], X_WB[i], needed + box_growth_[i]);
@@ -108,7 +108,7 @@ void ContactFinder::move_boxes(std::span<const Pose> X_WB) noexcept {
 bool ContactFinder::list_holds(const BodyPair& list, int a, int b) const noexcept {
   if (!bodies_[Index(a)].moves && !bodies_[Index(b)].moves) return true;
   return list.renewal == renewal_ &&
-         accumulated_motion(a, b) - list.accumulated_motion + tolerance(a, b) <= list.reach;
+         accumulated_motion(a, b) - list.accumulated_motion + tolerance(a, b) <= list.range;
 }
 
 void ContactFinder::renew_lists(std::span<const Pose> X_WB) noexcept {
@@ -126,10 +126,10 @@ void ContactFinder::renew_lists(std::span<const Pose> X_WB) noexcept {
     } else {
       const BodyPair old = list;
       list.accumulated_motion = accumulated_motion(near.a, near.b);
-      list.reach =
+      list.range =
           tolerance(near.a, near.b) + std::min(box_growth_[Index(near.a)], box_growth_[Index(near.b)]);
       list.cut_short =
-          !collect(near.a, near.b, relative_pose(X_WB[Index(near.a)], X_WB[Index(near.b)]), list.reach);
+          !collect(near.a, near.b, relative_pose(X_WB[Index(near.a)], X_WB[Index(near.b)]), list.range);
       append_pairs(near.a, near.b, old);
     }
     list.first = static_cast<std::int32_t>(first);
@@ -141,12 +141,12 @@ void ContactFinder::renew_lists(std::span<const Pose> X_WB) noexcept {
 }
 
 /// The near pieces of two bodies, sorted. False when the room did not suffice.
-bool ContactFinder::collect(int a, int b, const Pose& X_AB, double reach) noexcept {
+bool ContactFinder::collect(int a, int b, const Pose& X_AB, double range) noexcept {
   near_pieces_.clear();
   if (meet_by_surfaces(a, b)) return true;
   const Index room = renewed_.capacity() - renewed_.size();
   const bool complete =
-      for_each_pair_within(bodies_[Index(a)].part->hierarchy, bodies_[Index(b)].part->hierarchy, X_AB, reach,
+      for_each_pair_within(bodies_[Index(a)].part->hierarchy, bodies_[Index(b)].part->hierarchy, X_AB, range,
                            [&](int piece_a, int piece_b) {
                              if (near_pieces_.size() == room) return false;
                              near_pieces_.emplace_back(piece_a, piece_b);
@@ -157,7 +157,7 @@ bool ContactFinder::collect(int a, int b, const Pose& X_AB, double reach) noexce
 }
 
 /// Makes pairs of the near pieces. Those of the old list stay what they are: both are sorted, so one walk
-/// along both suffices. What was not on it was beyond its reach.
+/// along both suffices. What was not on it was beyond its range.
 void ContactFinder::append_pairs(int a, int b, const BodyPair& old) noexcept {
   const bool known = old.renewal == renewal_;
   Index from = known ? Index(old.first) : 0;
@@ -174,7 +174,7 @@ void ContactFinder::append_pairs(int a, int b, const BodyPair& old) noexcept {
     pair.body_b = b;
     pair.piece_a = pieces.first;
     pair.piece_b = pieces.second;
-    if (known && !old.cut_short) pair.free_until = old.accumulated_motion + old.reach;
+    if (known && !old.cut_short) pair.free_until = old.accumulated_motion + old.range;
   }
 }
 

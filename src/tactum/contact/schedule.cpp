@@ -6,8 +6,8 @@ namespace tactum {
 namespace {
 
 /// A strict order without ties, so that every standard library selects the same pairs.
-bool more_urgent(const DuePair& a, const DuePair& b, int head_start) {
-  if (a.urgency != b.urgency) return a.urgency < b.urgency;
+bool goes_before(const DuePair& a, const DuePair& b, int head_start) {
+  if (a.priority != b.priority) return a.priority < b.priority;
   const auto since = [head_start](const DuePair& due) {
     return due.last_checked - (due.was_in_contact ? head_start : 0);
   };
@@ -21,7 +21,7 @@ int prioritise(std::span<DuePair> due, int budget, int head_start) noexcept {
   if (static_cast<std::size_t>(std::max(budget, 0)) >= due.size()) return static_cast<int>(due.size());
   const auto cut = due.begin() + std::max(budget, 0);
   std::nth_element(due.begin(), cut, due.end(), [head_start](const DuePair& a, const DuePair& b) {
-    return more_urgent(a, b, head_start);
+    return goes_before(a, b, head_start);
   });
   std::sort(due.begin(), cut, [](const DuePair& a, const DuePair& b) { return a.pair < b.pair; });
   return std::max(budget, 0);

@@ -1,7 +1,7 @@
 #pragma once
 /// Real-time scheduling, paper 4.2: when more pairs are near than a frame may check, which go first? The
 /// length of the array is a work budget, an input of the frame and never a clock reading, so that a cut-short
-/// frame replays exactly. From the most urgent to the least:
+/// frame replays exactly. From the first to the last:
 ///
 ///   pairs of the held part               always: what the hand feels is never guessed
 ///   pairs of what touches it             it is what the hand feels next
@@ -16,22 +16,22 @@
 namespace tactum {
 
 /// How a body's pairs stand in the order: what the hand feels, what it feels next, the rest.
-namespace urgency {
-inline constexpr std::uint8_t kHeld = 0, kTouchesHeld = 1, kOther = 2;
-}  // namespace urgency
+namespace priority {
+inline constexpr std::uint8_t kGrasped = 0, kTouchesGrasped = 1, kOther = 2;
+}  // namespace priority
 
 /// A pair that may need an exact test this frame.
 struct DuePair {
-  std::int32_t pair = -1;                  ///< index into the finder's pairs
-  std::uint8_t urgency = urgency::kOther;  ///< the greater of its bodies'
-  bool was_in_contact = false;             ///< in the last frame
-  std::int64_t last_checked = -1;          ///< frame number of its last exact test
+  std::int32_t pair = -1;                    ///< index into the finder's pairs
+  std::uint8_t priority = priority::kOther;  ///< the greater of its bodies'
+  bool was_in_contact = false;               ///< in the last frame
+  std::int64_t last_checked = -1;            ///< frame number of its last exact test
 };
 
 inline constexpr double kHeadStart_s = 0.008;  ///< [s]
 
-/// Moves the `budget` most urgent pairs to the front, in their original order among themselves, and returns
-/// how many those are: min(budget, due.size()). `head_start` is kHeadStart_s in frames. Linear in
+/// Moves the `budget` pairs of the highest priority to the front, in their original order among themselves,
+/// and returns how many those are: min(budget, due.size()). `head_start` is kHeadStart_s in frames. Linear in
 /// expectation.
 int prioritise(std::span<DuePair> due, int budget, int head_start) noexcept;
 

@@ -12,8 +12,8 @@ namespace {
 
 using Index = std::size_t;
 
-/// A contact whose depth on the whole part exceeds so many times the depth on its pieces and of the leaders
-/// together is looked for again: that depth is probably the way through the whole piece.
+/// A contact whose depth on the whole part exceeds so many times the depth on its pieces and of the
+/// representatives together is looked for again: that depth is probably the way through the whole piece.
 constexpr double kFarDeeper = 2.0;
 
 /// The candidates of two bodies.
@@ -29,7 +29,7 @@ class TwoBodies {
     for (SeamCandidate* candidate : candidates_)
       if (!candidate->settled && !answered(*candidate)) find_again(*candidate);
     while (SeamCandidate* nearest = shallowest())
-      if (!answered(*nearest) && find_beside_leaders(*nearest)) lead(*nearest);
+      if (!answered(*nearest) && find_beside_representatives(*nearest)) lead(*nearest);
     for (SeamCandidate* candidate : candidates_)
       if (!candidate->settled) *candidate->shown = {};
   }
@@ -43,7 +43,7 @@ class TwoBodies {
     return c.part_b->pieces[Index(c.piece_b)];
   }
 
-  /// Whether a leader answers for the candidate, which is then settled.
+  /// Whether a representative answers for the candidate, which is then settled.
   bool answered(SeamCandidate& candidate) noexcept {
     const PairView pair(piece_a(candidate), piece_b(candidate), X_AB_);
     for (const SeamCandidate* other : candidates_) {
@@ -60,20 +60,20 @@ class TwoBodies {
   void find_again(SeamCandidate& candidate) noexcept {
     candidate.on_pieces = candidate.found;
     const std::optional<PairDistance> depth = on_true_surface(candidate, 0.0);
-    if (!depth || depth->distance >= candidate.reach) return;
+    if (!depth || depth->distance >= candidate.margin) return;
     candidate.found = *depth;
     candidate.internal = false;
   }
 
   /// Looks again for a contact whose depth on the true surface is far greater than on its pieces and than
-  /// that of the leaders. In a corner of two walls the deepest point of a contact with the one lies inside
-  /// the other, as deep as that one is entered, so the search goes that far beside the covered place. The
-  /// depth on the pieces is taken where rounding leaves no true face or edge there, or where the contact is
-  /// true in its middle. Returns false when nothing is in contact.
-  bool find_beside_leaders(SeamCandidate& candidate) noexcept {
+  /// that of the representatives. In a corner of two walls the deepest point of a contact with the one lies
+  /// inside the other, as deep as that one is entered, so the search goes that far beside the covered place.
+  /// The depth on the pieces is taken where rounding leaves no true face or edge there, or where the contact
+  /// is true in its middle. Returns false when nothing is in contact.
+  bool find_beside_representatives(SeamCandidate& candidate) noexcept {
     const PairDistance& on_pieces = candidate.on_pieces;
-    const double entered = deepest_leader();
-    const double beside = candidate.reach + entered;
+    const double entered = deepest_representative();
+    const double beside = candidate.margin + entered;
     const double likely = kFarDeeper * (beside - std::min(on_pieces.distance, 0.0));
     if (-candidate.found.distance > likely) {
       std::optional<PairDistance> near;
@@ -86,14 +86,14 @@ class TwoBodies {
       }
     }
     // Apart, and beside the face.
-    candidate.internal = candidate.found.distance >= candidate.reach ||
+    candidate.internal = candidate.found.distance >= candidate.margin ||
                          (on_pieces.distance >= 0.0 && candidate.found.distance < 0.0);
     return !candidate.internal;
   }
 
   std::optional<PairDistance> on_true_surface(const SeamCandidate& candidate, double beside) const noexcept {
     return depth_on_true_surface(*candidate.part_a, candidate.piece_a, *candidate.part_b, candidate.piece_b,
-                                 X_AB_, candidate.on_pieces, candidate.reach, beside);
+                                 X_AB_, candidate.on_pieces, candidate.margin, beside);
   }
 
   /// Whether what was found is a true contact, or would be no farther than `beside` away.
@@ -107,14 +107,14 @@ class TwoBodies {
   /// edge.
   bool touches_in_the_middle(const SeamCandidate& candidate) const noexcept {
     Manifold manifold;
-    contact_manifold(piece_a(candidate), piece_b(candidate), X_AB_, candidate.on_pieces, candidate.reach,
+    contact_manifold(piece_a(candidate), piece_b(candidate), X_AB_, candidate.on_pieces, candidate.margin,
                      manifold);
     const bool flat = manifold.a.kind == FeatureKind::kFace && manifold.b.kind == FeatureKind::kFace;
     return flat && is_true_stretch(candidate, manifold);
   }
 
-  /// How deep the deepest leader is; none overlaps: 0.
-  double deepest_leader() const noexcept {
+  /// How deep the deepest representative is; none overlaps: 0.
+  double deepest_representative() const noexcept {
     double deepest = 0.0;
     for (const SeamCandidate* other : candidates_)
       if (other->patch >= 0) deepest = std::max(deepest, -patches_[Index(other->patch)].distance);
@@ -130,9 +130,9 @@ class TwoBodies {
     return best;
   }
 
-  static void settle_as(SeamCandidate& candidate, const SeamCandidate& leader) noexcept {
+  static void settle_as(SeamCandidate& candidate, const SeamCandidate& representative) noexcept {
     candidate.settled = true;
-    *candidate.shown = *leader.shown;
+    *candidate.shown = *representative.shown;
   }
 
   ContactPatch* new_patch(const SeamCandidate& candidate) noexcept {
@@ -146,7 +146,7 @@ class TwoBodies {
     patch.piece_a = candidate.piece_a;
     patch.piece_b = candidate.piece_b;
     patch.pair = candidate.pair;
-    patch.tolerance = candidate.reach;
+    patch.tolerance = candidate.margin;
     return &patch;
   }
 
@@ -162,38 +162,41 @@ class TwoBodies {
       nearest.settled = true;
       return;
     }
-    contact_manifold(piece_a(nearest), piece_b(nearest), X_AB_, shown, nearest.reach, patch->manifold);
+    contact_manifold(piece_a(nearest), piece_b(nearest), X_AB_, shown, nearest.margin, patch->manifold);
     patch->distance = shown.distance;
     PairDistance led = shown;
-    SeamCandidate& leader = widest(nearest, shown, *patch, led);
-    *leader.shown = *nearest.shown;
-    patch->facet_a = leader.part_a->surface_group[Index(leader.piece_a)];
-    patch->facet_b = leader.part_b->surface_group[Index(leader.piece_b)];
-    leader.patch = static_cast<int>(patches_.size()) - 1;
-    for (SeamCandidate* own : {&nearest, &leader}) {
+    SeamCandidate& representative = widest(nearest, shown, *patch, led);
+    *representative.shown = *nearest.shown;
+    patch->facet_a = representative.part_a->surface_group[Index(representative.piece_a)];
+    patch->facet_b = representative.part_b->surface_group[Index(representative.piece_b)];
+    representative.patch = static_cast<int>(patches_.size()) - 1;
+    for (SeamCandidate* own : {&nearest, &representative}) {
       own->settled = true;
-      own->led_by = leader.patch;
+      own->led_by = representative.patch;
     }
     stretches_.clear();
     for (SeamCandidate* other : candidates_)
-      if (!other->settled && !follow(*other, leader, shown, *patch)) share(*other, nearest, leader.patch);
+      if (!other->settled && !follow(*other, representative, shown, *patch))
+        share(*other, nearest, representative.patch);
     if (!stretches_.empty())
-      contact_manifold_over(piece_a(leader), piece_b(leader), X_AB_, led, leader.reach,
-                            {stretches_.begin(), stretches_.size()}, patch->manifold);
-    steady_centroid(X_AB_, patch->manifold, steady_, *leader.shown);
+      contact_manifold_over(piece_a(representative), piece_b(representative), X_AB_, led,
+                            representative.margin, {stretches_.begin(), stretches_.size()}, patch->manifold);
+    steady_centroid(X_AB_, patch->manifold, steady_, *representative.shown);
     for (SeamCandidate* other : candidates_)
-      if (other != &leader && other->led_by == leader.patch) remember(*other, leader, shown);
+      if (other != &representative && other->led_by == representative.patch)
+        remember(*other, representative, shown);
   }
 
-  /// The leader's memory is that of whom it leads, unless what was shown would be the way through another
-  /// wall.
-  void remember(SeamCandidate& other, const SeamCandidate& leader, const PairDistance& shown) const noexcept {
+  /// The representative's memory is that of whom it leads, unless what was shown would be the way through
+  /// another wall.
+  void remember(SeamCandidate& other, const SeamCandidate& representative,
+                const PairDistance& shown) const noexcept {
     const PairView pair(piece_a(other), piece_b(other), X_AB_);
     int a = vertex_of(pair.A, other.found.a);
     int b = vertex_of(pair.B, other.found.b);
-    const double likely = other.reach - std::min(shown.distance, 0.0);
+    const double likely = other.margin - std::min(shown.distance, 0.0);
     const bool through = -pair.separation(shown.normal, a, b) > kFarDeeper * likely;
-    *other.shown = through ? SteadyContact{} : *leader.shown;
+    *other.shown = through ? SteadyContact{} : *representative.shown;
   }
 
   /// Where the nearest touches at a true edge that others have too, the one of them with the largest features
@@ -211,7 +214,7 @@ class TwoBodies {
         continue;
       const PairDistance mapped = on_features(shown, same);
       Manifold manifold;
-      contact_manifold(piece_a(*other), piece_b(*other), X_AB_, mapped, other->reach, manifold);
+      contact_manifold(piece_a(*other), piece_b(*other), X_AB_, mapped, other->margin, manifold);
       if (size_of(manifold) <= size_of(patch.manifold) || !is_true_stretch(*other, manifold)) continue;
       patch.manifold = manifold;
       patch.piece_a = other->piece_a;
@@ -257,16 +260,16 @@ class TwoBodies {
     other.led_by = patch;
   }
 
-  /// Takes the stretch that `other` has of the leader's contact into it; false when it has none.
-  bool follow(SeamCandidate& other, const SeamCandidate& leader, const PairDistance& shown,
+  /// Takes the stretch that `other` has of the representative's contact into it; false when it has none.
+  bool follow(SeamCandidate& other, const SeamCandidate& representative, const PairDistance& shown,
               const ContactPatch& patch) noexcept {
     FeaturePair same;
-    if (!same_features(patch.manifold.a, patch.manifold.b, leader, other, same)) return false;
+    if (!same_features(patch.manifold.a, patch.manifold.b, representative, other, same)) return false;
     other.settled = true;
-    other.led_by = leader.patch;
+    other.led_by = representative.patch;
     const PairDistance mapped = on_features(shown, same);
     Manifold own;
-    contact_manifold(piece_a(other), piece_b(other), X_AB_, mapped, other.reach, own);
+    contact_manifold(piece_a(other), piece_b(other), X_AB_, mapped, other.margin, own);
     if (own.points.size() > 1 && is_true_stretch(other, own) &&
         !stretches_.push_back({&piece_a(other), &piece_b(other), mapped.a, mapped.b}))
       full_ = true;

@@ -3,14 +3,17 @@
 /// and who is answered for (the rules are in seams.h).
 ///
 ///   for each two bodies, nearest first:  a true contact leads. Every other pair with a stretch of the same
-///                                        true faces (or edges) follows: its stretch goes into the leader's
-///                                        patch, which is then that of the uncut part (manifold.h).
-///   then internal contacts:              dropped when they are apart or a leader stands for them; else they
-///                                        lead by the least depth on the true surface, or in a corner by that
-///                                        beside it, or as they were found.
+///                                        true faces (or edges) follows: its stretch goes into the
+///                                        patch of the first, which is then that of the uncut part
+///                                        (manifold.h).
+///   then internal contacts:              dropped when they are apart or a representative stands
+///                                        for them; else they lead by the least depth on the true
+///                                        surface, or in a corner by that beside it, or as they
+///                                        were found.
 ///
-/// The memory of what was shown goes from the leader to all it answers for, so that a contact slides over a
-/// seam without forgetting. Cost: what the patches cost, and a look-up for each leader and pair.
+/// The memory of what was shown goes from the representative to all it answers for, so that a contact slides
+/// over a seam without forgetting. Cost: what the patches cost, and a look-up for each representative and
+/// pair.
 
 #include <cstdint>
 #include <span>
@@ -22,20 +25,20 @@
 
 namespace tactum {
 
-/// A pair within reach, as tested.
+/// A pair within its margin, as tested.
 struct SeamCandidate {
   std::int32_t body_a = -1, body_b = -1, piece_a = -1, piece_b = -1;
   int pair = -1;  ///< in the finder's list
   const Part* part_a = nullptr;
   const Part* part_b = nullptr;
   SteadyContact* shown = nullptr;  ///< the pair's memory
-  double reach = 0.0;              ///< tolerance of the pair [m]
+  double margin = 0.0;             ///< tolerance of the pair [m]
   PairDistance found;
   PairDistance on_pieces;  ///< of an internal contact that was found again: what was found before
   bool internal = false;
   bool settled = false;
-  int patch = -1;   ///< of a leader
-  int led_by = -1;  ///< a leader's patch
+  int patch = -1;   ///< of a representative
+  int led_by = -1;  ///< a representative's patch
 };
 
 /// Appends the patches of `candidates`, which are settled and their order changed. False when `patches` is

@@ -133,8 +133,8 @@ std::vector<CornerName> corners_as_one(const Part& part, const std::vector<std::
   const Result<Polytope> hull = convex_hull(cloud);
   if (!hull || !hull->flat) return {};
   const std::vector<Vec3> outline = face_corners(*hull, hull->faces[0].normal.dot(normal) > 0.0 ? 0 : 1);
-  const double slack = tolerances::kCoplanarMeshOffset * part.size * part.size;
-  if (polygon_area(outline, normal) > area + slack) return {};
+  const double tolerance = tolerances::kCoplanarMeshOffset * part.size * part.size;
+  if (polygon_area(outline, normal) > area + tolerance) return {};
   std::vector<CornerName> corners;
   for (const Vec3& p : outline)
     corners.push_back(

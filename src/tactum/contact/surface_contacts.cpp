@@ -25,9 +25,9 @@ constexpr double kFarther = 8.0;
 
 void ContactFinder::test_surfaces(int a, int b, std::span<const Pose> X_WB) noexcept {
   if (!bodies_[Index(a)].moves && !bodies_[Index(b)].moves) return;
-  const double reach = tolerance(a, b);
+  const double margin = tolerance(a, b);
   BodyPair& list = list_of(a, b);
-  if (list.free_until - accumulated_motion(a, b) > reach) return;
+  if (list.free_until - accumulated_motion(a, b) > margin) return;
   if (tests_left_ <= 0) return skip(a, b, list.free_until - accumulated_motion(a, b), frame_);
   --tests_left_;
   ++work_.exact_tests;
@@ -36,19 +36,19 @@ void ContactFinder::test_surfaces(int a, int b, std::span<const Pose> X_WB) noex
   // Where nothing may cross, what is below zero is rounding.
   const bool may_cross = points_ == PatchPoints::kQuadrature;
   const MinimaQuery query{
-      .reach = reach,
-      .depth = may_cross ? kSurfaceDepth * std::min(part_a.size, part_b.size) : kWatched * reach,
+      .max_distance = margin,
+      .depth = may_cross ? kSurfaceDepth * std::min(part_a.size, part_b.size) : kWatched * margin,
       .cone_inflation = tolerances::kConeInflation};
   const Pose X_AB = relative_pose(X_WB[Index(a)], X_WB[Index(b)]);
   if (list.apart) {
     MinimaQuery farther = query;
-    farther.reach *= kFarther;
+    farther.max_distance *= kFarther;
     MinimaWork work;
     const double clearance = surface_clearance(part_a.tree, part_b.tree, X_AB, farther, work);
     ++work_.surface_queries;
     work_.feature_steps += work.feature_pairs;
     list.free_until = accumulated_motion(a, b) + clearance;
-    if (clearance > reach) return;
+    if (clearance > margin) return;
   }
   const MinimaWork found = surface_minima(part_a.tree, part_b.tree, X_AB, query, minima_);
   ++work_.surface_queries;
@@ -56,7 +56,7 @@ void ContactFinder::test_surfaces(int a, int b, std::span<const Pose> X_WB) noex
   work_.feature_steps += found.feature_pairs;
   work_.capacity_reached |= found.full;
   list.apart = minima_.empty();
-  list.free_until = accumulated_motion(a, b) + (list.apart ? reach : 0.0);
+  list.free_until = accumulated_motion(a, b) + (list.apart ? margin : 0.0);
   Index kept = minima_.size();
   if (kept > kept_minima_) {
     reduction_scratch_.resize(kept);  // within what was reserved
@@ -65,7 +65,7 @@ void ContactFinder::test_surfaces(int a, int b, std::span<const Pose> X_WB) noex
     const double radius = radius_[Index(a)] + radius_[Index(b)];
     const ReductionReport reduced =
         reduce_contacts(minima_, reduction_scratch_, kept_minima_,
-                        {.center = center, .max_translation = reach, .max_rotation = reach / radius});
+                        {.center = center, .max_translation = margin, .max_rotation = margin / radius});
     kept = Index(reduced.kept);
     work_.dropped_minima += reduced.dropped;
     work_.dropped_error = std::max(work_.dropped_error, reduced.largest_error);
@@ -77,12 +77,12 @@ void ContactFinder::test_surfaces(int a, int b, std::span<const Pose> X_WB) noex
     if (edges && !minima_[i].strict && minima_[i].distance < 0.0) continue;
     // Parallel edges have two minima, at the ends of the interval they share; they stand side by side.
     const bool second_end = i > 0 && minima_[i - 1].a == minima_[i].a && minima_[i - 1].b == minima_[i].b;
-    add_surface_patch(a, b, minima_[i], second_end, reach);
+    add_surface_patch(a, b, minima_[i], second_end, margin);
   }
 }
 
 void ContactFinder::add_surface_patch(int a, int b, const SurfaceMinimum& minimum, bool second_end,
-                                      double reach) noexcept {
+                                      double margin) noexcept {
   if (patches_.size() == patches_.capacity()) {
     work_.capacity_reached = true;
     return;
@@ -100,7 +100,7 @@ void ContactFinder::add_surface_patch(int a, int b, const SurfaceMinimum& minimu
   patch.facet_a = facet(bodies_[Index(a)].part->tree, minimum.a);
   patch.facet_b = facet(bodies_[Index(b)].part->tree, minimum.b);
   patch.distance = minimum.distance;
-  patch.tolerance = reach;
+  patch.tolerance = margin;
   patch.manifold.normal = minimum.normal;
   patch.manifold.a = minimum.a;
   patch.manifold.b = minimum.b;
@@ -118,14 +118,14 @@ void ContactFinder::surface_distances_at(std::span<const ContactPatch> patches, 
   const Part& part_a = *bodies_[Index(first.body_a)].part;
   const Part& part_b = *bodies_[Index(first.body_b)].part;
   const MinimaQuery query{
-      .reach = kWatched * first.tolerance, .depth = first.tolerance, .cone_inflation = 0.0};
+      .max_distance = kWatched * first.tolerance, .depth = first.tolerance, .cone_inflation = 0.0};
   const Pose X_AB = relative_pose(X_WB[Index(first.body_a)], X_WB[Index(first.body_b)]);
   if (surface_minima(part_a.tree, part_b.tree, X_AB, query, minima_).full) {
     work_.capacity_reached = true;
     std::fill(asked.begin(), asked.end(), GapAnswer::kUnknown);  // those without room may be closed
     return;
   }
-  std::fill(distance.begin(), distance.end(), query.reach);
+  std::fill(distance.begin(), distance.end(), query.max_distance);
   const auto nearest = std::min_element(patches.begin(), patches.end(),
                                         [](const auto& p, const auto& q) { return p.distance < q.distance; });
   for (const SurfaceMinimum& minimum : minima_) {

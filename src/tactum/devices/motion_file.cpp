@@ -197,9 +197,9 @@ Motion fitted(const Motion& motion, double radius_m) {
     high = high.cwiseMax(X.p);
   }
   const Vec3 centre = 0.5 * (low + high);
-  double reach = 0.0;
-  for (const Pose& X : motion.X) reach = std::max(reach, (X.p - centre).norm());
-  const double scale = reach > radius_m ? radius_m / reach : 1.0;
+  double extent = 0.0;
+  for (const Pose& X : motion.X) extent = std::max(extent, (X.p - centre).norm());
+  const double scale = extent > radius_m ? radius_m / extent : 1.0;
   const Mat3 R_first = motion.X.front().R;
   for (Pose& X : result.X) X = {X.R * R_first.transpose(), (X.p - centre) * scale};
   return result;

@@ -18,7 +18,7 @@ FieldLoad load_of(const Shape& shape, const ForceField& field, std::span<const F
   const Pose X_FB = relative_pose(field.X_WF, X_WB);
   FieldLoad load;
   Wrench sum;  // axes of F
-  Mat3 way = Mat3::Zero();
+  Mat3 translation = Mat3::Zero();
   Mat3 turn = Mat3::Zero();
   for (const FieldPoint& point : points) {
     const Vec3 r_F = rotated(X_FB.R, point.p_B);
@@ -29,11 +29,11 @@ FieldLoad load_of(const Shape& shape, const ForceField& field, std::span<const F
     // A turn about the handle moves the point by its lever, and its force turns the body by the same.
     const Mat3 steep = std::abs(point.weight) * value.gradient.cwiseAbs();
     const double lever_sq = (point.p_B - p_BH).squaredNorm();
-    way += steep;
+    translation += steep;
     turn += lever_sq * steep;
     load.stiffness_Nm_per_rad += std::sqrt(force.squaredNorm() * lever_sq);
   }
-  load.stiffness_N_per_m = steepness(way);
+  load.stiffness_N_per_m = steepness(translation);
   load.stiffness_Nm_per_rad += steepness(turn);
   const double f = std::abs(field.scale) * sum.f.norm();
   const double t = std::abs(field.scale) * sum.t.norm();

@@ -79,10 +79,10 @@ inline bool parted_by_edges(const BoxPairFrame& frame, const Bvh::Node& a, const
     for (int j = 0; j < 3; ++j) {
       const int j1 = (j + 1) % 3;
       const int j2 = (j + 2) % 3;
-      const double reach = a.half[i1] * abs_R(i2, j) + a.half[i2] * abs_R(i1, j) + b.half[j1] * abs_R(i, j2) +
-                           b.half[j2] * abs_R(i, j1);
+      const double extent = a.half[i1] * abs_R(i2, j) + a.half[i2] * abs_R(i1, j) +
+                            b.half[j1] * abs_R(i, j2) + b.half[j2] * abs_R(i, j1);
       // The axis is no longer than one, so the tolerance is counted in full or more.
-      if (std::abs(t[i2] * R(i1, j) - t[i1] * R(i2, j)) > reach + tolerance) return true;
+      if (std::abs(t[i2] * R(i1, j) - t[i1] * R(i2, j)) > extent + tolerance) return true;
     }
   }
   return false;

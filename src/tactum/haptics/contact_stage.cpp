@@ -15,15 +15,15 @@ std::vector<CollisionBody> collision_bodies(const World& world) {
   return bodies;
 }
 
-void find_urgency(int held, ContactStage& stage) {
-  std::vector<std::uint8_t>& urgency = stage.urgency;
-  std::fill(urgency.begin(), urgency.end(), urgency::kOther);
-  if (held < 0) return;
+void find_priorities(int grasped, ContactStage& stage) {
+  std::vector<std::uint8_t>& priority = stage.priority;
+  std::fill(priority.begin(), priority.end(), priority::kOther);
+  if (grasped < 0) return;
   for (const ContactPatch& patch : stage.finder.patches()) {
-    if (patch.body_a == held) urgency[Index(patch.body_b)] = urgency::kTouchesHeld;
-    if (patch.body_b == held) urgency[Index(patch.body_a)] = urgency::kTouchesHeld;
+    if (patch.body_a == grasped) priority[Index(patch.body_b)] = priority::kTouchesGrasped;
+    if (patch.body_b == grasped) priority[Index(patch.body_a)] = priority::kTouchesGrasped;
   }
-  urgency[Index(held)] = urgency::kHeld;
+  priority[Index(grasped)] = priority::kGrasped;
 }
 
 /// Distances are those the frame found, before anything moved.
@@ -48,7 +48,7 @@ std::uint32_t flags_of(const ContactWork& work) {
 
 ContactStage::ContactStage(const World& world, const FrameSettings& settings, std::span<const Pose> X_WB)
     : finder(collision_bodies(world), X_WB, settings.budget.capacity, settings.dt_s),
-      urgency(world.bodies.size(), urgency::kOther) {
+      priority(world.bodies.size(), priority::kOther) {
   if (!settings.shading.on) return;
   bool some_bend = false;
   for (const Body& body : world.bodies)
@@ -57,15 +57,15 @@ ContactStage::ContactStage(const World& world, const FrameSettings& settings, st
 }
 
 void find_near_pairs(const FrameSettings& settings, std::span<const Pose> X_WB,
-                     std::span<const double> motion_bound, int held, ContactStage& stage) noexcept {
-  find_urgency(held, stage);
+                     std::span<const double> motion_bound, int grasped, ContactStage& stage) noexcept {
+  find_priorities(grasped, stage);
   stage.finder.find_near_pairs(X_WB, motion_bound, settings.penalty.min_tolerance_m);
 }
 
 std::span<const ContactPatch> find_patches(const World& world, const FrameSettings& settings,
                                            std::span<const Pose> X_WB, PatchPoints points,
                                            ContactStage& stage, FrameReport& report) noexcept {
-  stage.finder.find_patches(X_WB, settings.budget.max_exact_tests, points, stage.urgency);
+  stage.finder.find_patches(X_WB, settings.budget.max_exact_tests, points, stage.priority);
   report.work = stage.finder.work();
   report.flags |= flags_of(report.work);
   report_distances(world, stage.finder.patches(), report);

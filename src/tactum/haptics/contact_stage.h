@@ -1,6 +1,6 @@
 #pragma once
-/// The stage of a frame that finds where bodies touch: the contact finder, told what is urgent, and what a
-/// face's shading makes of the contacts.
+/// The stage of a frame that finds where bodies touch: the contact finder, with the priorities of bodies, and
+/// what a face's shading makes of the contacts.
 
 #include <vector>
 
@@ -13,14 +13,14 @@ struct ContactStage {
   ContactStage(const World& world, const FrameSettings& settings, std::span<const Pose> X_WB);
 
   ContactFinder finder;
-  std::vector<std::uint8_t> urgency;    ///< of each body (contact/schedule.h)
+  std::vector<std::uint8_t> priority;   ///< of each body (contact/schedule.h)
   std::vector<ShadingNormals> shading;  ///< one per body; empty when shading is off, or bends nothing
 };
 
 /// Finds which pairs could touch, when no point of body i moves farther than `motion_bound[i]` [m]. What is
-/// held, and what touched it in the last frame, is urgent: fills stage.urgency.
+/// held, and what touched it in the last frame, goes first: fills stage.priority.
 void find_near_pairs(const FrameSettings& settings, std::span<const Pose> X_WB,
-                     std::span<const double> motion_bound, int held, ContactStage& stage) noexcept;
+                     std::span<const double> motion_bound, int grasped, ContactStage& stage) noexcept;
 
 /// Finds where the near pairs touch. Adds the work, the smallest distance and the flags to the report.
 std::span<const ContactPatch> find_patches(const World& world, const FrameSettings& settings,

@@ -35,14 +35,14 @@ struct Half {
 GainBounds bounds_of(const Half& half, double damper, double period_s, double delay_s) {
   GainBounds bounds;
   bounds.alone = stiffness_allowed(half.device_damping, 0.0, period_s, delay_s);
-  bounds.held = stiffness_allowed(half.device_damping + half.hand_damping, damper, period_s, delay_s);
+  bounds.loose_hand = stiffness_allowed(half.device_damping + half.hand_damping, damper, period_s, delay_s);
   bounds.encoder = half.friction > 0.0 && half.encoder_step > 0.0 ? 2.0 * half.friction / half.encoder_step
                                                                   : std::numeric_limits<double>::infinity();
   return bounds;
 }
 
 double chosen(const GainBounds& bounds, double stiffest) {
-  const double limit = std::min(kUsed * bounds.held, bounds.encoder);
+  const double limit = std::min(kUsed * bounds.loose_hand, bounds.encoder);
   return stiffest > 0.0 ? std::min(limit, stiffest) : limit;
 }
 

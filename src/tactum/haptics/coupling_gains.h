@@ -35,9 +35,9 @@ double stiffness_allowed(double device_damping, double damping, double period_s,
 
 /// What bounds the coupling in one of its halves, translation or rotation (then N m/rad).
 struct GainBounds {
-  double alone = 0.0;    ///< nobody holds the handle: passive [N/m]
-  double held = 0.0;     ///< in a loose hand [N/m]
-  double encoder = 0.0;  ///< friction stops the chatter; infinite where friction or step is unknown [N/m]
+  double alone = 0.0;       ///< nobody holds the handle: passive [N/m]
+  double loose_hand = 0.0;  ///< in a loose hand [N/m]
+  double encoder = 0.0;     ///< friction stops the chatter; infinite where friction or step is unknown [N/m]
 };
 
 struct CouplingGains {

@@ -5,11 +5,11 @@
 namespace tactum {
 namespace {
 
-void report_grasp(const GraspedPart& held, const WorldState& bodies, FrameReport& report) {
-  report.X_WH = held.X_WH;
-  if (held.body < 0) return;
-  report.X_WH_proxy = bodies.X_WB[static_cast<std::size_t>(held.body)] * held.X_BH;
-  report.field = held.field.at_centre;
+void report_grasp(const GraspedPart& grasped, const WorldState& bodies, FrameReport& report) {
+  report.X_WH = grasped.X_WH;
+  if (grasped.body < 0) return;
+  report.X_WH_proxy = bodies.X_WB[static_cast<std::size_t>(grasped.body)] * grasped.X_BH;
+  report.field = grasped.field.at_centre;
 }
 
 }  // namespace
@@ -22,19 +22,19 @@ Wrench haptic_frame(const World& world, const FrameSettings& settings, const Dev
   ContactStage& contacts = state.contacts;
   Wrench felt;
   // Where is the hand, what does it hold, and what do force fields do to that?
-  const GraspedPart held = track_hand(world, settings, sample, bodies.X_WB, state.hand);
-  report.held = held.body;
-  if (!held.hand_known) report.flags |= frame_flag::kNoHand;
+  const GraspedPart grasped = track_hand(world, settings, sample, bodies.X_WB, state.hand);
+  report.grasped_body = grasped.body;
+  if (!grasped.hand_known) report.flags |= frame_flag::kNoHand;
   state.ended(Stage::kHand);
 
-  if (held.hand_known) {
+  if (grasped.hand_known) {
     // How far may everything move in this frame?
-    const MotionInput motion{world, settings, held, contacts.finder.radii(), settings.dt_s};
+    const MotionInput motion{world, settings, grasped, contacts.finder.radii(), settings.dt_s};
     const std::span<const double> motion_bound = state.response.bound_motion(motion, bodies);
     state.ended(Stage::kVelocities);
 
     // Which pairs could touch, and where do they?
-    find_near_pairs(settings, bodies.X_WB, motion_bound, held.body, contacts);
+    find_near_pairs(settings, bodies.X_WB, motion_bound, grasped.body, contacts);
     state.ended(Stage::kNearPairs);
     const std::span<const ContactPatch> patches =
         find_patches(world, settings, bodies.X_WB, state.response.points(), contacts, report);
@@ -42,13 +42,13 @@ Wrench haptic_frame(const World& world, const FrameSettings& settings, const Dev
 
     // How do the held part and the world answer?
     state.X_WB_start = bodies.X_WB;  // same size: nothing is allocated
-    const StepInput step{motion, patches, contacts.urgency, report.work, contacts.shading, state.X_WB_start};
+    const StepInput step{motion, patches, contacts.priority, report.work, contacts.shading, state.X_WB_start};
     state.response.step(step, contacts.finder, bodies, report);
     add_field_work(bodies.X_WB, state.hand.field);
     state.ended(Stage::kResponse);
 
     // What does the hand feel?
-    report_grasp(held, bodies, report);
+    report_grasp(grasped, bodies, report);
     felt = state.response.felt(step, bodies);
   }
   report.coupling = felt;

@@ -14,7 +14,7 @@ FrameState::FrameState(const World& constant_world, const FrameSettings& setting
   const std::vector<double> at_rest(constant_world.bodies.size(), 0.0);
   contacts.finder.find_near_pairs(world.X_WB, at_rest, settings.penalty.min_tolerance_m);
   contacts.finder.find_patches(world.X_WB, settings.budget.max_exact_tests, response.points(),
-                               contacts.urgency);
+                               contacts.priority);
 }
 
 }  // namespace tactum

@@ -30,16 +30,16 @@ GraspedPart track_hand(const World& world, const FrameSettings& settings, const 
   const bool was_known = hand.known;
   follow_hand(settings.workspace, sample, settings.dt_s, hand);
   if (!was_known && hand.known) take_first(settings.tool.X_BH.p, X_WB, hand);
-  if (sample.valid) pick_or_let_go(world, X_WB, settings.tool, hand.X_WH, sample.buttons, hand.grasp);
-  GraspedPart held{.hand_known = hand.known,
-                   .body = hand.grasp.body,
-                   .X_BH = hand.grasp.X_BH,
-                   .X_WH = hand.X_WH,
-                   .V_WH = hand.V_WH,
-                   .in_field = false,
-                   .field = {}};
-  if (held.hand_known) find_field_load(world, X_WB, held, hand.field);
-  return held;
+  if (sample.valid) pick_or_release(world, X_WB, settings.tool, hand.X_WH, sample.buttons, hand.grasp);
+  GraspedPart grasped{.hand_known = hand.known,
+                      .body = hand.grasp.body,
+                      .X_BH = hand.grasp.X_BH,
+                      .X_WH = hand.X_WH,
+                      .V_WH = hand.V_WH,
+                      .in_field = false,
+                      .field = {}};
+  if (grasped.hand_known) find_field_load(world, X_WB, grasped, hand.field);
+  return grasped;
 }
 
 }  // namespace tactum

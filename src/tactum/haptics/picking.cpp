@@ -31,9 +31,10 @@ double outside(const Part& part, const Vec3& p) {
 
 }  // namespace
 
-int nearest_body(const World& world, std::span<const Pose> X_WB, const Vec3& p_W, double reach_m) noexcept {
+int nearest_body(const World& world, std::span<const Pose> X_WB, const Vec3& p_W,
+                 double pick_distance_m) noexcept {
   int nearest = -1;
-  double least = reach_m;
+  double least = pick_distance_m;
   for (Index i = 0; i < world.bodies.size(); ++i) {
     const Body& body = world.bodies[i];
     if (!body.moves() || (p_W - X_WB[i].p).norm() > body.part->radius + least) continue;
@@ -45,8 +46,8 @@ int nearest_body(const World& world, std::span<const Pose> X_WB, const Vec3& p_W
   return nearest;
 }
 
-void pick_or_let_go(const World& world, std::span<const Pose> X_WB, const Tool& tool, const Pose& X_WH,
-                    std::uint32_t buttons, Grasp& grasp) noexcept {
+void pick_or_release(const World& world, std::span<const Pose> X_WB, const Tool& tool, const Pose& X_WH,
+                     std::uint32_t buttons, Grasp& grasp) noexcept {
   const bool pressed = (buttons & 1u) != 0;
   const bool was_pressed = grasp.pressed;
   grasp.pressed = pressed;
@@ -55,7 +56,7 @@ void pick_or_let_go(const World& world, std::span<const Pose> X_WB, const Tool& 
     grasp.body = -1;
     return;
   }
-  const int body = nearest_body(world, X_WB, X_WH.p, tool.reach_m);
+  const int body = nearest_body(world, X_WB, X_WH.p, tool.pick_distance_m);
   if (body < 0) return;
   grasp.body = body;
   grasp.X_BH = relative_pose(X_WB[Index(body)], X_WH);

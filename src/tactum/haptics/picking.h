@@ -12,10 +12,11 @@
 
 namespace tactum {
 
-/// The body that moves and is nearest to a point of the world, and no farther than `reach_m`; -1 when there
-/// is none. The distance is to the nearest plane of the nearest convex piece, so it is short beside edges; of
-/// a part without pieces, to its nearest vertex. Cost: linear in faces, when the button is pressed.
-int nearest_body(const World& world, std::span<const Pose> X_WB, const Vec3& p_W, double reach_m) noexcept;
+/// The body that moves and is nearest to a point of the world, and no farther than `pick_distance_m`; -1 when
+/// there is none. The distance is to the nearest plane of the nearest convex piece, so it is short beside
+/// edges; of a part without pieces, to its nearest vertex. Cost: linear in faces, when the button is pressed.
+int nearest_body(const World& world, std::span<const Pose> X_WB, const Vec3& p_W,
+                 double pick_distance_m) noexcept;
 
 /// What the hand holds.
 struct Grasp {
@@ -25,7 +26,7 @@ struct Grasp {
 };
 
 /// When the button has been pressed or let go since the last frame. `X_WH` is the hand.
-void pick_or_let_go(const World& world, std::span<const Pose> X_WB, const Tool& tool, const Pose& X_WH,
-                    std::uint32_t buttons, Grasp& grasp) noexcept;
+void pick_or_release(const World& world, std::span<const Pose> X_WB, const Tool& tool, const Pose& X_WH,
+                     std::uint32_t buttons, Grasp& grasp) noexcept;
 
 }  // namespace tactum

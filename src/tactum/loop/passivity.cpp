@@ -8,44 +8,44 @@
 namespace tactum {
 namespace {
 
-/// One of the two ledgers over one step.
+/// One of the two balances over one step.
 struct Step {
-  Vec3 way;          // made since the last frame
-  Vec3 sent;         // force (torque) held meanwhile
-  double damping;    // the device's own
-  double given_J;    // by the scene's bodies
-  double highest_J;  // the ledger may become
+  Vec3 displacement;  // made since the last frame
+  Vec3 sent;          // force (torque) held meanwhile
+  double damping;     // the device's own
+  double given_J;     // by the scene's bodies
+  double highest_J;   // the balance may become
   double credit_J;
   double max_injected;
   double dt_s;
 };
 
-void book(const Step& step, double& ledger_J) noexcept {
-  const double passed_J =
-      -step.sent.dot(step.way) + step.damping * step.way.squaredNorm() / step.dt_s + step.given_J;
-  ledger_J = std::clamp(ledger_J + passed_J, -step.credit_J, step.highest_J);
+void book(const Step& step, double& energy_balance_J) noexcept {
+  const double passed_J = -step.sent.dot(step.displacement) +
+                          step.damping * step.displacement.squaredNorm() / step.dt_s + step.given_J;
+  energy_balance_J = std::clamp(energy_balance_J + passed_J, -step.credit_J, step.highest_J);
 }
 
 /// What the wrench and the controller's part of it have done over the way.
-void add_up(const Vec3& way, const Vec3& sent, const Vec3& damper, EnergyTotals& total) noexcept {
-  const double work_J = sent.dot(way);
+void add_up(const Vec3& displacement, const Vec3& sent, const Vec3& damper, EnergyTotals& total) noexcept {
+  const double work_J = sent.dot(displacement);
   (work_J > 0.0 ? total.to_hand_J : total.from_hand_J) += std::abs(work_J);
-  total.damped_J -= damper.dot(way);
+  total.damped_J -= damper.dot(displacement);
 }
 
-/// A thread turns one kind of work into the other: what one ledger owes, the other pays as far as it can.
-void settle(double& ledger_J, double& other_J) noexcept {
-  const double paid_J = std::max(0.0, std::min(-ledger_J, other_J));
-  ledger_J += paid_J;
+/// A thread turns one kind of work into the other: what one balance owes, the other pays as far as it can.
+void settle(double& energy_balance_J, double& other_J) noexcept {
+  const double paid_J = std::max(0.0, std::min(-energy_balance_J, other_J));
+  energy_balance_J += paid_J;
   other_J -= paid_J;
 }
 
 /// The damping to add.
-double injected(const Step& step, double ledger_J) noexcept {
-  const double way_sq = step.way.squaredNorm();
-  if (!(ledger_J < 0.0) || way_sq == 0.0) return 0.0;
-  // a |V|^2 dt = - ledger, with V = way / dt; a huge quotient is cut to what is allowed
-  return std::min(-ledger_J * step.dt_s / way_sq, step.max_injected);
+double injected(const Step& step, double energy_balance_J) noexcept {
+  const double length_sq = step.displacement.squaredNorm();
+  if (!(energy_balance_J < 0.0) || length_sq == 0.0) return 0.0;
+  // a |V|^2 dt = - balance, with V = displacement / dt; a huge quotient is cut to what is allowed
+  return std::min(-energy_balance_J * step.dt_s / length_sq, step.max_injected);
 }
 
 }  // namespace
@@ -56,9 +56,9 @@ Wrench passive_wrench(const PortSettings& settings, PortState& state, const Devi
   if (!settings.actuates_torque) F.t.setZero();
   report = {};
   if (sample.valid && plausible(sample.X_DH) && input.dt_s > 0.0) {
-    const Twist way = state.known ? twist_between(state.X_DH, sample.X_DH, 1.0) : Twist{};
+    const Twist displacement = state.known ? twist_between(state.X_DH, sample.X_DH, 1.0) : Twist{};
     const double given_J = state.known ? std::max(0.0, state.bodies_J - input.bodies_J) : 0.0;
-    const Step moved{way.v,
+    const Step moved{displacement.v,
                      input.sent.f,
                      settings.damping_Ns_per_m,
                      given_J,
@@ -66,7 +66,7 @@ Wrench passive_wrench(const PortSettings& settings, PortState& state, const Devi
                      settings.credit_J,
                      settings.max_injected_Ns_per_m,
                      input.dt_s};
-    const Step turned{way.w,
+    const Step turned{displacement.w,
                       input.sent.t,
                       settings.damping_Nms_per_rad,
                       given_J,
@@ -74,18 +74,18 @@ Wrench passive_wrench(const PortSettings& settings, PortState& state, const Devi
                       settings.credit_turning_J,
                       settings.actuates_torque ? settings.max_injected_Nms_per_rad : 0.0,
                       input.dt_s};
-    add_up(way.v, input.sent.f, state.damper.f, state.total);
-    add_up(way.w, input.sent.t, state.damper.t, state.total_turning);
-    book(moved, state.ledger_J);
-    book(turned, state.ledger_turning_J);
+    add_up(displacement.v, input.sent.f, state.damper.f, state.total);
+    add_up(displacement.w, input.sent.t, state.damper.t, state.total_turning);
+    book(moved, state.energy_balance_J);
+    book(turned, state.energy_balance_turning_J);
     if (settings.actuates_torque) {
-      settle(state.ledger_J, state.ledger_turning_J);
-      settle(state.ledger_turning_J, state.ledger_J);
+      settle(state.energy_balance_J, state.energy_balance_turning_J);
+      settle(state.energy_balance_turning_J, state.energy_balance_J);
     }
-    report.injected_Ns_per_m = injected(moved, state.ledger_J);
-    report.injected_Nms_per_rad = injected(turned, state.ledger_turning_J);
-    state.damper = {-report.injected_Ns_per_m / input.dt_s * way.v,
-                    -report.injected_Nms_per_rad / input.dt_s * way.w};
+    report.injected_Ns_per_m = injected(moved, state.energy_balance_J);
+    report.injected_Nms_per_rad = injected(turned, state.energy_balance_turning_J);
+    state.damper = {-report.injected_Ns_per_m / input.dt_s * displacement.v,
+                    -report.injected_Nms_per_rad / input.dt_s * displacement.w};
     F = F + state.damper;
     state.X_DH = sample.X_DH;
     state.bodies_J = input.bodies_J;
@@ -95,8 +95,8 @@ Wrench passive_wrench(const PortSettings& settings, PortState& state, const Devi
   }
   report.total = state.total;
   report.total_turning = state.total_turning;
-  report.ledger_J = state.ledger_J;
-  report.ledger_turning_J = state.ledger_turning_J;
+  report.energy_balance_J = state.energy_balance_J;
+  report.energy_balance_turning_J = state.energy_balance_turning_J;
   return F;
 }
 

@@ -1,26 +1,26 @@
 #pragma once
 /// The passivity observer and controller [Hannaford and Ryu 2002]: a scene that is felt must not make energy.
 /// Sampling, delay, encoder steps and an explicit response can; the hand would feel it as buzzing or as a
-/// wall that kicks. The observer keeps a ledger of the energy that passed the port between device and
+/// wall that kicks. The observer keeps a balance of the energy that passed the port between device and
 /// program, one for translation and one for rotation:
 ///
-///   ledger += - f . dp              what the hand put in: the wrench sent last, over the way made since
+///   balance += - f . dp             what the hand put in: the wrench sent last, over the way made since
 ///           + b |dp|^2 / dt         what the device's own damping eats on that way, at least
 ///           + energy that the scene's moving bodies gave up (a weight that is lowered, a body that hits)
-///   ledger <= credit + energy in the coupling's spring         what was dissipated long ago cannot come back
-///   ledger >= - credit                                         nor is a debt kept that cannot be paid soon
+///   balance <= credit + energy in the coupling's spring        what was dissipated long ago cannot come back
+///   balance >= - credit                                        nor is a debt kept that cannot be paid soon
 ///
-///   ledger < 0:  wrench - a V,   a = min(- ledger / (|V|^2 dt), the most allowed),   V = way / dt
+///   balance < 0:  wrench - a V,   a = min(- balance / (|V|^2 dt), the most allowed),  V = way / dt
 ///
 /// so the controller takes the surplus out during the next step, and does nothing as long as there is none.
 /// The energy passed is exact, not an estimate: the wrench is held over the step, so its work is f . dp
-/// whatever the way was like. From the paper depart: the two bounds of the ledger (without the upper one, a
+/// whatever the way was like. From the paper depart: the two bounds of the balance (without the upper one, a
 /// minute of rubbing pays for a long burst of buzzing), the known damping, and the bodies' energy. Six axes
-/// are two ledgers: forces in one direction do pay for another, as in an isotropic spring they must. Where
-/// torque is driven too, a ledger below zero is paid from the other: a nut that is turned pulls the hand
+/// are two balances: forces in one direction do pay for another, as in an isotropic spring they must. Where
+/// torque is driven too, a balance below zero is paid from the other: a nut that is turned pulls the hand
 /// along its axis, and that is no energy that was made.
 ///
-/// A handle whose rotation is sensed but cannot be driven gets no torque; its ledger of rotation stays empty.
+/// A handle whose rotation is sensed but cannot be driven gets no torque; its balance of rotation stays zero.
 /// Cost: one rotation vector and two dozen products. No clock, no allocation; the device's samples are all it
 /// sees.
 
@@ -36,11 +36,11 @@ struct PortSettings {
   double damping_Nms_per_rad = 0.0;        ///< [N m s/rad]
   double max_injected_Ns_per_m = 0.0;      ///< most that the controller adds; 0: it only watches [N s/m]
   double max_injected_Nms_per_rad = 0.0;   ///< [N m s/rad]
-  double credit_J = 1e-3;                  ///< bounds of the ledger of translation [J]
+  double credit_J = 1e-3;                  ///< bounds of the balance of translation [J]
   double credit_turning_J = 1e-4 /* J */;  ///< ... and of rotation [J]
 };
 
-/// Work that has passed one half of the port since the start; unlike the ledger never cut [J].
+/// Work that has passed one half of the port since the start; unlike the balance never cut [J].
 struct EnergyTotals {
   double from_hand_J = 0.0;  ///< that the hand put in, moving against the wrench [J]
   double to_hand_J = 0.0;    ///< that it was given, moved along by the wrench [J]
@@ -48,11 +48,11 @@ struct EnergyTotals {
 };
 
 struct PortState {
-  double ledger_J = 0.0;          ///< of translation; negative: energy was made [J]
-  double ledger_turning_J = 0.0;  ///< of rotation [J]
-  double bodies_J = 0.0;          ///< energy of the scene's moving bodies in the last frame [J]
-  Pose X_DH;                      ///< of the last good sample [m]
-  bool known = false;             ///< there has been one
+  double energy_balance_J = 0.0;          ///< of translation; negative: energy was made [J]
+  double energy_balance_turning_J = 0.0;  ///< of rotation [J]
+  double bodies_J = 0.0;                  ///< energy of the scene's moving bodies in the last frame [J]
+  Pose X_DH;                              ///< of the last good sample [m]
+  bool known = false;                     ///< there has been one
   EnergyTotals total, total_turning;
   Wrench damper;  ///< the controller's part of the last wrench, axes of D, at the handle [N, N m]
 };
@@ -67,12 +67,12 @@ struct PortInput {
 };
 
 struct PortReport {
-  double ledger_J = 0.0;              ///< [J]
-  double ledger_turning_J = 0.0;      ///< [J]
-  double injected_Ns_per_m = 0.0;     ///< damping added in this frame [N s/m]
-  double injected_Nms_per_rad = 0.0;  ///< [N m s/rad]
-  EnergyTotals total;                 ///< of translation
-  EnergyTotals total_turning;         ///< of rotation
+  double energy_balance_J = 0.0;          ///< [J]
+  double energy_balance_turning_J = 0.0;  ///< [J]
+  double injected_Ns_per_m = 0.0;         ///< damping added in this frame [N s/m]
+  double injected_Nms_per_rad = 0.0;      ///< [N m s/rad]
+  EnergyTotals total;                     ///< of translation
+  EnergyTotals total_turning;             ///< of rotation
 };
 
 /// The wrench that makes no energy as far as the settings allow. A sample that is invalid or implausible is

@@ -13,7 +13,7 @@
 namespace tactum {
 namespace {
 
-constexpr unsigned long kTimerSlack_ns = 1;        // the kernel's default is 50 us
+constexpr unsigned long kWakeUpTolerance_ns = 1;   // the kernel's default is 50 us
 constexpr std::size_t kStackToTouch = 256 * 1024;  // bytes; the deepest frame uses a few KB
 constexpr std::size_t kPage = 4096;
 
@@ -67,8 +67,8 @@ LoopPrivileges acquire_privileges(const RealtimeSettings& settings) {
   } else {
     got.sentences.push_back("memory not locked: not asked for");
   }
-  got.timer_slack = prctl(PR_SET_TIMERSLACK, kTimerSlack_ns, 0, 0, 0) == 0;
-  got.sentences.push_back(got.timer_slack ? "timer slack: 1 ns" : "timer slack: the system's default");
+  got.wake_up_tolerance = prctl(PR_SET_TIMERSLACK, kWakeUpTolerance_ns, 0, 0, 0) == 0;
+  got.sentences.push_back(got.wake_up_tolerance ? "timer slack: 1 ns" : "timer slack: the system's default");
   touch_stack();
   return got;
 }

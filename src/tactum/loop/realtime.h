@@ -10,7 +10,7 @@ namespace tactum {
 struct LoopPrivileges {
   bool realtime = false;               ///< scheduled before ordinary threads (SCHED_FIFO)
   bool memory_locked = false;          ///< no page fault waits for a disk
-  bool timer_slack = false;            ///< the kernel does not gather our wake-ups with others
+  bool wake_up_tolerance = false;      ///< the kernel does not gather our wake-ups with others
   std::vector<std::string> sentences;  ///< what was got, and the cure for what was not
 };
 

@@ -186,9 +186,9 @@ std::array<double, QpCone::kEdges> SmallQp::missing(const QpCone& cone) const no
   return by;
 }
 
-/// A row that is missed by most, if any is by more than the slack.
+/// A row that is missed by most, if any is by more than the tolerance.
 bool SmallQp::most_broken(Index& worst) noexcept {
-  double most = problem_.slack;
+  double most = problem_.tolerance;
   bool found = false;
   const auto compare = [&](Index number, double by) {
     if (!(by > most)) return;
@@ -199,13 +199,13 @@ bool SmallQp::most_broken(Index& worst) noexcept {
   const auto look_at_row = [&](Index row) {
     const double by = missing(problem_.rows[row]);
     compare(row, by);
-    return by > problem_.slack;
+    return by > problem_.tolerance;
   };
   const auto look_at_cone = [&](Index cone) {
     const std::array<double, QpCone::kEdges> by = missing(problem_.cones[cone]);
     const Index worst_edge = static_cast<Index>(std::max_element(by.begin(), by.end()) - by.begin());
     compare(problem_.rows.size() + cone * QpCone::kEdges + worst_edge, by[worst_edge]);
-    return by[worst_edge] > problem_.slack;
+    return by[worst_edge] > problem_.tolerance;
   };
   for (const std::uint32_t row : broken_rows_) look_at_row(row);
   for (const std::uint32_t cone : broken_cones_) look_at_cone(cone);

@@ -70,7 +70,7 @@ struct QpProblem {
   std::size_t unknowns = 0;       ///< at most kMostUnknowns
   std::span<const QpRow> rows;    ///< any number
   std::span<const QpCone> cones;  ///< any number
-  double slack = 0.0;             ///< a row is kept when it is missed by no more than this
+  double tolerance = 0.0;         ///< a row is kept when it is missed by no more than this
 
   std::size_t size() const noexcept { return rows.size() + cones.size() * QpCone::kEdges; }
   QpRow row(std::size_t number) const noexcept;

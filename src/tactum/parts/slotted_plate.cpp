@@ -40,10 +40,10 @@ struct Cell {
   /// Where the ray from `from`, on the lower side, leaves the cell.
   Vec2 exit(const Vec2& from, const Vec2& through) const {
     const Vec2 ray = through - from;
-    double reach = ray.y() > 0.0 ? (high - from.y()) / ray.y() : 1e300;
-    if (ray.x() > 0.0) reach = std::min(reach, (right - from.x()) / ray.x());
-    if (ray.x() < 0.0) reach = std::min(reach, (left - from.x()) / ray.x());
-    return from + reach * ray;
+    double length = ray.y() > 0.0 ? (high - from.y()) / ray.y() : 1e300;
+    if (ray.x() > 0.0) length = std::min(length, (right - from.x()) / ray.x());
+    if (ray.x() < 0.0) length = std::min(length, (left - from.x()) / ray.x());
+    return from + length * ray;
   }
 };
 

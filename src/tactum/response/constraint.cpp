@@ -9,7 +9,7 @@
 #include "tactum/response/constraint_trial.h"
 #include "tactum/response/field_pull.h"
 #include "tactum/response/free_bodies.h"
-#include "tactum/response/held_part.h"
+#include "tactum/response/grasped_part.h"
 #include "tactum/response/momentum.h"
 #include "tactum/response/waiting.h"
 
@@ -23,7 +23,7 @@ constexpr int kSlipRounds = 6;
 /// The trusted length after a step, in lengths of that step.
 constexpr double kTrustGrowth = 2.0;
 /// The tolerance of contact determination is so much more than the trusted length, in skins.
-constexpr double kReachMargin = 4.0;
+constexpr double kBoundMargin = 4.0;
 /// A part whose steps have been refused for so long is felt where it stands, not where the forces would
 /// have it: what is felt would be the same however far the hand goes away.
 constexpr double kStands_s = 0.002;
@@ -32,22 +32,22 @@ constexpr double kStands_s = 0.002;
 void add_bodies(bool at_rest, ConstraintStep& step) {
   ConstraintProblem& problem = step.own.constraint.problem;
   problem.clear();
-  const int held = step.held.body;
+  const int grasped = step.grasped.body;
   bool room = true;
-  if (held >= 0) {
-    const Pose& X_WB = step.bodies.X_WB[Index(held)];
+  if (grasped >= 0) {
+    const Pose& X_WB = step.bodies.X_WB[Index(grasped)];
     Vec6 wanted = Vec6::Zero();
     step.own.constraint.wanted = wanted;
     if (!at_rest) {
       step.own.constraint.wanted = wanted_by_hand(step);
       wanted = with_load(step, step.own.constraint.wanted);
     }
-    room &= problem.add_held(held, step.world.bodies[Index(held)], X_WB, X_WB * step.held.X_BH.p,
-                             step_metric(step.settings.coupling, step.held, step.dt_s), wanted);
+    room &= problem.add_grasped(grasped, step.world.bodies[Index(grasped)], X_WB, X_WB * step.grasped.X_BH.p,
+                                step_metric(step.settings.coupling, step.grasped, step.dt_s), wanted);
   }
   for (Index i = 0; i < step.world.bodies.size(); ++i) {
     const int b = static_cast<int>(i);
-    if (b == held || !step.own.free.near_held[i]) continue;
+    if (b == grasped || !step.own.free.near_grasped[i]) continue;
     const Vec6 on = at_rest ? Vec6(Vec6::Zero()) : to_vector(step.bodies.V_WB[i] * step.dt_s);
     room &= problem.add_free(b, step.world.bodies[i], step.bodies.X_WB[i], on, step.dt_s);
   }
@@ -65,7 +65,7 @@ bool solved(const QpAnswer& answer, FrameReport& report) {
 using RowNames = StaticVector<std::uint64_t, kMostUnknowns>;
 
 /// The names of the contact rows that hold in the last answer.
-void note_held(const ConstraintState& c, RowNames& names) {
+void note_active_rows(const ConstraintState& c, RowNames& names) {
   names.clear();
   for (const QpActive& active : c.problem.answer().active) {
     const Index row = Index(active.row) - c.rows.first;
@@ -93,7 +93,7 @@ bool solve_on(const FrameSettings& settings, ConstraintProblem& problem, FrameRe
 /// Begins with what held in the last frame while every patch stuck, if any did. One body has so few rows that
 /// to go on from the answer without friction costs no more.
 void begin_sticking(ConstraintState& c) {
-  if (c.problem.movers().size() == 1) return;
+  if (c.problem.bodies().size() == 1) return;
   StaticVector<int, kMostUnknowns> rows = rows_of(c.warm_start.sticking, c.rows.first, c);
   const Index of_contacts = rows.size();
   c.friction.rows_that_stuck(rows);
@@ -115,7 +115,7 @@ bool solve_sliding(const FrameSettings& settings, ConstraintState& c, FrameRepor
       return solve_on(settings, c.problem, report);
     }
     if (round == 0) {
-      note_held(c, c.warm_start.sticking);
+      note_active_rows(c, c.warm_start.sticking);
       c.friction.note_sticking(c.problem);
     }
     if (!c.friction.let_slip(c.skin_m, c.problem)) break;
@@ -126,7 +126,7 @@ bool solve_sliding(const FrameSettings& settings, ConstraintState& c, FrameRepor
 /// Keeps what the answer says of forces: impulses, the rows that hold, the wrench at the handle.
 void keep_forces(ConstraintStep& step) {
   ConstraintState& c = step.own.constraint;
-  note_held(c, c.warm_start.in_the_end);
+  note_active_rows(c, c.warm_start.in_the_end);
   for (ContactRow& row : own_rows(step)) row.impulse = 0.0;
   for (const QpActive& active : c.problem.answer().active) {
     const Index row = Index(active.row) - c.rows.first;
@@ -134,25 +134,25 @@ void keep_forces(ConstraintStep& step) {
       step.own.contact_rows.rows[row].impulse = active.multiplier * step.dt_s;
   }
   step.report.active_constraints = static_cast<int>(c.warm_start.in_the_end.size());
-  feel(c.problem.displacement_at_centre(c.problem.movers().front()), step);
+  feel(c.problem.displacement_at_centre(c.problem.bodies().front()), step);
 }
 
-/// The farthest way of a point of the body in the last answer [m].
-double way_of(const ConstraintStep& step, const Mover& mover) {
-  const Vec6 x = step.own.constraint.step_problem().displacement(mover.body);
-  return x.head<3>().norm() + x.tail<3>().norm() * step.radius_m[Index(mover.body)];
+/// The farthest that a point of the body travels in the last answer [m].
+double travel_of(const ConstraintStep& step, const ProblemBody& problem_body) {
+  const Vec6 x = step.own.constraint.step_problem().displacement(problem_body.body);
+  return x.head<3>().norm() + x.tail<3>().norm() * step.radius_m[Index(problem_body.body)];
 }
 
 /// The share of the answer's step that is trusted.
 double trusted_share(const ConstraintStep& step) {
   const ConstraintState& c = step.own.constraint;
   double share = 1.0;
-  for (const Mover& mover : c.step_problem().movers()) {
-    const double way = way_of(step, mover);
-    const double trusted = step.own.reach[Index(mover.body)] - kReachMargin * c.skin_m;
-    if (way * share > trusted) share = trusted / way;
-    if (mover.body != step.held.body) continue;
-    const double turn = c.step_problem().displacement(mover.body).tail<3>().norm();
+  for (const ProblemBody& problem_body : c.step_problem().bodies()) {
+    const double travel = travel_of(step, problem_body);
+    const double trusted = step.own.motion_bound[Index(problem_body.body)] - kBoundMargin * c.skin_m;
+    if (travel * share > trusted) share = trusted / travel;
+    if (problem_body.body != step.grasped.body) continue;
+    const double turn = c.step_problem().displacement(problem_body.body).tail<3>().norm();
     if (turn * share > step.settings.constraint.max_turn_rad)
       share = step.settings.constraint.max_turn_rad / turn;
   }
@@ -163,9 +163,9 @@ double trusted_share(const ConstraintStep& step) {
 bool open_after(double share, ConstraintStep& step) {
   ConstraintState& c = step.own.constraint;
   c.trial.X_WB = step.bodies.X_WB;  // same size: nothing is allocated
-  for (const Mover& mover : c.step_problem().movers()) {
-    const Index i = Index(mover.body);
-    const Twist displacement = to_twist(c.step_problem().displacement(mover.body) * share);
+  for (const ProblemBody& problem_body : c.step_problem().bodies()) {
+    const Index i = Index(problem_body.body);
+    const Twist displacement = to_twist(c.step_problem().displacement(problem_body.body) * share);
     c.trial.X_WB[i] =
         constrained_pose(step.world.bodies[i], advanced(step.bodies.X_WB[i], displacement, 1.0));
     if (!c.trial.X_WB[i].finite()) return false;
@@ -189,7 +189,7 @@ void restore(ConstraintStep& step) {
   bool tight = false;
   for (Index p = 0; p < c.trial.gap_now.size(); ++p)
     tight |= step.own.free.patch_asked[p] && c.trial.gap_now[p] < 0.5 * c.skin_m;
-  if (!tight || step.gaps.blocked(step.held.body)) return;
+  if (!tight || step.gaps.blocked(step.grasped.body)) return;
   add_bodies(true, step);
   c.rows.first = add_contact_rows(true, c.problem, step);
   begin(rows_of(c.warm_start.in_the_end, c.rows.first, c), c.problem);
@@ -210,7 +210,7 @@ bool find_forces(ConstraintStep& step) {
   c.friction.clear();
   begin(rows_of(c.warm_start.without_friction, c.rows.first, c), c.problem);
   bool found = solve_on(step.settings, c.problem, step.report);
-  note_held(c, c.warm_start.without_friction);
+  note_active_rows(c, c.warm_start.without_friction);
   if (found && c.friction.begin(step.world, step.settings.friction, own_rows(step), step.patches,
                                 step.bodies.X_WB, c.skin_m, c.rows.first, c.problem)) {
     begin_sticking(c);
@@ -238,19 +238,19 @@ bool find_again(ConstraintStep& step) {
 /// Goes where the hand wants as far as everything stays open; returns the share of the answer that was taken.
 double advance(ConstraintStep& step) {
   if (!find_forces(step)) return 0.0;
-  if (step.gaps.blocked(step.held.body)) return 0.0;
+  if (step.gaps.blocked(step.grasped.body)) return 0.0;
   double share = 0.0;
   for (int round = 0; round <= kFeedbacks; ++round) {
     if (round > 0) {
       if (!(share > 0.0)) return 0.0;  // nothing may move: no exact gap says more
       ++step.report.validation_retries;
-      feed_back(share, step);
+      correct_rows(share, step);
       if (!find_again(step)) break;
     }
     share = trusted_share(step);
     if (open_after(share, step)) return share;
   }
-  for (int halving = 0; halving < kHalvings; ++halving) {
+  for (int halving = 0; halving < kBacktracks; ++halving) {
     ++step.report.validation_retries;
     share *= 0.5;
     if (open_after(share, step)) return share;
@@ -260,11 +260,11 @@ double advance(ConstraintStep& step) {
 
 /// The island of the held part: its bodies' velocities are what they did, but for what only opened a gap,
 /// which no force did. Returns the share of the answer that was taken.
-double move_held_island(ConstraintStep& step) {
+double move_grasped_island(ConstraintStep& step) {
   ConstraintState& c = step.own.constraint;
   step.own.free.patch_asked.clear();
   for (const ContactPatch& patch : step.patches)
-    step.own.free.patch_asked.push_back(step.own.free.of_held(patch) ? 1 : 0);
+    step.own.free.patch_asked.push_back(step.own.free.of_grasped(patch) ? 1 : 0);
   restore(step);
   const double share = advance(step);
   c.trust.consecutive_rejections = share > 0.0 ? 0 : c.trust.consecutive_rejections + 1;
@@ -273,23 +273,23 @@ double move_held_island(ConstraintStep& step) {
   c.friction.end(step.world, own_rows(step), step.patches, c.rows.first, c.problem, step.bodies.X_WB);
   const std::vector<Pose>& before = share > 0.0 ? c.trial.X_WB : step.bodies.X_WB;  // take_trial swaps them
   for (Index i = 0; i < step.world.bodies.size(); ++i)
-    if (step.own.free.near_held[i])
+    if (step.own.free.near_grasped[i])
       step.bodies.V_WB[i] = twist_between(before[i], step.bodies.X_WB[i], step.dt_s);
   return share;
 }
 
 /// The length that is trusted in the next frame, from what the held part's island did in this one.
-void trust_step(ConstraintStep& step) {
-  double way = 0.0;
-  for (Index i = 0; i < step.own.free.near_held.size(); ++i) {
-    if (!step.own.free.near_held[i]) continue;
+void update_trust_length(ConstraintStep& step) {
+  double travel = 0.0;
+  for (Index i = 0; i < step.own.free.near_grasped.size(); ++i) {
+    if (!step.own.free.near_grasped[i]) continue;
     const Twist moved = twist_between(step.X_WB_start[i], step.bodies.X_WB[i], 1.0);
-    way = std::max(way, moved.v.norm() + moved.w.norm() * step.radius_m[i]);
+    travel = std::max(travel, moved.v.norm() + moved.w.norm() * step.radius_m[i]);
   }
   const Constraint& limits = step.settings.constraint;
   const double most = step.work.minima > 0 ? limits.max_step_on_surfaces_m : limits.max_step_m;
   step.own.constraint.trust.length_m =
-      std::clamp(kTrustGrowth * way, std::min(limits.least_step_m, most), most);
+      std::clamp(kTrustGrowth * travel, std::min(limits.least_step_m, most), most);
 }
 
 /// The points at which something pushes the body: corners, and the centre of a patch whose load friction's
@@ -312,38 +312,39 @@ int pushing_points(std::span<const ContactRow> corners, int body, const Constrai
 
 /// The contacts as they push: normal forces of corners, and of friction the edges of its cones.
 void report_rows(ConstraintStep& step) {
-  const int held = step.held.body;
+  const int grasped = step.grasped.body;
   const ConstraintState& c = step.own.constraint;
   if (c.rows.shades) exchange_normals(step);
   step.report.contact_points = static_cast<int>(c.rows.names.size());
   use_of_friction(step.world, c.friction, step.patches, c.rows.first, c.problem, own_rows(step),
                   step.own.constraint.friction_uses);
   step.report.friction = sum_of(c.friction_uses);
-  step.report.held_contact_points =
-      pushing_points({step.own.contact_rows.rows.data(), c.rows.names.size()}, held, c);
+  step.report.grasped_contact_points =
+      pushing_points({step.own.contact_rows.rows.data(), c.rows.names.size()}, grasped, c);
   Vec3 torque = Vec3::Zero();
-  Vec3 origin = held < 0 ? Vec3(Vec3::Zero()) : step.X_WB_start[Index(held)].p;
-  if (step.own.free.held_island >= 0) {
-    origin = c.problem.movers().front().origin;
-    torque = c.friction.add_forces(held, step.dt_s, c.problem, step.own.contact_rows.rows);
+  Vec3 origin = grasped < 0 ? Vec3(Vec3::Zero()) : step.X_WB_start[Index(grasped)].p;
+  if (step.own.free.grasped_island >= 0) {
+    origin = c.problem.bodies().front().origin;
+    torque = c.friction.add_forces(grasped, step.dt_s, c.problem, step.own.contact_rows.rows);
   }
-  if (held < 0) return;
-  step.report.restoring = contact_wrench(step.own.contact_rows.rows, held, origin, step.dt_s);
+  if (grasped < 0) return;
+  step.report.restoring = contact_wrench(step.own.contact_rows.rows, grasped, origin, step.dt_s);
   step.report.restoring.t += torque;
 }
 
 }  // namespace
 
-void trusted_reach(const MotionInput& input, const WorldState& bodies, ConstraintMemory& own) noexcept {
+void bound_constrained_motion(const MotionInput& input, const WorldState& bodies,
+                              ConstraintMemory& own) noexcept {
   const ConstraintState& c = own.constraint;
   const double pull = input.world.gravity_W.norm() * input.dt_s;
-  for (Index i = 0; i < own.reach.size(); ++i) {
-    own.reach[i] = kReachMargin * c.skin_m;
+  for (Index i = 0; i < own.motion_bound.size(); ++i) {
+    own.motion_bound[i] = kBoundMargin * c.skin_m;
     if (!input.world.bodies[i].moves()) continue;
     const Twist& V = bodies.V_WB[i];
-    const bool held = static_cast<int>(i) == input.held.body;
-    if (!held) own.reach[i] += (V.v.norm() + pull + V.w.norm() * input.radius_m[i]) * input.dt_s;
-    if (held || own.free.near_held[i]) own.reach[i] += c.trust.length_m;
+    const bool grasped = static_cast<int>(i) == input.grasped.body;
+    if (!grasped) own.motion_bound[i] += (V.v.norm() + pull + V.w.norm() * input.radius_m[i]) * input.dt_s;
+    if (grasped || own.free.near_grasped[i]) own.motion_bound[i] += c.trust.length_m;
   }
 }
 
@@ -355,20 +356,20 @@ void respond_constrained(ConstraintStep& step) noexcept {
   c.trial.gap_least.resize(c.trial.gap_now.size());
   c.trial.gap_answer.resize(c.trial.gap_now.size());
 
-  step.own.free.others = others_move(step.world, step.held.body);
-  let_wait(step);
+  step.own.free.others = others_move(step.world, step.grasped.body);
+  defer_bodies(step);
   find_islands(step);
   begin_balance(step);
   make_corner_rows(step);
-  strike(step);
+  apply_impacts(step);
   move_free_bodies(step);
   double share = 1.0;  // of the held island's step
-  if (step.own.free.held_island >= 0) {
-    share = move_held_island(step);
+  if (step.own.free.grasped_island >= 0) {
+    share = move_grasped_island(step);
   } else {
     c.friction.forget();
   }
-  trust_step(step);
+  update_trust_length(step);
   end_turning(step);
   end_balance(share == 1.0 && !c.rows.shades, step);
   go_on(step);

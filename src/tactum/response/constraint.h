@@ -15,8 +15,9 @@
 namespace tactum {
 
 /// How far points may move in the frame: the trusted length for the held part and, on top of their own way,
-/// for what it may push. Fills own.reach.
-void trusted_reach(const MotionInput& input, const WorldState& bodies, ConstraintMemory& own) noexcept;
+/// for what it may push. Fills own.motion_bound.
+void bound_constrained_motion(const MotionInput& input, const WorldState& bodies,
+                              ConstraintMemory& own) noexcept;
 
 /// Moves everything that moves, the held part's island last. Fills the contact rows, the felt wrench and
 /// the report's response fields.

@@ -13,24 +13,24 @@ ConstraintResponse::ConstraintResponse(const World& world, const FrameSettings& 
 std::span<const double> ConstraintResponse::bound_motion(const MotionInput& input,
                                                          WorldState& bodies) noexcept {
   pull_free_bodies(input, bodies);
-  trusted_reach(input, bodies, memory_);
-  return memory_.reach;
+  bound_constrained_motion(input, bodies, memory_);
+  return memory_.motion_bound;
 }
 
 void ConstraintResponse::step(const StepInput& input, GapOracle& gaps, WorldState& bodies,
                               FrameReport& report) noexcept {
-  if (input.held.body != grasped_last_) {
+  if (input.grasped.body != grasped_last_) {
     memory_.constraint.felt = {};
     memory_.impulses = {};
   }
-  grasped_last_ = input.held.body;
+  grasped_last_ = input.grasped.body;
   ConstraintStep step{input, gaps, bodies, memory_, report};
   respond_constrained(step);
 }
 
 Wrench ConstraintResponse::felt(const StepInput& input, const WorldState& /*bodies*/) noexcept {
   const Wrench pulses = memory_.impulses.next();
-  return input.held.body < 0 ? Wrench{} : memory_.constraint.felt + pulses;
+  return input.grasped.body < 0 ? Wrench{} : memory_.constraint.felt + pulses;
 }
 
 }  // namespace tactum

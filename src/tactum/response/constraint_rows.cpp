@@ -56,9 +56,9 @@ struct RowMaker {
       return;  // only watched
     ConstraintState& c = step.own.constraint;
     ContactRows& out = step.own.contact_rows;
-    const int other = patch.body_a == step.held.body   ? patch.body_b
-                      : patch.body_b == step.held.body ? patch.body_a
-                                                       : -1;
+    const int other = patch.body_a == step.grasped.body   ? patch.body_b
+                      : patch.body_b == step.grasped.body ? patch.body_a
+                                                          : -1;
     const Pose& X_WA = step.bodies.X_WB[Index(patch.body_a)];
     const Pose X_AB = relative_pose(X_WA, step.bodies.X_WB[Index(patch.body_b)]);
     PatchCorners corners;
@@ -120,10 +120,10 @@ void make_corner_rows(ConstraintStep& step) noexcept {
   const std::span<const ContactPatch> patches = step.patches;
   const RowMaker maker{step};
   for (Index p = 0; p < patches.size() && !out.full; ++p)
-    if (step.own.free.of_held(patches[p])) maker.add(patches[p], static_cast<int>(p), true);
+    if (step.own.free.of_grasped(patches[p])) maker.add(patches[p], static_cast<int>(p), true);
   c.rows.own = out.rows.size();
   for (Index p = 0; p < patches.size() && !out.full; ++p)
-    if (!step.own.free.of_held(patches[p])) maker.add(patches[p], static_cast<int>(p), false);
+    if (!step.own.free.of_grasped(patches[p])) maker.add(patches[p], static_cast<int>(p), false);
 }
 
 std::span<ContactRow> own_rows(ConstraintStep& step) noexcept {
@@ -172,7 +172,7 @@ double overstated_at_trial(std::span<const ContactRow> rows_of_patch, const Cons
   return std::max(0.0, least - step.own.constraint.trial.gap[Index(rows_of_patch.front().patch)]);
 }
 
-void feed_back(double share, ConstraintStep& step) noexcept {
+void correct_rows(double share, ConstraintStep& step) noexcept {
   ConstraintState& c = step.own.constraint;
   ConstraintProblem& problem = c.step_problem();
   const Index first_row = c.rows.shades ? c.rows.first_of_positions : c.rows.first;

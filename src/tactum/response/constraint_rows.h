@@ -30,7 +30,7 @@ void exchange_normals(ConstraintStep& step) noexcept;
 // How a step is brought to a pose where everything is open: exact gaps are fed back so often, then the step
 // is halved so often.
 inline constexpr int kFeedbacks = 2;
-inline constexpr int kHalvings = 3;
+inline constexpr int kBacktracks = 3;
 
 /// The gap of a row at the trial: its points go with their bodies, its normal with the face that makes it
 /// [m].
@@ -41,6 +41,6 @@ double gap_at_trial(const ContactRow& row, const ConstraintStep& step) noexcept;
 double overstated_at_trial(std::span<const ContactRow> rows_of_patch, const ConstraintStep& step) noexcept;
 
 /// Second-order correction: what the trial's gaps differ from what the rows said is added to the rows.
-void feed_back(double share, ConstraintStep& step) noexcept;
+void correct_rows(double share, ConstraintStep& step) noexcept;
 
 }  // namespace tactum

@@ -33,7 +33,7 @@ FreeBodies::FreeBodies(const World& world, const FrameSettings& settings)
     : islands(world),
       resting(Index(settings.budget.max_contact_points), world.bodies.size()),
       momentum(world),
-      near_held(world.bodies.size(), 0),
+      near_grasped(world.bodies.size(), 0),
       w_start(world.bodies.size(), Vec3::Zero()),
       w_free(world.bodies.size(), Vec3::Zero()),
       share(world.bodies.size(), 1.0),
@@ -46,7 +46,7 @@ FreeBodies::FreeBodies(const World& world, const FrameSettings& settings)
 Waiting::Waiting(const World& world, const FrameSettings& settings)
     : waits(world.bodies.size(), 0),
       waited(world.bodies.size(), 0),
-      way(world.bodies.size(), 0.0),
+      travel(world.bodies.size(), 0.0),
       X_rest(world.bodies.size()),
       rested(world.bodies.size(), 0),
       contacts_at_rest(world.bodies.size(), 0),
@@ -75,6 +75,6 @@ ConstraintMemory::ConstraintMemory(const World& world, const FrameSettings& sett
       sleep(world),
       contact_rows(settings.budget.capacity.patches, Index(settings.budget.max_contact_points)),
       mobility(world.bodies.size(), Mobility::Zero()),
-      reach(world.bodies.size(), 0.0) {}
+      motion_bound(world.bodies.size(), 0.0) {}
 
 }  // namespace tactum

@@ -31,7 +31,7 @@ struct WarmStart {
 struct CornerRows {
   std::size_t own = 0;                  ///< the first so many contact rows are the island's
   std::size_t first = 0;                ///< the first of them in the problem of the forces
-  std::size_t first_of_positions = 0;   ///< ... and in the position problem, which has no rows of brakes
+  std::size_t first_of_positions = 0;   ///< ... and in the position problem, without rows of joint friction
   bool bent = false;                    ///< some normal is bent by shading
   bool shades = false;                  ///< ... so the step is the answer of the position problem
   ReservedVector<Vec3> shaded;          ///< normals of the own rows; empty without shading [-]
@@ -99,15 +99,15 @@ struct FreeBodies {
   Islands islands;
   RestingContact resting;
   Momentum momentum;
-  int held_island = -1;         ///< the island that constraint.h answers for; -1: none
-  bool held_here = false;       ///< the held part's island had no room there
-  bool others = false;          ///< some body moves by itself
-  bool alone = true;            ///< nothing but the held part's island moves
-  std::vector<char> near_held;  ///< of each body: in the held part's island in the last frame
+  int grasped_island = -1;         ///< the island that constraint.h answers for; -1: none
+  bool grasped_here = false;       ///< the held part's island had no room there
+  bool others = false;             ///< some body moves by itself
+  bool alone = true;               ///< nothing but the held part's island moves
+  std::vector<char> near_grasped;  ///< of each body: in the held part's island in the last frame
 
   /// Whether a patch belongs to the island that constraint.h answers for.
-  bool of_held(const ContactPatch& patch) const noexcept {
-    return held_island >= 0 && islands.of_contact(patch.body_a, patch.body_b) == held_island;
+  bool of_grasped(const ContactPatch& patch) const noexcept {
+    return grasped_island >= 0 && islands.of_contact(patch.body_a, patch.body_b) == grasped_island;
   }
 
   // Scratch of one frame, one entry per body, or per patch.
@@ -126,7 +126,7 @@ struct Waiting {
 
   std::vector<char> waits;            ///< in this frame
   std::vector<int> waited;            ///< how many frames on end [-]
-  std::vector<double> way;            ///< of the last step it took or tried [m]
+  std::vector<double> travel;         ///< of the last step it took or tried [m]
   std::vector<Pose> X_rest;           ///< the place it has hardly left
   std::vector<int> rested;            ///< frames that it moved in since [-]
   std::vector<int> contacts_at_rest;  ///< of those that sleep; 0: awake [-]
@@ -163,9 +163,9 @@ struct ConstraintMemory {
   Waiting waiting;             ///< waiting.h
   Sleep sleep;                 ///< sleep.h
   ContactRows contact_rows;
-  ImpulseDisplay impulses;         ///< blows on the held part that are being felt
-  std::vector<Mobility> mobility;  ///< by body; scratch of one frame
-  std::vector<double> reach;       ///< by body: how far it may move [m]
+  ImpulseDisplay impulses;           ///< blows on the held part that are being felt
+  std::vector<Mobility> mobility;    ///< by body; scratch of one frame
+  std::vector<double> motion_bound;  ///< by body: how far it may move [m]
 };
 
 /// One step while it is made: its inputs, what it may ask, and what it changes.

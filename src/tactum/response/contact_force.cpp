@@ -97,10 +97,10 @@ void reduce_to_four(std::vector<FacetPoint>& points) {
   const Vec3 axis[2] = {c * u + s * v, c * v - s * u};
   points.clear();
   for (int i = 0; i < 2; ++i) {
-    const double reach = std::sqrt(2.0 * std::max(variance[i], 0.0));
-    const double rise = variance[i] > tolerances::kPointArea_m2 ? slope[i] / variance[i] * reach : 0.0;
-    points.push_back({mean + reach * axis[i], normal, gap + rise, 0.25});
-    points.push_back({mean - reach * axis[i], normal, gap - rise, 0.25});
+    const double spread = std::sqrt(2.0 * std::max(variance[i], 0.0));
+    const double rise = variance[i] > tolerances::kPointArea_m2 ? slope[i] / variance[i] * spread : 0.0;
+    points.push_back({mean + spread * axis[i], normal, gap + rise, 0.25});
+    points.push_back({mean - spread * axis[i], normal, gap - rise, 0.25});
   }
 }
 

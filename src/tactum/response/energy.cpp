@@ -4,13 +4,13 @@
 
 namespace tactum {
 
-double bodies_energy(const World& world, const WorldState& bodies, int held) noexcept {
+double bodies_energy(const World& world, const WorldState& bodies, int grasped) noexcept {
   double energy_J = 0.0;
   for (std::size_t i = 0; i < world.bodies.size(); ++i) {
     const Body& body = world.bodies[i];
     if (!body.moves()) continue;
     const Pose& X_WB = bodies.X_WB[i];
-    if (static_cast<int>(i) == held) {  // it has weight, but the hand does not feel its inertia
+    if (static_cast<int>(i) == grasped) {  // it has weight, but the hand does not feel its inertia
       energy_J -= body.mass_kg * world.gravity_W.dot(X_WB.p);
       continue;
     }
@@ -26,8 +26,8 @@ void add_stored_energy(const World& world, const Coupling& coupling, const World
                        const FrameReport& report, double field_work_J, double pending_J,
                        PortInput& port) noexcept {
   // What a field gives the held part is its own, as a falling weight's is; a vortex gives without end.
-  port.bodies_J = bodies_energy(world, bodies, report.held) - field_work_J;
-  if (report.held < 0) return;
+  port.bodies_J = bodies_energy(world, bodies, report.grasped_body) - field_work_J;
+  if (report.grasped_body < 0) return;
   const Twist stretch = twist_between(report.X_WH, report.X_WH_proxy, 1.0);
   port.spring_J = 0.5 * coupling.stiffness_N_per_m * stretch.v.squaredNorm();
   port.spring_J += pending_J;

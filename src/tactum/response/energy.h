@@ -1,5 +1,5 @@
 #pragma once
-/// What a scene has stored, for the ledger of the passivity stage: springs and moving bodies.
+/// What a scene has stored, for the balance of the passivity stage: springs and moving bodies.
 
 #include "tactum/loop/passivity.h"
 #include "tactum/response/frame_report.h"
@@ -9,7 +9,7 @@ namespace tactum {
 
 /// Kinetic energy of the bodies that move, and their height against gravity from the world's origin [J]. The
 /// held part weighs nothing.
-double bodies_energy(const World& world, const WorldState& bodies, int held) noexcept;
+double bodies_energy(const World& world, const WorldState& bodies, int grasped) noexcept;
 
 /// Fills the energies of the port's input, after the response: of the bodies, of the coupling's stretch
 /// between the hand and the held part, as the report has them, and of the impulses that are still to be felt

@@ -29,45 +29,45 @@ double stiffness_beside(const Coupling& coupling, const FieldLoad& load) {
 
 }  // namespace
 
-void find_field_load(const World& world, std::span<const Pose> X_WB, GraspedPart& held,
+void find_field_load(const World& world, std::span<const Pose> X_WB, GraspedPart& grasped,
                      FieldPull& pull) noexcept {
   if (world.fields.empty()) return;
   const FieldLoad before = pull.load;
-  const bool goes_on = held.body >= 0 && held.body == pull.body;
+  const bool goes_on = grasped.body >= 0 && grasped.body == pull.body;
   pull.load = {};
-  pull.body = held.body;
-  if (held.body < 0) return;
-  const Body& body = world.bodies[Index(held.body)];
-  const Pose& X_WB_now = X_WB[Index(held.body)];
-  pull.load = field_load(world.fields, body.field_points, X_WB_now, held.X_BH.p);
+  pull.body = grasped.body;
+  if (grasped.body < 0) return;
+  const Body& body = world.bodies[Index(grasped.body)];
+  const Pose& X_WB_now = X_WB[Index(grasped.body)];
+  pull.load = field_load(world.fields, body.field_points, X_WB_now, grasped.X_BH.p);
   if (goes_on) pull.given_J += 0.5 * work_over_step(pull.load.at_centre - before.at_centre, X_WB, pull);
   pull.X_WB_start = X_WB_now;
-  held.in_field = true;
-  held.field = pull.load;
+  grasped.in_field = true;
+  grasped.field = pull.load;
 }
 
 void add_field_work(std::span<const Pose> X_WB, FieldPull& pull) noexcept {
   if (pull.body >= 0) pull.given_J += work_over_step(pull.load.at_centre, X_WB, pull);
 }
 
-Wrench field_at_handle(const GraspedPart& held, std::span<const Pose> X_WB) noexcept {
-  if (!held.in_field) return {};
-  return moved(held.field.at_centre, X_WB[Index(held.body)].R * held.X_BH.p);
+Wrench field_at_handle(const GraspedPart& grasped, std::span<const Pose> X_WB) noexcept {
+  if (!grasped.in_field) return {};
+  return moved(grasped.field.at_centre, X_WB[Index(grasped.body)].R * grasped.X_BH.p);
 }
 
-HeldMetric step_metric(const Coupling& coupling, const GraspedPart& held, double dt_s) noexcept {
-  const HeldMetric metric = held_metric(coupling, dt_s);
-  const double needed = (1.0 + stiffness_beside(coupling, held.field)) / kOvershoot;
+GraspMetric step_metric(const Coupling& coupling, const GraspedPart& grasped, double dt_s) noexcept {
+  const GraspMetric metric = grasp_metric(coupling, dt_s);
+  const double needed = (1.0 + stiffness_beside(coupling, grasped.field)) / kOvershoot;
   return {std::max(metric.stiffness_N_per_m, coupling.stiffness_N_per_m * needed),
           std::max(metric.stiffness_Nm_per_rad, coupling.stiffness_Nm_per_rad * needed)};
 }
 
-Pose loaded_hand(const Coupling& coupling, const GraspedPart& held, const Pose& X_WB) noexcept {
-  if (!held.in_field) return held.X_WH;
-  const double stiffer = std::max(1.0, (1.0 + stiffness_beside(coupling, held.field)) / kOvershoot);
-  const Pose X_WH_proxy = X_WB * held.X_BH;
-  const Twist missing = twist_between(X_WH_proxy, held.X_WH, 1.0);
-  const Wrench load = moved(held.field.at_centre, X_WB.R * held.X_BH.p);
+Pose equilibrium_pose(const Coupling& coupling, const GraspedPart& grasped, const Pose& X_WB) noexcept {
+  if (!grasped.in_field) return grasped.X_WH;
+  const double stiffer = std::max(1.0, (1.0 + stiffness_beside(coupling, grasped.field)) / kOvershoot);
+  const Pose X_WH_proxy = X_WB * grasped.X_BH;
+  const Twist missing = twist_between(X_WH_proxy, grasped.X_WH, 1.0);
+  const Wrench load = moved(grasped.field.at_centre, X_WB.R * grasped.X_BH.p);
   const Twist step{(missing.v + load.f / coupling.stiffness_N_per_m) / stiffer,
                    (missing.w + load.t / coupling.stiffness_Nm_per_rad) / stiffer};
   return advanced(X_WH_proxy, step, 1.0);

@@ -30,21 +30,21 @@ struct FieldPull {
 
 /// Finds the load on the held body in this frame, and mends the work of the last step by what the field was
 /// at its end.
-void find_field_load(const World& world, std::span<const Pose> X_WB, GraspedPart& held,
+void find_field_load(const World& world, std::span<const Pose> X_WB, GraspedPart& grasped,
                      FieldPull& pull) noexcept;
 
 /// Adds the work of the load over the frame's step.
 void add_field_work(std::span<const Pose> X_WB, FieldPull& pull) noexcept;
 
 /// The load told at the handle, world axes.
-Wrench field_at_handle(const GraspedPart& held, std::span<const Pose> X_WB) noexcept;
+Wrench field_at_handle(const GraspedPart& grasped, std::span<const Pose> X_WB) noexcept;
 
 /// The coupling over one frame, at least as stiff as the load needs its step to be short.
-HeldMetric step_metric(const Coupling& coupling, const GraspedPart& held, double dt_s) noexcept;
+GraspMetric step_metric(const Coupling& coupling, const GraspedPart& grasped, double dt_s) noexcept;
 
 /// In the penalty response: the pose of the handle at which the coupling carries the load, or as far towards
 /// it as is safe. X_WB is the held body's.
-Pose loaded_hand(const Coupling& coupling, const GraspedPart& held, const Pose& X_WB) noexcept;
+Pose equilibrium_pose(const Coupling& coupling, const GraspedPart& grasped, const Pose& X_WB) noexcept;
 
 /// How steep the scene's fields are beside the coupling, in a sentence for people; empty without fields.
 std::string field_sentence(const World& world, const Coupling& coupling);

@@ -36,7 +36,7 @@ struct FrameReport {
   std::uint64_t index = 0;   ///< frames since the start
   std::uint32_t flags = 0;   ///< frame_flag
   std::uint32_t safety = 0;  ///< safety_flag
-  int held = -1;             ///< the body that is held; -1: none
+  int grasped_body = -1;     ///< the body that is held; -1: none
   Pose X_WH;                 ///< where the hand is [m]
   Pose X_WH_proxy;           ///< where the proxy would have it [m]
   Wrench
@@ -50,10 +50,10 @@ struct FrameReport {
   double min_distance_m = 0.0;  ///< smallest signed distance of the pairs in contact; 0 without contact [m]
   bool penetrating = false;     ///< some pair overlaps by more than its error bound
   double time_of_impact_s =
-      0.0;                      ///< smallest, from the start of the frame; the whole step without impact [s]
-  int contact_points = 0;       ///< rows of the contact problem
-  int held_contact_points = 0;  ///< ... that push the held part
-  int impacts = 0;              ///< pairs of bodies that hit each other, blow by blow (constraint response)
+      0.0;                 ///< smallest, from the start of the frame; the whole step without impact [s]
+  int contact_points = 0;  ///< rows of the contact problem
+  int grasped_contact_points = 0;  ///< ... that push the held part
+  int impacts = 0;  ///< pairs of bodies that hit each other, blow by blow (constraint response)
   int solver_iterations = 0;
   int active_constraints = 0;  ///< rows that hold the bodies (constraint response)
   int validation_tests = 0;    ///< exact tests of poses before they were taken

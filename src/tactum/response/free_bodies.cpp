@@ -9,7 +9,7 @@
 #include "tactum/response/coupling.h"
 #include "tactum/response/energy.h"
 #include "tactum/response/field_pull.h"
-#include "tactum/response/held_part.h"
+#include "tactum/response/grasped_part.h"
 #include "tactum/response/momentum.h"
 
 namespace tactum {
@@ -17,40 +17,42 @@ namespace {
 
 using Index = std::size_t;
 
-/// Blows in a frame, for every contact point and in all; what is left then is taken as rest, without
+/// Impacts in a frame, for every contact point and in all; what is left then is taken as rest, without
 /// restitution.
-constexpr int kBlowsAPoint = 8;
-constexpr int kMostBlows = 128;
+constexpr int kImpactsAPoint = 8;
+constexpr int kMostImpacts = 128;
 /// A gap below the skin opens by this share of what is missing in a frame.
 constexpr double kOpening = 0.1;
-/// After the halvings, how often those that are in the way of what stays may be found, before all stay.
+/// After the backtracking, how often those that are in the way of what stays may be found, before all stay.
 constexpr int kMostStops = 12;
 /// Tests of each gap of the held part's island that are kept for it.
-constexpr int kRoundsOfHeld = 4;
+constexpr int kRoundsOfGrasped = 4;
 
-/// The books of all blows; those on the held part told at the handle.
-class BlowsOnHeld final : public ImpactObserver {
+/// The sums of all impacts; those on the grasped part are given at the handle.
+class ImpactsOnGrasped final : public ImpactObserver {
  public:
-  BlowsOnHeld(int held, const Vec3& p_WH, Momentum& momentum)
-      : held_(held), p_WH_(p_WH), momentum_(momentum) {}
+  ImpactsOnGrasped(int grasped, const Vec3& p_WH, Momentum& momentum)
+      : grasped_(grasped), p_WH_(p_WH), momentum_(momentum) {}
   void hit(int body_a, int body_b, const Vec3& impulse, const Vec3& p_W) noexcept override {
     momentum_.give(body_a, body_b, impulse);
-    if (body_a != held_ && body_b != held_) return;
-    const Vec3 on_held = body_a == held_ ? impulse : Vec3(-impulse);
-    sum_ = sum_ + Wrench{on_held, (p_W - p_WH_).cross(on_held)};
+    if (body_a != grasped_ && body_b != grasped_) return;
+    const Vec3 on_grasped = body_a == grasped_ ? impulse : Vec3(-impulse);
+    sum_ = sum_ + Wrench{on_grasped, (p_W - p_WH_).cross(on_grasped)};
     any_ = true;
   }
   const Wrench* sum() const { return any_ ? &sum_ : nullptr; }
 
  private:
-  int held_;
+  int grasped_;
   Vec3 p_WH_;
   Momentum& momentum_;
   Wrench sum_;
   bool any_ = false;
 };
 
-bool is_held(const ConstraintStep& step, Index body) { return static_cast<int>(body) == step.held.body; }
+bool is_grasped(const ConstraintStep& step, Index body) {
+  return static_cast<int>(body) == step.grasped.body;
+}
 
 bool turns_freely(const Body& body) {
   return body.joint.kind == JointKind::kFree || body.joint.kind == JointKind::kBall;
@@ -66,25 +68,25 @@ Mat3 turning_inertia(const Body& body) {
 /// Whether move_free_bodies() moves a body.
 bool moves_here(const ConstraintStep& step, Index body) {
   if (!step.own.free.islands.moves(static_cast<int>(body))) return false;
-  return step.own.free.held_island < 0 ||
-         step.own.free.islands.of(static_cast<int>(body)) != step.own.free.held_island;
+  return step.own.free.grasped_island < 0 ||
+         step.own.free.islands.of(static_cast<int>(body)) != step.own.free.grasped_island;
 }
 
 /// The held part as one of the bodies: its coupling is what resists.
-void lend_held(ConstraintStep& step) {
-  const Index held = Index(step.held.body);
-  const Body& body = step.world.bodies[held];
-  const Pose& X_WB = step.bodies.X_WB[held];
-  const Vec3 arm = X_WB.R * step.held.X_BH.p;
-  const HeldMetric metric = step_metric(step.settings.coupling, step.held, step.dt_s);
+void treat_grasped_as_body(ConstraintStep& step) {
+  const Index grasped = Index(step.grasped.body);
+  const Body& body = step.world.bodies[grasped];
+  const Pose& X_WB = step.bodies.X_WB[grasped];
+  const Vec3 arm = X_WB.R * step.grasped.X_BH.p;
+  const GraspMetric metric = step_metric(step.settings.coupling, step.grasped, step.dt_s);
   const Coupling both{.stiffness_N_per_m = metric.stiffness_N_per_m,
                       .stiffness_Nm_per_rad = metric.stiffness_Nm_per_rad};
   const Resistance M = coupling_resistance(both, arm, step.dt_s);
-  step.own.mobility[held] = mobility(body.joint, X_WB, M);
+  step.own.mobility[grasped] = mobility(body.joint, X_WB, M);
   step.own.constraint.wanted = wanted_by_hand(step);
   const Vec6 wanted = with_load(step, step.own.constraint.wanted);
   const Twist at_origin = moved(to_twist(wanted), -arm) * (1.0 / step.dt_s);
-  step.bodies.V_WB[held] = constrained_velocity(body.joint, X_WB, M, at_origin);
+  step.bodies.V_WB[grasped] = constrained_velocity(body.joint, X_WB, M, at_origin);
 }
 
 void add_rows(ConstraintStep& step) {
@@ -104,27 +106,27 @@ void add_rows(ConstraintStep& step) {
                   beyond < 0.0 ? kOpening * beyond : beyond, X_WB, step.own.mobility, step.dt_s);
   }
   for (Index i = 0; i < step.world.bodies.size(); ++i)
-    if (moves_here(step, i) && !is_held(step, i))
+    if (moves_here(step, i) && !is_grasped(step, i))
       f.resting.add_joint(static_cast<int>(i), f.islands.of(static_cast<int>(i)), step.world.bodies[i],
                           X_WB[i], step.own.mobility[i], step.dt_s);
 }
 
-/// The share of every island's step that its bodies' reach allows, and how far each would go.
+/// The share of every island's step that its bodies' motion bounds allow, and how far each would go.
 void limit_shares(ConstraintStep& step) {
   FreeBodies& f = step.own.free;
   std::fill(f.share.begin(), f.share.end(), 1.0);
   for (Index i = 0; i < f.share.size(); ++i) {
     if (!moves_here(step, i)) continue;
     const Twist& V = step.bodies.V_WB[i];
-    const double way = (V.v.norm() + V.w.norm() * step.radius_m[i]) * step.dt_s;
+    const double travel = (V.v.norm() + V.w.norm() * step.radius_m[i]) * step.dt_s;
     double& share = f.share[Index(f.islands.of(static_cast<int>(i)))];
-    if (way * share > step.own.reach[i]) share = step.own.reach[i] / way;
-    step.own.waiting.way[i] = way;
+    if (travel * share > step.own.motion_bound[i]) share = step.own.motion_bound[i] / travel;
+    step.own.waiting.travel[i] = travel;
   }
   // An island's number is its first body.
   for (Index i = 0; i < f.share.size(); ++i)
     if (moves_here(step, i)) f.share[i] = f.share[Index(f.islands.of(static_cast<int>(i)))];
-  if (f.held_here && step.gaps.blocked(step.held.body)) f.share[Index(step.held.body)] = 0.0;
+  if (f.grasped_here && step.gaps.blocked(step.grasped.body)) f.share[Index(step.grasped.body)] = 0.0;
 }
 
 /// Puts the bodies of unsettled islands where their step leads.
@@ -157,7 +159,7 @@ bool look(bool all, int keep_back, ConstraintStep& step) {
   for (const ContactPatch& patch : patches) {
     const int island = f.islands.of_contact(patch.body_a, patch.body_b);
     const bool news = all || f.cut[Index(patch.body_a)] || f.cut[Index(patch.body_b)];
-    const bool asked = island >= 0 && !f.of_held(patch) && !f.settled[Index(island)] && news &&
+    const bool asked = island >= 0 && !f.of_grasped(patch) && !f.settled[Index(island)] && news &&
                        !(stands(step, patch.body_a) && stands(step, patch.body_b));
     f.patch_asked.push_back(asked ? 1 : 0);
   }
@@ -204,11 +206,11 @@ void stay(ConstraintStep& step) {
 }
 
 /// Tests that are left to the held part's own island, when it comes after this.
-int kept_for_held(const ConstraintStep& step) {
+int kept_for_grasped(const ConstraintStep& step) {
   const std::span<const ContactPatch> patches = step.patches;
   const auto own = std::count_if(patches.begin(), patches.end(),
-                                 [&](const ContactPatch& patch) { return step.own.free.of_held(patch); });
-  return std::min(kRoundsOfHeld * static_cast<int>(own), step.gaps.tests_left() / 2);
+                                 [&](const ContactPatch& patch) { return step.own.free.of_grasped(patch); });
+  return std::min(kRoundsOfGrasped * static_cast<int>(own), step.gaps.tests_left() / 2);
 }
 
 /// Second-order correction, as in constraint_rows.h.
@@ -238,24 +240,24 @@ void correct(ConstraintStep& step) {
 }
 
 /// What the contacts did, for the report.
-void tell_forces(ConstraintStep& step) {
+void report_forces(ConstraintStep& step) {
   std::vector<ContactRow>& rows = step.own.contact_rows.rows;
   step.own.free.resting.for_each([&](int index, double normal, const Vec3& impulse_W) {
     ContactRow& row = rows[Index(index)];
     row.impulse = normal;
     step.own.free.momentum.give(row.body_a, row.body_b, impulse_W);
     const Vec3 across = impulse_W - row.n_BA_W * normal;
-    const bool on_held = row.body_a == step.held.body || row.body_b == step.held.body;
-    if (!on_held || across.isZero(0.0) || rows.size() == rows.capacity()) return;
+    const bool on_grasped = row.body_a == step.grasped.body || row.body_b == step.grasped.body;
+    if (!on_grasped || across.isZero(0.0) || rows.size() == rows.capacity()) return;
     ContactRow friction = row;
     friction.n_BA_W = across.normalized();
     friction.impulse = across.norm();
     rows.push_back(friction);
   });
-  if (!step.own.free.held_here) return;
-  const Index held = Index(step.held.body);
-  const Vec3 arm = step.bodies.X_WB[held].R * step.held.X_BH.p;
-  feel(to_vector(moved(step.bodies.V_WB[held], arm) * step.dt_s), step);
+  if (!step.own.free.grasped_here) return;
+  const Index grasped = Index(step.grasped.body);
+  const Vec3 arm = step.bodies.X_WB[grasped].R * step.grasped.X_BH.p;
+  feel(to_vector(moved(step.bodies.V_WB[grasped], arm) * step.dt_s), step);
 }
 
 }  // namespace
@@ -268,65 +270,66 @@ void begin_midway(const World& world, double dt_s, WorldState& state) noexcept {
 void pull_free_bodies(const MotionInput& input, WorldState& bodies) noexcept {
   const World& world = input.world;
   for (Index i = 0; i < world.bodies.size(); ++i)
-    if (world.bodies[i].moves() && static_cast<int>(i) != input.held.body)
+    if (world.bodies[i].moves() && static_cast<int>(i) != input.grasped.body)
       bodies.V_WB[i].v += world.gravity_W * (0.5 * input.dt_s);
 }
 
-bool others_move(const World& world, int held) noexcept {
+bool others_move(const World& world, int grasped) noexcept {
   for (Index i = 0; i < world.bodies.size(); ++i)
-    if (world.bodies[i].moves() && static_cast<int>(i) != held) return true;
+    if (world.bodies[i].moves() && static_cast<int>(i) != grasped) return true;
   return false;
 }
 
 void find_islands(ConstraintStep& step) noexcept {
   FreeBodies& f = step.own.free;
   f.islands.clear(step.world, step.own.waiting.waits);
-  f.held_island = -1;
-  f.held_here = false;
+  f.grasped_island = -1;
+  f.grasped_here = false;
   for (const ContactPatch& patch : step.patches) f.islands.join(patch.body_a, patch.body_b);
-  const int held = step.held.body;
-  const int island = held < 0 ? -1 : f.islands.of(held);
+  const int grasped = step.grasped.body;
+  const int island = grasped < 0 ? -1 : f.islands.of(grasped);
   Index unknowns = 0;
   f.alone = true;
   for (Index i = 0; i < step.world.bodies.size(); ++i) {
     const bool near =
         island >= 0 && f.islands.moves(static_cast<int>(i)) && f.islands.of(static_cast<int>(i)) == island;
-    f.near_held[i] = near ? 1 : 0;
+    f.near_grasped[i] = near ? 1 : 0;
     f.alone &= near || !f.islands.moves(static_cast<int>(i));
     if (near) unknowns += unknowns_of(step.world.bodies[i].joint);
   }
-  if (held < 0) return;
-  f.held_here = unknowns > kMostUnknowns;
-  if (!f.held_here) f.held_island = island;
+  if (grasped < 0) return;
+  f.grasped_here = unknowns > kMostUnknowns;
+  if (!f.grasped_here) f.grasped_island = island;
 }
 
-void strike(ConstraintStep& step) noexcept {
+void apply_impacts(ConstraintStep& step) noexcept {
   if (!step.own.free.others) return;
   std::vector<Twist>& V_WB = step.bodies.V_WB;
   const std::vector<Pose>& X_WB = step.bodies.X_WB;
-  const int held = step.held.body;
+  const int grasped = step.grasped.body;
   for (Index i = 0; i < step.world.bodies.size(); ++i) {
     if (!step.world.bodies[i].moves()) continue;
-    // The hand decides where the held part goes: a blow does not move it, it is felt.
-    const bool given_way = is_held(step, i) || !step.own.free.islands.moves(static_cast<int>(i));
-    step.own.mobility[i] = given_way ? Mobility::Zero() : inertial_mobility(step.world.bodies[i], X_WB[i]);
-    if (step.world.bodies[i].joint.kind != JointKind::kFree && !is_held(step, i))
+    // The hand decides where the held part goes: an impact does not move it, it is felt.
+    const bool immovable = is_grasped(step, i) || !step.own.free.islands.moves(static_cast<int>(i));
+    step.own.mobility[i] = immovable ? Mobility::Zero() : inertial_mobility(step.world.bodies[i], X_WB[i]);
+    if (step.world.bodies[i].joint.kind != JointKind::kFree && !is_grasped(step, i))
       V_WB[i] = constrained_velocity(step.world.bodies[i].joint, X_WB[i],
                                      inertial_resistance(step.world.bodies[i], X_WB[i]), V_WB[i]);
   }
-  const double energy_J = held < 0 ? 0.0 : bodies_energy(step.world, step.bodies, held);
-  BlowsOnHeld blows(held, held < 0 ? Vec3::Zero() : X_WB[Index(held)] * step.held.X_BH.p,
-                    step.own.free.momentum);
+  const double energy_J = grasped < 0 ? 0.0 : bodies_energy(step.world, step.bodies, grasped);
+  ImpactsOnGrasped impacts(grasped, grasped < 0 ? Vec3::Zero() : X_WB[Index(grasped)] * step.grasped.X_BH.p,
+                           step.own.free.momentum);
   step.report.impacts = resolve_impacts(
       step.own.contact_rows.rows, X_WB, step.own.mobility, step.dt_s,
-      std::min(kMostBlows, kBlowsAPoint * static_cast<int>(step.own.contact_rows.rows.size())), V_WB, &blows);
-  if (blows.sum())
-    step.own.impulses.add(step.settings.impacts, step.dt_s, *blows.sum(),
-                          std::max(0.0, energy_J - bodies_energy(step.world, step.bodies, held)));
+      std::min(kMostImpacts, kImpactsAPoint * static_cast<int>(step.own.contact_rows.rows.size())), V_WB,
+      &impacts);
+  if (impacts.sum())
+    step.own.impulses.add(step.settings.impacts, step.dt_s, *impacts.sum(),
+                          std::max(0.0, energy_J - bodies_energy(step.world, step.bodies, grasped)));
 
   for (Index i = 0; i < step.world.bodies.size(); ++i) {
     const Body& body = step.world.bodies[i];
-    if (!step.own.free.islands.moves(static_cast<int>(i)) || is_held(step, i)) continue;
+    if (!step.own.free.islands.moves(static_cast<int>(i)) || is_grasped(step, i)) continue;
     step.own.free.w_start[i] = V_WB[i].w;
     if (turns_freely(body)) V_WB[i].w = rate_midway(turning_inertia(body), X_WB[i].R, V_WB[i].w, step.dt_s);
     if (body.joint.kind == JointKind::kBall) V_WB[i].v = V_WB[i].w.cross(X_WB[i].p - body.joint.anchor_W);
@@ -339,9 +342,9 @@ void strike(ConstraintStep& step) noexcept {
 
 void move_free_bodies(ConstraintStep& step) noexcept {
   FreeBodies& f = step.own.free;
-  if (f.alone && !f.held_here) return;
+  if (f.alone && !f.grasped_here) return;
   ConstraintState& c = step.own.constraint;
-  if (f.held_here) lend_held(step);
+  if (f.grasped_here) treat_grasped_as_body(step);
   add_rows(step);
   const auto solve = [&] {
     // What is left moves nothing by more than the skin, and every step is looked at before it is taken.
@@ -353,12 +356,12 @@ void move_free_bodies(ConstraintStep& step) noexcept {
   std::fill(f.settled.begin(), f.settled.end(), 0);
   solve();
   limit_shares(step);
-  const int keep_back = kept_for_held(step);
+  const int keep_back = kept_for_grasped(step);
   c.trial.X_WB = step.bodies.X_WB;  // same size: nothing is allocated
   bool all = true;
   for (int round = 0, cuts = 0;; ++round) {
     try_steps(step);
-    if (cuts > kHalvings + kMostStops) break;  // those stayed
+    if (cuts > kBacktracks + kMostStops) break;  // those stayed
     const int tests = step.report.validation_tests;
     if (look(all, keep_back, step)) break;
     ++step.report.validation_retries;
@@ -368,9 +371,9 @@ void move_free_bodies(ConstraintStep& step) noexcept {
       correct(step);
       solve();
       limit_shares(step);
-    } else if (++cuts <= kHalvings + kMostStops) {
+    } else if (++cuts <= kBacktracks + kMostStops) {
       round = kFeedbacks;
-      cut(cuts <= kHalvings, step);
+      cut(cuts <= kBacktracks, step);
     } else {
       stay(step);
     }
@@ -378,19 +381,19 @@ void move_free_bodies(ConstraintStep& step) noexcept {
   for (Index i = 0; i < step.world.bodies.size(); ++i) {
     if (!moves_here(step, i)) continue;
     step.bodies.X_WB[i] = c.trial.X_WB[i];
-    if (f.share[i] > 0.0 || is_held(step, i)) continue;
+    if (f.share[i] > 0.0 || is_grasped(step, i)) continue;
     // What does not go has no velocity: kept, it would grow under gravity while the body stays.
     step.bodies.V_WB[i] = {};
     ++step.report.cut_short;
   }
   f.resting.end();
-  tell_forces(step);
+  report_forces(step);
 }
 
 void end_turning(ConstraintStep& step) noexcept {
   for (Index i = 0; i < step.world.bodies.size(); ++i) {
     const Body& body = step.world.bodies[i];
-    if (!turns_freely(body) || is_held(step, i) || !step.own.free.islands.moves(static_cast<int>(i)))
+    if (!turns_freely(body) || is_grasped(step, i) || !step.own.free.islands.moves(static_cast<int>(i)))
       continue;
     const Mat3 inertia_B = turning_inertia(body);
     const Mat3& R_start = step.X_WB_start[i].R;

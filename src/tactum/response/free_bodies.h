@@ -23,16 +23,16 @@ void begin_midway(const World& world, double dt_s, WorldState& state) noexcept;
 void pull_free_bodies(const MotionInput& input, WorldState& bodies) noexcept;
 
 /// Whether any body but the held one moves.
-bool others_move(const World& world, int held) noexcept;
+bool others_move(const World& world, int grasped) noexcept;
 
 /// Finds the islands, from the patches of the frame.
 void find_islands(ConstraintStep& step) noexcept;
 
-/// Strikes blows, and gives gravity's other half: afterwards every body that is not held
+/// Applies impacts, and gives gravity's other half: afterwards every body that is not held
 /// has the velocity with which it would go on if nothing held it.
-void strike(ConstraintStep& step) noexcept;
+void apply_impacts(ConstraintStep& step) noexcept;
 
-/// Moves all islands but `held_island`.
+/// Moves all islands but `grasped_island`.
 void move_free_bodies(ConstraintStep& step) noexcept;
 
 /// The rates at the end of the frame of the bodies that turn freely, from their mean ones.

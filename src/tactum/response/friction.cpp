@@ -21,8 +21,8 @@ constexpr double kSettled = 0.25;
 
 /// How far the patch's anchor has come apart in the surface.
 Vec3 apart(const FrictionPatch& patch, const Pose& X_WA, const Pose& X_W_B) {
-  const Vec3 way = X_WA * patch.on_A - X_W_B * patch.on_B;
-  return way - patch.n_BA_W * patch.n_BA_W.dot(way);
+  const Vec3 offset = X_WA * patch.on_A - X_W_B * patch.on_B;
+  return offset - patch.n_BA_W * patch.n_BA_W.dot(offset);
 }
 
 /// How far beyond the skin a patch is.
@@ -80,7 +80,7 @@ void Friction::find_holding(const World& world, const PairCoefficients& settings
                             std::span<const ContactRow> rows, std::span<const ContactPatch> patches,
                             std::span<const Pose> X_WB, double skin_m) noexcept {
   for (const Anchor& last : anchors_) {
-    if (!last.held || patch_of(last.key) != nullptr) continue;
+    if (!last.pushed || patch_of(last.key) != nullptr) continue;
     FrictionPatch patch;
     patch.key = last.key;
     patch.coefficient = settings.between(last.key.body_a, last.key.body_b);
@@ -140,8 +140,9 @@ bool Friction::begin(const World& world, const PairCoefficients& settings, std::
   for (FrictionPatch& patch : patches_) {
     anchor(patch, X_WB, kSettled * skin_m);
     patch.motion = motion_of(patch, any_orthogonal(patch.n_BA_W), problem);
-    const Vec3 way = slide_of(patch, problem).way;
-    if (const double length = way.norm(); length > 0.0) turn_directions(way / length, patch.motion);
+    const Vec3 displacement = slide_of(patch, problem).displacement;
+    if (const double length = displacement.norm(); length > 0.0)
+      turn_directions(displacement / length, patch.motion);
     add_cone(patch, problem);
   }
   return acts();
@@ -195,7 +196,7 @@ void Friction::note_sticking(const ConstraintProblem& problem) noexcept {
 }
 
 /// Its rows ask for nothing that a part could miss.
-void Friction::let_go(FrictionPatch& patch, ConstraintProblem& problem) noexcept {
+void Friction::drop_cone(FrictionPatch& patch, ConstraintProblem& problem) noexcept {
   constexpr double kAnywhere_m = 1e3;  // [m]
   for (double& more : problem.cone(patch.first_row).more) more -= kAnywhere_m;
   patch.acts = false;
@@ -208,14 +209,14 @@ bool Friction::let_slip(double skin_m, ConstraintProblem& problem) noexcept {
     if (!patch.acts) continue;
     const Slide slide = slide_of(patch, problem);
     const double arm = patch.coefficient * patch.radius_m;
-    double further = std::min(slide.lift, patch.coefficient * (slide.way.norm() - patch.slip_m));
+    double further = std::min(slide.lift, patch.coefficient * (slide.displacement.norm() - patch.slip_m));
     double turned = std::min(slide.lift, arm * (std::abs(slide.turn) - patch.slip_rad));
     if (further <= settled) further = 0.0;
     if (turned <= settled) turned = 0.0;
     if (further == 0.0 && turned == 0.0) continue;
     changed = true;
     if (patch.load_N == 0.0) {
-      let_go(patch, problem);
+      drop_cone(patch, problem);
       continue;
     }
     QpCone& cone = problem.cone(patch.first_row);
@@ -245,13 +246,13 @@ void Friction::end(const World& world, std::span<const ContactRow> rows,
     // The centre of all forces of the patch: its corners', and the cone's at the centre so far.
     double load = 0.0;
     Vec3 moment = Vec3::Zero();
-    bool held = false;
+    bool pushed = false;
     for (const QpActive& active : problem.answer().active) {
       const Index row = Index(active.row);
       if (row >= patch.first_row && row < patch.first_row + kRowsAPatch) {
         load += active.multiplier;
         moment += active.multiplier * patch.centre_W;
-        held |= active.multiplier > 0.0;
+        pushed |= active.multiplier > 0.0;
       } else if (row >= first_row && row - first_row < rows.size() &&
                  key_of(world, patches[Index(rows[row - first_row].patch)]) == patch.key) {
         load += active.multiplier;
@@ -265,7 +266,7 @@ void Friction::end(const World& world, std::span<const ContactRow> rows,
     Vec3 on_A_W = centre;
     if (patch.anchored && patch.slip_m == 0.0) on_A_W += apart(patch, X_WA, X_W_B);
     anchors_.push_back({patch.key, X_WA.inverse() * on_A_W, X_W_B.inverse() * centre, X_WA.inverse() * centre,
-                        patch.radius_m, patch.sticks_by, held});
+                        patch.radius_m, patch.sticks_by, pushed});
   }
 }
 

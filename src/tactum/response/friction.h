@@ -76,7 +76,7 @@ class Friction {
     Vec3 on_A = Vec3::Zero(), on_B = Vec3::Zero(), centre_A = Vec3::Zero();  // [m]
     double radius_m = 0.0;
     std::uint32_t sticks_by = 0;
-    bool held = false;  ///< its cone pushed
+    bool pushed = false;  ///< its cone pushed
   };
   void find_pushing(const World& world, const PairCoefficients& settings, std::span<const ContactRow> rows,
                     std::span<const ContactPatch> patches, double skin_m, std::size_t first_row,
@@ -89,7 +89,7 @@ class Friction {
   FrictionPatch* patch_of(const PatchKey& key) noexcept;
   FrictionPatch* patch_of_row(std::size_t row) noexcept;
   void add_cone(FrictionPatch& patch, ConstraintProblem& problem) noexcept;
-  void let_go(FrictionPatch& patch, ConstraintProblem& problem) noexcept;
+  void drop_cone(FrictionPatch& patch, ConstraintProblem& problem) noexcept;
   void anchor(FrictionPatch& patch, std::span<const Pose> X_WB, double settled_m) noexcept;
 
   StaticVector<FrictionPatch, kMostPatches> patches_;

@@ -82,8 +82,8 @@ Push cone_edge(const FrictionPatch& patch, Index k) noexcept {
 Slide slide_of(const FrictionPatch& patch, const ConstraintProblem& problem) noexcept {
   Slide slide;
   const PatchMotion& motion = patch.motion;
-  slide.way = problem.opening(motion.along) * motion.along_W +
-              problem.opening(motion.across) * motion.across_W + patch.apart_W;
+  slide.displacement = problem.opening(motion.along) * motion.along_W +
+                       problem.opening(motion.across) * motion.across_W + patch.apart_W;
   slide.lift = problem.opening(motion.off) + patch.gap_m;
   slide.turn = problem.opening(motion.about);
   return slide;

@@ -47,9 +47,9 @@ struct FrictionPatch {
 
 /// What a patch slides by in the step of an answer, from its anchor, and turns by about its normal.
 struct Slide {
-  Vec3 way = Vec3::Zero();  ///< [m]
-  double turn = 0.0;        ///< [rad]
-  double lift = 0.0;        ///< off the other surface [m]
+  Vec3 displacement = Vec3::Zero();  ///< [m]
+  double turn = 0.0;                 ///< [rad]
+  double lift = 0.0;                 ///< off the other surface [m]
 };
 
 PatchKey key_of(const World& world, const ContactPatch& patch) noexcept;

@@ -33,7 +33,7 @@ void begin_balance(ConstraintStep& step) noexcept {
   for (Index i = 0; i < step.world.bodies.size(); ++i) {
     const Body& body = step.world.bodies[i];
     const int number = static_cast<int>(i);
-    const bool counts = body.moves() && body.joint.kind == JointKind::kFree && number != step.held.body &&
+    const bool counts = body.moves() && body.joint.kind == JointKind::kFree && number != step.grasped.body &&
                         step.own.free.islands.moves(number);
     momentum.counts[i] = counts ? 1 : 0;
     if (counts)
@@ -44,17 +44,17 @@ void begin_balance(ConstraintStep& step) noexcept {
 void end_balance(bool as_forced, ConstraintStep& step) noexcept {
   if (!step.own.free.others) return;
   Momentum& momentum = step.own.free.momentum;
-  bool near_held = false;
-  if (step.own.free.held_island >= 0) {
+  bool near_grasped = false;
+  if (step.own.free.grasped_island >= 0) {
     give_by_island(step);
     for (Index i = 0; i < step.world.bodies.size(); ++i)
-      near_held |= momentum.counts[i] && step.own.free.near_held[i];
+      near_grasped |= momentum.counts[i] && step.own.free.near_grasped[i];
   }
   Vec3 now = Vec3::Zero();
   for (Index i = 0; i < step.world.bodies.size(); ++i)
     if (momentum.counts[i]) now += step.world.bodies[i].mass_kg * step.bodies.V_WB[i].v;
   step.report.momentum_off_Ns = (now - momentum.due_Ns).norm();
-  step.report.forced_short = step.report.cut_short > 0 || (near_held && !as_forced);
+  step.report.forced_short = step.report.cut_short > 0 || (near_grasped && !as_forced);
 }
 
 }  // namespace tactum

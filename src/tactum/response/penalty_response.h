@@ -42,13 +42,13 @@ class PenaltyResponse {
   bool rows_full() const noexcept { return contacts_.full; }
 
  private:
-  void pull_held(const StepInput& input, double rest_s, WorldState& bodies) noexcept;
+  void pull_grasped(const StepInput& input, double rest_s, WorldState& bodies) noexcept;
   void slow_joints(const World& world, double h_s, int spared, WorldState& bodies) noexcept;
 
   ContactRows contacts_;
   std::vector<Resistance> resistance_;  // by body; scratch of one frame
   std::vector<Mobility> mobility_;
-  std::vector<double> reach_;
+  std::vector<double> motion_bound_;
 };
 
 }  // namespace tactum

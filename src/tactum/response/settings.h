@@ -72,10 +72,10 @@ struct Impacts {
 
 /// Which part is held, and where.
 struct Tool {
-  int body = -1;          ///< index into World::bodies; -1: nothing is held, the hand feels nothing
-  Pose X_BH;              ///< the handle in the held body's frame while grasped [m]
-  bool picks = false;     ///< the primary button picks up and lets go (picking.h)
-  double reach_m = 0.01;  ///< how far from the handle [m]
+  int body = -1;                  ///< index into World::bodies; -1: nothing is held, the hand feels nothing
+  Pose X_BH;                      ///< the handle in the held body's frame while grasped [m]
+  bool picks = false;             ///< the primary button picks up and lets go (picking.h)
+  double pick_distance_m = 0.01;  ///< how far from the handle [m]
 };
 
 /// Force shading by interpolated normals, 5.3 [Ruspini 1997].

@@ -28,13 +28,13 @@ void count_touches(ConstraintStep& step) {
 /// Whether the body is where it was, with what it touched.
 bool is_still(const ConstraintStep& step, Index body) {
   const Sleep& s = step.own.sleep;
-  if (s.touches[body] != s.touched[body] || static_cast<int>(body) == step.held.body) return false;
+  if (s.touches[body] != s.touched[body] || static_cast<int>(body) == step.grasped.body) return false;
   const double most = kStillShare * step.own.constraint.skin_m;
   const Pose& was = s.X_still[body];
   const Pose& is = step.bodies.X_WB[body];
-  const double way = (is.p - was.p).norm();
-  if (way > most) return false;
-  if (way == 0.0 && is.R == was.R) return true;  // as all that sleeps
+  const double distance = (is.p - was.p).norm();
+  if (distance > most) return false;
+  if (distance == 0.0 && is.R == was.R) return true;  // as all that sleeps
   const Twist moved = twist_between(was, is, 1.0);
   return moved.v.norm() + moved.w.norm() * step.radius_m[body] <= most;
 }

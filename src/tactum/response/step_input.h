@@ -27,14 +27,14 @@ struct GraspedPart {
 struct MotionInput {
   const World& world;
   const FrameSettings& settings;
-  const GraspedPart& held;
+  const GraspedPart& grasped;
   std::span<const double> radius_m;  ///< of each body: farthest point from its origin [m]
   double dt_s;                       ///< time from frame to frame [s]
 };
 
 struct StepInput : MotionInput {
   std::span<const ContactPatch> patches;
-  std::span<const std::uint8_t> urgency;       ///< of each body (contact/schedule.h)
+  std::span<const std::uint8_t> priority;      ///< of each body (contact/schedule.h)
   const ContactWork& work;                     ///< what was looked at, and what was left
   const std::vector<ShadingNormals>& shading;  ///< one per body; empty when shading is off
   std::span<const Pose> X_WB_start;            ///< poses at the start of the frame [m]

@@ -51,7 +51,7 @@ void watch_rest(ConstraintStep& step) {
     const Twist moved = twist_between(w.X_rest[i], X_WB, 1.0);
     const bool left = moved.v.norm() + moved.w.norm() * radius > kRestShare * radius;
     const bool lost = 2 * w.contacts[i] < std::max(1, w.contacts_at_rest[i]);
-    if (left || lost || w.hit[i] || step.urgency[i] != urgency::kOther) {
+    if (left || lost || w.hit[i] || step.priority[i] != priority::kOther) {
       w.X_rest[i] = X_WB;
       w.rested[i] = w.contacts_at_rest[i] = 0;
     } else if (!w.waits[i] && ++w.rested[i] >= rest_frames) {
@@ -64,7 +64,7 @@ void watch_rest(ConstraintStep& step) {
 /// tested.
 bool needs_test(const ContactPatch& patch, const ConstraintStep& step) {
   const Waiting& w = step.own.waiting;
-  return w.way[Index(patch.body_a)] + w.way[Index(patch.body_b)] >= 0.5 * patch.distance;
+  return w.travel[Index(patch.body_a)] + w.travel[Index(patch.body_b)] >= 0.5 * patch.distance;
 }
 
 /// The patches of each body that need a test: patch_of[first_patch[i] .. first_patch[i + 1]).
@@ -84,20 +84,20 @@ void list_patches(ConstraintStep& step) {
         w.patch_of[Index(w.next_patch[Index(body)]++)] = static_cast<int>(p);
 }
 
-/// Lets bodies go while the tests reach, the most urgent first.
-void let_go(ConstraintStep& step) {
+/// Admits bodies while the tests suffice, those of the highest priority first.
+void admit_bodies(ConstraintStep& step) {
   Waiting& w = step.own.waiting;
   list_patches(step);
   w.counted.assign(step.patches.size(), 0);
   w.order.clear();
   for (Index i = 0; i < step.world.bodies.size(); ++i)
     if (step.world.bodies[i].moves() && !asleep(w, i) &&
-        (!step.gaps.blocked(static_cast<int>(i)) || static_cast<int>(i) == step.held.body))
+        (!step.gaps.blocked(static_cast<int>(i)) || static_cast<int>(i) == step.grasped.body))
       w.order.push_back(static_cast<int>(i));
   std::sort(w.order.begin(), w.order.end(), [&](int a, int b) {
     const Index i = Index(a);
     const Index k = Index(b);
-    if (step.urgency[i] != step.urgency[k]) return step.urgency[i] < step.urgency[k];
+    if (step.priority[i] != step.priority[k]) return step.priority[i] < step.priority[k];
     return w.waited[i] != w.waited[k] ? w.waited[i] > w.waited[k] : a < b;
   });
   int left = step.gaps.tests_left() / w.rounds;
@@ -106,7 +106,7 @@ void let_go(ConstraintStep& step) {
     const auto end = w.patch_of.begin() + w.first_patch[Index(body) + 1];
     const auto tests =
         static_cast<int>(std::count_if(begin, end, [&](int p) { return w.counted[Index(p)] == 0; }));
-    if (tests > left && body != step.held.body) continue;
+    if (tests > left && body != step.grasped.body) continue;
     left = std::max(0, left - tests);
     std::for_each(begin, end, [&](int p) { w.counted[Index(p)] = 1; });
     w.waits[Index(body)] = 0;
@@ -115,7 +115,7 @@ void let_go(ConstraintStep& step) {
 
 }  // namespace
 
-void let_wait(ConstraintStep& step) noexcept {
+void defer_bodies(ConstraintStep& step) noexcept {
   Waiting& w = step.own.waiting;
   if (w.ran_out) {
     w.rounds = std::min(2 * w.rounds, kMostRounds);
@@ -139,7 +139,7 @@ void let_wait(ConstraintStep& step) noexcept {
   wake(step.own.sleep);
   watch_rest(step);
   std::fill(w.waits.begin(), w.waits.end(), 1);
-  let_go(step);
+  admit_bodies(step);
   const double fading = std::pow(kFading, step.dt_s / kReferenceStep_s);
   for (Index i = 0; i < step.world.bodies.size(); ++i) {
     w.waited[i] = w.waits[i] && !asleep(w, i) ? w.waited[i] + 1 : 0;
@@ -147,10 +147,10 @@ void let_wait(ConstraintStep& step) noexcept {
     if (asleep(w, i)) {
       ++step.report.asleep;
       w.V_kept[i] = step.bodies.V_WB[i] = {};
-      w.way[i] = 0.0;
+      w.travel[i] = 0.0;
       continue;
     }
-    w.way[i] *= fading;
+    w.travel[i] *= fading;
     ++step.report.waiting;
     step.report.flags |= frame_flag::kBudgetShort;
     step.report.longest_wait = std::max(step.report.longest_wait, w.waited[i]);

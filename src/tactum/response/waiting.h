@@ -23,7 +23,7 @@
 namespace tactum {
 
 /// Chooses who waits, and puts them at rest. After the pairs have been tested.
-void let_wait(ConstraintStep& step) noexcept;
+void defer_bodies(ConstraintStep& step) noexcept;
 
 /// Gives those that waited their velocities back.
 void go_on(ConstraintStep& step) noexcept;

@@ -49,27 +49,27 @@ double GoalRecord::measure(const Goal& goal, const World& world, const WorldStat
     case GoalKind::kPicked:
       return picked_[body];
     case GoalKind::kFollowed:
-      return std::abs(angles_[body] + goal.amount * angles_[Index(goal.leader)]);
+      return std::abs(angles_[body] + goal.amount * angles_[Index(goal.driver)]);
   }
   return 0.0;
 }
 
-void GoalRecord::watch(const World& world, const WorldState& state, int held,
+void GoalRecord::watch(const World& world, const WorldState& state, int grasped,
                        std::span<const ContactRow> rows) noexcept {
-  if (held >= 0) {
-    picked_[Index(held)] = 1;
+  if (grasped >= 0) {
+    picked_[Index(grasped)] = 1;
     for (const ContactRow& row : rows) {
       if (!(row.impulse > 0.0) && !row.hit) continue;
-      if (row.body_a == held) touched_[Index(row.body_b)] = 1;
-      if (row.body_b == held) touched_[Index(row.body_a)] = 1;
+      if (row.body_a == grasped) touched_[Index(row.body_b)] = 1;
+      if (row.body_b == grasped) touched_[Index(row.body_a)] = 1;
     }
   }
   for (Index b = 0; b < angles_.size(); ++b) {
     const Body& body = world.bodies[b];
     if (body.joint.kind != JointKind::kHinge) continue;
     // The whole turns that bring the told angle nearest to the last one.
-    const double told = hinge_angle(body, state.X_WB[b]);
-    angles_[b] = told + 2.0 * kPi * std::round((angles_[b] - told) / (2.0 * kPi));
+    const double measured = hinge_angle(body, state.X_WB[b]);
+    angles_[b] = measured + 2.0 * kPi * std::round((angles_[b] - measured) / (2.0 * kPi));
   }
   for (Index g = 0; g < goals_.size(); ++g) {
     const double now = measure(goals_[g], world, state);
@@ -116,7 +116,7 @@ std::string GoalRecord::describe(const World& world, std::size_t goal) const {
       return fmt::format("{} was {}: {}", body, best > 0.0 ? "picked up" : "not picked up", verdict);
     case GoalKind::kFollowed:
       return fmt::format("{} followed {}: off by {:.2f} degrees, allowed {:.2f}: {}", body,
-                         world.bodies[Index(g.leader)].name, degrees(best), degrees(g.tolerance), verdict);
+                         world.bodies[Index(g.driver)].name, degrees(best), degrees(g.tolerance), verdict);
   }
   return {};
 }

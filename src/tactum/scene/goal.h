@@ -18,13 +18,13 @@ enum class GoalKind {
   kMovedTo,   ///< at some time the point was within `tolerance` of `vector_W`
   kTouched,   ///< at some time the held part pushed it
   kPicked,    ///< at some time it was held
-  kFollowed   ///< at the end the angle is -`amount` times the leader's, within `tolerance`
+  kFollowed   ///< at the end the angle is -`amount` times the driver's, within `tolerance`
 };
 
 struct Goal {
   GoalKind kind = GoalKind::kTurned;
   int body = 0;                  ///< whose it is
-  int leader = 0;                ///< kFollowed: the driving body
+  int driver = 0;                ///< kFollowed: the driving body
   Vec3 p_BQ = Vec3::Zero();      ///< kMoved*: the point of the body that is watched [m]
   Vec3 vector_W = Vec3::Zero();  ///< kMovedBy: unit direction [-]; kMovedTo: the place [m]
   double amount = 0.0;           ///< [rad], [m] or the ratio [-]
@@ -38,8 +38,8 @@ class GoalRecord {
   GoalRecord(const World& world, std::vector<Goal> goals);
 
   /// Takes one frame in. Hinges must turn by less than half a turn from frame to frame. No allocation.
-  /// `held` is the body in the hand, -1: none; `rows` are the frame's contacts.
-  void watch(const World& world, const WorldState& state, int held = -1,
+  /// `grasped` is the body in the hand, -1: none; `rows` are the frame's contacts.
+  void watch(const World& world, const WorldState& state, int grasped = -1,
              std::span<const ContactRow> rows = {}) noexcept;
 
   bool met(std::size_t goal) const noexcept;

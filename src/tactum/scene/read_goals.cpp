@@ -56,7 +56,7 @@ void read_moved(const TomlReader& table, const Scene& scene, Goal& goal) {
 void read_followed(const TomlReader& table, const World& world, Goal& goal) {
   goal.kind = GoalKind::kFollowed;
   goal.body = hinged_body(table, "body", world);
-  goal.leader = hinged_body(table, "leader", world);
+  goal.driver = hinged_body(table, "driver", world);
   goal.amount = table.number("ratio");
   goal.tolerance = radians(table.number("tolerance_deg", {}, kPositive));
 }
@@ -65,7 +65,7 @@ void read_followed(const TomlReader& table, const World& world, Goal& goal) {
 
 void read_goals(const TomlReader& root, Scene& scene) {
   const auto readers =
-      root.tables("goal", {"kind", "body", "leader", "ratio", "at_least_deg", "about_deg", "tolerance_deg",
+      root.tables("goal", {"kind", "body", "driver", "ratio", "at_least_deg", "about_deg", "tolerance_deg",
                            "at_least_m", "direction", "to_m", "tolerance_m", "point_m"});
   for (const TomlReader& table : readers) {
     Goal goal;

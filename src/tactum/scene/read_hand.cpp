@@ -24,14 +24,14 @@ class DeviceMap {
 };
 
 /// The body the hand holds; null when it holds none.
-const Body* held_body(const Scene& scene) {
-  const int held = scene.settings.tool.body;
-  return held < 0 ? nullptr : &scene.world.bodies[static_cast<std::size_t>(held)];
+const Body* grasped_body(const Scene& scene) {
+  const int grasped = scene.settings.tool.body;
+  return grasped < 0 ? nullptr : &scene.world.bodies[static_cast<std::size_t>(grasped)];
 }
 
 Pose handle_at_start(const Scene& scene) {
-  const Body* held = held_body(scene);
-  return held ? held->X_WB * scene.settings.tool.X_BH : scene.settings.workspace.X_WD;
+  const Body* grasped = grasped_body(scene);
+  return grasped ? grasped->X_WB * scene.settings.tool.X_BH : scene.settings.workspace.X_WD;
 }
 
 /// `hold_s`: the hand rests.
@@ -51,13 +51,13 @@ MotionProfile profile_of(const TomlReader& step) {
 
 /// `turn_deg`: about a line of the world, the held body's hinge when none is told.
 void add_turn(const TomlReader& step, const Scene& scene, const DeviceMap& map, ScriptedMotion& motion) {
-  const Body* held = held_body(scene);
-  const bool hinged = held && held->joint.kind == JointKind::kHinge;
+  const Body* grasped = grasped_body(scene);
+  const bool hinged = grasped && grasped->joint.kind == JointKind::kHinge;
   std::optional<Vec3> axis;
   std::optional<Vec3> anchor;
   if (hinged) {
-    axis = held->joint.axis_W;
-    anchor = held->joint.anchor_W;
+    axis = grasped->joint.axis_W;
+    anchor = grasped->joint.anchor_W;
   }
   const Vec3 axis_W = step.unit_vector3("axis", axis);
   const Vec3 anchor_W = step.vector3("anchor_m", anchor);
@@ -111,7 +111,7 @@ std::shared_ptr<const HandMotion> with_tremor(const TomlReader& hand,
 }
 
 /// The hand must not be sent where the device ends.
-void check_reach(const TomlReader& hand, const HandMotion& motion, const SimulatedDeviceModel& device) {
+void check_workspace(const TomlReader& hand, const HandMotion& motion, const SimulatedDeviceModel& device) {
   constexpr double kLook_s = 0.01;
   double farthest = 0.0;
   for (double t = 0.0; t <= motion.duration_s(); t += kLook_s)
@@ -145,7 +145,7 @@ void read_hand(const TomlReader& root, Scene& scene) {
     for (const TomlReader& step : steps) add_step(step, scene, map, motion);
   if (hand.errors()) return;
   scene.hand = with_tremor(hand, std::make_shared<ScriptedMotion>(std::move(motion)));
-  check_reach(hand, *scene.hand, *device);
+  check_workspace(hand, *scene.hand, *device);
 }
 
 }  // namespace tactum

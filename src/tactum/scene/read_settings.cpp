@@ -58,9 +58,9 @@ void read_pairs(const TomlReader& root, const char* key, Range range, const Scen
   const auto pairs = root.tables(key, {"material_a", "material_b", "coefficient"});
   if (pairs.empty()) return;
   for (const TomlReader& pair : pairs) {
-    const MaterialPair told{pair.text("material_a"), pair.text("material_b"),
-                            pair.number("coefficient", {}, range)};
-    const Result<void> set = set_coefficient(scene.world, told, table);
+    const MaterialPair material_pair{pair.text("material_a"), pair.text("material_b"),
+                                     pair.number("coefficient", {}, range)};
+    const Result<void> set = set_coefficient(scene.world, material_pair, table);
     if (!set)
       pair.fail(set.error().where.c_str(), set.error().what, set.error().found, "the material of a [[body]]");
   }
@@ -120,10 +120,10 @@ void read_tool(const TomlReader& root, Scene& scene) {
   Vec3 handle_W = Vec3::Zero();
   if (root.has("tool")) {
     const TomlReader table =
-        root.table("tool", {"body", "grasp", "radius_m", "angle_deg", "pos_m", "picks", "reach_m"});
+        root.table("tool", {"body", "grasp", "radius_m", "angle_deg", "pos_m", "picks", "pick_distance_m"});
     Tool& tool = scene.settings.tool;
     tool.picks = table.flag("picks", false);
-    tool.reach_m = table.number("reach_m", tool.reach_m, kPositive);
+    tool.pick_distance_m = table.number("pick_distance_m", tool.pick_distance_m, kPositive);
     if (tool.picks) {
       for (const char* key : {"body", "grasp", "radius_m", "angle_deg", "pos_m"})
         if (table.has(key))
@@ -131,16 +131,17 @@ void read_tool(const TomlReader& root, Scene& scene) {
       workspace.X_WD.p = space.vector3("pos_m", handle_W);
       return;
     }
-    if (table.has("reach_m")) table.fail("reach_m", "\"reach_m\" is for picks = true only");
-    const int held = body_called(table, "body", scene.world);
-    if (held < 0) return;
-    const Body& body = scene.world.bodies[static_cast<std::size_t>(held)];
+    if (table.has("pick_distance_m"))
+      table.fail("pick_distance_m", "\"pick_distance_m\" is for picks = true only");
+    const int grasped = body_called(table, "body", scene.world);
+    if (grasped < 0) return;
+    const Body& body = scene.world.bodies[static_cast<std::size_t>(grasped)];
     if (!body.moves()) {
       table.fail("body", "a fixed body cannot be held", fmt::format("\"{}\"", body.name),
                  "a free or hinged body");
       return;
     }
-    tool.body = held;
+    tool.body = grasped;
     tool.X_BH.p = read_grasp(table, body);
     tool.X_BH.R = body.X_WB.R.transpose() * workspace.X_WD.R;
     handle_W = body.X_WB * tool.X_BH.p;

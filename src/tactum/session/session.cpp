@@ -112,7 +112,7 @@ Wrench Session::run(const DeviceSample& sample, const FrameTick& tick) noexcept 
   SessionCommand command;  // no more than fit in, however fast another thread asks
   for (std::size_t n = 0; n < kCommands && commands_.pop(command); ++n) obey(command);
   FrameTick felt = tick;
-  felt.stop = tick.stop || held_at_zero_.load(std::memory_order_relaxed);
+  felt.stop = tick.stop || wrench_at_zero_.load(std::memory_order_relaxed);
   if (stage_clock_ != nullptr) stage_clock_->frame_begins();
   const Wrench F_D = haptic_frame(scene_.world, scene_.settings, sample, felt, state_, report_);
   if (!tick.stop) record_.add(report_, state_.world);

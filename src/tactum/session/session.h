@@ -72,7 +72,7 @@ class Session final : private HapticFrame {
   bool ask(const SessionCommand& command) noexcept { return commands_.push(command); }
   /// The big stop: the wrench is led to zero within the stop ramp and stays there, while frames go on, until
   /// taken back; the force then returns by the start ramp.
-  void hold_wrench_at_zero(bool on) noexcept { held_at_zero_.store(on, std::memory_order_relaxed); }
+  void hold_wrench_at_zero(bool on) noexcept { wrench_at_zero_.store(on, std::memory_order_relaxed); }
   /// Whether the hand can be led by SessionCommand::kAim.
   bool can_be_led() const noexcept { return pointer_ != nullptr; }
 
@@ -108,7 +108,7 @@ class Session final : private HapticFrame {
   std::unique_ptr<Device> device_;
   PointerDevice* pointer_;  // the device, when it is one that can be led
   SpscRing<SessionCommand> commands_;
-  std::atomic<bool> held_at_zero_{false};
+  std::atomic<bool> wrench_at_zero_{false};
   FrameFeed* feed_ = nullptr;
   FrameState state_;
   StageClock* stage_clock_ = nullptr;

@@ -14,9 +14,9 @@ lanes::Bounds bounds_of(const MinimaQuery& query, double size) noexcept {
   const double grown = tolerances::kSingle * size;
   lanes::Bounds q{};
   q.grown = static_cast<float>(grown);
-  q.reach = static_cast<float>(query.reach + grown);
+  q.max_distance = static_cast<float>(query.max_distance + grown);
   q.depth = static_cast<float>(query.depth + grown);
-  q.far = std::max(q.reach, q.depth);
+  q.far = std::max(q.max_distance, q.depth);
   // The normal of parallel edges may leave an edge's cone by the inflation to two sides at once.
   q.inflation = static_cast<float>(kDiagonal * query.cone_inflation + tolerances::kSingle);
   return q;
@@ -67,7 +67,7 @@ double surface_clearance(const SurfaceTree& a, const SurfaceTree& b, const Pose&
   walk_all(lanes::kernels(), a, b, X_AB, query, features);
   work = features.work;
   work.full = false;
-  return features.reach();
+  return features.max_distance();
 }
 
 }  // namespace tactum

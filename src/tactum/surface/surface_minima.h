@@ -45,9 +45,9 @@ namespace tactum {
 MinimaWork surface_minima(const SurfaceTree& a, const SurfaceTree& b, const Pose& X_AB,
                           const MinimaQuery& query, std::vector<SurfaceMinimum>& minima) noexcept;
 
-/// How far apart the surfaces are at least, not asked beyond the reach: their distance, too short by up to a
-/// tenth, or the reach where that is nearer; 0 where there is a minimum below zero. Each minimum found
-/// narrows the search, so it costs about as much as the minima within the distance.
+/// How far apart the surfaces are at least, not asked beyond `max_distance`: their distance, too short by up
+/// to a tenth, or `max_distance` where that is nearer; 0 where there is a minimum below zero. Each minimum
+/// found narrows the search, so it costs about as much as the minima within the distance.
 double surface_clearance(const SurfaceTree& a, const SurfaceTree& b, const Pose& X_AB,
                          const MinimaQuery& query, MinimaWork& work) noexcept;
 

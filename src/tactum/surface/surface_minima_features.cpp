@@ -37,7 +37,7 @@ FeatureComparison::FeatureComparison(const SurfaceTree& a, const SurfaceTree& b,
       b_{b, false, X_AB.R, X_AB.p},
       query_(query),
       minima_(minima),
-      reach_(query.reach),
+      max_distance_(query.max_distance),
       touching_(tolerances::kTouching * std::max(a.size(), b.size())),
       inflation_sq_(query.cone_inflation * query.cone_inflation),
       parallel_sq_(std::max(inflation_sq_, tolerances::kParallelSine * tolerances::kParallelSine)) {
@@ -92,7 +92,7 @@ void FeatureComparison::vertex_edge(bool swapped, std::int32_t vertex_corner,
   if (!(t >= 0.0 && t <= 1.0)) return;
   const Vec3 foot = line.from + t * line.along;
   const double distance = (point - foot).norm();
-  if (!(distance <= reach_ && distance > touching_)) return;
+  if (!(distance <= max_distance_ && distance > touching_)) return;
   const Vec3 n = (point - foot) / distance;
   InCone cone = in_edge_cone(side(!swapped), line, n);
   if (cone != InCone::kOutside) cone = worst(cone, in_vertex_cone(side(swapped), vertex_corner, -n));
@@ -110,7 +110,7 @@ void FeatureComparison::vertex_vertex(std::int32_t a_corner, std::int32_t b_corn
   const Vec3 p_a = a_.point(a_corner, 0);
   const Vec3 p_b = b_.point(b_corner, 0);
   const double distance = (p_a - p_b).norm();
-  if (!(distance <= reach_ && distance > touching_)) return;
+  if (!(distance <= max_distance_ && distance > touching_)) return;
   const Vec3 n = (p_a - p_b) / distance;
   InCone cone = in_vertex_cone(b_, b_corner, n);
   if (cone != InCone::kOutside) cone = worst(cone, in_vertex_cone(a_, a_corner, -n));
@@ -254,7 +254,7 @@ bool FeatureComparison::near_vertex_cone(const SurfaceTree& tree, int vertex, co
 void FeatureComparison::take(const Touch& touch, int triangle_a, int triangle_b) noexcept {
   ++work.minima;
   if (share_ > 0.0) {
-    reach_ = std::max(0.0, std::min(reach_, share_ * touch.distance));
+    max_distance_ = std::max(0.0, std::min(max_distance_, share_ * touch.distance));
     return;
   }
   const SurfaceMinimum minimum = {touch.distance, touch.p_a,  touch.p_b,

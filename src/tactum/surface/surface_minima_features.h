@@ -26,7 +26,7 @@ class FeatureComparison {
   /// From here on what is found is not kept, and only what is nearer than this share of the nearest is looked
   /// for.
   void narrow_by(double share) noexcept { share_ = share; }
-  double reach() const noexcept { return reach_; }  ///< up to where minima are looked for [m]
+  double max_distance() const noexcept { return max_distance_; }  ///< up to where minima are looked for [m]
   /// Sorts what was found.
   void finish() noexcept;
 
@@ -78,12 +78,14 @@ class FeatureComparison {
   /// What must fall away from a vertex at p, as SurfaceTree::around() names it.
   static Vec3 falling(const SurfaceTree& tree, const Vec3& p, std::int32_t w) noexcept;
   void take(const Touch& touch, int triangle_a, int triangle_b) noexcept;
-  bool in_range(double distance) const noexcept { return distance <= reach_ && distance >= -query_.depth; }
+  bool in_range(double distance) const noexcept {
+    return distance <= max_distance_ && distance >= -query_.depth;
+  }
 
   Side a_, b_;
   const MinimaQuery& query_;
   std::vector<SurfaceMinimum>& minima_;
-  double reach_;
+  double max_distance_;
   double share_ = 0.0;
   double touching_;  // below this points have no direction between them [m]
   double inflation_sq_;

@@ -136,8 +136,8 @@ class KernelsOf {
   }
 
   /// How far the other end of a minimum may be from a box or a feature, along its axes: a minimum is as long
-  /// as the reach along a direction in both cones, so within narrow ones it hardly leans to the side, and it
-  /// never starts behind the surface by more than the depth.
+  /// as the largest distance along a direction in both cones, so within narrow ones it hardly leans to the
+  /// side, and it never starts behind the surface by more than the depth.
   struct Pad {
     float side;          ///< along the first two axes [m]
     float above, below;  ///< before and behind the surface [m]
@@ -145,7 +145,7 @@ class KernelsOf {
   static Pad pad_of(float cone, const Bounds& q) noexcept {
     const float width = cone + q.inflation;
     const bool leans = width < kRightAngle;
-    return {(width < 1.0F ? width : 1.0F) * q.far, leans ? q.reach : q.far, leans ? q.depth : q.far};
+    return {(width < 1.0F ? width : 1.0F) * q.far, leans ? q.max_distance : q.far, leans ? q.depth : q.far};
   }
 
   // ---- boxes ----
@@ -173,11 +173,11 @@ class KernelsOf {
     Int fine = (child != 0) & (2.0F + 2.0F * opposite <= sum * sum + float(tolerances::kSingle));
 
     // How far the box reaches along an axis of the lanes, and the lanes along one of the box.
-    const auto box_reach = [&](Float x, Float y, Float z) {
+    const auto box_extent = [&](Float x, Float y, Float z) {
       return absolute(x) * box_half[0] + absolute(y) * box_half[1] + absolute(z) * box_half[2];
     };
     const Vector half = load(node.half, first);
-    const auto lane_reach = [&](Float x, Float y, Float z) {
+    const auto lane_extent = [&](Float x, Float y, Float z) {
       return absolute(x) * half.x + absolute(y) * half.y + absolute(z) * half.z;
     };
     const Vector off = spread(box.at->center, box.lane) - load(at.center, first);
@@ -186,8 +186,8 @@ class KernelsOf {
     const Float along_up = dot(own_along, up);
     const Float across_up = dot(own_across, up);
     const Float height = dot(off, up);
-    const Float thick = box_reach(along_up, across_up, opposite) + half.z;
-    fine &= (height <= thick + (leans ? all(q.reach) : all(q.far))) &
+    const Float thick = box_extent(along_up, across_up, opposite) + half.z;
+    fine &= (height <= thick + (leans ? all(q.max_distance) : all(q.far))) &
             (-height <= thick + (leans ? all(q.depth) : all(q.far)));
 
     const Vector along = load(at.along, first);
@@ -195,7 +195,7 @@ class KernelsOf {
     const Float up_along = dot(own_up, along);
     const Float up_across = dot(own_up, across);
     const Float depth = dot(off, own_up);
-    const Float deep = lane_reach(up_along, up_across, opposite) + box_half[2];
+    const Float deep = lane_extent(up_along, up_across, opposite) + box_half[2];
     fine &= (-depth <= deep + box_pad.above) & (depth <= deep + box_pad.below);
     if (bits(fine) == 0) return 0;
 
@@ -204,12 +204,13 @@ class KernelsOf {
     const Float across_along = dot(own_across, along);
     const Float along_across = dot(own_along, across);
     const Float across_across = dot(own_across, across);
-    fine &= (absolute(dot(off, along)) <= box_reach(along_along, across_along, up_along) + half.x + side) &
-            (absolute(dot(off, across)) <= box_reach(along_across, across_across, up_across) + half.y + side);
+    fine &=
+        (absolute(dot(off, along)) <= box_extent(along_along, across_along, up_along) + half.x + side) &
+        (absolute(dot(off, across)) <= box_extent(along_across, across_across, up_across) + half.y + side);
     fine &= (absolute(dot(off, own_along)) <=
-             lane_reach(along_along, along_across, along_up) + (box_half[0] + box_pad.side)) &
+             lane_extent(along_along, along_across, along_up) + (box_half[0] + box_pad.side)) &
             (absolute(dot(off, own_across)) <=
-             lane_reach(across_along, across_across, across_up) + (box_half[1] + box_pad.side));
+             lane_extent(across_along, across_across, across_up) + (box_half[1] + box_pad.side));
     return bits(fine);
   }
 
@@ -312,7 +313,7 @@ class KernelsOf {
   static Int near_vertex(const Vector& p, const VertexLeaf& many, std::size_t first,
                          const Bounds& q) noexcept {
     const Vector r = p - load(many.point, first);
-    return dot(r, r) <= all(q.reach * q.reach);
+    return dot(r, r) <= all(q.max_distance * q.max_distance);
   }
 
   static Int near_vertex(const Vector& p, const EdgeLeaf& many, std::size_t first, const Bounds& q) noexcept {
@@ -321,7 +322,7 @@ class KernelsOf {
     const Float at = dot(r, w);
     const Float pad = q.grown * at_most(w);
     const Vector off = cross(r, w);
-    const Int fine = (at >= -pad) & (at <= dot(w, w) + pad) & near_line(off, w, all(q.reach));
+    const Int fine = (at >= -pad) & (at <= dot(w, w) + pad) & near_line(off, w, all(q.max_distance));
     if (bits(fine) == 0) return fine;
     // Both faces fall away from the way to the point.
     const Float length_sq = dot(w, w);
@@ -339,7 +340,7 @@ class KernelsOf {
 
   static Int near_vertex(const Vector& p, const FaceLeaf& many, std::size_t first, const Bounds& q) noexcept {
     const Float height = dot(p, load(many.normal, first)) - load(many.level, first);
-    Int fine = (height <= q.reach) & (height >= -q.depth);
+    Int fine = (height <= q.max_distance) & (height >= -q.depth);
     for (std::size_t k = 0; k < 3; ++k)
       fine &= dot(p, load(many.inward[k], first)) >= load(many.limit[k], first);
     return fine;
@@ -385,10 +386,10 @@ class KernelsOf {
     return bits(together | (cross_there & faces));
   }
 
-  /// Whether points are within `reach` of lines along w; `off`: the cross product of the way from a line's
-  /// start to the point with w.
-  static Int near_line(const Vector& off, const Vector& w, Float reach) noexcept {
-    return dot(off, off) <= reach * reach * dot(w, w);
+  /// Whether points are within `max_distance` of lines along w; `off`: the cross product of the way from a
+  /// line's start to the point with w.
+  static Int near_line(const Vector& off, const Vector& w, Float max_distance) noexcept {
+    return dot(off, off) <= max_distance * max_distance * dot(w, w);
   }
 
   // ---- the other tree's frame ----

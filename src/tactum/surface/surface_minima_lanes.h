@@ -27,9 +27,9 @@ using Three = std::array<float, 3>;
 
 /// What every quick test needs of the query, grown so that rounding loses nothing.
 struct Bounds {
-  float reach, depth, far;  ///< far: the larger of the two [m]
-  float inflation;          ///< of one cone [rad]
-  float grown;              ///< by which lengths are grown [m]
+  float max_distance, depth, far;  ///< far: the larger of the two [m]
+  float inflation;                 ///< of one cone [rad]
+  float grown;                     ///< by which lengths are grown [m]
 };
 
 /// The pose of one tree's center in the other's, in single precision.

@@ -55,7 +55,7 @@ void SurfaceWalk::run() noexcept {
     const Index k = pair.other % kLanes;
     const bool open_one = other.child[k] < 0 || (one.child[i] >= 0 && one.extent[i] > other.extent[k]);
     const auto opened = std::uint32_t(open_one ? one.child[i] : other.child[k]);
-    const bool held_is_leaf = (open_one ? other.child[k] : one.child[i]) < 0;
+    const bool unopened_is_leaf = (open_one ? other.child[k] : one.child[i]) < 0;
     const Tree::Node& node = (open_one ? one_ : other_).nodes()[opened];
     features_.work.box_tests += int(kLanes);
     Set bits = open_one ? kernels_.facing(box_of_other(pair.other), node, turned(opened), bounds_)
@@ -67,7 +67,8 @@ void SurfaceWalk::run() noexcept {
     for (; bits != 0; bits &= bits - 1) {
       const auto lane = std::uint32_t(std::countr_zero(bits));
       const std::uint32_t below = std::uint32_t(kLanes) * opened + lane;
-      take(open_one ? Pair{below, pair.other} : Pair{pair.one, below}, held_is_leaf && node.child[lane] < 0);
+      take(open_one ? Pair{below, pair.other} : Pair{pair.one, below},
+           unopened_is_leaf && node.child[lane] < 0);
     }
   }
 }
@@ -142,8 +143,8 @@ void SurfaceWalk::compare_leaves(const Pair& pair) noexcept {
       features_.vertex_edge(swapped_, one, other);
     if constexpr (One == Tree::kVertices && Other == Tree::kVertices) features_.vertex_vertex(one, other);
   }
-  bounds_.reach = static_cast<float>(features_.reach()) + bounds_.grown;
-  bounds_.far = std::max(bounds_.reach, bounds_.depth);
+  bounds_.max_distance = static_cast<float>(features_.max_distance()) + bounds_.grown;
+  bounds_.far = std::max(bounds_.max_distance, bounds_.depth);
 }
 
 template void SurfaceWalk::run<Tree::kEdges, Tree::kEdges>() noexcept;

@@ -19,7 +19,7 @@ struct SurfaceMinimum {
 };
 
 struct MinimaQuery {
-  double reach = 0.0;           ///< minima up to this distance [m]
+  double max_distance = 0.0;    ///< minima up to this distance [m]
   double depth = 0.0;           ///< ... and down to minus this one [m]
   double cone_inflation = 0.0;  ///< inflation of the cones, at most 0.1 [rad]
 };

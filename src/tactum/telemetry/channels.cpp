@@ -14,9 +14,9 @@ Wrench from_device_axes(Source frame, const Wrench& F_D) { return rotated(frame.
 
 /// The contact forces act at the held part's centre of mass; the hand feels them at the handle.
 Wrench contact_at_handle(Source frame) noexcept {
-  const int held = frame.state.hand.grasp.body;
-  if (held < 0) return {};
-  const Vec3& p_WB = frame.state.world.X_WB[static_cast<std::size_t>(held)].p;
+  const int grasped = frame.state.hand.grasp.body;
+  if (grasped < 0) return {};
+  const Vec3& p_WB = frame.state.world.X_WB[static_cast<std::size_t>(grasped)].p;
   return moved(frame.report.restoring, frame.report.X_WH_proxy.p - p_WB);
 }
 

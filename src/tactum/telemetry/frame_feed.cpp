@@ -53,7 +53,7 @@ void FrameFeed::draw(const FrameSource& frame, FramePicture& picture) noexcept {
   picture.X_WH = frame.report.X_WH;
   picture.X_WH_proxy = frame.report.X_WH_proxy;
   picture.X_WD = state.hand.X_WD;
-  picture.held = state.hand.known ? state.hand.grasp.body : -1;
+  picture.grasped_body = state.hand.known ? state.hand.grasp.body : -1;
   std::copy(state.world.X_WB.begin(), state.world.X_WB.end(), picture.X_WB.begin());
   picture.contacts.clear();
   picture.contacts_left_out = 0;

@@ -51,7 +51,7 @@ struct ShownContact {
 struct FramePicture {
   std::uint64_t index = 0;
   Pose X_WH, X_WH_proxy, X_WD;
-  int held = -1;           ///< the body in the hand; -1: none
+  int grasped_body = -1;   ///< the body in the hand; -1: none
   std::vector<Pose> X_WB;  ///< of every body
   std::vector<ShownContact> contacts;
   int contacts_left_out = 0;  ///< for lack of room

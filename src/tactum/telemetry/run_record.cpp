@@ -8,7 +8,7 @@ namespace tactum {
 void RunRecord::add(const FrameReport& report, const WorldState& world) noexcept {
   ++frames;
   if (report.in_contact()) ++colliding_frames;
-  if (report.held_contact_points > 0) ++held_contact_frames;
+  if (report.grasped_contact_points > 0) ++grasped_contact_frames;
   if (report.penetrating) ++penetrating_frames;
   max_penetration_m = std::max(max_penetration_m, -report.min_distance_m);
   if (!report.coupling.finite() || !report.smoothed.finite()) ++non_finite_frames;

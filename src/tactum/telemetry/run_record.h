@@ -20,21 +20,21 @@ class RunRecord {
   void add(const FrameReport& report, const WorldState& world) noexcept;
 
   std::uint64_t frames = 0;
-  std::uint64_t colliding_frames = 0;     ///< frames with any patch
-  std::uint64_t held_contact_frames = 0;  ///< frames in which something pushed the held part
-  std::uint64_t penetrating_frames = 0;   ///< frames in which pieces overlapped
-  double max_penetration_m = 0.0;         ///< deepest overlap [m]
-  double max_force_N = 0.0;               ///< largest shown force [N]
-  double max_torque_Nm = 0.0;             ///< largest shown torque [N m]
-  double max_force_step_N = 0.0;          ///< largest change of the shown force from frame to frame [N]
-  double max_torque_step_Nm = 0.0;        ///< the same for torque [N m]
-  double sum_force_N = 0.0;               ///< of |shown force|, for the mean [N]
-  double sum_torque_Nm = 0.0;             ///< of |shown torque|, for the mean [N m]
-  double max_momentum_off_Ns = 0.0;       ///< of frames whose steps were all taken whole [N s]
-  std::uint64_t forced_short_frames = 0;  ///< the others
-  std::uint64_t non_finite_frames = 0;    ///< frames whose computed wrench was not finite (zero was sent)
-  std::uint32_t flags = 0;                ///< union of all frames' frame_flag
-  std::uint32_t safety = 0;               ///< union of all frames' safety_flag
+  std::uint64_t colliding_frames = 0;        ///< frames with any patch
+  std::uint64_t grasped_contact_frames = 0;  ///< frames in which something pushed the held part
+  std::uint64_t penetrating_frames = 0;      ///< frames in which pieces overlapped
+  double max_penetration_m = 0.0;            ///< deepest overlap [m]
+  double max_force_N = 0.0;                  ///< largest shown force [N]
+  double max_torque_Nm = 0.0;                ///< largest shown torque [N m]
+  double max_force_step_N = 0.0;             ///< largest change of the shown force from frame to frame [N]
+  double max_torque_step_Nm = 0.0;           ///< the same for torque [N m]
+  double sum_force_N = 0.0;                  ///< of |shown force|, for the mean [N]
+  double sum_torque_Nm = 0.0;                ///< of |shown torque|, for the mean [N m]
+  double max_momentum_off_Ns = 0.0;          ///< of frames whose steps were all taken whole [N s]
+  std::uint64_t forced_short_frames = 0;     ///< the others
+  std::uint64_t non_finite_frames = 0;       ///< frames whose computed wrench was not finite (zero was sent)
+  std::uint32_t flags = 0;                   ///< union of all frames' frame_flag
+  std::uint32_t safety = 0;                  ///< union of all frames' safety_flag
   int max_tests = 0;  ///< exact tests in one frame with those of poses on trial: what the budget bounds
 
   /// Of a field that runs sum up (haptics/report_fields.h), by name: sum("work.exact_tests").

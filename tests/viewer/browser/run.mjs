@@ -4,7 +4,7 @@ import { createConnection } from "node:net";
 import { mkdirSync, mkdtempSync, readFileSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
-import { check, downloaded, drag, heldAt, inkOf, missing, openBrowser, openPage, Program, readCsv, root, shownForce, state, until } from "./support.mjs";
+import { check, downloaded, drag, graspedAt, inkOf, missing, openBrowser, openPage, Program, readCsv, root, shownForce, state, until } from "./support.mjs";
 
 const [topic, tactum] = process.argv.slice(2);
 const pause = (seconds) => new Promise((resolve) => setTimeout(resolve, 1000 * seconds));
@@ -25,7 +25,7 @@ function bare(port, text) {
 
 /** Drags the held part down until it presses with so much, and no deeper: a hand without force sinks to its aim. */
 async function pressDown(page, force_N) {
-  const [x, y] = await heldAt(page);
+  const [x, y] = await graspedAt(page);
   await page.mouse.move(x, y);
   await page.mouse.down();
   await pause(0.5); // until the scripted hand has let go
@@ -133,11 +133,11 @@ const topics = {
     await until("the page shows a force", async () => Number((await state(page)).force) > 1);
     await pause(0.5);
     check((await inkOf(page, 0))[1] !== before[1], "the force chart has changed");
-    const held = Number((await state(page)).force);
+    const dragged = Number((await state(page)).force);
     await page.mouse.up(); // the hand stays where it was led
     await pause(0.4);
     const still = Number((await state(page)).force);
-    check(still > 0.5 * held, `let go of the mouse, the hand goes on pressing: ${held} N, then ${still} N`);
+    check(still > 0.5 * dragged, `let go of the mouse, the hand goes on pressing: ${dragged} N, then ${still} N`);
     check((await page.textContent("#why")).includes("plate"), "the page says what pushes");
     await page.focus("#canvas");
     for (let i = 0; i < 60; ++i) await page.keyboard.press("ArrowUp"); // up again by the keys
@@ -152,7 +152,7 @@ const topics = {
     const page = await openPage(browser, program);
     const places = async () => JSON.parse((await state(page)).bodiesAt);
     check(Object.keys(await places()).length === 13, "thirteen bodies move");
-    const holds = async () => (await state(page)).held === "cube 1";
+    const holds = async () => (await state(page)).grasped === "cube 1";
     let [x, y] = [0, 0];
     // The stick that the demonstration swings may be before it: then once more.
     for (let tries = 0; tries < 5 && !(await holds()); ++tries) {
@@ -169,7 +169,7 @@ const topics = {
     const lifted = (await places())["cube 1"][1];
     for (let i = 1; i <= 4; ++i) await page.mouse.move(x + 30 + 30 * i, y - 150);
     await page.mouse.up();
-    await until("the hand is empty again", async () => (await state(page)).held === "");
+    await until("the hand is empty again", async () => (await state(page)).grasped === "");
     await until("what was thrown has fallen", async () => (await places())["cube 1"][1] - lifted > 50);
     check(page.complaints.length === 0, page.complaints.join("; "));
     await program.end();
@@ -276,7 +276,7 @@ const topics = {
     await page.keyboard.press("n");
     await until("there are two charts more", async () => (await page.locator("#strips canvas").count()) === strips + 2);
     const keys = await page.locator("#strips .key").allTextContents();
-    check(keys.length === 2 && keys.every((key) => key.includes("From the hand") && key.includes("To the hand") && key.includes("Ledger now")), `their curves are named: ${keys}`);
+    check(keys.length === 2 && keys.every((key) => key.includes("From the hand") && key.includes("To the hand") && key.includes("Energy balance now")), `their curves are named: ${keys}`);
     await page.selectOption("#span", "40");
     await page.click('[data-view="front"]');
     await pause(0.3);
@@ -300,7 +300,7 @@ const topics = {
     console.log(`${told.join("; ")}: ${fromHand} J`);
     check(fromHand > 1e-4, "pressing takes work");
     check(Math.abs(value(told[1]) - fromHand) < 0.01 * fromHand, `the panel tells it: ${told[1]}, ${fromHand} J`);
-    check(told.length === 5 && told[3].startsWith("taken out by the controller") && told[4].startsWith("ledger now"), told.join("; "));
+    check(told.length === 5 && told[3].startsWith("taken out by the controller") && told[4].startsWith("energy balance now"), told.join("; "));
     for (let i = 1; i < rows.length; ++i)
       for (const key of ["energy_from_hand_J [J]", "energy_to_hand_J [J]"]) check(rows[i][key] >= rows[i - 1][key], `${key} never shrinks`);
     check(page.complaints.length === 0, page.complaints.join("; "));
@@ -316,7 +316,7 @@ const topics = {
     await drag(page, 0, 0, 1, false);
     await pause(1);
     const before = Number((await state(page)).force);
-    const [x, y] = await heldAt(page);
+    const [x, y] = await graspedAt(page);
     for (let i = 1; i <= 30; ++i) {
       await page.mouse.move(x + 3 * i, y + i); // along the block's long side, to the right
       await pause(0.05);
@@ -469,7 +469,7 @@ const topics = {
     const program = await Program.start(tactum, "gears");
     const page = await openPage(browser, program);
     await until("the gears touch", async () => (await page.textContent(".sentence")).includes("touches"));
-    const stages = await page.locator(".ladder tr").count();
+    const stages = await page.locator(".stages tr").count();
     check(stages === 5, `every stage has its row: ${stages - 1}`);
     await page.click(".contacts button");
     check((await page.locator(".contacts tr.chosen").count()) <= 1, "one contact can be chosen");
@@ -527,14 +527,14 @@ const topics = {
     await page.focus("#canvas");
     await page.keyboard.press("ArrowRight"); // takes the hand; the demonstration ends
     await pause(1.5);
-    const before = await heldAt(page);
+    const before = await graspedAt(page);
     for (let i = 0; i < 25; ++i) await page.keyboard.press("ArrowLeft");
     await pause(1.5);
-    const after = await heldAt(page);
+    const after = await graspedAt(page);
     check(after[0] < before[0] - 10, `arrows move the part: ${before} to ${after}`);
     await page.keyboard.press("4");
     await pause(0.3);
-    check((await heldAt(page)).join() !== after.join(), "digits choose the view");
+    check((await graspedAt(page)).join() !== after.join(), "digits choose the view");
     await page.keyboard.press("g");
     check((await page.getAttribute("#grasp", "aria-pressed")) === "true", "G grasps");
     await page.keyboard.press("p");
@@ -583,7 +583,7 @@ const topics = {
     await page.setViewportSize({ width: 390, height: 800 });
     await pause(1);
     // A finger on the part moves it; the camera stays.
-    const [x, y] = await heldAt(page);
+    const [x, y] = await graspedAt(page);
     const session = await page.context().newCDPSession(page);
     const touch = (type, dx, dy) => session.send("Input.dispatchTouchEvent", { type, touchPoints: type === "touchEnd" ? [] : [{ x: x - 45 + dx, y: y + 12 + dy }] });
     await touch("touchStart", 0, 0);
@@ -613,7 +613,7 @@ const topics = {
       console.log(`${join(folder, `${scene}.png`)}: ${png.length} bytes`);
     };
     await take("gears", {}, async (page) => {
-      const [x, y] = await heldAt(page);
+      const [x, y] = await graspedAt(page);
       await page.mouse.move(x - 70, y + 6);
       await page.mouse.down();
       for (let i = 1; i <= 30; ++i) {

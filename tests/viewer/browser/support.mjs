@@ -103,13 +103,13 @@ export async function state(page) {
   return await page.evaluate(() => ({ ...document.body.dataset }));
 }
 
-export async function heldAt(page) {
-  return (await state(page)).heldAt.split(",").map(Number);
+export async function graspedAt(page) {
+  return (await state(page)).graspedAt.split(",").map(Number);
 }
 
 /** Takes the held part where it is now and drags it by so many pixels, slowly. */
 export async function drag(page, right, down, steps = 40, release = true) {
-  const [x, y] = await heldAt(page);
+  const [x, y] = await graspedAt(page);
   await page.mouse.move(x, y);
   await page.mouse.down();
   for (let i = 1; i <= steps; ++i) {

@@ -73,10 +73,10 @@ export class Bodies {
   }
 
   colour(body: number): number {
-    const { bodies, held } = this.run;
-    if (body === held) return this.look.held;
+    const { bodies, grasped } = this.run;
+    if (body === grasped) return this.look.grasped;
     if (!bodies[body].moves) return this.look.fixed;
-    const free = bodies.slice(0, body).filter((b, i) => b.moves && i !== held).length;
+    const free = bodies.slice(0, body).filter((b, i) => b.moves && i !== grasped).length;
     return this.look.others[free % this.look.others.length];
   }
 

@@ -1,8 +1,8 @@
 // The line to the program: connects, comes back after a loss, acknowledges what was taken in.
-import { readFrames, type Frames, type Told } from "./protocol";
+import { readFrames, type Frames, type ServerMessage } from "./protocol";
 
 export interface Listener {
-  told(message: Told): void;
+  received(message: ServerMessage): void;
   frames(frames: Frames): void;
   linked(up: boolean): void;
 }
@@ -26,7 +26,7 @@ export class Connection {
     };
     socket.onmessage = (event) => {
       if (typeof event.data === "string") {
-        this.listener.told(JSON.parse(event.data) as Told);
+        this.listener.received(JSON.parse(event.data) as ServerMessage);
         return;
       }
       const frames = readFrames(event.data as ArrayBuffer);

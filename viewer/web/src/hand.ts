@@ -60,13 +60,13 @@ export class Hand {
   /** Somebody else has the hand now. */
   lose() {
     this.aimed = false;
-    this.letGo();
+    this.release();
   }
   get dragging() {
     return this.drag !== null;
   }
   get canFeel() {
-    return this.run !== null && (this.run.held >= 0 || this.run.picks) && this.run.device.can_be_led;
+    return this.run !== null && (this.run.grasped >= 0 || this.run.picks) && this.run.device.can_be_led;
   }
 
   /** From where the handle is, or from where we last wanted it. */
@@ -86,7 +86,7 @@ export class Hand {
     if (event.button !== 0 || this.drag || !this.canFeel) return;
     const ray = this.view.rayAt(event.clientX, event.clientY);
     const hit = this.view.bodies?.pick(ray);
-    if (!hit || !this.run || !(this.run.picks ? this.run.bodies[hit.body].moves : hit.body === this.run.held)) return;
+    if (!hit || !this.run || !(this.run.picks ? this.run.bodies[hit.body].moves : hit.body === this.run.grasped)) return;
     if (!this.takeUp()) return;
     event.stopImmediatePropagation(); // the camera stays where it is
     this.view.controls.enabled = false;
@@ -98,13 +98,13 @@ export class Hand {
     const sight = this.view.camera.getWorldDirection(new THREE.Vector3());
     const normal = hinged && body.axis_W ? new THREE.Vector3(...body.axis_W) : sight.clone();
     if (hinged && Math.abs(normal.dot(ray.ray.direction)) < 0.12) normal.copy(sight);
-    const held = this.view.bodies?.matrices[hit.body] ?? new THREE.Matrix4();
+    const grasped = this.view.bodies?.matrices[hit.body] ?? new THREE.Matrix4();
     this.reaching = this.run.picks;
     if (this.reaching) this.p.copy(point);
     this.drag = {
       pointer: event.pointerId, from: point, plane: new THREE.Plane().setFromNormalAndCoplanarPoint(normal, point),
       start: point.clone(), x: event.clientX, y: event.clientY, p0: this.p.clone(), q0: this.q.clone(), angle: 0, last: 0,
-      grabbed: point.clone().applyMatrix4(held.clone().invert()), depth: 0, free: !hinged,
+      grabbed: point.clone().applyMatrix4(grasped.clone().invert()), depth: 0, free: !hinged,
     };
     this.canvas.focus({ preventScroll: true });
     this.canvas.classList.add("by-pointer"); // no ring around what a pointer has chosen
@@ -145,7 +145,7 @@ export class Hand {
   private turnHinge(event: PointerEvent) {
     const drag = this.drag as Drag;
     const now = this.onPlane(event);
-    const body = this.run?.bodies[this.run.held];
+    const body = this.run?.bodies[this.run.grasped];
     if (!now || !body?.axis_W || !body.anchor_W) return;
     const axis = new THREE.Vector3(...body.axis_W);
     const anchor = new THREE.Vector3(...body.anchor_W);
@@ -156,7 +156,7 @@ export class Hand {
     };
     const nearest = (angle: number, to: number) => angle + 2 * Math.PI * Math.round((to - angle) / (2 * Math.PI));
     drag.last = nearest(angleTo(now), drag.last);
-    const there = drag.grabbed.clone().applyMatrix4(this.view.bodies?.matrices[this.run?.held ?? 0] ?? new THREE.Matrix4());
+    const there = drag.grabbed.clone().applyMatrix4(this.view.bodies?.matrices[this.run?.grasped ?? 0] ?? new THREE.Matrix4());
     const part = nearest(angleTo(there), drag.last);
     drag.angle = Math.min(part + farthestLead, Math.max(part - farthestLead, drag.last));
     const turn = new THREE.Quaternion().setFromAxisAngle(axis, drag.angle);
@@ -175,9 +175,9 @@ export class Hand {
   }
 
   private up(event: PointerEvent) {
-    if (event.pointerId === this.drag?.pointer) this.letGo();
+    if (event.pointerId === this.drag?.pointer) this.release();
   }
-  private letGo() {
+  private release() {
     this.drag = null;
     this.reaching = false;
     if (this.run?.picks && this.buttons !== 0) {
@@ -204,7 +204,7 @@ export class Hand {
   private hover(event: PointerEvent) {
     if (event.pointerType === "touch") return;
     const hit = this.canFeel ? this.view.bodies?.pick(this.view.rayAt(event.clientX, event.clientY)) : null;
-    const holds = hit && this.run && (this.run.picks ? this.run.bodies[hit.body].moves : hit.body === this.run.held);
+    const holds = hit && this.run && (this.run.picks ? this.run.bodies[hit.body].moves : hit.body === this.run.grasped);
     this.canvas.classList.toggle("can-hold", Boolean(holds));
   }
 
@@ -218,7 +218,7 @@ export class Hand {
     event.preventDefault();
     if (!this.takeUp()) return;
     const finer = event.altKey ? 0.2 : 1;
-    const body = this.run?.bodies[this.run.held];
+    const body = this.run?.bodies[this.run.grasped];
     if (body?.joint === "hinge" && body.axis_W && body.anchor_W && direction[2] === 0) {
       const turn = new THREE.Quaternion().setFromAxisAngle(new THREE.Vector3(...body.axis_W), -(direction[0] || direction[1]) * fineTurn * finer);
       const anchor = new THREE.Vector3(...body.anchor_W);
@@ -253,32 +253,32 @@ export class Hand {
   }
 
   /** Presses the button when the hand has come near enough, and drags from there once something is held. */
-  private reach(picture: Picture) {
+  private grabWhenNear(picture: Picture) {
     const drag = this.drag as Drag;
     const away = this.p.distanceTo(new THREE.Vector3(picture.hand[0], picture.hand[1], picture.hand[2]));
     if (this.buttons === 0 && away < nearEnough_m) {
       this.buttons = 1;
       this.send(true);
     }
-    const held = this.view.bodies?.matrices[picture.body];
-    if (!held || this.buttons === 0) return;
+    const grasped = this.view.bodies?.matrices[picture.body];
+    if (!grasped || this.buttons === 0) return;
     this.reaching = false;
     drag.p0.copy(this.p);
     drag.q0.copy(this.q);
     drag.start.copy(this.p);
     drag.from.copy(this.p);
     drag.plane.setFromNormalAndCoplanarPoint(drag.plane.normal, this.p);
-    drag.grabbed.copy(this.p).applyMatrix4(held.clone().invert());
+    drag.grabbed.copy(this.p).applyMatrix4(grasped.clone().invert());
   }
 
   /** The spring from the place that was taken to the pointer. */
   drawPull(picture: Picture) {
     const drag = this.drag;
     if (!drag || !this.run) return;
-    if (this.reaching) this.reach(picture);
-    const held = this.view.bodies?.matrices[this.run.held];
-    if (!held) return;
-    const from = drag.grabbed.clone().applyMatrix4(held);
+    if (this.reaching) this.grabWhenNear(picture);
+    const grasped = this.view.bodies?.matrices[this.run.grasped];
+    if (!grasped) return;
+    const from = drag.grabbed.clone().applyMatrix4(grasped);
     const proxy = new THREE.Vector3(picture.proxy[0], picture.proxy[1], picture.proxy[2]);
     const turned = new THREE.Quaternion(picture.proxy[4], picture.proxy[5], picture.proxy[6], picture.proxy[3]).invert();
     const to = from.clone().sub(proxy).applyQuaternion(turned).applyQuaternion(this.q).add(this.p);

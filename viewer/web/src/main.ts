@@ -6,7 +6,7 @@ import { download, get, make } from "./dom";
 import { Hand } from "./hand";
 import { edgeKinds } from "./look";
 import { Panel } from "./panel";
-import { readShapes, type Frames, type Picture, type Run, type Shape, type Status, type Told } from "./protocol";
+import { readShapes, type Frames, type Picture, type Run, type Shape, type Status, type ServerMessage } from "./protocol";
 import { Samples } from "./samples";
 import { withUnit } from "./units";
 import { View, type ViewName } from "./view";
@@ -24,7 +24,7 @@ let shapes: Shape[] = [];
 let waitingFrames: Frames[] = []; // of a run whose geometry is on its way
 let stopped = false;
 
-const connection = new Connection({ told, frames, linked });
+const connection = new Connection({ received, frames, linked });
 const ask = (message: Record<string, unknown>) => connection.send(message);
 const panel = new Panel(get("panel"), (message) => {
   if (maySteer()) ask(message);
@@ -51,10 +51,10 @@ function notice(text: string) {
 
 // ---- what the program says
 
-function told(message: Told) {
+function received(message: ServerMessage) {
   if (message.type === "run") void begin(message);
   else if (message.type === "settings") panel.showSettings(message);
-  else if (message.type === "told") notice(message.sentence);
+  else if (message.type === "notice") notice(message.sentence);
   else showStatus(message);
 }
 
@@ -79,7 +79,7 @@ async function begin(next: Run) {
     ...next.scenes.map((scene) => new Option(`${scene.name}: ${scene.description}`, scene.name)));
   choice.value = next.scene;
   document.title = `Tactum: ${next.scene}`;
-  body.classList.toggle("only-looks", next.held < 0 && next.bodies.every((one) => !one.moves)); // a part alone
+  body.classList.toggle("only-looks", next.grasped < 0 && next.bodies.every((one) => !one.moves)); // a part alone
   showHint();
   back();
   for (const early of waitingFrames.splice(0)) frames(early);
@@ -141,7 +141,7 @@ function showSummary(sample: number) {
   const shown = run.stages.length - 1;
   const force = samples.length(shown, 0, sample);
   const torque = samples.length(shown, 3, sample);
-  const points = samples.at(samples.column("held_contact_points"), sample);
+  const points = samples.at(samples.column("grasped_contact_points"), sample);
   get("summary").textContent = `${withUnit(force, "N")} · ${withUnit(torque, "N m")} · ${points > 0 ? `touching at ${points} points` : "free"}`;
   body.dataset.force = String(force);
   body.dataset.torque = String(torque);
@@ -151,9 +151,9 @@ function showSummary(sample: number) {
   body.dataset.samples = String(samples.count);
   body.dataset.gaps = String(samples.gaps);
   body.dataset.newest = String(samples.frameOf(samples.count - 1));
-  body.dataset.heldAt = run.held >= 0 ? view.onScreen(run.held).map(Math.round).join(",") : "";
+  body.dataset.graspedAt = run.grasped >= 0 ? view.onScreen(run.grasped).map(Math.round).join(",") : "";
   if (run.picks) {
-    body.dataset.held = run.held >= 0 ? run.bodies[run.held].name : "";
+    body.dataset.grasped = run.grasped >= 0 ? run.bodies[run.grasped].name : "";
     body.dataset.bodiesAt = JSON.stringify(Object.fromEntries(run.bodies.flatMap((one, i) => one.moves ? [[one.name, view.onScreen(i).map(Math.round)]] : [])));
   }
   const now = performance.now();
@@ -210,13 +210,13 @@ function back() {
   get("past").hidden = true;
 }
 function showHint() {
-  const held = run && run.held >= 0 ? run.bodies[run.held].name : "";
-  const hinged = run && run.held >= 0 && run.bodies[run.held].joint === "hinge";
+  const grasped = run && run.grasped >= 0 ? run.bodies[run.grasped].name : "";
+  const hinged = run && run.grasped >= 0 && run.bodies[run.grasped].joint === "hinge";
   get("hint").textContent = !run ? ""
     : run.picks && hand.canFeel ? "Press on anything that moves to pick it up, drag it against the others, let go to throw it. Drag beside it to look around."
-    : run.held < 0 ? "Drag to look around, wheel to zoom. Pieces and Edges colour what the part is made of."
+    : run.grasped < 0 ? "Drag to look around, wheel to zoom. Pieces and Edges colour what the part is made of."
     : !hand.canFeel ? "This device is not led by the mouse: look, or choose a simulated device in the settings."
-    : `Drag the orange part (${held}) to ${hinged || hand.turns ? "turn" : "move"} it and feel it push back; until you do, a scripted hand moves it. Drag beside it to look around.`;
+    : `Drag the orange part (${grasped}) to ${hinged || hand.turns ? "turn" : "move"} it and feel it push back; until you do, a scripted hand moves it. Drag beside it to look around.`;
 }
 function reset() {
   if (maySteer()) ask({ do: "reset" });
@@ -316,7 +316,7 @@ charts.onPick = (sample) => {
 why.onChoose = (contact) => {
   view.overlay.chosen = contact?.patch ?? -1;
   if (!contact || !run) return view.bodies?.markFeature(null);
-  const side = contact.bodies[0] === run.held ? 1 : 0; // what is touched
+  const side = contact.bodies[0] === run.grasped ? 1 : 0; // what is touched
   const face = contact.kinds[side] === 2 && contact.features[side] >= 0 ? contact.features[side] : null;
   view.bodies?.markFeature(contact.bodies[side], contact.pieces[side], face);
 };

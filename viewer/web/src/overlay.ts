@@ -225,7 +225,7 @@ export class Overlay {
     if (from && to) this.pull.set(from, to);
   }
 
-  setContacts(contacts: Contact[], pushes: Push[], held: number, toView: THREE.Matrix4, forceScale: number) {
+  setContacts(contacts: Contact[], pushes: Push[], grasped: number, toView: THREE.Matrix4, forceScale: number) {
     const count = Math.min(contacts.length, mostContacts);
     const at = new THREE.Vector3();
     const along = new THREE.Vector3();
@@ -237,7 +237,7 @@ export class Overlay {
       const contact = contacts[i];
       at.fromArray(contact.p).applyMatrix4(toView);
       along.fromArray(contact.n);
-      if (contact.bodies[1] === held) along.negate(); // what acts on the held part
+      if (contact.bodies[1] === grasped) along.negate(); // what acts on the held part
       turn.setFromUnitVectors(up, along);
       const disc = contact.patch === this.chosen ? 0.02 : contact.force > 0 ? 0.012 : 0.007;
       this.discs.setMatrixAt(i, matrix.compose(at, turn, size.setScalar(disc)));

@@ -22,7 +22,7 @@ export interface DeviceFacts {
 }
 export interface Run {
   type: "run"; run: number; scene: string; description: string; scenes: { name: string; description: string }[];
-  rate_Hz: number; bodies: Body[]; held: number; picks: boolean; X_BH: Pose; device: DeviceFacts; stages: StageInfo[];
+  rate_Hz: number; bodies: Body[]; grasped: number; picks: boolean; X_BH: Pose; device: DeviceFacts; stages: StageInfo[];
   channels: ChannelInfo[]; flags: { safety: FlagInfo[]; frame: FlagInfo[] }; settings: Setting[]; margin: string; toml: string;
   field: number[]; // arrows of the force fields, six numbers each: place [m], force [N]
 }
@@ -36,8 +36,8 @@ export interface Status {
     samples_dropped?: number; frame_us?: Times; safety?: string; remarks?: string[];
   };
 }
-export type Told =
-  | Run | Status | { type: "settings"; settings: Setting[]; margin: string; toml: string } | { type: "told"; sentence: string };
+export type ServerMessage =
+  | Run | Status | { type: "settings"; settings: Setting[]; margin: string; toml: string } | { type: "notice"; sentence: string };
 
 export interface Contact {
   bodies: [number, number]; pieces: [number, number]; kinds: [number, number]; features: [number, number];
@@ -48,7 +48,7 @@ export const grips = ["none", "sticks", "slips"] as const;
 export type Grip = (typeof grips)[number];
 /** Where everything is in one frame. */
 export interface Picture {
-  index: number; held: boolean; body: number; hand: Float32Array; proxy: Float32Array; bodies: Float32Array; // seven numbers a pose
+  index: number; grasped: boolean; body: number; hand: Float32Array; proxy: Float32Array; bodies: Float32Array; // seven numbers a pose
   contacts: Contact[]; leftOut: number;
 }
 /** A message with frames: rows of `numbers` floats behind a frame index each. */
@@ -65,7 +65,7 @@ function readPicture(words: Int32Array, floats: Float32Array): Picture {
   let at = 5;
   const take = (count: number) => floats.slice(at, (at += count));
   const picture: Picture = {
-    index: words[0] >>> 0, held: words[1] > 0, body: words[1] - 1, hand: take(7), proxy: take(7), bodies: new Float32Array(), contacts: [],
+    index: words[0] >>> 0, grasped: words[1] > 0, body: words[1] - 1, hand: take(7), proxy: take(7), bodies: new Float32Array(), contacts: [],
     leftOut: words[4],
   };
   at += 7; // the device's frame

@@ -8,20 +8,20 @@ export interface Push {
   at: number[]; // centre of pressure; of the points where nothing presses [m]
   distance: number; // least [m]
   points: number;
-  onHeld: boolean;
+  onGrasped: boolean;
   grip: Grip; // of the surfaces, and the share of their friction cone in use
   coneUsed: number;
 }
 
-export function pushesOf(picture: Picture, held: number): Push[] {
+export function pushesOf(picture: Picture, grasped: number): Push[] {
   const pushes = new Map<number, Push>();
   const weights = new Map<Push, number>();
   picture.contacts.forEach((contact, i) => {
     const key = contact.patch >= 0 ? contact.patch : -1 - i;
-    const sign = contact.bodies[1] === held ? -1 : 1;
+    const sign = contact.bodies[1] === grasped ? -1 : 1;
     let push = pushes.get(key);
     if (!push) {
-      push = { patch: contact.patch, contact, force: [0, 0, 0], at: [0, 0, 0], distance: Infinity, points: 0, onHeld: contact.bodies.includes(held),
+      push = { patch: contact.patch, contact, force: [0, 0, 0], at: [0, 0, 0], distance: Infinity, points: 0, onGrasped: contact.bodies.includes(grasped),
         grip: "none", coneUsed: 0 };
       pushes.set(key, push);
     }

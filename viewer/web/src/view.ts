@@ -148,7 +148,7 @@ export class View {
     this.fit(run, shapes);
     this.field.set(run.field, this.toView);
     this.overlay.clearTrail();
-    this.hold(run.held);
+    this.hold(run.grasped);
     this.picture = null;
     this.arrowForce = this.arrowTorque = this.recentForce = this.recentTorque = 0;
     if (!again) this.look_from("iso");
@@ -157,7 +157,7 @@ export class View {
   /** The hand has this body now; -1: none. */
   private hold(body: number) {
     if (!this.run || !this.bodies) return;
-    this.run.held = body;
+    this.run.grasped = body;
     this.ghost?.removeFromParent();
     this.ghost = body >= 0 ? this.bodies.copyOf(body, this.overlay.ghostMaterial) : null;
     if (this.ghost) this.bodies.root.add(this.ghost);
@@ -195,13 +195,13 @@ export class View {
     this.spacing = round125(radius / 3);
     const step = this.spacing * this.scale;
     const lines = Math.ceil(3.4 / step);
-    const reach = lines * step;
+    const gridHalf = lines * step;
     const points: number[] = [];
     const colours: number[] = [];
     const { r, g, b } = new THREE.Color(this.look.grid);
     const put = (x: number, y: number) => {
       points.push(x, y, this.floorZ);
-      colours.push(r, g, b, 0.75 * Math.max(0, 1 - (x * x + y * y) / (reach * reach)));
+      colours.push(r, g, b, 0.75 * Math.max(0, 1 - (x * x + y * y) / (gridHalf * gridHalf)));
     };
     for (let i = -lines; i <= lines; ++i)
       for (let k = -lines; k < lines; ++k) {
@@ -272,7 +272,7 @@ export class View {
   show(picture: Picture, live: boolean) {
     this.picture = picture;
     if (!this.bodies || !this.run) return;
-    if (this.run.picks && picture.body !== this.run.held) this.hold(picture.body);
+    if (this.run.picks && picture.body !== this.run.grasped) this.hold(picture.body);
     this.bodies.place(picture.bodies, this.camera, this.canvas.clientHeight, this.toView);
     this.bodies.followMark();
     const hand = this.pointOf(picture.hand);
@@ -280,14 +280,14 @@ export class View {
     const X_WH = matrixAt(picture.hand, 0);
     const turned = new THREE.Quaternion(picture.hand[4], picture.hand[5], picture.hand[6], picture.hand[3]).angleTo(
       new THREE.Quaternion(picture.proxy[4], picture.proxy[5], picture.proxy[6], picture.proxy[3]));
-    const holds = this.run.held >= 0 && picture.held;
-    this.overlay.setHand(hand, holds ? proxy : hand, holds ? X_WH.multiply(this.heldFromHandle(picture)) : null, turned, live);
+    const holds = this.run.grasped >= 0 && picture.grasped;
+    this.overlay.setHand(hand, holds ? proxy : hand, holds ? X_WH.multiply(this.graspedFromHandle(picture)) : null, turned, live);
   }
 
   /** Where the held body sits in the handle's frame, as grasped now. */
-  private heldFromHandle(picture: Picture): THREE.Matrix4 {
-    const held = this.run?.held ?? -1;
-    return matrixAt(picture.proxy, 0).invert().multiply(matrixAt(picture.bodies, held));
+  private graspedFromHandle(picture: Picture): THREE.Matrix4 {
+    const grasped = this.run?.grasped ?? -1;
+    return matrixAt(picture.proxy, 0).invert().multiply(matrixAt(picture.bodies, grasped));
   }
 
   /** The wrench at the hand (and the raw one beside it), and the contacts' share; arrows grow until the largest of late
@@ -296,7 +296,7 @@ export class View {
     if (!this.picture || !this.run) return;
     const force = Math.hypot(wrench[0], wrench[1], wrench[2]);
     const torque = Math.hypot(wrench[3], wrench[4], wrench[5]);
-    const pushes = pushesOf(this.picture, this.run.held);
+    const pushes = pushesOf(this.picture, this.run.grasped);
     const arrows = [...pushes.map((push) => push.force), raw?.slice(0, 3) ?? []]; // one scale for all
     const largest = arrows.reduce((most, arrow) => Math.max(most, Math.hypot(...arrow)), force);
     const largestTorque = Math.max(torque, Math.hypot(...(raw?.slice(3) ?? [])));
@@ -310,14 +310,14 @@ export class View {
     if (this.arrowTorque === 0 || largestTorque * this.arrowTorque > 5.2 || wantedTorque > 2.4 * this.arrowTorque) this.arrowTorque = wantedTorque;
     const hand = this.pointOf(this.picture.proxy);
     const tips = this.overlay.setWrench(hand, wrench, raw, { force: this.arrowForce, torque: this.arrowTorque });
-    this.overlay.setContacts(this.picture.contacts, pushes, this.run.held, this.toView, this.arrowForce);
+    this.overlay.setContacts(this.picture.contacts, pushes, this.run.grasped, this.toView, this.arrowForce);
     this.label(this.forceLabel, tips.force, force, "N", force * this.arrowForce > 0.03);
     this.label(this.torqueLabel, tips.torque, torque, "N m", tips.torque !== null);
     this.grips = pushes.filter((push) => push.grip !== "none" && Math.hypot(...push.force) > 0).map((push) => push.grip);
     const newton = 1 / (this.arrowForce / this.scale);
-    const told = this.run.held < 0 ? "" :
+    const note = this.run.grasped < 0 ? "" :
       ` · arrow ${withUnit(newton * 0.01, "N")} per cm · arc ${withUnit(1 / this.arrowTorque * Math.PI, "N m")} per half turn`;
-    this.scaleNote.textContent = `grid ${withUnit(this.spacing, "m")}${told}`;
+    this.scaleNote.textContent = `grid ${withUnit(this.spacing, "m")}${note}`;
   }
 
   private label(element: HTMLElement, at: THREE.Vector3 | null, value: number, unit: string, visible: boolean) {

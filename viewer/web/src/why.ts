@@ -15,7 +15,7 @@ const energyRows: [string, string, string][] = [
   ["from the hand", "energy_from_hand_J", "work the hand put in, moving against the wrench"],
   ["to the hand", "energy_to_hand_J", "work the hand was given, moved along by the wrench"],
   ["taken out by the controller", "energy_damped_J", "by the damping that the passivity controller added"],
-  ["ledger now", "port_ledger_J", "what the scene may give back; below zero, energy was made and the controller takes it out"],
+  ["energy balance now", "port_energy_balance_J", "what the scene may give back; below zero, energy was made and the controller takes it out"],
 ];
 
 const size = (v: number[]) => Math.hypot(v[0], v[1], v[2]);
@@ -40,14 +40,14 @@ export class Why {
       make("th", { scope: "col" }, "distance, normal"))), make("tbody"));
   private readonly more = make("p", { class: "quiet" });
   private rows: Push[] = [];
-  private readonly ladder = make("table", { class: "ladder" });
+  private readonly stages = make("table", { class: "stages" });
   private readonly energy = make("table", { class: "energy" });
   private readonly flags = make("ul", { class: "flags" });
   private readonly numbers = make("dl", { class: "numbers" });
 
   constructor(root: HTMLElement) {
     const more = make("details", {}, make("summary", {}, "Every number of this frame"), this.numbers);
-    root.append(this.sentence, make("h2", {}, "What pushes"), this.table, this.more, make("h2", {}, "From the contact to your hand"), this.ladder,
+    root.append(this.sentence, make("h2", {}, "What pushes"), this.table, this.more, make("h2", {}, "From the contact to your hand"), this.stages,
       this.flags, make("h2", {}, "Energy since the start"), this.energy, more);
   }
 
@@ -60,12 +60,12 @@ export class Why {
     const time = performance.now();
     if (!this.run || !picture || (!now && time - this.last < 120)) return;
     this.last = time;
-    const pushes = pushesOf(picture, this.run.held).sort((a, b) => Number(b.onHeld) - Number(a.onHeld) || size(b.force) - size(a.force));
-    const felt = pushes.filter((push) => push.onHeld);
+    const pushes = pushesOf(picture, this.run.grasped).sort((a, b) => Number(b.onGrasped) - Number(a.onGrasped) || size(b.force) - size(a.force));
+    const felt = pushes.filter((push) => push.onGrasped);
     const sum = felt.reduce((total, push) => total.map((v, i) => v + push.force[i]), [0, 0, 0]);
     this.showSentence(samples, sample, felt, sum);
     this.showContacts(pushes, sum, picture);
-    this.showLadder(samples, sample);
+    this.showStages(samples, sample);
     this.showFlags(samples, sample);
     this.showEnergy(samples, sample);
     this.showNumbers(samples, sample);
@@ -86,11 +86,11 @@ export class Why {
     const active = felt.filter((push) => size(push.force) > 0);
     const field = this.fieldText(samples, sample);
     let text: string;
-    if (run.held < 0) text = "Nothing is held, so nothing is felt.";
-    else if (active.length === 0) text = `You feel ${wrench}. Nothing touches ${this.called(run.held)}${field ? `; ${field}.` : ": this is its own weight, joint and damping."}`;
+    if (run.grasped < 0) text = "Nothing is held, so nothing is felt.";
+    else if (active.length === 0) text = `You feel ${wrench}. Nothing touches ${this.called(run.grasped)}${field ? `; ${field}.` : ": this is its own weight, joint and damping."}`;
     else {
-      const others = [...new Set(active.map((push) => this.called(push.contact.bodies.find((b) => b !== run.held) ?? run.held)))];
-      text = `You feel ${wrench}: ${this.called(run.held)} touches ${others.join(" and ")} in ` +
+      const others = [...new Set(active.map((push) => this.called(push.contact.bodies.find((b) => b !== run.grasped) ?? run.grasped)))];
+      text = `You feel ${wrench}: ${this.called(run.grasped)} touches ${others.join(" and ")} in ` +
         `${active.length} ${active.length === 1 ? "place" : "places"}, together they push ${withUnit(size(sum), "N")} ${direction(sum)}${field ? `; ${field}` : ""}.`;
     }
     this.sentence.textContent = `${samples.timeOf(sample).toFixed(3)} s. ${text}`;
@@ -121,7 +121,7 @@ export class Why {
       const push = shown[i];
       row.hidden = !push;
       if (!push) return;
-      const share = push.onHeld && total > 1e-9 ? dot(push.force, sum) / (total * total) : Number.NaN;
+      const share = push.onGrasped && total > 1e-9 ? dot(push.force, sum) / (total * total) : Number.NaN;
       const chosen = push.patch === this.chosen;
       row.classList.toggle("chosen", chosen);
       const [button, force, place] = [...row.cells].map((cell) => cell.firstElementChild as HTMLElement);
@@ -164,7 +164,7 @@ export class Why {
     this.energy.replaceChildren(head, ...rows);
   }
 
-  private showLadder(samples: Samples, sample: number) {
+  private showStages(samples: Samples, sample: number) {
     const run = this.run as Run;
     const wrenches = run.stages.map((_stage, i) => samples.wrench(i, sample));
     const most = Math.max(1e-9, ...wrenches.map((w) => size(w)));
@@ -183,7 +183,7 @@ export class Why {
         make("td", { class: "number" }, withUnit(size(w.slice(3)), "N m")),
         make("td", { class: "number" }, before ? `${withUnit(change, "N")}` : "", before ? make("br") : null, before ? withUnit(turn, "N m") : ""));
     });
-    this.ladder.replaceChildren(head, ...rows);
+    this.stages.replaceChildren(head, ...rows);
   }
 
   private showFlags(samples: Samples, sample: number) {

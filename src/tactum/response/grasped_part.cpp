@@ -1,4 +1,4 @@
-#include "tactum/response/held_part.h"
+#include "tactum/response/grasped_part.h"
 #include "tactum/response/field_pull.h"
 
 namespace tactum {
@@ -6,17 +6,17 @@ namespace tactum {
 using Index = std::size_t;
 
 Vec6 wanted_by_hand(const ConstraintStep& step) noexcept {
-  const Pose X_WH_proxy = step.bodies.X_WB[Index(step.held.body)] * step.held.X_BH;
-  return balanced_step(step.settings.coupling, step.dt_s, X_WH_proxy, step.held.X_WH, step.held.V_WH);
+  const Pose X_WH_proxy = step.bodies.X_WB[Index(step.grasped.body)] * step.grasped.X_BH;
+  return balanced_step(step.settings.coupling, step.dt_s, X_WH_proxy, step.grasped.X_WH, step.grasped.V_WH);
 }
 
 Vec6 with_load(const ConstraintStep& step, const Vec6& wanted) noexcept {
-  const Index held = Index(step.held.body);
-  const Vec3 weight = step.world.bodies[held].mass_kg * step.world.gravity_W;
-  const Vec3 lever = -(step.bodies.X_WB[held].R * step.held.X_BH.p);  // from the handle
-  const Wrench field = field_at_handle(step.held, step.bodies.X_WB);
-  const HeldMetric metric = held_metric(step.settings.coupling, step.dt_s);
-  const HeldMetric over_step = step_metric(step.settings.coupling, step.held, step.dt_s);
+  const Index grasped = Index(step.grasped.body);
+  const Vec3 weight = step.world.bodies[grasped].mass_kg * step.world.gravity_W;
+  const Vec3 lever = -(step.bodies.X_WB[grasped].R * step.grasped.X_BH.p);  // from the handle
+  const Wrench field = field_at_handle(step.grasped, step.bodies.X_WB);
+  const GraspMetric metric = grasp_metric(step.settings.coupling, step.dt_s);
+  const GraspMetric over_step = step_metric(step.settings.coupling, step.grasped, step.dt_s);
   Vec6 sunk;
   sunk.head<3>() = wanted.head<3>() * (metric.stiffness_N_per_m / over_step.stiffness_N_per_m) +
                    (weight + field.f) / over_step.stiffness_N_per_m;
@@ -28,7 +28,7 @@ Vec6 with_load(const ConstraintStep& step, const Vec6& wanted) noexcept {
 void feel(const Vec6& displacement, ConstraintStep& step) noexcept {
   // M (x - x*) at the handle: with a free held part, exactly the sum of the contact forces, its weight
   // and the load of fields.
-  const HeldMetric metric = held_metric(step.settings.coupling, step.dt_s);
+  const GraspMetric metric = grasp_metric(step.settings.coupling, step.dt_s);
   const Vec6 off = displacement - step.own.constraint.wanted;
   step.own.constraint.felt = {metric.stiffness_N_per_m * off.head<3>(),
                               metric.stiffness_Nm_per_rad * off.tail<3>()};
