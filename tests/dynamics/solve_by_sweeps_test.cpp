@@ -47,35 +47,35 @@ struct Pile {
     row.p_W = p_W;
     row.n_BA_W = n_BA_W;
     row.distance = kSkin + gap_m;
-    row.asked = std::min(0.0, -gap_m);
+    row.asked = gap_m < 0.0 ? opening_of(row, kScale, kStep) : -gap_m;
     row.friction = friction;
     rows.push_back(row);
   }
-  ContactRows set(bool exact) {
+  RowsInProblem set(bool exact) {
     problem.clear();
     for (std::size_t i = 0; i + 1 < bodies.size(); ++i)
       problem.add_body(static_cast<int>(i), bodies[i], X_WB[i], X_WB[i].p,
                        inertial_metric(bodies[i], X_WB[i], kStep), to_vector(V[i] * kStep), kStep);
     problem.add_joint_rows(exact);
-    const ContactRows contacts{rows, problem.rows()};
+    const RowsInProblem contacts{rows, problem.rows()};
     for (const ContactRow& row : rows)
       problem.add_row(problem.row_of(row.body_a, row.body_b, {row.p_W, row.n_BA_W, Vec3::Zero()}), row.asked);
     return contacts;
   }
-  ContactRows begin() {
-    const ContactRows contacts = set(false);
+  RowsInProblem begin() {
+    const RowsInProblem contacts = set(false);
     memory.begin();
-    for (std::size_t i = 0; i < rows.size(); ++i) memory.recall(i);
-    sweeps.begin(contacts, kScale, X_WB, anchors, 0, memory, kStep, problem);
+    for (std::size_t i = 0; i < rows.size(); ++i) rows[i].state = memory.recall(i);
+    sweeps.begin(contacts, kScale, X_WB, anchors, memory, kStep, problem);
     return contacts;
   }
-  void end(const ContactRows& contacts) {
+  void end(const RowsInProblem& contacts) {
     sweeps.keep_anchors(contacts, X_WB, anchors);
     anchors.end_frame([](int) { return true; });
-    sweeps.end(rows, 0, memory);
+    sweeps.end(rows, memory);
   }
   SolverResult frame(int most_sweeps) {
-    const ContactRows contacts = begin();
+    const RowsInProblem contacts = begin();
     const SolverResult result = sweeps.solve(most_sweeps, kSkin, problem);
     end(contacts);
     return result;
@@ -117,7 +117,7 @@ TEST(SolveBySweeps, WhatIsTightenedWithoutRoomIsNotPressedTogether) {
   Pile pile(1);
   for (const double side : {1.0, -1.0}) pile.touch(0, 1, Vec3(-0.01 * side, 0, 0), Vec3(side, 0, 0), 0.0);
   for (int frame = 0; frame < 20; ++frame) {
-    const ContactRows contacts = pile.begin();
+    const RowsInProblem contacts = pile.begin();
     pile.sweeps.solve(120, kSkin, pile.problem);
     for (const std::size_t side : {0, 1}) pile.sweeps.tighten(side, 1e-7, pile.problem);
     EXPECT_TRUE(pile.sweeps.solve(120, kSkin, pile.problem).converged);
@@ -145,7 +145,7 @@ TEST(SolveBySweeps, WhatDigsInIsPressedNoHarderForEver) {
   Pile pile(1);
   pile.touch(0, 1, Vec3(0.01, 0, -0.02), Vec3(0, 0, 1), 0.0, 1.01);
   pile.V[0].v = Vec3(100, 0, -0.01);
-  const ContactRows contacts = pile.begin();
+  const RowsInProblem contacts = pile.begin();
   pile.sweeps.solve(120, kSkin, pile.problem);
   pile.sweeps.tighten(0, 1e-12, pile.problem);  // sweeps begin again, with friction as its cone has it
   EXPECT_TRUE(pile.sweeps.solve(120, kSkin, pile.problem).converged);
@@ -189,10 +189,10 @@ TEST(SolveBySweeps, AgreesWithTheExactSolver) {
         Friction friction;
         FrictionAnchors anchors(64);
         for (int frame = 0; frame < 60; ++frame) {
-          const ContactRows contacts = pile.set(true);
-          ASSERT_TRUE(
-              solve_exactly(contacts, {pile.X_WB, {.skin_m = kSkin, .settled_m = 1e-10}, anchors}, 1000, start, friction, pile.problem)
-                  .solved);
+          const RowsInProblem contacts = pile.set(true);
+          ASSERT_TRUE(solve_exactly(contacts, {pile.X_WB, {.skin_m = kSkin, .settled_m = 1e-10}, anchors},
+                                    1000, start, friction, pile.problem)
+                          .solved);
           friction.end(contacts, pile.problem, pile.X_WB, anchors);
           anchors.end_frame([](int) { return true; });
         }

@@ -38,7 +38,7 @@ struct Case {
     const std::size_t first = problem.rows();
     for (const ContactRow& row : rows)
       problem.add_row(problem.row_of(row.body_a, row.body_b, {row.p_W, row.n_BA_W, Vec3::Zero()}),
-                      row.penalty.margin - row.distance);
+                      row.margin - row.distance);
     forces.reserve(problem.rows() + bodies.size());
     result = solve_penalty(rows, first, kStep, sweeps, forces, problem);
     return problem;
@@ -52,7 +52,8 @@ ContactRow random_row(Random& random, int bodies) {
   row.n_BA_W = random_vector(random, 1).normalized();
   row.p_W = random_vector(random, 0.03);
   row.distance = random.uniform(-1e-4, 4e-4);
-  row.penalty = {.margin = 3e-4, .stiffness = random.uniform(100, 5000)};
+  row.margin = 3e-4;
+  row.stiffness = random.uniform(100, 5000);
   return row;
 }
 
@@ -85,7 +86,7 @@ TEST(SolvePenalty, SolvesForBodiesOfAnyFreedomInAnyOrder) {
         if (c.bodies[b].moves()) opening += sign * J.dot(c.displacement(problem, b));
         pushed[b] += sign * row.impulse / kStep * J;
       }
-      const double law = row.penalty.stiffness * (row.penalty.margin - row.distance - opening);
+      const double law = row.stiffness * (row.margin - row.distance - opening);
       EXPECT_NEAR(row.impulse / kStep, std::max(0.0, law), 1e-3) << "seed " << seed;
     }
     for (std::size_t b = 0; b < kKinds.size(); ++b) {
@@ -156,7 +157,7 @@ TEST(SolvePenalty, AVeryStiffContactDoesNotShake) {
   row.n_BA_W = Vec3::UnitZ();
   row.p_W = c.bodies[1].X_WB.p;
   row.distance = 1e-4;
-  row.penalty.stiffness = 3e11;
+  row.stiffness = 3e11;
   c.rows.push_back(row);
   SolverResult result;
   const ContactProblem problem = c.solve(result);

@@ -36,7 +36,7 @@ TEST(FrictionUse, IsTheShareOfTheConeWhileItSticksAndAllOfItWhileItSlips) {
       EXPECT_NEAR(use.cone_used, std::min(1.0, share), 0.01) << mu << " " << share;
       EXPECT_GT(report.grasped_contact_points, 0) << "also when the cone carries all of the load";
       for (const ContactRow& row : bench.simulation->state().response.rows())
-        EXPECT_TRUE(row.grip == 0 || row.impulse == 0.0) << "what pushes belongs to the patch";
+        EXPECT_TRUE(row.friction_patch == 0 || row.impulse == 0.0) << "what pushes belongs to the patch";
     }
 }
 

@@ -118,7 +118,7 @@ TEST(Sleep, WhatIsPushedWakesWithWhatStandsOnIt) {
   EXPECT_EQ(asleep_before, 2);
   EXPECT_EQ(asleep_after, 0);
   EXPECT_GT(twins.awake.X(1).p.x(), 0.01);
-  EXPECT_LT(twins.apart(), 1e-5);
+  EXPECT_LT(twins.apart(), 1e-4);  // of 0.1 m: what is awake rests to rounding only
   EXPECT_EQ(twins.sleeping.penetrating_frames, 0);
 }
 

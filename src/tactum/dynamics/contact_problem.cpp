@@ -239,8 +239,7 @@ QpCone ContactProblem::loaded(const QpCone& cone) const noexcept {
 void ContactProblem::add_load(const QpRow& along, double force_N) noexcept {
   if (force_N == 0.0) return;
   std::array<double, columns::kColumn> more{};
-  for (const QpRow::Run& run : along.runs)
-    for (Index i = 0; i < run.count; ++i) more[run.first + i] += run.g[i] * force_N;
+  push(along, force_N, more.data());
   for (Index i = 0; i < more.size(); ++i) load_[i] += more[i];
   is_loaded_ = true;
   for (QpRow& row : rows_) row.offset -= dot(row, more.data());
@@ -256,10 +255,12 @@ QpProblem ContactProblem::nearest_point() const noexcept {
 void ContactProblem::begin(std::span<const int> first) noexcept { qp_.begin(nearest_point(), first); }
 
 const QpAnswer& ContactProblem::solve_on(int max_iterations) noexcept {
-  const QpAnswer& answer = qp_.solve_on(nearest_point(), max_iterations);
-  z_.assign(answer.z.begin(), answer.z.end());
-  if (is_loaded_)
-    for (Index i = 0; i < unknowns_; ++i) z_[i] += load_[i];
+  const QpProblem problem = nearest_point();
+  const QpAnswer& answer = qp_.solve_on(problem, max_iterations);
+  // By the multipliers, so that what the bodies do is to the last bit what the forces give them.
+  z_.assign(load_.begin(), load_.end());
+  for (const QpActive& active : answer.active)
+    push(problem.row(Index(active.row)), active.multiplier, z_.data());
   return answer;
 }
 

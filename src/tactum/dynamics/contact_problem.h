@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "tactum/base/reserved_vector.h"
+#include "tactum/dynamics/contact_row.h"
 #include "tactum/dynamics/joint_forces.h"
 #include "tactum/math/small_qp.h"
 
@@ -54,6 +55,9 @@ struct Push {
   Vec3 torque = Vec3::Zero();  ///< [m]
 };
 
+/// The push of a contact row.
+inline Push push_of(const ContactRow& row) { return {row.p_W, row.n_BA_W, Vec3::Zero()}; }
+
 /// How many unknowns a joint leaves.
 std::size_t freedom_of(const Joint& joint) noexcept;
 /// The same and one for the joint's dry friction, as the exact solver needs it.
@@ -65,6 +69,12 @@ inline double mobility(const QpRow& row) noexcept {
   for (const QpRow::Run& run : row.runs)
     for (std::size_t i = 0; i < run.count; ++i) sum += run.g[i] * run.g[i];
   return sum;
+}
+
+/// Adds to the unknowns what a force along a row does to them.
+inline void push(const QpRow& row, double force, double* z) noexcept {
+  for (const QpRow::Run& run : row.runs)
+    for (std::size_t i = 0; i < run.count; ++i) z[run.first + i] += run.g[i] * force;
 }
 
 class ContactProblem {

@@ -19,12 +19,6 @@ struct SurfacePair {
 
 inline constexpr int kAnyGroup = -1;
 
-/// What the penalty law needs of a point [Gregory 2000, 5.2].
-struct PenaltyLaw {
-  double margin = 0.0;     ///< delta, the contact margin of the pair [m]
-  double stiffness = 0.0;  ///< k, the point's share [N/m]
-};
-
 /// What an impact needs of a point.
 struct ImpactLaw {
   double restitution = 0.0;  ///< of the speed [-]
@@ -36,18 +30,20 @@ struct ImpactLaw {
 struct ContactRow : SurfacePair {
   int patch = -1;              ///< the caller's number of the patch it stands for; solvers ignore it
   int friction_patch = -1;     ///< the caller's number of the friction it takes part in; solvers ignore it
+  int state = -1;              ///< number of its state in RowMemory; -1: none is kept
   Vec3 n_BA_W = Vec3::Zero();  ///< unit [-]
   Vec3 p_W = Vec3::Zero();     ///< where the force acts [m]
   double distance = 0.0;       ///< signed, at the start of the step [m]
   double asked = 0.0;          ///< by how much the step has to open it at least; negative: it may close [m]
   double friction = 0.0;       ///< Coulomb's coefficient [-]
-  PenaltyLaw penalty;
+  double margin = 0.0;         ///< delta, the contact margin of the pair [m]
+  double stiffness = 0.0;      ///< k of the penalty law, the point's share [N/m]
   ImpactLaw impact;
   double impulse = 0.0;  ///< along the normal, the answer [N s]
 };
 
 /// The rows of contacts, and where the first of them stands in the problem.
-struct ContactRows {
+struct RowsInProblem {
   std::span<const ContactRow> rows;
   std::size_t first = 0;
 
@@ -69,6 +65,11 @@ inline double opening_of(const ContactRow& row, const ContactScale& scale, doubl
   constexpr double kOpening_s = 0.0095;  // a tenth in a millisecond
   if (!(row.distance < scale.skin_m)) return 0.0;
   return (scale.skin_m - row.distance) * (1.0 - std::exp(-h / kOpening_s));
+}
+
+/// What a step asks of a row: that its gap closes to the skin at most, or opens towards it [m].
+inline double asked_of(const ContactRow& row, const ContactScale& scale, double h) noexcept {
+  return row.distance < scale.skin_m ? opening_of(row, scale, h) : scale.skin_m - row.distance;
 }
 
 /// How a search for forces ended.

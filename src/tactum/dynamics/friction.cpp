@@ -23,9 +23,9 @@ Vec3 apart(const FrictionPatch& patch, const Pose& X_WA, const Pose& X_W_B) {
   return difference - patch.n_BA_W * patch.n_BA_W.dot(difference);
 }
 
-/// How far a row may close; a gap that is too small to count is none.
-double gap_of(double asked_m, const ContactScale& scale) {
-  return std::abs(asked_m) > scale.settled_m ? -asked_m : 0.0;
+/// How far beyond the skin a distance is; too little to count is nothing.
+double gap_beyond(double distance_m, const ContactScale& scale) {
+  return distance_m - scale.skin_m > scale.settled_m ? distance_m - scale.skin_m : 0.0;
 }
 
 }  // namespace
@@ -40,12 +40,17 @@ const FrictionAnchor* take_anchor(const FrictionAnchors& anchors, std::span<cons
     patch.anchor.on_B = X_W_B.inverse() * patch.centre_W;
     return nullptr;
   }
+  const Vec3 centre = X_WA * last->centre_A;
+  patch.centre_W = centre + patch.n_BA_W * patch.n_BA_W.dot(patch.centre_W - centre);
+  if (last->slid) {
+    patch.anchor.on_A = last->centre_A;
+    patch.anchor.on_B = X_W_B.inverse() * centre;
+    return last;
+  }
   patch.anchor.on_A = last->on_A;
   patch.anchor.on_B = last->on_B;
   patch.anchor.apart_W = apart(patch, X_WA, X_W_B);
   if (patch.anchor.apart_W.norm() <= scale.settled_m) patch.anchor.apart_W.setZero();
-  const Vec3 centre = X_WA * last->centre_A;
-  patch.centre_W = centre + patch.n_BA_W * patch.n_BA_W.dot(patch.centre_W - centre);
   return last;
 }
 
@@ -53,9 +58,9 @@ FrictionAnchor next_anchor(const FrictionPatch& patch, const Vec3& centre_W, boo
                            std::span<const Pose> X_WB) noexcept {
   const Pose& X_WA = X_WB[Index(patch.surfaces.body_a)];
   const Pose& X_W_B = X_WB[Index(patch.surfaces.body_b)];
-  // By where the bodies are: the answer, being of first order, has never come apart.
+  const bool slid = patch.sliding.acts ? !patch.sliding.sticks : patch.slip.displacement_m > 0.0;
   Vec3 on_A_W = centre_W;
-  if (patch.anchor.used && !(patch.slip.displacement_m > 0.0)) on_A_W += apart(patch, X_WA, X_W_B);
+  if (patch.anchor.used && !slid) on_A_W += apart(patch, X_WA, X_W_B);
   return {.surfaces = patch.surfaces,
           .n_A = rotated_back(X_WA.R, patch.n_BA_W),
           .on_A = X_WA.inverse() * on_A_W,
@@ -63,7 +68,8 @@ FrictionAnchor next_anchor(const FrictionPatch& patch, const Vec3& centre_W, boo
           .centre_A = X_WA.inverse() * centre_W,
           .radius_m = patch.radius_m,
           .sticking = patch.rows.sticking,
-          .pushed = pushed};
+          .pushed = pushed,
+          .slid = slid};
 }
 
 FrictionPatch* Friction::patch_of(const SurfacePair& surfaces) noexcept {
@@ -73,7 +79,7 @@ FrictionPatch* Friction::patch_of(const SurfacePair& surfaces) noexcept {
 }
 
 /// The patches that push in the last answer.
-void Friction::find_pushing(const ContactRows& contacts, const ContactProblem& problem) noexcept {
+void Friction::find_pushing(const RowsInProblem& contacts, const ContactProblem& problem) noexcept {
   const auto for_pushing_rows = [&](const auto& visit) {
     for (const QpActive& active : problem.answer().active) {
       const ContactRow* const row = contacts.row(active.row);
@@ -90,15 +96,18 @@ void Friction::find_pushing(const ContactRows& contacts, const ContactProblem& p
       visit(*found, *row, active.multiplier);
     }
   };
-  for_pushing_rows([](FrictionPatch& patch, const ContactRow& row, double force) {
+  std::array<double, kMostPatches> opening{};  // that the rows ask for
+  for_pushing_rows([&](FrictionPatch& patch, const ContactRow& row, double force) {
     patch.load_N += force;
     patch.centre_W += force * row.p_W;
     patch.n_BA_W += force * row.n_BA_W;
-    patch.gap_m += force * row.asked;
+    patch.gap_m += force * row.distance;
+    opening[static_cast<Index>(&patch - patches_.begin())] += force * std::max(0.0, row.asked);
   });
   for (FrictionPatch& patch : patches_) {
     patch.centre_W /= patch.load_N;
-    patch.gap_m = gap_of(patch.gap_m / patch.load_N, scale_);
+    const double opens = opening[static_cast<Index>(&patch - patches_.begin())] / patch.load_N;
+    patch.gap_m = opens > 0.0 ? -opens : gap_beyond(patch.gap_m / patch.load_N, scale_);
     patch.n_BA_W.normalize();
   }
   for_pushing_rows([](FrictionPatch& patch, const ContactRow& row, double force) {
@@ -107,11 +116,11 @@ void Friction::find_pushing(const ContactRows& contacts, const ContactProblem& p
 }
 
 /// The patches whose cone pushed in the last frame, do not push by themselves, and touch.
-void Friction::find_last_pushing(const ContactRows& contacts, const FrictionAnchors& anchors,
+void Friction::find_last_pushing(const RowsInProblem& contacts, const FrictionAnchors& anchors,
                                  std::span<const Pose> X_WB) noexcept {
   const Index pushing = patches_.size();
   for (const ContactRow& row : contacts.rows) {
-    if (!(row.friction > 0.0) || gap_of(row.asked, scale_) > 0.0) continue;
+    if (!(row.friction > 0.0) || gap_beyond(row.distance, scale_) > 0.0) continue;
     FrictionPatch* found = patch_of(row);
     if (found == nullptr) {
       const FrictionAnchor* const last = anchors.find(row);
@@ -163,7 +172,7 @@ void Friction::drop_unsqueezed(const ContactProblem& problem) noexcept {
   while (patches_.size() > kept) patches_.pop_back();
 }
 
-bool Friction::begin(const ContactRows& contacts, std::span<const Pose> X_WB, const ContactScale& scale,
+bool Friction::begin(const RowsInProblem& contacts, std::span<const Pose> X_WB, const ContactScale& scale,
                      const FrictionAnchors& anchors, ContactProblem& problem) noexcept {
   patches_.clear();
   scale_ = scale;
@@ -228,7 +237,7 @@ void Friction::release(FrictionPatch& patch, ContactProblem& problem) noexcept {
 }
 
 /// What the cone and the corners of a patch carry in the last answer.
-Friction::Loads Friction::loads_of(const FrictionPatch& patch, const ContactRows& contacts,
+Friction::Loads Friction::loads_of(const FrictionPatch& patch, const RowsInProblem& contacts,
                                    const ContactProblem& problem) noexcept {
   Loads loads;
   for (const QpActive& active : problem.answer().active) {
@@ -301,23 +310,25 @@ double Friction::give_of(const FrictionPatch& patch) noexcept {
 /// sharing mu N as on an area all of whose points slide, an ellipse [Howe and Cutkosky 1996]. Where it stays
 /// what it was, it is mu N against the slide, or less and nothing slides.
 SlidingForce Friction::next_force(const FrictionPatch& patch, const SlidingForce& last, double most_N,
-                                  const ContactProblem& problem) noexcept {
-  const PatchMotion& motion = patch.motion;
+                                  const ContactProblem& problem) const noexcept {
   const double give = give_of(patch);
   const double r = patch.radius_m;
   SlidingForce next{.acts = true};
-  next.force_W = last.force_W - give * (problem.opening(motion.along) * motion.along_W +
-                                        problem.opening(motion.across) * motion.across_W);
-  next.torque_Nm = last.torque_Nm - give * r * r * problem.opening(motion.about);
+  const Slide slide = slide_of(patch, problem);  // from the anchor: what sticks goes back to it
+  next.force_W = last.force_W - give * slide.displacement;
+  next.torque_Nm = last.torque_Nm - give * r * r * slide.turn;
   const double size = r > 0.0 ? std::hypot(next.force_W.norm(), next.torque_Nm / r) : next.force_W.norm();
+  // At its bound it may still be on the way to rest: a slide that does not count is none.
+  next.sticks = size < most_N || slide.displacement.norm() + r * std::abs(slide.turn) <= scale_.settled_m;
   if (size > most_N) {
-    next.force_W *= most_N / size;
-    next.torque_Nm *= most_N / size;
+    const double share = size > 0.0 ? most_N / size : 0.0;
+    next.force_W *= share;
+    next.torque_Nm *= share;
   }
   return next;
 }
 
-bool Friction::update_sliding(const ContactRows& contacts, ContactProblem& problem) noexcept {
+bool Friction::update_sliding(const RowsInProblem& contacts, ContactProblem& problem) noexcept {
   constexpr double kSameForce = 1e-6;  // share of mu N
   bool changed = false;
   for (FrictionPatch& patch : patches_) {
@@ -355,7 +366,7 @@ void Friction::forget_anchors(ContactProblem& problem) noexcept {
   }
 }
 
-void Friction::end(const ContactRows& contacts, const ContactProblem& problem, std::span<const Pose> X_WB,
+void Friction::end(const RowsInProblem& contacts, const ContactProblem& problem, std::span<const Pose> X_WB,
                    FrictionAnchors& anchors) const noexcept {
   for (const FrictionPatch& patch : patches_) {
     if (!patch.acts) continue;

@@ -42,7 +42,7 @@ class Friction {
 
   /// Finds the patches that push in the last answer; their rows are added to the problem. False when there is
   /// none.
-  bool begin(const ContactRows& contacts, std::span<const Pose> X_WB, const ContactScale& scale,
+  bool begin(const RowsInProblem& contacts, std::span<const Pose> X_WB, const ContactScale& scale,
              const FrictionAnchors& anchors, ContactProblem& problem) noexcept;
   /// Appends the rows that pushed in the last frame while the patches stuck.
   void rows_that_stuck(StaticVector<int, kMostUnknowns>& rows) const noexcept;
@@ -52,13 +52,13 @@ class Friction {
   bool update_slip(ContactProblem& problem) noexcept;
   /// Gives patches that slip the friction of the last answer as a load, in place of their cone: exactly mu N
   /// against the motion, whichever corners carry N. True when that changed a load.
-  bool update_sliding(const ContactRows& contacts, ContactProblem& problem) noexcept;
+  bool update_sliding(const RowsInProblem& contacts, ContactProblem& problem) noexcept;
   /// Takes all loads back.
   void refuse_loads(ContactProblem& problem) noexcept;
   /// Takes the anchors off, when they ask for what cannot be.
   void forget_anchors(ContactProblem& problem) noexcept;
-  /// Keeps anchors and centres; the step led to X_WB.
-  void end(const ContactRows& contacts, const ContactProblem& problem, std::span<const Pose> X_WB,
+  /// Keeps anchors and centres. X_WB is where the step began.
+  void end(const RowsInProblem& contacts, const ContactProblem& problem, std::span<const Pose> X_WB,
            FrictionAnchors& anchors) const noexcept;
   /// Visits what cones and sliding patches push with in the last answer: visit(patch number, push,
   /// multiplier [N]).
@@ -88,16 +88,16 @@ class Friction {
     Vec3 cone_force = Vec3::Zero();      // in the surface [N]
     Vec3 cone_torque = Vec3::Zero();     // about the normal [N m]
   };
-  static Loads loads_of(const FrictionPatch& patch, const ContactRows& contacts,
+  static Loads loads_of(const FrictionPatch& patch, const RowsInProblem& contacts,
                         const ContactProblem& problem) noexcept;
   static double give_of(const FrictionPatch& patch) noexcept;
-  static SlidingForce next_force(const FrictionPatch& patch, const SlidingForce& last, double most_N,
-                                 const ContactProblem& problem) noexcept;
+  SlidingForce next_force(const FrictionPatch& patch, const SlidingForce& last, double most_N,
+                          const ContactProblem& problem) const noexcept;
   static void set_load(const SlidingForce& force, FrictionPatch& patch, ContactProblem& problem) noexcept;
   static void refuse_load(FrictionPatch& patch, ContactProblem& problem) noexcept;
   static void release_cone(const FrictionPatch& patch, ContactProblem& problem) noexcept;
-  void find_pushing(const ContactRows& contacts, const ContactProblem& problem) noexcept;
-  void find_last_pushing(const ContactRows& contacts, const FrictionAnchors& anchors,
+  void find_pushing(const RowsInProblem& contacts, const ContactProblem& problem) noexcept;
+  void find_last_pushing(const RowsInProblem& contacts, const FrictionAnchors& anchors,
                          std::span<const Pose> X_WB) noexcept;
   double taken_off(const FrictionPatch& patch, const ContactProblem& problem) const noexcept;
   void drop_unsqueezed(const ContactProblem& problem) noexcept;
@@ -115,8 +115,8 @@ class Friction {
 const FrictionAnchor* take_anchor(const FrictionAnchors& anchors, std::span<const Pose> X_WB,
                                   const ContactScale& scale, FrictionPatch& patch) noexcept;
 
-/// What a patch keeps for the next frame, when its forces had their centre at `centre_W` and the step led to
-/// X_WB: the anchor of a patch that stuck stays, that of one that slid is at the centre.
+/// What a patch keeps for the next frame, when its forces had their centre at `centre_W` and the step began at
+/// X_WB: the anchor of a patch that stuck goes with the centre, that of one that slid is set anew.
 FrictionAnchor next_anchor(const FrictionPatch& patch, const Vec3& centre_W, bool pushed,
                            std::span<const Pose> X_WB) noexcept;
 

@@ -47,10 +47,19 @@ const FrictionAnchor* FrictionAnchors::find(const FrictionPatch& patch, std::spa
 }
 
 void FrictionAnchors::sort_and_exchange() noexcept {
-  std::sort(now_.begin(), now_.end(), [](const FrictionAnchor& a, const FrictionAnchor& b) {
-    return key(a.surfaces) < key(b.surfaces);
+  // Without a stable sort, for that allocates: each knows its place.
+  order_.clear();
+  for (Index i = 0; i < now_.size(); ++i) order_.push_back(static_cast<int>(i));
+  std::sort(order_.begin(), order_.end(), [&](int a, int b) {
+    const auto key_a = key(now_[Index(a)].surfaces);
+    const auto key_b = key(now_[Index(b)].surfaces);
+    return key_a != key_b ? key_a < key_b : a < b;
   });
-  last_.swap(now_);
+  last_.clear();
+  for (const int i : order_) {
+    if (!last_.empty() && last_.back().surfaces == now_[Index(i)].surfaces) last_.pop_back();
+    last_.push_back(now_[Index(i)]);
+  }
   now_.clear();
 }
 

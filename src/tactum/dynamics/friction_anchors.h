@@ -17,7 +17,8 @@ struct FrictionAnchor {
   Vec3 centre_A = Vec3::Zero();                   ///< the centre of its forces, in A's frame [m]
   double radius_m = 0.0;                          ///< of its forces about their centre [m]
   std::uint32_t sticking = 0;                     ///< see PatchRows
-  bool pushed = false;                            ///< its cone pushed
+  bool pushed = false;                            ///< friction pushed
+  bool slid = false;                              ///< it is anchored anew, at its centre
   Vec3 force_W = Vec3::Zero();                    ///< in the surface, on A; the sweeps begin with it [N]
   double torque_Nm = 0.0;                         ///< ... and about the normal [N m]
 };
@@ -27,6 +28,7 @@ class FrictionAnchors {
   explicit FrictionAnchors(std::size_t most_patches) {
     last_.reserve(most_patches);
     now_.reserve(most_patches);
+    order_.reserve(most_patches);
   }
   /// The last frame's anchor of a patch; null when it had none. Of the same surfaces; where there is none, as
   /// when a body slides from one piece of a floor on to the next, of the same bodies in the same plane, no
@@ -35,7 +37,7 @@ class FrictionAnchors {
                              double same_plane_m) const noexcept;
   /// The last frame's anchor of the same surfaces, null when there is none.
   const FrictionAnchor* find(const SurfacePair& surfaces) const noexcept;
-  /// Keeps an anchor for the next frame.
+  /// Keeps an anchor for the next frame; of several of the same surfaces the last one.
   void add(const FrictionAnchor& anchor) noexcept {
     if (now_.size() < now_.capacity()) now_.push_back(anchor);
   }
@@ -56,6 +58,7 @@ class FrictionAnchors {
   void sort_and_exchange() noexcept;
 
   ReservedVector<FrictionAnchor> last_, now_;  // last_ is sorted by surfaces
+  ReservedVector<int> order_;                  // scratch
 };
 
 }  // namespace tactum

@@ -31,6 +31,7 @@ struct PatchSlip {
 /// What friction does to A of a patch that slides, as a load of the contact problem: the cone is not asked.
 struct SlidingForce {
   bool acts = false;
+  bool sticks = false;          ///< it is less than mu N: nothing slides
   Vec3 force_W = Vec3::Zero();  ///< in the surface, at the centre [N]
   double torque_Nm = 0.0;       ///< about the normal [N m]
 };
@@ -57,6 +58,9 @@ struct FrictionPatch {
   PatchMotion motion;
   PatchSlip slip;
   SlidingForce sliding;
+
+  /// Whether the bodies slide on each other, or turn.
+  bool slides() const { return sliding.acts ? !sliding.sticks : slip.any(); }
   PatchRows rows;
 };
 

@@ -26,19 +26,22 @@ double approach(const ContactRow& row, const ImpactBodies& bodies) {
                          velocity_at(bodies.V_WB[b], row.p_W - bodies.X_WB[b].p));
 }
 
-/// All corners of the pair of `first` that close within h.
+/// All corners of the pair of `first` that close within h, or are as near as that one: of a face that meets
+/// another one flat, rounding must not leave corners out.
 void find_corners(std::span<const ContactRow> rows, const ContactRow& first, const ImpactBodies& bodies,
                   double h, Corners& corners) {
   for (const ContactRow& row : rows) {
     if (row.body_a != first.body_a || row.body_b != first.body_b) continue;
     const double speed = approach(row, bodies);
-    if (row.distance > std::max(0.0, speed) * h || !corners.push_back(row)) continue;
+    const double closes_m = std::max(std::max(0.0, speed) * h, first.distance + bodies.same_distance_m);
+    if (row.distance > closes_m || !corners.push_back(row)) continue;
+    corners.back().distance = 0.0;
     corners.back().asked = speed > kImpactSpeed ? row.impact.restitution * speed : 0.0;
   }
 }
 
 /// The problem of the pair: velocities for displacements, impulses for forces.
-ContactRows set_problem(const Corners& corners, const ImpactBodies& bodies, ContactProblem& problem) {
+RowsInProblem set_problem(const Corners& corners, const ImpactBodies& bodies, ContactProblem& problem) {
   problem.clear();
   for (const int body : {corners[0].body_a, corners[0].body_b}) {
     const Index i = Index(body);
@@ -51,14 +54,14 @@ ContactRows set_problem(const Corners& corners, const ImpactBodies& bodies, Cont
     problem.add_body(body, what, X_WB, X_WB.p, inertial_metric(what, X_WB, 1.0), to_vector(bodies.V_WB[i]),
                      0.0);
   }
-  const ContactRows contacts{{corners.begin(), corners.end()}, problem.rows()};
+  const RowsInProblem contacts{{corners.begin(), corners.end()}, problem.rows()};
   for (const ContactRow& row : corners)
     problem.add_row(problem.row_of(row.body_a, row.body_b, {row.p_W, row.n_BA_W, Vec3::Zero()}), row.asked);
   return contacts;
 }
 
 /// The share of an answer's impulses that a pair is given.
-void report(const ContactRows& contacts, const Friction& friction, const ContactProblem& problem,
+void report(const RowsInProblem& contacts, const Friction& friction, const ContactProblem& problem,
             double share, ImpactObserver* observer) {
   if (observer == nullptr || !(share > 0.0)) return;
   const int a = contacts.rows[0].body_a;
@@ -131,7 +134,7 @@ class PairImpact {
 
   const Corners& corners_;
   Corners corners_now_;
-  ContactRows contacts_;
+  RowsInProblem contacts_;
   FrictionInput input_;
   const ImpactBodies& bodies_;
   ImpactScratch& scratch_;

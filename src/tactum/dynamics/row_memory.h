@@ -26,11 +26,11 @@ class RowMemory {
     now_.clear();
     next_ = 0;
   }
-  /// The next row of this frame, with what the row of the same name had in the last one. Rows come in the
-  /// same order from frame to frame but for those that come and go; so many may at once before a force is
-  /// forgotten.
-  void recall(std::uint64_t name) noexcept {
-    if (now_.size() == now_.capacity()) return;
+  /// The number of the next row of this frame, with what the row of the same name had in the last one; -1 when
+  /// there is no room. Rows come in the same order from frame to frame but for those that come and go; so many
+  /// may at once before a force is forgotten.
+  int recall(std::uint64_t name) noexcept {
+    if (now_.size() == now_.capacity()) return -1;
     RowState state{.name = name};
     for (std::size_t ahead = 0; ahead < std::min(kLookAhead, last_.size()); ++ahead) {
       const std::size_t i = (next_ + ahead) % last_.size();
@@ -41,9 +41,11 @@ class RowMemory {
       break;
     }
     now_.push_back(state);
+    return static_cast<int>(now_.size()) - 1;
   }
-  /// The rows of this frame, in the order of recall().
-  RowState& operator[](std::size_t row) noexcept { return now_[row]; }
+  /// The state that recall() gave this number.
+  RowState& operator[](int row) noexcept { return now_[static_cast<std::size_t>(row)]; }
+  const RowState& operator[](int row) const noexcept { return now_[static_cast<std::size_t>(row)]; }
 
  private:
   static constexpr std::size_t kLookAhead = 64;

@@ -32,12 +32,6 @@ constexpr double kMoreToChange = 1.01;
 /// Friction at so little less than its bound slides.
 constexpr double kAtBound = 1.0 - 1e-9;
 
-/// z += g force.
-void push(const QpRow& row, double force, double* z) noexcept {
-  for (const QpRow::Run& run : row.runs)
-    for (Index i = 0; i < run.count; ++i) z[run.first + i] += run.g[i] * force;
-}
-
 auto key(const ContactRow& row) { return std::tuple(row.body_a, row.body_b, row.group_a, row.group_b); }
 
 }  // namespace
@@ -51,8 +45,9 @@ Sweeps::Sweeps(std::size_t most_rows, std::size_t bodies) {
 }
 
 /// A patch for each pair of surfaces that rubs, at the last frame's centre of pressure.
-void Sweeps::make_patches(const ContactRows& contacts, const ContactScale& scale, std::span<const Pose> X_WB,
-                          const FrictionAnchors& anchors, ContactProblem& problem) noexcept {
+void Sweeps::make_patches(const RowsInProblem& contacts, const ContactScale& scale,
+                          std::span<const Pose> X_WB, const FrictionAnchors& anchors,
+                          ContactProblem& problem) noexcept {
   patches_.clear();
   frictions_.clear();
   order_.clear();
@@ -87,8 +82,8 @@ void Sweeps::make_patches(const ContactRows& contacts, const ContactScale& scale
   }
 }
 
-void Sweeps::begin(const ContactRows& contacts, const ContactScale& scale, std::span<const Pose> X_WB,
-                   const FrictionAnchors& anchors, std::size_t first_state, RowMemory& memory, double h,
+void Sweeps::begin(const RowsInProblem& contacts, const ContactScale& scale, std::span<const Pose> X_WB,
+                   const FrictionAnchors& anchors, RowMemory& memory, double h,
                    ContactProblem& problem) noexcept {
   h_ = h;
   first_contact_ = contacts.first;
@@ -96,12 +91,15 @@ void Sweeps::begin(const ContactRows& contacts, const ContactScale& scale, std::
   rows_.assign(rows.size(), Row{});
   for (Index i = 0; i < rows.size(); ++i) rows_[i].mobility = mobility(rows[i]);
   for (Index i = 0; i < contacts.rows.size(); ++i) {
-    const RowState& state = memory[first_state + i];
+    if (contacts.rows[i].state < 0) continue;
+    const RowState& state = memory[contacts.rows[i].state];
     Row& row = rows_[contacts.first + i];
     row.force.now = state.force_N;
-    if (state.closed_frames > 0) continue;
-    row.opening = opening_of(contacts.rows[i], scale, h);
-    problem.tighten(contacts.first + i, row.opening);
+    // What is not asked to open for some time only may not close further.
+    row.opening = std::max(0.0, contacts.rows[i].asked);
+    if (state.closed_frames == 0) continue;
+    problem.tighten(contacts.first + i, -row.opening);
+    row.opening = 0.0;
   }
   joints_.assign(problem.joint_frictions().size(), Force{});
   make_patches(contacts, scale, X_WB, anchors, problem);
@@ -168,10 +166,11 @@ double Sweeps::relax_friction(std::size_t number, ContactProblem& problem) noexc
     forces[d]->now += by;
     push(*rows[d], by, z);
   }
-  // Force and torque share the cone as they do in the exact solver.
+  // Force and torque share the load as on an area whose points all slide, an ellipse.
   const double sideways = std::hypot(forces[0]->now, forces[1]->now);
   const double twisting = patch.radius_m > 0.0 ? std::abs(forces[2]->now) / patch.radius_m : 0.0;
-  const double share = sideways + twisting > most ? most / (sideways + twisting) : 1.0;
+  const double used = std::hypot(sideways, twisting);
+  const double share = used > most ? most / used : 1.0;
   for (Index d = 0; d < 3; ++d) {
     const double wanted = d == 2 && !(patch.radius_m > 0.0) ? 0.0 : share * forces[d]->now;
     push(*rows[d], wanted - forces[d]->now, z);
@@ -269,17 +268,18 @@ SolverResult Sweeps::solve(int max_sweeps, double harmless_m, ContactProblem& pr
   return result;
 }
 
-void Sweeps::end(std::span<ContactRow> rows, std::size_t first_state, RowMemory& memory) const noexcept {
+void Sweeps::end(std::span<ContactRow> rows, RowMemory& memory) const noexcept {
   for (Index i = 0; i < rows.size(); ++i) {
     const Row& row = rows_[first_contact_ + i];
     rows[i].impulse = row.force.now * h_;
-    RowState& state = memory[first_state + i];
+    if (rows[i].state < 0) continue;
+    RowState& state = memory[rows[i].state];
     state.force_N = row.force.now;
     if (row.wedged) state.closed_frames = frames_in(kClosed_s, h_);
   }
 }
 
-void Sweeps::keep_anchors(const ContactRows& contacts, std::span<const Pose> X_WB,
+void Sweeps::keep_anchors(const RowsInProblem& contacts, std::span<const Pose> X_WB,
                           FrictionAnchors& anchors) noexcept {
   for (FrictionPatch& patch : patches_) patch.load_N = 0.0;
   const auto for_pushing_rows = [&](const auto& visit) {
@@ -298,8 +298,8 @@ void Sweeps::keep_anchors(const ContactRows& contacts, std::span<const Pose> X_W
   for (Index i = 0; i < patches_.size(); ++i) {
     FrictionPatch& patch = patches_[i];
     const Friction3& friction = frictions_[i];
-    const double used = std::hypot(friction.along.now, friction.across.now) +
-                        (patch.radius_m > 0.0 ? std::abs(friction.about.now) / patch.radius_m : 0.0);
+    const double twisting = patch.radius_m > 0.0 ? friction.about.now / patch.radius_m : 0.0;
+    const double used = std::hypot(friction.along.now, friction.across.now, twisting);
     if (!(used < kAtBound * patch.coefficient * patch.load_N)) patch.slip.displacement_m = kInfinity;
     FrictionAnchor anchor = next_anchor(patch, patch.centre_W, used > 0.0, X_WB);
     anchor.force_W = friction_force(i);

@@ -24,11 +24,9 @@ class Sweeps {
  public:
   Sweeps(std::size_t most_rows, std::size_t bodies);
 
-  /// Takes a problem whose contact rows are `contacts`; `memory` has their states from `first_state` on.
-  /// Steps are of `h` seconds.
-  void begin(const ContactRows& contacts, const ContactScale& scale, std::span<const Pose> X_WB,
-             const FrictionAnchors& anchors, std::size_t first_state, RowMemory& memory, double h,
-             ContactProblem& problem) noexcept;
+  /// Takes a problem whose contact rows are `contacts`; their states are in `memory`. Steps are of `h` seconds.
+  void begin(const RowsInProblem& contacts, const ContactScale& scale, std::span<const Pose> X_WB,
+             const FrictionAnchors& anchors, RowMemory& memory, double h, ContactProblem& problem) noexcept;
   /// Asks of a contact to close by `by_m` less.
   void tighten(std::size_t contact, double by_m, ContactProblem& problem) noexcept;
   /// At most so many sweeps; may be called again after tighten(). They have converged when the last one changed
@@ -36,9 +34,9 @@ class Sweeps {
   /// less.
   SolverResult solve(int max_sweeps, double harmless_m, ContactProblem& problem) noexcept;
   /// Sets the rows' impulses and their states.
-  void end(std::span<ContactRow> rows, std::size_t first_state, RowMemory& memory) const noexcept;
-  /// Keeps the anchors; the step led to X_WB.
-  void keep_anchors(const ContactRows& contacts, std::span<const Pose> X_WB,
+  void end(std::span<ContactRow> rows, RowMemory& memory) const noexcept;
+  /// Keeps the anchors. X_WB is where the step began.
+  void keep_anchors(const RowsInProblem& contacts, std::span<const Pose> X_WB,
                     FrictionAnchors& anchors) noexcept;
 
   /// The patches with friction, and the force in the surface that acts on body_a of each [N].
@@ -70,7 +68,7 @@ class Sweeps {
     double last_change = 0.0;  // of the forces, squared
   };
 
-  void make_patches(const ContactRows& contacts, const ContactScale& scale, std::span<const Pose> X_WB,
+  void make_patches(const RowsInProblem& contacts, const ContactScale& scale, std::span<const Pose> X_WB,
                     const FrictionAnchors& anchors, ContactProblem& problem) noexcept;
   double sweep(ContactProblem& problem) noexcept;
   double relax_joint(std::size_t joint, ContactProblem& problem) noexcept;

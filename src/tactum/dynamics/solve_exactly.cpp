@@ -15,10 +15,10 @@ bool solve_on(int max_iterations, ContactProblem& problem, ExactResult& result) 
 }
 
 /// How often the loads of sliding patches are brought to what the answer with them says.
-constexpr int kSlidingRounds = 16;
+constexpr int kSlidingRounds = 60;
 
 /// Lets every patch stick, then slip where it must, until none slips further.
-void solve_cones(const ContactRows& contacts, int max_iterations, ExactStart& start, Friction& friction,
+void solve_cones(const RowsInProblem& contacts, int max_iterations, ExactStart& start, Friction& friction,
                  ContactProblem& problem, ExactResult& result) {
   for (int round = 0; round <= kSlipRounds; ++round) {
     if (!solve_on(max_iterations, problem, result)) {
@@ -35,7 +35,7 @@ void solve_cones(const ContactRows& contacts, int max_iterations, ExactStart& st
 }
 
 /// Gives what slides its friction.
-void solve_sliding(const ContactRows& contacts, int max_iterations, Friction& friction,
+void solve_sliding(const RowsInProblem& contacts, int max_iterations, Friction& friction,
                    ContactProblem& problem, ExactResult& result) {
   for (int round = 0; round < kSlidingRounds; ++round) {
     if (!friction.update_sliding(contacts, problem)) return;
@@ -46,7 +46,7 @@ void solve_sliding(const ContactRows& contacts, int max_iterations, Friction& fr
   }
 }
 
-void solve_with_friction(const ContactRows& contacts, int max_iterations, ExactStart& start,
+void solve_with_friction(const RowsInProblem& contacts, int max_iterations, ExactStart& start,
                          Friction& friction, ContactProblem& problem, ExactResult& result) {
   solve_cones(contacts, max_iterations, start, friction, problem, result);
   if (result.solved) solve_sliding(contacts, max_iterations, friction, problem, result);
@@ -68,13 +68,19 @@ void begin_sticking(const RowNumbers& last, const Friction& friction, ContactPro
 
 }  // namespace
 
-void list_pushing(const ContactRows& contacts, const ContactProblem& problem, RowNumbers& rows) noexcept {
+void list_pushing(const RowsInProblem& contacts, const ContactProblem& problem, RowNumbers& rows) noexcept {
   rows.clear();
   for (const QpActive& active : problem.answer().active)
     if (contacts.row(active.row) != nullptr) rows.push_back(active.row);
 }
 
-ExactResult solve_exactly(const ContactRows& contacts, const FrictionInput& input, int max_iterations,
+ExactResult solve_once(int max_iterations, ContactProblem& problem) noexcept {
+  ExactResult result;
+  solve_on(max_iterations, problem, result);
+  return result;
+}
+
+ExactResult solve_exactly(const RowsInProblem& contacts, const FrictionInput& input, int max_iterations,
                           ExactStart& start, Friction& friction, ContactProblem& problem) noexcept {
   ExactResult result;
   friction.clear();
@@ -87,7 +93,7 @@ ExactResult solve_exactly(const ContactRows& contacts, const FrictionInput& inpu
   return result;
 }
 
-ExactResult solve_again(const ContactRows& contacts, int max_iterations, ExactStart& start,
+ExactResult solve_again(const RowsInProblem& contacts, int max_iterations, ExactStart& start,
                         Friction& friction, ContactProblem& problem) noexcept {
   ExactResult result;
   if (friction.acts()) {

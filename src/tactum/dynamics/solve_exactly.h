@@ -30,14 +30,17 @@ struct FrictionInput {
 
 /// Solves the problem, whose contact rows are `contacts`. Friction is that of the rows' coefficients. Where no
 /// answer keeps the anchors they are taken off; where there is none at all, friction.
-ExactResult solve_exactly(const ContactRows& contacts, const FrictionInput& input, int max_iterations,
+ExactResult solve_exactly(const RowsInProblem& contacts, const FrictionInput& input, int max_iterations,
                           ExactStart& start, Friction& friction, ContactProblem& problem) noexcept;
 
+/// Solves a problem without friction, from the rows it was begun with, or from those that push.
+ExactResult solve_once(int max_iterations, ContactProblem& problem) noexcept;
+
 /// Goes on from the last answer, after rows were tightened; patches stay what they are.
-ExactResult solve_again(const ContactRows& contacts, int max_iterations, ExactStart& start,
+ExactResult solve_again(const RowsInProblem& contacts, int max_iterations, ExactStart& start,
                         Friction& friction, ContactProblem& problem) noexcept;
 
 /// The contact rows that push in the last answer.
-void list_pushing(const ContactRows& contacts, const ContactProblem& problem, RowNumbers& rows) noexcept;
+void list_pushing(const RowsInProblem& contacts, const ContactProblem& problem, RowNumbers& rows) noexcept;
 
 }  // namespace tactum

@@ -35,7 +35,7 @@ YieldingRow yielding_row(Index number, std::span<const ContactRow> contacts, Ind
   const std::span<const QpRow> rows = problem.row_list();
   if (number < rows.size()) {
     YieldingRow next{.row = rows[number]};
-    next.stiffness = number >= first ? contacts[number - first].penalty.stiffness : rigid_stiffness(next.row);
+    next.stiffness = number >= first ? contacts[number - first].stiffness : rigid_stiffness(next.row);
     return next;
   }
   const ContactProblem::JointFriction& friction = problem.joint_frictions()[number - rows.size()];
@@ -235,8 +235,7 @@ SolverResult sweep(std::span<const ContactRow> contacts, Index first, int max_sw
       const double change = force - forces[r];
       if (change == 0.0) continue;
       forces[r] = force;
-      for (const QpRow::Run& run : next.row.runs)
-        for (Index i = 0; i < run.count; ++i) z[run.first + i] += run.g[i] * change;
+      push(next.row, change, z);
       largest_change = std::max(largest_change, std::abs(change) * give);
       largest_wanted = std::max(largest_wanted, std::abs(next.row.offset));
     }

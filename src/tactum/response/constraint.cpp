@@ -18,8 +18,6 @@ namespace {
 
 using Index = std::size_t;
 
-/// How often patches that slid are let slip further: what is left of the error is mu^2 a round.
-constexpr int kSlipRounds = 6;
 /// The trusted length after a step, in lengths of that step.
 constexpr double kTrustGrowth = 2.0;
 /// The tolerance of contact determination is so much more than the trusted length, in skins.
@@ -28,112 +26,75 @@ constexpr double kBoundMargin = 4.0;
 /// have it: what is felt would be the same however far the hand goes away.
 constexpr double kStands_s = 0.002;
 
-/// The bodies and what each wants: to the hand, on along its way; or, `at_rest`, nothing.
+/// The bodies and their targets: to the hand, on along their motion; or, `at_rest`, where they are.
 void add_bodies(bool at_rest, ConstraintStep& step) {
-  ConstraintProblem& problem = step.own.constraint.problem;
+  ContactProblem& problem = step.own.constraint.problem;
   problem.clear();
   const int grasped = step.grasped.body;
-  bool room = true;
   if (grasped >= 0) {
-    const Pose& X_WB = step.bodies.X_WB[Index(grasped)];
-    Vec6 wanted = Vec6::Zero();
-    step.own.constraint.wanted = wanted;
-    if (!at_rest) {
-      step.own.constraint.wanted = wanted_by_hand(step);
-      wanted = with_load(step, step.own.constraint.wanted);
-    }
-    room &= problem.add_grasped(grasped, step.world.bodies[Index(grasped)], X_WB, X_WB * step.grasped.X_BH.p,
-                                step_metric(step.settings.coupling, step.grasped, step.dt_s), wanted);
+    step.own.constraint.wanted = at_rest ? Vec6(Vec6::Zero()) : wanted_by_hand(step);
+    add_grasped(at_rest ? Vec6(Vec6::Zero()) : with_load(step, step.own.constraint.wanted), step, problem);
   }
   for (Index i = 0; i < step.world.bodies.size(); ++i) {
     const int b = static_cast<int>(i);
     if (b == grasped || !step.own.free.near_grasped[i]) continue;
+    const Body& body = step.world.bodies[i];
+    const Pose& X_WB = step.bodies.X_WB[i];
     const Vec6 on = at_rest ? Vec6(Vec6::Zero()) : to_vector(step.bodies.V_WB[i] * step.dt_s);
-    room &= problem.add_free(b, step.world.bodies[i], step.bodies.X_WB[i], on, step.dt_s);
+    problem.add_body(b, body, X_WB, X_WB.p, inertial_metric(body, X_WB, step.dt_s), on, step.dt_s);
   }
-  if (!room) step.report.flags |= frame_flag::kSolverBounded;
-  problem.add_joint_rows();
+  problem.add_joint_rows(true);
 }
 
 /// Adds the iterations of an answer to the report. True when it solves the problem.
-bool solved(const QpAnswer& answer, FrameReport& report) {
-  report.solver_iterations += answer.iterations;
-  if (answer.status == QpStatus::kBounded) report.flags |= frame_flag::kSolverBounded;
-  return answer.status == QpStatus::kSolved;
+bool solved(const ExactResult& result, FrameReport& report) {
+  report.solver_iterations += result.iterations;
+  report.solvers |= static_cast<int>(ContactSolver::kExact);
+  if (result.bounded) report.flags |= frame_flag::kSolverBounded;
+  return result.solved;
 }
 
 using RowNames = StaticVector<std::uint64_t, kMostUnknowns>;
 
-/// The names of the contact rows that hold in the last answer.
-void note_active_rows(const ConstraintState& c, RowNames& names) {
-  names.clear();
-  for (const QpActive& active : c.problem.answer().active) {
-    const Index row = Index(active.row) - c.rows.first;
-    if (Index(active.row) >= c.rows.first && row < c.rows.own) names.push_back(c.rows.names[row]);
-  }
+/// The contact rows in the problem of the forces.
+RowsInProblem contacts_of(ConstraintStep& step) { return {own_rows(step), step.own.constraint.rows.first}; }
+
+/// The names of contact rows.
+RowNames names_of(const RowNumbers& rows, ConstraintStep& step) {
+  RowNames names;
+  for (const int row : rows) names.push_back(step.own.constraint.rows.name_of(*contacts_of(step).row(row)));
+  return names;
 }
 
-StaticVector<int, kMostUnknowns> rows_of(const RowNames& names, Index first, const ConstraintState& c) {
-  StaticVector<int, kMostUnknowns> rows;
-  for (Index row = 0; row < c.rows.own; ++row)
-    if (std::find(names.begin(), names.end(), c.rows.names[row]) != names.end())
+/// The numbers of contact rows whose first has the number `first`.
+RowNumbers rows_of(const RowNames& names, Index first, ConstraintStep& step) {
+  RowNumbers rows;
+  if (names.empty()) return rows;
+  const std::span<const ContactRow> own = own_rows(step);
+  for (Index row = 0; row < own.size(); ++row)
+    if (std::find(names.begin(), names.end(), step.own.constraint.rows.name_of(own[row])) != names.end())
       rows.push_back(static_cast<int>(first + row));
   return rows;
 }
 
-void begin(const StaticVector<int, kMostUnknowns>& rows, ConstraintProblem& problem) {
+/// Solves a problem without friction from the rows that pushed in the last frame.
+bool solve_frictionless(Index first_row, ContactProblem& problem, ConstraintStep& step) {
+  const RowNumbers rows = rows_of(step.own.constraint.warm_start.in_the_end, first_row, step);
   problem.begin({rows.begin(), rows.end()});
+  return solved(solve_once(step.settings.budget.solver_iterations, problem), step.report);
 }
 
-/// Solves, from the rows begun with, or from those that hold now. False when there is no solution.
-bool solve_on(const FrameSettings& settings, ConstraintProblem& problem, FrameReport& report) {
-  return solved(problem.solve_on(settings.budget.solver_iterations), report);
-}
-
-/// Begins with what held in the last frame while every patch stuck, if any did. One body has so few rows that
-/// to go on from the answer without friction costs no more.
-void begin_sticking(ConstraintState& c) {
-  if (c.problem.bodies().size() == 1) return;
-  StaticVector<int, kMostUnknowns> rows = rows_of(c.warm_start.sticking, c.rows.first, c);
-  const Index of_contacts = rows.size();
-  c.friction.rows_that_stuck(rows);
-  if (rows.size() > of_contacts) begin(rows, c.problem);
-}
-
-/// Lets every patch stick, then slip where it must, until none slips further. Where no answer keeps the
-/// anchors they are taken off; where there is none at all, friction.
-bool solve_sliding(const FrameSettings& settings, ConstraintState& c, FrameReport& report) {
-  for (int round = 0; round <= kSlipRounds; ++round) {
-    bool found = solve_on(settings, c.problem, report);
-    if (!found) {
-      c.friction.forget_anchors(c.problem);
-      found = solve_on(settings, c.problem, report);
-    }
-    if (!found) {
-      c.friction.clear();
-      c.problem.forget_cones();
-      return solve_on(settings, c.problem, report);
-    }
-    if (round == 0) {
-      note_active_rows(c, c.warm_start.sticking);
-      c.friction.note_sticking(c.problem);
-    }
-    if (!c.friction.let_slip(c.skin_m, c.problem)) break;
-  }
-  return true;
-}
-
-/// Keeps what the answer says of forces: impulses, the rows that hold, the wrench at the handle.
+/// Keeps what the answer says of forces: impulses, the rows that push, the wrench at the handle.
 void keep_forces(ConstraintStep& step) {
   ConstraintState& c = step.own.constraint;
-  note_active_rows(c, c.warm_start.in_the_end);
+  RowNumbers pushing;
+  list_pushing(contacts_of(step), c.problem, pushing);
+  c.warm_start.in_the_end = names_of(pushing, step);
   for (ContactRow& row : own_rows(step)) row.impulse = 0.0;
-  for (const QpActive& active : c.problem.answer().active) {
-    const Index row = Index(active.row) - c.rows.first;
-    if (Index(active.row) >= c.rows.first && row < c.rows.own)
-      step.own.contact_rows.rows[row].impulse = active.multiplier * step.dt_s;
-  }
-  step.report.active_constraints = static_cast<int>(c.warm_start.in_the_end.size());
+  for (const QpActive& active : c.problem.answer().active)
+    if (contacts_of(step).row(active.row) != nullptr)
+      own_rows(step)[Index(active.row) - c.rows.first].impulse = active.multiplier * step.dt_s;
+  step.report.active_constraints = static_cast<int>(pushing.size());
   feel(c.problem.displacement_at_centre(c.problem.bodies().front()), step);
 }
 
@@ -192,8 +153,7 @@ void restore(ConstraintStep& step) {
   if (!tight || step.gaps.blocked(step.grasped.body)) return;
   add_bodies(true, step);
   c.rows.first = add_contact_rows(true, c.problem, step);
-  begin(rows_of(c.warm_start.in_the_end, c.rows.first, c), c.problem);
-  if (!solve_on(step.settings, c.problem, step.report)) return;
+  if (!solve_frictionless(c.rows.first, c.problem, step)) return;
   if (!open_after(trusted_share(step), step)) return;
   for (ContactRow& row : own_rows(step)) row.distance = gap_at_trial(row, step);
   take_trial(step);
@@ -207,30 +167,30 @@ bool find_forces(ConstraintStep& step) {
   c.rows.shades = c.rows.bent;
   if (c.rows.shades) exchange_normals(step);
   c.rows.first = add_contact_rows(false, c.problem, step);
-  c.friction.clear();
-  begin(rows_of(c.warm_start.without_friction, c.rows.first, c), c.problem);
-  bool found = solve_on(step.settings, c.problem, step.report);
-  note_active_rows(c, c.warm_start.without_friction);
-  if (found && c.friction.begin(step.world, step.settings.friction, own_rows(step), step.patches,
-                                step.bodies.X_WB, c.skin_m, c.rows.first, c.problem)) {
-    begin_sticking(c);
-    found = solve_sliding(step.settings, c, step.report);
-  }
+  ExactStart start{.without_friction = rows_of(c.warm_start.without_friction, c.rows.first, step),
+                   .sticking = rows_of(c.warm_start.sticking, c.rows.first, step)};
+  const bool found =
+      solved(solve_exactly(contacts_of(step), {step.bodies.X_WB, c.scale(), c.anchors},
+                           step.settings.budget.solver_iterations, start, c.friction, c.problem),
+             step.report);
+  c.warm_start.without_friction = names_of(start.without_friction, step);
+  c.warm_start.sticking = names_of(start.sticking, step);
   if (found) keep_forces(step);
   if (!c.rows.shades) return found;
   exchange_normals(step);
   c.position_problem.follow(c.problem);
   c.rows.first_of_positions = add_contact_rows(false, c.position_problem, step);
-  begin(rows_of(c.warm_start.in_the_end, c.rows.first_of_positions, c), c.position_problem);
-  return found && solve_on(step.settings, c.position_problem, step.report);
+  return found && solve_frictionless(c.rows.first_of_positions, c.position_problem, step);
 }
 
 /// Solves again after a feedback.
 bool find_again(ConstraintStep& step) {
   ConstraintState& c = step.own.constraint;
-  if (c.rows.shades) return solve_on(step.settings, c.position_problem, step.report);
-  const bool found = c.friction.acts() ? solve_sliding(step.settings, c, step.report)
-                                       : solve_on(step.settings, c.problem, step.report);
+  const int max_iterations = step.settings.budget.solver_iterations;
+  if (c.rows.shades) return solved(solve_once(max_iterations, c.position_problem), step.report);
+  ExactStart start;
+  const bool found =
+      solved(solve_again(contacts_of(step), max_iterations, start, c.friction, c.problem), step.report);
   if (found) keep_forces(step);
   return found;
 }
@@ -267,10 +227,10 @@ double move_grasped_island(ConstraintStep& step) {
     step.own.free.patch_asked.push_back(step.own.free.of_grasped(patch) ? 1 : 0);
   restore(step);
   const double share = advance(step);
+  c.friction.end(contacts_of(step), c.problem, step.bodies.X_WB, c.anchors);
   c.trust.consecutive_rejections = share > 0.0 ? 0 : c.trust.consecutive_rejections + 1;
   if (share > 0.0) take_trial(step);
   if (c.trust.consecutive_rejections >= frames_in(kStands_s, step.dt_s)) feel(Vec6::Zero(), step);
-  c.friction.end(step.world, own_rows(step), step.patches, c.rows.first, c.problem, step.bodies.X_WB);
   const std::vector<Pose>& before = share > 0.0 ? c.trial.X_WB : step.bodies.X_WB;  // take_trial swaps them
   for (Index i = 0; i < step.world.bodies.size(); ++i)
     if (step.own.free.near_grasped[i])
@@ -300,33 +260,56 @@ int pushing_points(std::span<const ContactRow> corners, int body, const Constrai
   for (const ContactRow& row : corners) {
     if (!(row.impulse > 0.0) || (row.body_a != body && row.body_b != body)) continue;
     ++points;
-    if (row.grip >= 0) counted[Index(row.grip)] = true;
+    if (row.friction_patch >= 0) counted[Index(row.friction_patch)] = true;
   }
   for (Index i = 0; i < c.friction_uses.size(); ++i) {
-    const PatchKey& key = c.friction.patches()[i].key;
+    const SurfacePair& key = c.friction.patches()[i].surfaces;
     if (c.friction_uses[i].load_N > 0.0 && !counted[i] && (key.body_a == body || key.body_b == body))
       ++points;
   }
   return points;
 }
 
-/// The contacts as they push: normal forces of corners, and of friction the edges of its cones.
+/// Appends what friction pushes with as contact rows; returns its torques about normals on `body`.
+Vec3 append_friction(int body, ConstraintStep& step) {
+  const ConstraintState& c = step.own.constraint;
+  std::vector<ContactRow>& rows = step.own.contact_rows.rows;
+  Vec3 torque = Vec3::Zero();
+  c.friction.for_each_force(c.problem, [&](Index number, const Push& push, double multiplier) {
+    const FrictionPatch& patch = c.friction.patches()[number];
+    if (patch.surfaces.body_a == body) torque += multiplier * push.torque;
+    if (patch.surfaces.body_b == body) torque -= multiplier * push.torque;
+    const double force_N = multiplier * push.force.norm();
+    if (rows.size() == rows.capacity() || !(force_N > 0.0)) return;
+    ContactRow& row = rows.emplace_back();
+    static_cast<SurfacePair&>(row) = patch.surfaces;
+    row.patch = patch.source_patch;
+    row.friction_patch = static_cast<int>(number);
+    row.p_W = patch.centre_W;
+    row.n_BA_W = push.force.normalized();
+    row.distance = patch.gap_m;
+    row.impulse = force_N * step.dt_s;
+  });
+  return torque;
+}
+
+/// The contacts as they push: normal forces of corners, and what friction pushes with.
 void report_rows(ConstraintStep& step) {
   const int grasped = step.grasped.body;
-  const ConstraintState& c = step.own.constraint;
+  ConstraintState& c = step.own.constraint;
   if (c.rows.shades) exchange_normals(step);
-  step.report.contact_points = static_cast<int>(c.rows.names.size());
-  use_of_friction(step.world, c.friction, step.patches, c.rows.first, c.problem, own_rows(step),
-                  step.own.constraint.friction_uses);
-  step.report.friction = sum_of(c.friction_uses);
-  step.report.grasped_contact_points =
-      pushing_points({step.own.contact_rows.rows.data(), c.rows.names.size()}, grasped, c);
+  step.report.contact_points = static_cast<int>(c.rows.count);
+  c.friction_uses.clear();
   Vec3 torque = Vec3::Zero();
   Vec3 origin = grasped < 0 ? Vec3(Vec3::Zero()) : step.X_WB_start[Index(grasped)].p;
   if (step.own.free.grasped_island >= 0) {
+    use_of_friction(c.friction, c.problem, c.rows.first, own_rows(step), c.friction_uses);
     origin = c.problem.bodies().front().origin;
-    torque = c.friction.add_forces(grasped, step.dt_s, c.problem, step.own.contact_rows.rows);
+    torque = append_friction(grasped, step);
   }
+  step.report.friction = sum_of(c.friction_uses);
+  step.report.grasped_contact_points =
+      pushing_points({step.own.contact_rows.rows.data(), c.rows.count}, grasped, c);
   if (grasped < 0) return;
   step.report.restoring = contact_wrench(step.own.contact_rows.rows, grasped, origin, step.dt_s);
   step.report.restoring.t += torque;
@@ -363,12 +346,9 @@ void respond_constrained(ConstraintStep& step) noexcept {
   make_corner_rows(step);
   apply_impacts(step);
   move_free_bodies(step);
-  double share = 1.0;  // of the held island's step
-  if (step.own.free.grasped_island >= 0) {
-    share = move_grasped_island(step);
-  } else {
-    c.friction.forget();
-  }
+  double share = 1.0;  // of the step of the grasped part's island
+  if (step.own.free.grasped_island >= 0) share = move_grasped_island(step);
+  c.anchors.end_frame([&](int body) { return step.own.free.islands.moves(body); });
   update_trust_length(step);
   end_turning(step);
   end_balance(share == 1.0 && !c.rows.shades, step);

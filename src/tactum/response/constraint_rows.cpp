@@ -11,8 +11,6 @@ namespace {
 
 using Index = std::size_t;
 
-Push push_of(const ContactRow& row) { return {row.p_W, row.n_BA_W, Vec3::Zero()}; }
-
 /// A name that a row keeps from frame to frame while the pair's patch has as many corners.
 std::uint64_t name_of(const ContactPatch& patch, Index corner) {
   if (patch.of_surfaces) return patch.manifold.points[0].id;
@@ -21,6 +19,19 @@ std::uint64_t name_of(const ContactPatch& patch, Index corner) {
   const auto bodies =
       static_cast<std::uint64_t>(patch.body_a) << 6 ^ static_cast<std::uint64_t>(patch.body_b);
   return (bodies << 40 ^ pieces) << 8 ^ corner;
+}
+
+/// Which surfaces a patch lies on.
+SurfacePair surfaces_of(const World& world, const ContactPatch& patch) noexcept {
+  const Part& A = *world.bodies[Index(patch.body_a)].part;
+  const Part& B = *world.bodies[Index(patch.body_b)].part;
+  if (!patch.of_surfaces)
+    return {patch.body_a, patch.body_b, A.surface_group[Index(patch.piece_a)],
+            B.surface_group[Index(patch.piece_b)]};
+  const bool face_a = patch.manifold.a.kind == FeatureKind::kFace;
+  const bool face_b = patch.manifold.b.kind == FeatureKind::kFace;
+  return {patch.body_a, patch.body_b, face_b && !face_a ? kAnyGroup : A.tree.group_of(patch.piece_a),
+          face_a && !face_b ? kAnyGroup : B.tree.group_of(patch.piece_b)};
 }
 
 /// Whether a whole face of the body touches: a face beside the edge or corner that touches does not.
@@ -75,6 +86,7 @@ struct RowMaker {
       }
     }
     const Vec3 normal_W = X_WA.R * patch.manifold.normal;
+    const SurfacePair surfaces = surfaces_of(step.world, patch);
     const double friction = step.settings.friction.between(patch.body_a, patch.body_b);
     const double restitution = step.settings.impacts.restitution.between(patch.body_a, patch.body_b);
     // What the hand drives into something that is held is no blow: its coupling is what bounces.
@@ -87,17 +99,16 @@ struct RowMaker {
         return;
       }
       ContactRow& row = out.rows.emplace_back();
-      row.body_a = patch.body_a;
-      row.body_b = patch.body_b;
+      static_cast<SurfacePair&>(row) = surfaces;
       row.patch = number;
       row.n_BA_W = normal_W;
       row.p_W = X_WA * corners[i].p_A;
       row.distance = corners[i].distance;
-      row.tolerance = patch.tolerance;
+      row.margin = patch.tolerance;
+      row.asked = asked_of(row, c.scale(), step.dt_s);
       row.friction = friction;
-      row.restitution = restitution;
-      row.struck = struck;
-      c.rows.names.push_back(name_of(patch, i));
+      row.impact = {.restitution = restitution, .enabled = struck};
+      row.state = c.rows.memory.recall(name_of(patch, i));
       if (!own || step.shading.empty()) continue;
       const Vec3 bent =
           bend(step.shading[Index(patch.body_a)], step.shading[Index(patch.body_b)], X_AB, patch, corners[i]);
@@ -114,7 +125,7 @@ void make_corner_rows(ConstraintStep& step) noexcept {
   ContactRows& out = step.own.contact_rows;
   out.rows.clear();
   out.full = false;
-  c.rows.names.clear();
+  c.rows.memory.begin();
   c.rows.shaded.clear();
   c.rows.shades = c.rows.bent = false;
   const std::span<const ContactPatch> patches = step.patches;
@@ -124,19 +135,20 @@ void make_corner_rows(ConstraintStep& step) noexcept {
   c.rows.own = out.rows.size();
   for (Index p = 0; p < patches.size() && !out.full; ++p)
     if (!step.own.free.of_grasped(patches[p])) maker.add(patches[p], static_cast<int>(p), false);
+  c.rows.count = out.rows.size();
 }
 
 std::span<ContactRow> own_rows(ConstraintStep& step) noexcept {
   return {step.own.contact_rows.rows.data(), step.own.constraint.rows.own};
 }
 
-std::size_t add_contact_rows(bool opening, ConstraintProblem& problem, ConstraintStep& step) noexcept {
+std::size_t add_contact_rows(bool opening, ContactProblem& problem, ConstraintStep& step) noexcept {
   ConstraintState& c = step.own.constraint;
   const Index first = problem.rows();
-  for (const ContactRow& row : own_rows(step)) {
+  for (ContactRow& row : own_rows(step)) {
     const double offset = c.skin_m - row.distance;
-    problem.add_row(problem.row_of(row.body_a, row.body_b, push_of(row)),
-                    opening ? offset : std::min(0.0, offset));
+    row.asked = opening ? offset : std::min(0.0, offset);
+    problem.add_row(problem.row_of(row.body_a, row.body_b, push_of(row)), row.asked);
   }
   c.rows.feedback.assign(c.rows.own, 0.0);
   return first;
@@ -174,7 +186,7 @@ double overstated_at_trial(std::span<const ContactRow> rows_of_patch, const Cons
 
 void correct_rows(double share, ConstraintStep& step) noexcept {
   ConstraintState& c = step.own.constraint;
-  ConstraintProblem& problem = c.step_problem();
+  ContactProblem& problem = c.step_problem();
   const Index first_row = c.rows.shades ? c.rows.first_of_positions : c.rows.first;
   const std::span<const ContactRow> rows = own_rows(step);
   for (Index first = 0, end = 0; first < rows.size(); first = end) {

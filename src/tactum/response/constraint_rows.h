@@ -22,7 +22,7 @@ std::span<ContactRow> own_rows(ConstraintStep& step) noexcept;
 /// Adds them to the problem and returns the number of the first there. Where a gap is below the skin,
 /// `opening` asks for the skin, for which there may be no room; else only that it closes no further, which
 /// staying keeps.
-std::size_t add_contact_rows(bool opening, ConstraintProblem& problem, ConstraintStep& step) noexcept;
+std::size_t add_contact_rows(bool opening, ContactProblem& problem, ConstraintStep& step) noexcept;
 
 /// The rows take their shaded normals, or their true ones back.
 void exchange_normals(ConstraintStep& step) noexcept;

@@ -9,18 +9,16 @@ namespace tactum {
 using Index = std::size_t;
 
 ConstraintState::ConstraintState(const World& world, const FrameSettings& settings)
-    : problem(Index(settings.budget.max_contact_points)),
-      position_problem(Index(settings.budget.max_contact_points)),
+    : problem(Index(settings.budget.max_contact_points), world.bodies.size()),
+      position_problem(Index(settings.budget.max_contact_points), world.bodies.size()),
+      anchors(Index(settings.budget.max_contact_points)),
       trust{.length_m = settings.constraint.least_step_m},
-      corner_memory(settings.budget.capacity.patches / 4 + 1) {
+      corner_memory(settings.budget.capacity.patches / 4 + 1),
+      rows(Index(settings.budget.max_contact_points)) {
   double size = 0.0;
   for (const Body& body : world.bodies)
     if (body.moves()) size = std::max(size, body.part->size);
   skin_m = tolerances::kSkin * size;
-  const Index most_rows = Index(settings.budget.max_contact_points);
-  rows.names.reserve(most_rows);
-  rows.feedback.reserve(most_rows);
-  rows.shaded.reserve(most_rows);
   const Index most_patches = settings.budget.capacity.patches;
   trial.X_WB.resize(world.bodies.size());
   trial.gap_now.reserve(most_patches);
@@ -31,14 +29,20 @@ ConstraintState::ConstraintState(const World& world, const FrameSettings& settin
 
 FreeBodies::FreeBodies(const World& world, const FrameSettings& settings)
     : islands(world),
-      resting(Index(settings.budget.max_contact_points), world.bodies.size()),
+      sweeps(Index(settings.budget.max_contact_points), world.bodies.size()),
       momentum(world),
       near_grasped(world.bodies.size(), 0),
+      struck(world.bodies.size(), 0),
+      V_free(world.bodies.size()),
+      given_Ns(world.bodies.size(), Vec3::Zero()),
+      bodies(world.bodies.size(), world.bodies.size()),
+      rows(world.bodies.size(), Index(settings.budget.max_contact_points)),
       w_start(world.bodies.size(), Vec3::Zero()),
       w_free(world.bodies.size(), Vec3::Zero()),
       share(world.bodies.size(), 1.0),
       cut(world.bodies.size(), 0),
       settled(world.bodies.size(), 0) {
+  gathered.reserve(Index(settings.budget.max_contact_points));
   patch_asked.reserve(settings.budget.capacity.patches);
   patch_closed.reserve(settings.budget.capacity.patches);
 }
@@ -74,7 +78,7 @@ ConstraintMemory::ConstraintMemory(const World& world, const FrameSettings& sett
       waiting(world, settings),
       sleep(world),
       contact_rows(settings.budget.capacity.patches, Index(settings.budget.max_contact_points)),
-      mobility(world.bodies.size(), Mobility::Zero()),
+      impact_scratch(world.bodies.size()),
       motion_bound(world.bodies.size(), 0.0) {}
 
 }  // namespace tactum

@@ -4,16 +4,16 @@
 
 #include <vector>
 
+#include "tactum/base/grouped_indices.h"
 #include "tactum/base/reserved_vector.h"
 #include "tactum/contact/gap_oracle.h"
 #include "tactum/contact/patch_corners.h"
 #include "tactum/dynamics/impacts.h"
 #include "tactum/dynamics/islands.h"
-#include "tactum/dynamics/resting_contact.h"
-#include "tactum/response/constraint_problem.h"
+#include "tactum/dynamics/solve_by_sweeps.h"
+#include "tactum/dynamics/solver_choice.h"
 #include "tactum/response/contact_force.h"
 #include "tactum/response/frame_report.h"
-#include "tactum/response/friction.h"
 #include "tactum/response/friction_use.h"
 #include "tactum/response/impulse_display.h"
 #include "tactum/response/step_input.h"
@@ -29,14 +29,24 @@ struct WarmStart {
 
 /// The contact rows of the island as rows of its problem; scratch of one frame.
 struct CornerRows {
-  std::size_t own = 0;                  ///< the first so many contact rows are the island's
-  std::size_t first = 0;                ///< the first of them in the problem of the forces
-  std::size_t first_of_positions = 0;   ///< ... and in the position problem, without rows of joint friction
-  bool bent = false;                    ///< some normal is bent by shading
-  bool shades = false;                  ///< ... so the step is the answer of the position problem
-  ReservedVector<Vec3> shaded;          ///< normals of the own rows; empty without shading [-]
-  ReservedVector<std::uint64_t> names;  ///< of the rows, kept from frame to frame
-  ReservedVector<double> feedback;      ///< what exact gaps have added to the rows [m]
+  std::size_t count = 0;               ///< contact rows, before friction's are appended
+  std::size_t own = 0;                 ///< the first so many of them are the island's
+  std::size_t first = 0;               ///< the first of them in the problem of the forces
+  std::size_t first_of_positions = 0;  ///< ... and in the position problem, without rows of joint friction
+  bool bent = false;                   ///< some normal is bent by shading
+  bool shades = false;                 ///< ... so the step is the answer of the position problem
+  ReservedVector<Vec3> shaded;         ///< normals of the own rows; empty without shading [-]
+  RowMemory memory;                    ///< what rows keep from frame to frame, by their names
+  ReservedVector<double> feedback;     ///< what exact gaps have added to the rows [m]
+
+  explicit CornerRows(std::size_t most_rows) : memory(most_rows) {
+    shaded.reserve(most_rows);
+    feedback.reserve(most_rows);
+  }
+  /// The name that a row keeps from frame to frame; 0 when it has none.
+  std::uint64_t name_of(const ContactRow& row) const noexcept {
+    return row.state < 0 ? 0 : memory[row.state].name;
+  }
 };
 
 /// A pose on trial, and the gaps of the patches there; scratch of one frame, an entry per body or patch.
@@ -58,9 +68,10 @@ struct StepTrust {
 struct ConstraintState {
   ConstraintState(const World& world, const FrameSettings& settings);
 
-  ConstraintProblem problem;           ///< of the forces, and of the positions unless normals are shaded
-  ConstraintProblem position_problem;  ///< with true normals: to where the forces would have the bodies
+  ContactProblem problem;           ///< of the forces, and of the positions unless normals are shaded
+  ContactProblem position_problem;  ///< with true normals: to where the forces would have the bodies
   Friction friction;
+  FrictionAnchors anchors;
   FrictionUses friction_uses;  ///< what friction does, for displays
   double skin_m;               ///< the gap contacts are held at [m]
   StepTrust trust;
@@ -71,9 +82,13 @@ struct ConstraintState {
   CornerRows rows;
   TrialPose trial;
 
+  /// The lengths that contacts are kept to.
+  ContactScale scale() const noexcept { return {.skin_m = skin_m, .settled_m = kSettled * skin_m}; }
+  static constexpr double kSettled = 0.25;
+
   /// The problem whose answer is the step.
-  ConstraintProblem& step_problem() { return rows.shades ? position_problem : problem; }
-  const ConstraintProblem& step_problem() const { return rows.shades ? position_problem : problem; }
+  ContactProblem& step_problem() { return rows.shades ? position_problem : problem; }
+  const ContactProblem& step_problem() const { return rows.shades ? position_problem : problem; }
 };
 
 /// The balance of momentum (momentum.h); scratch of one frame.
@@ -82,10 +97,14 @@ struct Momentum {
 
   /// `impulse` acts on body_a, its opposite on body_b [N s].
   void give(int body_a, int body_b, const Vec3& impulse) noexcept {
+    due_Ns += counted(body_a, body_b, impulse);
+  }
+  /// What of it the bodies that count have from bodies that do not [N s].
+  Vec3 counted(int body_a, int body_b, const Vec3& impulse) const noexcept {
     const bool a = counts[static_cast<std::size_t>(body_a)] != 0;
     const bool b = counts[static_cast<std::size_t>(body_b)] != 0;
-    if (a == b) return;
-    due_Ns += a ? impulse : Vec3(-impulse);
+    if (a == b) return Vec3::Zero();
+    return a ? impulse : Vec3(-impulse);
   }
 
   std::vector<char> counts;    ///< bodies that are free, awake and not held
@@ -97,7 +116,7 @@ struct FreeBodies {
   FreeBodies(const World& world, const FrameSettings& settings);
 
   Islands islands;
-  RestingContact resting;
+  Sweeps sweeps;
   Momentum momentum;
   int grasped_island = -1;         ///< the island that constraint.h answers for; -1: none
   bool grasped_here = false;       ///< the held part's island had no room there
@@ -111,13 +130,18 @@ struct FreeBodies {
   }
 
   // Scratch of one frame, one entry per body, or per patch.
-  std::vector<Vec3> w_start;          ///< rates at the start [rad/s]
-  std::vector<Vec3> w_free;           ///< ... midway, if nothing touches [rad/s]
-  std::vector<double> share;          ///< of a body's step that is taken [-]
-  std::vector<char> cut;              ///< it has just become less
-  std::vector<char> settled;          ///< an island's step has been found good
-  ReservedVector<char> patch_asked;   ///< patches whose gap is asked for
-  ReservedVector<char> patch_closed;  ///< ... and is not open
+  std::vector<char> struck;             ///< it moves in impacts
+  std::vector<Twist> V_free;            ///< if nothing touches [m/s, rad/s]
+  std::vector<Vec3> given_Ns;           ///< by island: the momentum that contacts gave what counts [N s]
+  GroupedIndices bodies, rows;          ///< by island
+  ReservedVector<ContactRow> gathered;  ///< copies of the rows of one island
+  std::vector<Vec3> w_start;            ///< rates at the start [rad/s]
+  std::vector<Vec3> w_free;             ///< ... midway, if nothing touches [rad/s]
+  std::vector<double> share;            ///< of a body's step that is taken [-]
+  std::vector<char> cut;                ///< it has just become less
+  std::vector<char> settled;            ///< an island's step has been found good
+  ReservedVector<char> patch_asked;     ///< patches whose gap is asked for
+  ReservedVector<char> patch_closed;    ///< ... and is not open
 };
 
 /// Who waits (waiting.h); one entry per body.
@@ -163,8 +187,8 @@ struct ConstraintMemory {
   Waiting waiting;             ///< waiting.h
   Sleep sleep;                 ///< sleep.h
   ContactRows contact_rows;
-  ImpulseDisplay impulses;           ///< blows on the held part that are being felt
-  std::vector<Mobility> mobility;    ///< by body; scratch of one frame
+  ImpulseDisplay impulses;  ///< blows on the held part that are being felt
+  ImpactScratch impact_scratch;
   std::vector<double> motion_bound;  ///< by body: how far it may move [m]
 };
 

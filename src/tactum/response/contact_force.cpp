@@ -141,7 +141,7 @@ void make_contact_rows(std::span<const Pose> X_WB, std::span<const ContactPatch>
       row.n_BA_W = point.n_BA_W;
       row.p_W = point.p_W;
       row.distance = point.distance;
-      row.tolerance = tolerance;
+      row.margin = tolerance;
       row.stiffness = stiffness_N_per_m * point.weight;
     }
     first = last;

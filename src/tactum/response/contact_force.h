@@ -13,7 +13,8 @@
 #include "tactum/base/reserved_vector.h"
 #include "tactum/contact/contact_patch.h"
 #include "tactum/contact/shading.h"
-#include "tactum/dynamics/contact_solver.h"
+#include "tactum/dynamics/contact_row.h"
+#include "tactum/math/spatial.h"
 
 namespace tactum {
 
@@ -31,7 +32,6 @@ struct ContactRows {
     facets.reserve(patches);
     points.reserve(patches * 4);
     rows.reserve(most_rows);
-    pushes.reserve(most_rows);
   }
   /// The facet a patch lies on, as a sort key, and the patch.
   struct Facet {
@@ -40,8 +40,7 @@ struct ContactRows {
   ReservedVector<Facet> facets;
   ReservedVector<FacetPoint> points;  // of one facet
   ReservedVector<ContactRow> rows;
-  ReservedVector<PushRow> pushes;  // of the rows, when they are swept
-  bool full = false;               ///< points were dropped
+  bool full = false;  ///< points were dropped
 };
 
 /// Fills `out.rows`. `shading` has one entry per body, or is empty for force directions without shading.

@@ -12,17 +12,22 @@ Wrench coupling_wrench(const Coupling& coupling, const Pose& X_WH, const Twist& 
           coupling.stiffness_Nm_per_rad * stretch.w + coupling.damping_Nms_per_rad * rate.w};
 }
 
-Resistance coupling_resistance(const Coupling& coupling, const Vec3& r_BH_W, double h) noexcept {
-  // The handle moves with v + w x r = v - [r] w; energy  k_t |v - [r] w|^2 + k_r |w|^2.
-  const Mat3 S = skew(r_BH_W);
-  const double k_t = coupling.stiffness_N_per_m * h * h;
-  const double k_r = coupling.stiffness_Nm_per_rad * h * h;
-  Resistance M;
-  M.topLeftCorner<3, 3>() = k_t * Mat3::Identity();
-  M.topRightCorner<3, 3>() = -k_t * S;
-  M.bottomLeftCorner<3, 3>() = k_t * S;
-  M.bottomRightCorner<3, 3>() = k_r * Mat3::Identity() - k_t * S * S;
-  return M;
+GraspMetric grasp_metric(const Coupling& coupling, double dt_s) noexcept {
+  return {coupling.stiffness_N_per_m + coupling.damping_Ns_per_m / dt_s,
+          coupling.stiffness_Nm_per_rad + coupling.damping_Nms_per_rad / dt_s};
+}
+
+Vec6 balanced_step(const Coupling& coupling, double dt_s, const Pose& X_WH_proxy, const Pose& X_WH,
+                   const Twist& V_WH) noexcept {
+  // k (x - d) + b (x / dt - v) = 0, with d the displacement to the hand.
+  const GraspMetric metric = grasp_metric(coupling, dt_s);
+  const Twist to_hand = twist_between(X_WH_proxy, X_WH, 1.0);
+  Vec6 x;
+  x.head<3>() = (coupling.stiffness_N_per_m * to_hand.v + coupling.damping_Ns_per_m * V_WH.v) /
+                metric.stiffness_N_per_m;
+  x.tail<3>() = (coupling.stiffness_Nm_per_rad * to_hand.w + coupling.damping_Nms_per_rad * V_WH.w) /
+                metric.stiffness_Nm_per_rad;
+  return x;
 }
 
 }  // namespace tactum

@@ -3,7 +3,7 @@
 /// spring model based on the transformation from the actual probe to its proxy" [Gregory 2000, 6.1]. Both
 /// ends are told at the handle: its pose X_WH by the device, and X_WB X_BH by the held body.
 
-#include "tactum/dynamics/joint.h"
+#include "tactum/dynamics/contact_problem.h"
 #include "tactum/response/settings.h"
 
 namespace tactum {
@@ -12,9 +12,21 @@ namespace tactum {
 Wrench coupling_wrench(const Coupling& coupling, const Pose& X_WH, const Twist& V_WH, const Pose& X_WH_proxy,
                        const Twist& V_WH_proxy) noexcept;
 
-/// How a proxy without mass resists being moved away from the hand over a step of `h` seconds: an impulse F h
-/// moves its handle by F / k, so M = k h^2, shifted from the handle to the body's origin (lever `r_BH_W`
-/// [m]).
-Resistance coupling_resistance(const Coupling& coupling, const Vec3& r_BH_W, double h) noexcept;
+/// The stiffness of the coupling over one frame, at the handle: F = K (x - x*), spring and damper together.
+struct GraspMetric {
+  double stiffness_N_per_m = 0.0;     ///< k_t + b_t / dt [N/m]
+  double stiffness_Nm_per_rad = 0.0;  ///< k_r + b_r / dt [N m/rad]
+};
+
+GraspMetric grasp_metric(const Coupling& coupling, double dt_s) noexcept;
+
+/// The same as the metric of a body of the contact problem, stated at the handle.
+inline BodyMetric body_metric(const GraspMetric& metric) noexcept {
+  return {metric.stiffness_N_per_m, metric.stiffness_Nm_per_rad * Mat3::Identity()};
+}
+
+/// The displacement of the handle, (m, rad), at which the coupling's spring and damper are in balance.
+Vec6 balanced_step(const Coupling& coupling, double dt_s, const Pose& X_WH_proxy, const Pose& X_WH,
+                   const Twist& V_WH) noexcept;
 
 }  // namespace tactum

@@ -15,7 +15,7 @@
 
 #include "tactum/dynamics/force_field.h"
 #include "tactum/dynamics/world.h"
-#include "tactum/response/constraint_problem.h"
+#include "tactum/response/coupling.h"
 #include "tactum/response/step_input.h"
 
 namespace tactum {

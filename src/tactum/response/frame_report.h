@@ -55,6 +55,7 @@ struct FrameReport {
   int grasped_contact_points = 0;  ///< ... that push the held part
   int impacts = 0;  ///< pairs of bodies that hit each other, blow by blow (constraint response)
   int solver_iterations = 0;
+  int solvers = 0;             ///< which solvers were at work: bits of ContactSolver (solver_choice.h)
   int active_constraints = 0;  ///< rows that hold the bodies (constraint response)
   int validation_tests = 0;    ///< exact tests of poses before they were taken
   int validation_retries = 0;  ///< steps that were not taken as they came

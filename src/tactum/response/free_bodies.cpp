@@ -6,10 +6,8 @@
 #include "tactum/dynamics/spin.h"
 #include "tactum/response/constraint_rows.h"
 #include "tactum/response/constraint_trial.h"
-#include "tactum/response/coupling.h"
 #include "tactum/response/energy.h"
-#include "tactum/response/field_pull.h"
-#include "tactum/response/grasped_part.h"
+#include "tactum/response/free_islands.h"
 #include "tactum/response/momentum.h"
 
 namespace tactum {
@@ -21,8 +19,6 @@ using Index = std::size_t;
 /// restitution.
 constexpr int kImpactsAPoint = 8;
 constexpr int kMostImpacts = 128;
-/// A gap below the skin opens by this share of what is missing in a frame.
-constexpr double kOpening = 0.1;
 /// After the backtracking, how often those that are in the way of what stays may be found, before all stay.
 constexpr int kMostStops = 12;
 /// Tests of each gap of the held part's island that are kept for it.
@@ -33,11 +29,12 @@ class ImpactsOnGrasped final : public ImpactObserver {
  public:
   ImpactsOnGrasped(int grasped, const Vec3& p_WH, Momentum& momentum)
       : grasped_(grasped), p_WH_(p_WH), momentum_(momentum) {}
-  void hit(int body_a, int body_b, const Vec3& impulse, const Vec3& p_W) noexcept override {
+  void hit(int body_a, int body_b, const Vec3& impulse, const Vec3& turning,
+           const Vec3& p_W) noexcept override {
     momentum_.give(body_a, body_b, impulse);
     if (body_a != grasped_ && body_b != grasped_) return;
-    const Vec3 on_grasped = body_a == grasped_ ? impulse : Vec3(-impulse);
-    sum_ = sum_ + Wrench{on_grasped, (p_W - p_WH_).cross(on_grasped)};
+    const double sign = body_a == grasped_ ? 1.0 : -1.0;
+    sum_ = sum_ + Wrench{impulse, turning + (p_W - p_WH_).cross(impulse)} * sign;
     any_ = true;
   }
   const Wrench* sum() const { return any_ ? &sum_ : nullptr; }
@@ -63,52 +60,6 @@ Mat3 turning_inertia(const Body& body) {
   if (body.joint.kind == JointKind::kFree) return body.inertia_B;
   const Vec3 arm = body.X_WB.R.transpose() * (body.X_WB.p - body.joint.anchor_W);
   return body.inertia_B + body.mass_kg * (arm.squaredNorm() * Mat3::Identity() - arm * arm.transpose());
-}
-
-/// Whether move_free_bodies() moves a body.
-bool moves_here(const ConstraintStep& step, Index body) {
-  if (!step.own.free.islands.moves(static_cast<int>(body))) return false;
-  return step.own.free.grasped_island < 0 ||
-         step.own.free.islands.of(static_cast<int>(body)) != step.own.free.grasped_island;
-}
-
-/// The held part as one of the bodies: its coupling is what resists.
-void treat_grasped_as_body(ConstraintStep& step) {
-  const Index grasped = Index(step.grasped.body);
-  const Body& body = step.world.bodies[grasped];
-  const Pose& X_WB = step.bodies.X_WB[grasped];
-  const Vec3 arm = X_WB.R * step.grasped.X_BH.p;
-  const GraspMetric metric = step_metric(step.settings.coupling, step.grasped, step.dt_s);
-  const Coupling both{.stiffness_N_per_m = metric.stiffness_N_per_m,
-                      .stiffness_Nm_per_rad = metric.stiffness_Nm_per_rad};
-  const Resistance M = coupling_resistance(both, arm, step.dt_s);
-  step.own.mobility[grasped] = mobility(body.joint, X_WB, M);
-  step.own.constraint.wanted = wanted_by_hand(step);
-  const Vec6 wanted = with_load(step, step.own.constraint.wanted);
-  const Twist at_origin = moved(to_twist(wanted), -arm) * (1.0 / step.dt_s);
-  step.bodies.V_WB[grasped] = constrained_velocity(body.joint, X_WB, M, at_origin);
-}
-
-void add_rows(ConstraintStep& step) {
-  FreeBodies& f = step.own.free;
-  const ConstraintState& c = step.own.constraint;
-  const std::vector<Pose>& X_WB = step.bodies.X_WB;
-  f.resting.begin();
-  for (Index r = c.rows.own; r < step.own.contact_rows.rows.size(); ++r) {
-    ContactRow& row = step.own.contact_rows.rows[r];
-    const int island = f.islands.of_contact(row.body_a, row.body_b);
-    if (island < 0) {
-      row.impulse = std::max(0.0, row.n_BA_W.dot(f.resting.keep(c.rows.names[r])));
-      continue;
-    }
-    const double beyond = row.distance - c.skin_m;
-    f.resting.add(row, static_cast<int>(r), island, c.rows.names[r],
-                  beyond < 0.0 ? kOpening * beyond : beyond, X_WB, step.own.mobility, step.dt_s);
-  }
-  for (Index i = 0; i < step.world.bodies.size(); ++i)
-    if (moves_here(step, i) && !is_grasped(step, i))
-      f.resting.add_joint(static_cast<int>(i), f.islands.of(static_cast<int>(i)), step.world.bodies[i],
-                          X_WB[i], step.own.mobility[i], step.dt_s);
 }
 
 /// The share of every island's step that its bodies' motion bounds allow, and how far each would go.
@@ -218,46 +169,25 @@ void correct(ConstraintStep& step) {
   FreeBodies& f = step.own.free;
   const std::vector<Twist>& V_WB = step.bodies.V_WB;
   const std::vector<Pose>& X_WB = step.bodies.X_WB;
-  const std::span<const ContactRow> rows = step.own.contact_rows.rows;
-  for (Index first = step.own.constraint.rows.own, end = first; first < rows.size(); first = end) {
+  const CornerRows& corners = step.own.constraint.rows;
+  const std::span<ContactRow> rows(step.own.contact_rows.rows.data(), corners.count);
+  for (Index first = corners.own, end = first; first < rows.size(); first = end) {
     for (end = first + 1; end < rows.size() && rows[end].patch == rows[first].patch;) ++end;
     const Index a = Index(rows[first].body_a);
     const Index b = Index(rows[first].body_b);
     const int of_contact = f.islands.of_contact(rows[first].body_a, rows[first].body_b);
     if (of_contact < 0 || f.settled[Index(of_contact)]) continue;
-    const Index island = Index(of_contact);
     const double too_much = overstated_at_trial(rows.subspan(first, end - first), step);
-    const double share = f.share[island];
+    const double share = f.share[Index(of_contact)];
     if (!(share > 0.0)) continue;  // it stays, and its rows ask for nothing
     for (Index r = first; r < end; ++r) {
       const double speed = rows[r].n_BA_W.dot(velocity_at(V_WB[a], rows[r].p_W - X_WB[a].p) -
                                               velocity_at(V_WB[b], rows[r].p_W - X_WB[b].p));
       const double gap = gap_at_trial(rows[r], step) - too_much;
       const double missing = (rows[r].distance + share * speed * step.dt_s - gap) / share;
-      if (missing > 0.0) f.resting.tighten(static_cast<int>(r), missing, step.dt_s);
+      if (missing > 0.0) rows[r].asked += missing;
     }
   }
-}
-
-/// What the contacts did, for the report.
-void report_forces(ConstraintStep& step) {
-  std::vector<ContactRow>& rows = step.own.contact_rows.rows;
-  step.own.free.resting.for_each([&](int index, double normal, const Vec3& impulse_W) {
-    ContactRow& row = rows[Index(index)];
-    row.impulse = normal;
-    step.own.free.momentum.give(row.body_a, row.body_b, impulse_W);
-    const Vec3 across = impulse_W - row.n_BA_W * normal;
-    const bool on_grasped = row.body_a == step.grasped.body || row.body_b == step.grasped.body;
-    if (!on_grasped || across.isZero(0.0) || rows.size() == rows.capacity()) return;
-    ContactRow friction = row;
-    friction.n_BA_W = across.normalized();
-    friction.impulse = across.norm();
-    rows.push_back(friction);
-  });
-  if (!step.own.free.grasped_here) return;
-  const Index grasped = Index(step.grasped.body);
-  const Vec3 arm = step.bodies.X_WB[grasped].R * step.grasped.X_BH.p;
-  feel(to_vector(moved(step.bodies.V_WB[grasped], arm) * step.dt_s), step);
 }
 
 }  // namespace
@@ -295,10 +225,10 @@ void find_islands(ConstraintStep& step) noexcept {
         island >= 0 && f.islands.moves(static_cast<int>(i)) && f.islands.of(static_cast<int>(i)) == island;
     f.near_grasped[i] = near ? 1 : 0;
     f.alone &= near || !f.islands.moves(static_cast<int>(i));
-    if (near) unknowns += unknowns_of(step.world.bodies[i].joint);
+    if (near) unknowns += exact_unknowns_of(step.world.bodies[i].joint);
   }
   if (grasped < 0) return;
-  f.grasped_here = unknowns > kMostUnknowns;
+  f.grasped_here = choose_solver(unknowns) != ContactSolver::kExact;
   if (!f.grasped_here) f.grasped_island = island;
 }
 
@@ -309,9 +239,9 @@ void apply_impacts(ConstraintStep& step) noexcept {
   const int grasped = step.grasped.body;
   for (Index i = 0; i < step.world.bodies.size(); ++i) {
     if (!step.world.bodies[i].moves()) continue;
-    // The hand decides where the held part goes: an impact does not move it, it is felt.
-    const bool immovable = is_grasped(step, i) || !step.own.free.islands.moves(static_cast<int>(i));
-    step.own.mobility[i] = immovable ? Mobility::Zero() : inertial_mobility(step.world.bodies[i], X_WB[i]);
+    // The hand decides where the grasped part goes: an impact does not move it, it is felt.
+    step.own.free.struck[i] =
+        !is_grasped(step, i) && step.own.free.islands.moves(static_cast<int>(i)) ? 1 : 0;
     if (step.world.bodies[i].joint.kind != JointKind::kFree && !is_grasped(step, i))
       V_WB[i] = constrained_velocity(step.world.bodies[i].joint, X_WB[i],
                                      inertial_resistance(step.world.bodies[i], X_WB[i]), V_WB[i]);
@@ -319,10 +249,12 @@ void apply_impacts(ConstraintStep& step) noexcept {
   const double energy_J = grasped < 0 ? 0.0 : bodies_energy(step.world, step.bodies, grasped);
   ImpactsOnGrasped impacts(grasped, grasped < 0 ? Vec3::Zero() : X_WB[Index(grasped)] * step.grasped.X_BH.p,
                            step.own.free.momentum);
-  step.report.impacts = resolve_impacts(
-      step.own.contact_rows.rows, X_WB, step.own.mobility, step.dt_s,
-      std::min(kMostImpacts, kImpactsAPoint * static_cast<int>(step.own.contact_rows.rows.size())), V_WB,
-      &impacts);
+  const ImpactResult result = resolve_impacts(
+      step.own.contact_rows.rows, {step.world, X_WB, step.own.free.struck, V_WB, step.own.constraint.skin_m},
+      step.dt_s, std::min(kMostImpacts, kImpactsAPoint * static_cast<int>(step.own.contact_rows.rows.size())),
+      step.own.impact_scratch, &impacts);
+  step.report.impacts = result.hits;
+  if (!result.converged) step.report.flags |= frame_flag::kSolverBounded;
   if (impacts.sum())
     step.own.impulses.add(step.settings.impacts, step.dt_s, *impacts.sum(),
                           std::max(0.0, energy_J - bodies_energy(step.world, step.bodies, grasped)));
@@ -342,19 +274,12 @@ void apply_impacts(ConstraintStep& step) noexcept {
 
 void move_free_bodies(ConstraintStep& step) noexcept {
   FreeBodies& f = step.own.free;
+  std::fill(f.given_Ns.begin(), f.given_Ns.end(), Vec3::Zero());
   if (f.alone && !f.grasped_here) return;
   ConstraintState& c = step.own.constraint;
-  if (f.grasped_here) treat_grasped_as_body(step);
-  add_rows(step);
-  const auto solve = [&] {
-    // What is left moves nothing by more than the skin, and every step is looked at before it is taken.
-    const SolverResult solved = f.resting.solve(step.settings.budget.solver_iterations, c.skin_m / step.dt_s,
-                                                f.settled, step.bodies.V_WB);
-    step.report.solver_iterations += solved.iterations;
-    if (!solved.converged) step.report.flags |= frame_flag::kSolverBounded;
-  };
+  begin_islands(step);
   std::fill(f.settled.begin(), f.settled.end(), 0);
-  solve();
+  solve_islands(step);
   limit_shares(step);
   const int keep_back = kept_for_grasped(step);
   c.trial.X_WB = step.bodies.X_WB;  // same size: nothing is allocated
@@ -369,7 +294,7 @@ void move_free_bodies(ConstraintStep& step) noexcept {
     all = round < kFeedbacks && step.gaps.tests_left() - keep_back >= step.report.validation_tests - tests;
     if (all) {
       correct(step);
-      solve();
+      solve_islands(step);
       limit_shares(step);
     } else if (++cuts <= kBacktracks + kMostStops) {
       round = kFeedbacks;
@@ -386,8 +311,6 @@ void move_free_bodies(ConstraintStep& step) noexcept {
     step.bodies.V_WB[i] = {};
     ++step.report.cut_short;
   }
-  f.resting.end();
-  report_forces(step);
 }
 
 void end_turning(ConstraintStep& step) noexcept {

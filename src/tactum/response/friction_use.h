@@ -1,17 +1,17 @@
 #pragma once
-/// What friction does at every patch of a frame, told for displays: whether it sticks or slips, and how much
-/// of its cone the forces use.
+/// What friction does at every patch of the grasped part's island, for displays: whether it sticks or slips,
+/// and how much of its load the friction uses.
 ///
-///        \  |  /       cone used:  ( |F_t| + |T_n| / r )  /  (mu F_n)
+///        \  |  /       used:  sqrt( |F_t|^2 + (|T_n| / r)^2 )  /  (mu F_n)
 ///         \ | * F
-///     A    \|/         0: nothing is held sideways, 1: at the edge, where it slips next. A patch slips at 1;
-///     -----(c)-----    one that sticks may be there, too.
+///     A    \|/         0: nothing pushes along the surface; 1: at the edge of the cone, where it slips next.
+///     -----(c)-----    A patch that slips uses 1; one that sticks may be there, too.
 ///     B
 ///
 /// F_n counts everything that presses the two surfaces together, also what a wedged part presses by itself.
 
+#include "tactum/dynamics/friction.h"
 #include "tactum/response/frame_report.h"
-#include "tactum/response/friction.h"
 
 namespace tactum {
 
@@ -23,14 +23,13 @@ struct FrictionUse {
   double cone_used = 0.0;    ///< [-]
 };
 
-/// By number of ContactRow::grip; empty where nothing rubs.
+/// By number of ContactRow::friction_patch; empty where nothing rubs.
 using FrictionUses = StaticVector<FrictionUse, Friction::kMostPatches>;
 
 /// Fills `uses` from the problem's answer, and gives every row that pushes the number of the patch it counts
-/// to. The rows are the contact rows of the problem, that begin at `first_row`.
-void use_of_friction(const World& world, const Friction& friction, std::span<const ContactPatch> patches,
-                     std::size_t first_row, const ConstraintProblem& problem, std::span<ContactRow> rows,
-                     FrictionUses& uses) noexcept;
+/// to. `rows` are the contact rows of the problem, which begin at number `first` there.
+void use_of_friction(const Friction& friction, const ContactProblem& problem, std::size_t first,
+                     std::span<ContactRow> rows, FrictionUses& uses) noexcept;
 
 /// Over all patches that push.
 FrictionReport sum_of(const FrictionUses& uses) noexcept;

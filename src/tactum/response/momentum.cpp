@@ -1,27 +1,24 @@
 #include "tactum/response/momentum.h"
 
+#include "tactum/response/constraint_rows.h"
+
 namespace tactum {
 namespace {
 
 using Index = std::size_t;
 
-/// What contacts and friction gave the bodies of the held part's island.
+/// What contacts and friction gave the bodies of the grasped part's island.
 void give_by_island(ConstraintStep& step) {
   const ConstraintState& c = step.own.constraint;
-  for (const QpActive& active : c.problem.answer().active) {
-    const Index row = Index(active.row);
-    if (row < c.rows.first) continue;
-    const double impulse = active.multiplier * step.dt_s;
-    if (row - c.rows.first < c.rows.own) {
-      const ContactRow& contact = step.own.contact_rows.rows[row - c.rows.first];
-      step.own.free.momentum.give(contact.body_a, contact.body_b, impulse * contact.n_BA_W);
-      continue;
-    }
-    for (const FrictionPatch& patch : c.friction.patches())
-      if (row >= patch.first_row && row < patch.first_row + Friction::kRowsAPatch)
-        step.own.free.momentum.give(patch.key.body_a, patch.key.body_b,
-                                    impulse * cone_edge(patch, row - patch.first_row).force);
-  }
+  Momentum& momentum = step.own.free.momentum;
+  const RowsInProblem contacts{own_rows(step), c.rows.first};
+  for (const QpActive& active : c.problem.answer().active)
+    if (const ContactRow* const row = contacts.row(active.row))
+      momentum.give(row->body_a, row->body_b, active.multiplier * step.dt_s * row->n_BA_W);
+  c.friction.for_each_force(c.problem, [&](Index patch, const Push& push, double multiplier) {
+    const SurfacePair& bodies = c.friction.patches()[patch].surfaces;
+    momentum.give(bodies.body_a, bodies.body_b, multiplier * step.dt_s * push.force);
+  });
 }
 
 }  // namespace
@@ -50,6 +47,7 @@ void end_balance(bool as_forced, ConstraintStep& step) noexcept {
     for (Index i = 0; i < step.world.bodies.size(); ++i)
       near_grasped |= momentum.counts[i] && step.own.free.near_grasped[i];
   }
+  for (const Vec3& given_Ns : step.own.free.given_Ns) momentum.due_Ns += given_Ns;
   Vec3 now = Vec3::Zero();
   for (Index i = 0; i < step.world.bodies.size(); ++i)
     if (momentum.counts[i]) now += step.world.bodies[i].mass_kg * step.bodies.V_WB[i].v;

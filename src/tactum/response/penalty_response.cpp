@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "tactum/dynamics/solver_choice.h"
 #include "tactum/dynamics/step.h"
 #include "tactum/math/screw.h"
 #include "tactum/response/coupling.h"
@@ -12,16 +13,9 @@ namespace {
 
 using Index = std::size_t;
 
-/// The held part weighs nothing: it resists as its coupling does, over a step of h seconds.
-Resistance resistance_of(const MotionInput& input, const Pose& X_WB, Index body, double h_s) {
-  if (static_cast<int>(body) == input.grasped.body)
-    return coupling_resistance(input.settings.coupling, X_WB.R * input.grasped.X_BH.p, h_s);
-  return inertial_resistance(input.world.bodies[body], X_WB);
-}
-
-/// The velocity that takes the held body in `h_s` to where the hand at X_WH has it.
-Twist velocity_to_hand(const GraspedPart& grasped, const Pose& X_WB, const Pose& X_WH, double h_s) {
-  return twist_between(X_WB, X_WH * grasped.X_BH.inverse(), h_s);
+/// The grasped part weighs nothing: it resists as its coupling does, at the handle.
+BodyMetric coupling_metric(const Coupling& coupling) {
+  return body_metric({coupling.stiffness_N_per_m, coupling.stiffness_Nm_per_rad});
 }
 
 /// V scaled down so that no point within `radius_m` of the body's origin moves more than `max_step_m` in
@@ -43,26 +37,54 @@ void limit_grasped(const MotionInput& input, WorldState& bodies) {
 
 PenaltyResponse::PenaltyResponse(const World& world, const FrameSettings& settings)
     : contacts_(settings.budget.capacity.patches, Index(settings.budget.max_contact_points)),
-      resistance_(world.bodies.size(), Resistance::Zero()),
-      mobility_(world.bodies.size(), Mobility::Zero()),
-      motion_bound_(world.bodies.size(), 0.0) {}
+      islands_(world),
+      bodies_(world.bodies.size(), world.bodies.size()),
+      rows_(world.bodies.size(), Index(settings.budget.max_contact_points)),
+      problem_(Index(settings.budget.max_contact_points), world.bodies.size()),
+      all_move_(world.bodies.size(), 0),
+      V_before_joints_(world.bodies.size()),
+      motion_bound_(world.bodies.size(), 0.0) {
+  gathered_.reserve(Index(settings.budget.max_contact_points));
+  forces_.reserve(Index(settings.budget.max_contact_points) + 4 * world.bodies.size());
+}
+
+/// The displacement of the grasped part's handle that its coupling asks for.
+Vec6 PenaltyResponse::to_hand(const MotionInput& input, const Pose& X_WB) noexcept {
+  const Pose X_WH = equilibrium_pose(input.settings.coupling, input.grasped, X_WB);
+  return to_vector(twist_between(X_WB * input.grasped.X_BH, X_WH, 1.0));
+}
+
+/// Adds a body with its target over a step of h seconds.
+void PenaltyResponse::add_body(const MotionInput& input, int body, double h_s,
+                               const WorldState& bodies) noexcept {
+  const Body& what = input.world.bodies[Index(body)];
+  const Pose& X_WB = bodies.X_WB[Index(body)];
+  if (body == input.grasped.body) {
+    problem_.add_body(body, what, X_WB, X_WB * input.grasped.X_BH.p, coupling_metric(input.settings.coupling),
+                      to_hand(input, X_WB), h_s);
+    return;
+  }
+  problem_.add_body(body, what, X_WB, X_WB.p, inertial_metric(what, X_WB, h_s),
+                    to_vector(bodies.V_WB[Index(body)] * h_s), h_s);
+}
 
 std::span<const double> PenaltyResponse::bound_motion(const MotionInput& input, WorldState& bodies) noexcept {
   const World& world = input.world;
   for (Index i = 0; i < world.bodies.size(); ++i) {
     const Body& body = world.bodies[i];
     if (!body.moves()) continue;
-    const Pose& X_WB = bodies.X_WB[i];
     Twist& V_WB = bodies.V_WB[i];
-    resistance_[i] = resistance_of(input, X_WB, i, input.dt_s);
-    if (static_cast<int>(i) == input.grasped.body) {
-      const Pose X_WH = equilibrium_pose(input.settings.coupling, input.grasped, X_WB);
-      V_WB = velocity_to_hand(input.grasped, X_WB, X_WH, input.dt_s);
-    } else {
-      V_WB.v += world.gravity_W * input.dt_s;
-    }
-    V_WB = constrained_velocity(body.joint, X_WB, resistance_[i], V_WB);
-    mobility_[i] = mobility(body.joint, X_WB, resistance_[i]);
+    const int number = static_cast<int>(i);
+    if (number != input.grasped.body) V_WB.v += world.gravity_W * input.dt_s;
+    V_before_joints_[i] = V_WB;
+    if (number != input.grasped.body && body.joint.kind == JointKind::kFree) continue;
+    // What the joint allows, and where the hand and the joint's forces lead when nothing touches.
+    problem_.clear();
+    add_body(input, number, input.dt_s, bodies);
+    problem_.add_joint_rows(false);
+    solve_penalty({}, problem_.rows(), input.dt_s, input.settings.budget.solver_iterations, forces_,
+                  problem_);
+    V_WB = to_twist(problem_.displacement(number) / input.dt_s);
   }
   limit_grasped(input, bodies);
   for (Index i = 0; i < motion_bound_.size(); ++i) {
@@ -72,26 +94,49 @@ std::span<const double> PenaltyResponse::bound_motion(const MotionInput& input, 
   return motion_bound_;
 }
 
-/// Gives the held part the whole way that is left to the hand over the rest of the frame, and what resists
-/// that.
-void PenaltyResponse::pull_grasped(const StepInput& input, double rest_s, WorldState& bodies) noexcept {
-  if (input.grasped.body < 0) return;
-  const Index i = Index(input.grasped.body);
-  const Pose& X_WB = bodies.X_WB[i];
-  const Joint& joint = input.world.bodies[i].joint;
-  resistance_[i] = resistance_of(input, X_WB, i, rest_s);
-  mobility_[i] = mobility(joint, X_WB, resistance_[i]);
-  const Pose X_WH = equilibrium_pose(input.settings.coupling, input.grasped, X_WB);
-  const Twist pull = velocity_to_hand(input.grasped, X_WB, X_WH, rest_s);
-  bodies.V_WB[i] = constrained_velocity(joint, X_WB, resistance_[i], pull);
+/// Solves for the velocities of an island over the rest of the frame.
+void PenaltyResponse::solve_island(const StepInput& input, Index island, double rest_s, WorldState& bodies,
+                                   FrameReport& report) noexcept {
+  std::vector<ContactRow>& rows = contacts_.rows;
+  problem_.clear();
+  for (const int body : bodies_[island]) add_body(input, body, rest_s, bodies);
+  problem_.add_joint_rows(false);
+  const Index first = problem_.rows();
+  gathered_.clear();
+  for (const int row : rows_[island]) {
+    const ContactRow& contact = rows[Index(row)];
+    gathered_.push_back(contact);
+    problem_.add_row(problem_.row_of(contact.body_a, contact.body_b, push_of(contact)),
+                     contact.margin - contact.distance);
+  }
+  const SolverResult solved =
+      solve_penalty(gathered_, first, rest_s, input.settings.budget.solver_iterations, forces_, problem_);
+  for (Index i = 0; i < gathered_.size(); ++i) rows[Index(rows_[island][i])].impulse = gathered_[i].impulse;
+  for (const ProblemBody& body : problem_.bodies())
+    bodies.V_WB[Index(body.body)] = to_twist(problem_.displacement(body.body) / rest_s);
+  report.solver_iterations += solved.iterations;
+  if (!solved.converged) report.flags |= frame_flag::kSolverBounded;
 }
 
-/// What joints do to the motion, but that of body `spared`.
-void PenaltyResponse::slow_joints(const World& world, double h_s, int spared, WorldState& bodies) noexcept {
-  for (Index i = 0; i < world.bodies.size(); ++i) {
-    if (static_cast<int>(i) == spared || !world.bodies[i].moves()) continue;
-    bodies.V_WB[i] = after_joint(world.bodies[i], bodies.X_WB[i], mobility_[i], h_s, bodies.V_WB[i]);
-  }
+/// Solves for the velocities of everything that moves over the rest of the frame, island by island.
+void PenaltyResponse::solve(const StepInput& input, double rest_s, WorldState& bodies,
+                            FrameReport& report) noexcept {
+  const World& world = input.world;
+  const std::span<const ContactRow> rows = contacts_.rows;
+  // Of the joints' forces over the whole frame only what acted up to the impact counts here.
+  const double before_impact = 1.0 - rest_s / input.dt_s;
+  for (Index i = 0; i < world.bodies.size(); ++i)
+    if (world.bodies[i].moves())
+      bodies.V_WB[i] = V_before_joints_[i] + (bodies.V_WB[i] - V_before_joints_[i]) * before_impact;
+  islands_.clear(world, all_move_);
+  for (const ContactRow& row : rows) islands_.join(row.body_a, row.body_b);
+  bodies_.set(world.bodies.size(), world.bodies.size(),
+              [&](Index i) { return world.bodies[i].moves() ? islands_.of(static_cast<int>(i)) : -1; });
+  rows_.set(world.bodies.size(), rows.size(),
+            [&](Index r) { return islands_.of_contact(rows[r].body_a, rows[r].body_b); });
+  report.solvers |= static_cast<int>(ContactSolver::kPenalty);
+  for (Index island = 0; island < world.bodies.size(); ++island)
+    if (!bodies_[island].empty()) solve_island(input, island, rest_s, bodies, report);
 }
 
 void PenaltyResponse::step(const StepInput& input, GapOracle& /*gaps*/, WorldState& bodies,
@@ -104,23 +149,16 @@ void PenaltyResponse::step(const StepInput& input, GapOracle& /*gaps*/, WorldSta
   const double impact_s = smallest_time_of_impact(rows, X_WB, V_WB, input.dt_s);
   const double rest_s = input.dt_s - impact_s;
   const int grasped = input.grasped.body;
-  if (impact_s > 0.0) {  // in no time nothing moves, and no joint slows anything
-    // The held part has no mass to be slowed before the impact: its friction acts where it is pulled.
-    slow_joints(world, impact_s, rest_s > 0.0 ? grasped : -1, bodies);
+  if (impact_s > 0.0) {
     advance_distances(rows, X_WB, V_WB, impact_s);
     advance_bodies(world, V_WB, impact_s, X_WB);
   }
   if (rest_s > 0.0) {
-    pull_grasped(input, rest_s, bodies);
-    const SolverResult solved = solve_contacts(
-        rows, X_WB, mobility_, rest_s, input.settings.budget.solver_iterations, contacts_.pushes, V_WB);
-    report.solver_iterations = solved.iterations;
-    if (!solved.converged) report.flags |= frame_flag::kSolverBounded;
+    solve(input, rest_s, bodies, report);
     report.contact_points = static_cast<int>(rows.size());
     for (const ContactRow& row : rows)
       report.grasped_contact_points += row.body_a == grasped || row.body_b == grasped ? 1 : 0;
     if (grasped >= 0) report.restoring = contact_wrench(rows, grasped, X_WB[Index(grasped)].p, rest_s);
-    slow_joints(world, rest_s, -1, bodies);
     limit_grasped(input, bodies);
     advance_bodies(world, V_WB, rest_s, X_WB);
   }

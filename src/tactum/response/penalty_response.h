@@ -13,6 +13,9 @@
 
 #include <vector>
 
+#include "tactum/base/grouped_indices.h"
+#include "tactum/dynamics/islands.h"
+#include "tactum/dynamics/solve_penalty.h"
 #include "tactum/response/contact_force.h"
 #include "tactum/response/frame_report.h"
 #include "tactum/response/step_input.h"
@@ -42,12 +45,21 @@ class PenaltyResponse {
   bool rows_full() const noexcept { return contacts_.full; }
 
  private:
-  void pull_grasped(const StepInput& input, double rest_s, WorldState& bodies) noexcept;
-  void slow_joints(const World& world, double h_s, int spared, WorldState& bodies) noexcept;
+  static Vec6 to_hand(const MotionInput& input, const Pose& X_WB) noexcept;
+  void add_body(const MotionInput& input, int body, double h_s, const WorldState& bodies) noexcept;
+  void solve_island(const StepInput& input, std::size_t island, double rest_s, WorldState& bodies,
+                    FrameReport& report) noexcept;
+  void solve(const StepInput& input, double rest_s, WorldState& bodies, FrameReport& report) noexcept;
 
   ContactRows contacts_;
-  std::vector<Resistance> resistance_;  // by body; scratch of one frame
-  std::vector<Mobility> mobility_;
+  // Scratch of one frame.
+  Islands islands_;
+  GroupedIndices bodies_, rows_;  // by island
+  ReservedVector<ContactRow> gathered_;
+  ReservedVector<double> forces_;
+  ContactProblem problem_;
+  std::vector<char> all_move_;          // no body is deferred
+  std::vector<Twist> V_before_joints_;  // by body
   std::vector<double> motion_bound_;
 };
 

@@ -59,7 +59,7 @@ void GoalRecord::watch(const World& world, const WorldState& state, int grasped,
   if (grasped >= 0) {
     picked_[Index(grasped)] = 1;
     for (const ContactRow& row : rows) {
-      if (!(row.impulse > 0.0) && !row.hit) continue;
+      if (!(row.impulse > 0.0) && !row.impact.seen) continue;
       if (row.body_a == grasped) touched_[Index(row.body_b)] = 1;
       if (row.body_b == grasped) touched_[Index(row.body_a)] = 1;
     }

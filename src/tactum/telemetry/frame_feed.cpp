@@ -71,11 +71,11 @@ void FrameFeed::draw(const FrameSource& frame, FramePicture& picture) noexcept {
     contact.p_W = row.p_W;
     contact.n_W = row.n_BA_W;
     contact.distance_m = row.distance;
-    contact.tolerance_m = row.tolerance;
+    contact.tolerance_m = row.margin;
     contact.force_N = rest > 0.0 ? row.impulse / rest : 0.0;
     contact.patch = row.patch;
-    if (row.grip >= 0) {
-      const FrictionUse& use = state.response.friction_uses()[Index(row.grip)];
+    if (row.friction_patch >= 0) {
+      const FrictionUse& use = state.response.friction_uses()[Index(row.friction_patch)];
       contact.grip = use.sticks ? Grip::kSticks : Grip::kSlips;
       contact.cone_used = use.cone_used;
     }

@@ -1,0 +1,176 @@
+#include "tactum/response/free_islands.h"
+
+#include <algorithm>
+
+#include "tactum/response/grasped_part.h"
+
+namespace tactum {
+namespace {
+
+using Index = std::size_t;
+
+/// An island while its problem is solved.
+struct IslandProblem {
+  ConstraintStep& step;
+  Index island;
+  std::span<const int> bodies, rows;  ///< numbers of bodies of the world, and of contact rows
+  ContactProblem& problem;
+  std::span<ContactRow> contacts;  ///< copies of the rows
+  RowsInProblem in_problem;
+};
+
+/// Whether nothing acts on the island: one free body that touches nothing.
+bool is_idle(const IslandProblem& p) {
+  return p.rows.empty() && p.bodies.size() == 1 && p.bodies[0] != p.step.grasped.body &&
+         p.step.world.bodies[Index(p.bodies[0])].joint.kind == JointKind::kFree;
+}
+
+/// The bodies of the island, and its rows; with `opening` gaps below the skin are asked to open.
+void assemble(bool exact, bool opening, IslandProblem& p) {
+  const ConstraintStep& step = p.step;
+  p.problem.clear();
+  for (const int body : p.bodies) {
+    const Index i = Index(body);
+    if (body == step.grasped.body) {
+      add_grasped(with_load(step, step.own.constraint.wanted), step, p.problem);
+      continue;
+    }
+    const Body& what = step.world.bodies[i];
+    const Pose& X_WB = step.bodies.X_WB[i];
+    p.problem.add_body(body, what, X_WB, X_WB.p, inertial_metric(what, X_WB, step.dt_s),
+                       to_vector(step.own.free.V_free[i] * step.dt_s), step.dt_s);
+  }
+  p.problem.add_joint_rows(exact);
+  p.in_problem = {p.contacts, p.problem.rows()};
+  for (ContactRow& row : p.contacts) {
+    if (!opening) row.asked = std::min(0.0, row.asked);
+    p.problem.add_row(p.problem.row_of(row.body_a, row.body_b, push_of(row)), row.asked);
+  }
+}
+
+/// The momentum that the bodies that count have from a force.
+void give(const SurfacePair& bodies, const Vec3& force_W, const IslandProblem& p) {
+  FreeBodies& f = p.step.own.free;
+  f.given_Ns[p.island] += f.momentum.counted(bodies.body_a, bodies.body_b, p.step.dt_s * force_W);
+}
+
+/// What friction on the grasped part pushes with is reported as a row of its own.
+void report_friction(const FrictionPatch& patch, const Vec3& force_W, const IslandProblem& p) {
+  give(patch.surfaces, force_W, p);
+  std::vector<ContactRow>& rows = p.step.own.contact_rows.rows;
+  const int grasped = p.step.grasped.body;
+  const bool on_grasped = patch.surfaces.body_a == grasped || patch.surfaces.body_b == grasped;
+  const double size_N = force_W.norm();
+  if (!on_grasped || !(size_N > 0.0) || rows.size() == rows.capacity()) return;
+  ContactRow& row = rows.emplace_back();
+  static_cast<SurfacePair&>(row) = patch.surfaces;
+  row.patch = patch.source_patch;
+  row.p_W = patch.centre_W;
+  row.n_BA_W = force_W / size_N;
+  row.impulse = size_N * p.step.dt_s;
+}
+
+/// The exact solution; false when there is none, or the iterations ran out.
+bool solve_exact(IslandProblem& p) {
+  ConstraintState& c = p.step.own.constraint;
+  const FrictionInput input{p.step.bodies.X_WB, c.scale(), c.anchors};
+  ExactResult result;
+  for (const bool opening : {true, false}) {
+    assemble(true, opening, p);
+    ExactStart start;
+    for (Index i = 0; i < p.contacts.size(); ++i) {
+      const int state = p.contacts[i].state;
+      if (state < 0 || !(c.rows.memory[state].force_N > 0.0)) continue;
+      start.without_friction.push_back(static_cast<int>(p.in_problem.first + i));
+    }
+    start.sticking = start.without_friction;
+    result = solve_exactly(p.in_problem, input, p.step.settings.budget.solver_iterations, start, c.friction,
+                           p.problem);
+    p.step.report.solver_iterations += result.iterations;
+    if (result.solved) break;
+  }
+  if (!result.solved) return false;
+  p.step.report.solvers |= static_cast<int>(ContactSolver::kExact);
+  for (ContactRow& row : p.contacts) row.impulse = 0.0;
+  for (const QpActive& active : p.problem.answer().active)
+    if (p.in_problem.row(active.row) != nullptr)
+      p.contacts[Index(active.row) - p.in_problem.first].impulse = active.multiplier * p.step.dt_s;
+  for (const ContactRow& row : p.contacts)
+    if (row.state >= 0) c.rows.memory[row.state].force_N = row.impulse / p.step.dt_s;
+  c.friction.for_each_force(p.problem, [&](Index patch, const Push& push, double multiplier) {
+    report_friction(c.friction.patches()[patch], multiplier * push.force, p);
+  });
+  c.friction.end(p.in_problem, p.problem, p.step.bodies.X_WB, c.anchors);
+  return true;
+}
+
+void solve_swept(IslandProblem& p) {
+  ConstraintState& c = p.step.own.constraint;
+  Sweeps& sweeps = p.step.own.free.sweeps;
+  assemble(false, true, p);
+  sweeps.begin(p.in_problem, c.scale(), p.step.bodies.X_WB, c.anchors, c.rows.memory, p.step.dt_s, p.problem);
+  // What is left moves nothing by more than the skin, and every step is looked at before it is taken.
+  const SolverResult solved = sweeps.solve(p.step.settings.budget.solver_iterations, c.skin_m, p.problem);
+  p.step.report.solvers |= static_cast<int>(ContactSolver::kSweeps);
+  p.step.report.solver_iterations += solved.iterations;
+  if (!solved.converged) p.step.report.flags |= frame_flag::kSolverBounded;
+  sweeps.keep_anchors(p.in_problem, p.step.bodies.X_WB, c.anchors);
+  sweeps.end(p.contacts, c.rows.memory);
+  for (Index i = 0; i < sweeps.patches().size(); ++i)
+    report_friction(sweeps.patches()[i], sweeps.friction_force(i), p);
+}
+
+void solve_island(IslandProblem& p) {
+  const ConstraintStep& step = p.step;
+  if (is_idle(p)) return;
+  Index unknowns = 0;
+  for (const int body : p.bodies) unknowns += exact_unknowns_of(step.world.bodies[Index(body)].joint);
+  const bool exact = choose_solver(unknowns) == ContactSolver::kExact && solve_exact(p);
+  if (!exact) solve_swept(p);
+  for (const ContactRow& row : p.contacts) give(row, row.impulse / step.dt_s * row.n_BA_W, p);
+  for (const ProblemBody& body : p.problem.bodies()) {
+    if (body.body == step.grasped.body) feel(p.problem.displacement_at_centre(body), p.step);
+    step.bodies.V_WB[Index(body.body)] = to_twist(p.problem.displacement(body.body) / step.dt_s);
+  }
+}
+
+}  // namespace
+
+bool moves_here(const ConstraintStep& step, Index body) noexcept {
+  const FreeBodies& f = step.own.free;
+  if (!f.islands.moves(static_cast<int>(body))) return false;
+  return f.grasped_island < 0 || f.islands.of(static_cast<int>(body)) != f.grasped_island;
+}
+
+void begin_islands(ConstraintStep& step) noexcept {
+  FreeBodies& f = step.own.free;
+  const Index bodies = step.world.bodies.size();
+  const std::span<const ContactRow> rows = step.own.contact_rows.rows;
+  f.bodies.set(bodies, bodies,
+               [&](Index i) { return moves_here(step, i) ? f.islands.of(static_cast<int>(i)) : -1; });
+  f.rows.set(bodies, rows.size(), [&](Index r) {
+    return r < step.own.constraint.rows.own ? -1 : f.islands.of_contact(rows[r].body_a, rows[r].body_b);
+  });
+  f.V_free = step.bodies.V_WB;  // same size: nothing is allocated
+  if (f.grasped_here) step.own.constraint.wanted = wanted_by_hand(step);
+}
+
+void solve_islands(ConstraintStep& step) noexcept {
+  FreeBodies& f = step.own.free;
+  std::vector<ContactRow>& rows = step.own.contact_rows.rows;
+  for (Index island = 0; island < f.given_Ns.size(); ++island) {
+    IslandProblem p{step, island, f.bodies[island], f.rows[island], step.own.constraint.problem, {}, {}};
+    if (p.bodies.empty() || f.settled[island] != 0) continue;
+    if (step.grasped.body >= 0 && f.grasped_here &&
+        f.islands.of(step.grasped.body) == static_cast<int>(island))
+      rows.resize(step.own.constraint.rows.count);  // without the friction of an earlier solution
+    f.given_Ns[island].setZero();
+    f.gathered.clear();
+    for (const int row : p.rows) f.gathered.push_back(rows[Index(row)]);
+    p.contacts = f.gathered;
+    solve_island(p);
+    for (Index i = 0; i < p.rows.size(); ++i) rows[Index(p.rows[i])].impulse = f.gathered[i].impulse;
+  }
+}
+
+}  // namespace tactum
