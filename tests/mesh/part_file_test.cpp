@@ -34,7 +34,7 @@ PartFile surface_file() {
   dented.vertices[40] *= 0.8;
   PartFile file;
   file.part = *part_from_mesh(dented, {.name = "dented"});
-  file.part.remarks = {"one", "two"};
+  file.part.notes.remarks = {"one", "two"};
   return file;
 }
 
@@ -90,7 +90,7 @@ TEST(PartFile, ComesBackBitForBit) {
     EXPECT_EQ(part_bytes(*back), bytes);  // every stored array
     EXPECT_EQ(back->report, file.report);
     EXPECT_EQ(back->origin, file.origin);
-    EXPECT_EQ(back->part.remarks, file.part.remarks);
+    EXPECT_EQ(back->part.notes.remarks, file.part.notes.remarks);
     ASSERT_EQ(back->part.pieces.size(), file.part.pieces.size());
     for (std::size_t i = 0; i < file.part.pieces.size(); ++i)
       expect_same(back->part.pieces[i], file.part.pieces[i]);
