@@ -112,7 +112,7 @@ inline double random_gap(Random& random) {
 /// X_AB of the given making: features of A and B set against each other at a random gap along A's outward
 /// direction.
 inline Pose make_pose(Random& random, const Polytope& A, const Polytope& B, Making making) {
-  const double size = 0.5 * (A.size + B.size);
+  const double size = 0.5 * (A.extent.size + B.extent.size);
   Pose X{random_rotation(random), Vec3::Zero()};
   const auto pick = [&](std::size_t n) {
     return static_cast<std::size_t>(random.index(static_cast<int>(n)));
@@ -163,22 +163,22 @@ inline Pose make_pose(Random& random, const Polytope& A, const Polytope& B, Maki
     case Making::kVertexOverEdge:
       outward = (A.sides[std::size_t(ea.left_slot)].normal + A.sides[std::size_t(ea.right_slot)].normal)
                     .normalized();
-      X.R = turning((B.vertices[vb] - B.center).normalized(), -outward, angle);
+      X.R = turning((B.vertices[vb] - B.extent.center).normalized(), -outward, angle);
       on_a = A.vertices[std::size_t(ea.tail)] + ea.direction * (ea.length * share);
       break;
     case Making::kVertexOverFace:
-      X.R = turning((B.vertices[vb] - B.center).normalized(), -outward, angle);
+      X.R = turning((B.vertices[vb] - B.extent.center).normalized(), -outward, angle);
       on_a = face_point;
       break;
     case Making::kVertexToVertex:
-      outward = (A.vertices[va] - A.center).normalized();
-      X.R = turning((B.vertices[vb] - B.center).normalized(), -outward, angle);
+      outward = (A.vertices[va] - A.extent.center).normalized();
+      X.R = turning((B.vertices[vb] - B.extent.center).normalized(), -outward, angle);
       break;
     case Making::kAligned: {
       X.R = exp_rotation(Vec3(0, 0, quarter));
       const Vec3 step = random_vector(random, 1.0);
       for (int i = 0; i < 3; ++i)  // often flush with A
-        on_a[i] = random.index(3) ? on_a[i] : A.center[i] + step[i] * size;
+        on_a[i] = random.index(3) ? on_a[i] : A.extent.center[i] + step[i] * size;
       outward = Vec3::Unit(random.index(3));
       if (random.index(2)) outward = -outward;
       break;
@@ -186,7 +186,8 @@ inline Pose make_pose(Random& random, const Polytope& A, const Polytope& B, Maki
     case Making::kRandom:
     case Making::kCount: {
       const Vec3 direction = random_unit(random);
-      X.p = A.center - X.R * B.center + direction * (A.radius + B.radius) * random.uniform(0.0, 1.3);
+      X.p = A.extent.center - X.R * B.extent.center +
+            direction * (A.extent.radius + B.extent.radius) * random.uniform(0.0, 1.3);
       return X;
     }
   }

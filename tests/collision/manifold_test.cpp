@@ -44,7 +44,8 @@ Contact contact(const Polytope& A, const Polytope& B, const Pose& X_AB, double t
   PairCache cache;
   c.closest = closest_features(A, B, X_AB, cache);
   contact_manifold(A, B, X_AB, c.closest, tolerance, c.patch);
-  EXPECT_LT(off_the_faces(A, B, X_AB, c.patch), 1e-13 * (1.0 + X_AB.p.norm() + A.magnitude + B.magnitude));
+  EXPECT_LT(off_the_faces(A, B, X_AB, c.patch),
+            1e-13 * (1.0 + X_AB.p.norm() + A.extent.magnitude + B.extent.magnitude));
   return c;
 }
 
@@ -511,7 +512,7 @@ TEST(Manifold, NeverEmptyBelowTheTolerance) {
     const cases::Shape& b = shapes[std::size_t(random.index(int(shapes.size())))];
     const Pose X =
         cases::make_pose(random, a.polytope, b.polytope, cases::Making(i % int(cases::Making::kCount)));
-    const double size = std::max(a.polytope.size, b.polytope.size);
+    const double size = std::max(a.polytope.extent.size, b.polytope.extent.size);
     const Contact c = contact(a.polytope, b.polytope, X, 0.01 * size);
     if (c.closest.distance >= 0.01 * size) {
       EXPECT_TRUE(c.patch.points.empty());
@@ -527,8 +528,8 @@ TEST(Manifold, NeverEmptyBelowTheTolerance) {
       EXPECT_TRUE(p.p_a.allFinite() && p.p_b.allFinite());
       EXPECT_NEAR(p.distance, c.patch.normal.dot(p.p_a - p.p_b), 1e-9 * size);
       // Quadrature points stay over the patch, so near both pieces.
-      EXPECT_LT((p.p_a - a.polytope.center).norm(), a.polytope.radius * 1.3 + 0.02 * size);
-      EXPECT_LT((p.p_b - X * b.polytope.center).norm(), b.polytope.radius * 1.3 + 0.02 * size);
+      EXPECT_LT((p.p_a - a.polytope.extent.center).norm(), a.polytope.extent.radius * 1.3 + 0.02 * size);
+      EXPECT_LT((p.p_b - X * b.polytope.extent.center).norm(), b.polytope.extent.radius * 1.3 + 0.02 * size);
     }
     EXPECT_NEAR(weight, 1.0, 1e-14);
   }

@@ -60,10 +60,10 @@ void expect_same(const Polytope& a, const Polytope& b) {
   expect_same_bits(a.ray_first, b.ray_first);
   EXPECT_EQ(a.direction_table, b.direction_table);
   EXPECT_EQ(a.counts, b.counts);
-  EXPECT_EQ(a.center, b.center);
-  EXPECT_EQ(a.radius, b.radius);
-  EXPECT_EQ(a.size, b.size);
-  EXPECT_EQ(a.magnitude, b.magnitude);
+  EXPECT_EQ(a.extent.center, b.extent.center);
+  EXPECT_EQ(a.extent.radius, b.extent.radius);
+  EXPECT_EQ(a.extent.size, b.extent.size);
+  EXPECT_EQ(a.extent.magnitude, b.extent.magnitude);
   EXPECT_EQ(a.flat, b.flat);
   ASSERT_EQ(a.faces.size(), b.faces.size());
   for (std::size_t i = 0; i < a.faces.size(); ++i) {

@@ -241,8 +241,8 @@ class TwoBodies {
   /// Settles `other` when it touches where the nearest does, with nothing to add: on the same features, or at
   /// a corner that both have.
   static void share(SeamCandidate& other, const SeamCandidate& nearest, int patch) noexcept {
-    const double noise =
-        tolerances::kCoplanarMeshOffset * std::max(piece_a(nearest).size, piece_b(nearest).size);
+    const double noise = tolerances::kCoplanarMeshOffset *
+                         std::max(piece_a(nearest).extent.size, piece_b(nearest).extent.size);
     const bool same_place =
         (other.found.p_a - nearest.found.p_a).norm() <= noise &&
         (other.found.p_b - nearest.found.p_b).norm() <= noise &&
