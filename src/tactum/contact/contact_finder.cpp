@@ -253,8 +253,8 @@ void ContactFinder::emit_patch(Pair& pair, const PairDistance& found, const Pose
   patch.piece_a = pair.piece_a;
   patch.piece_b = pair.piece_b;
   patch.pair = static_cast<int>(&pair - pairs_.data());
-  patch.facet_a = part_a.groups.of_piece[Index(pair.piece_a)];
-  patch.facet_b = part_b.groups.of_piece[Index(pair.piece_b)];
+  patch.facets.a = part_a.groups.of_piece[Index(pair.piece_a)];
+  patch.facets.b = part_b.groups.of_piece[Index(pair.piece_b)];
   patch.tolerance = reach;
   if (points_ == PatchPoints::kClosest) {
     patch.distance = found.distance;

@@ -167,8 +167,8 @@ class TwoBodies {
     PairDistance led = shown;
     SeamCandidate& leader = widest(nearest, shown, *patch, led);
     *leader.shown = *nearest.shown;
-    patch->facet_a = leader.part_a->groups.of_piece[Index(leader.piece_a)];
-    patch->facet_b = leader.part_b->groups.of_piece[Index(leader.piece_b)];
+    patch->facets.a = leader.part_a->groups.of_piece[Index(leader.piece_a)];
+    patch->facets.b = leader.part_b->groups.of_piece[Index(leader.piece_b)];
     leader.patch = static_cast<int>(patches_.size()) - 1;
     for (SeamCandidate* own : {&nearest, &leader}) {
       own->settled = true;
