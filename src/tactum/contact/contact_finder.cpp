@@ -234,13 +234,9 @@ void ContactFinder::emit_patch(Pair& pair, const PairDistance& found, const Pose
   const bool internal = seams && !is_true_contact(part_a, pair.piece_a, part_b, pair.piece_b, X_AB, found);
   if (seams && points_ == PatchPoints::kQuadrature) {
     SeamCandidate& candidate = candidates_.emplace_back();
-    candidate.body_a = pair.body_a;
-    candidate.body_b = pair.body_b;
-    candidate.piece_a = pair.piece_a;
-    candidate.piece_b = pair.piece_b;
+    candidate.a = {pair.body_a, pair.piece_a, &part_a};
+    candidate.b = {pair.body_b, pair.piece_b, &part_b};
     candidate.pair = static_cast<int>(&pair - pairs_.data());
-    candidate.part_a = &part_a;
-    candidate.part_b = &part_b;
     candidate.shown = &pair.shown;
     candidate.reach = reach;
     candidate.found = found;
