@@ -190,7 +190,7 @@ TEST(HingeFriction, HoldsBelowItsLimitAndSlowsAboveIt) {
   Body body;
   body.joint = joint;
   body.mass_kg = 0.2;
-  body.inertia_B = 1e-4 * Mat3::Identity();
+  body.inertia_B = 1e-4 * Mat3::Identity();  // a round number, from which the rates below are computed
   const Mobility W = mobility(joint, body.X_WB, inertial_resistance(body, body.X_WB));
   const auto rate_after = [&](double rate) {
     Twist V;
