@@ -95,8 +95,8 @@ PatchDistances distances_of(std::span<const ContactPatch> patches) {
   return out;
 }
 
-/// Tests all pairs of pieces of two bodies: there is a patch of those that are nearer than the tolerance, with
-/// their distance, and of no others.
+/// Tests all pairs of pieces of two bodies: there is a patch of those that are nearer than the tolerance,
+/// with their distance, and of no others.
 void expect_patches_of_all_near_pairs(const Wanderers& all, int a, int b, double min_tolerance,
                                       const PatchDistances& found) {
   const auto A = static_cast<std::size_t>(a);

@@ -1,8 +1,9 @@
 #pragma once
-/// What all connections of the viewer's server share: the messages that every page is sent, the pages that are
-/// open, which of them steers, and what they have asked.
+/// What all connections of the viewer's server share: the messages that every page is sent, the pages that
+/// are open, which of them steers, and what they have asked.
 
 #include <boost/asio/io_context.hpp>
+#include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
@@ -10,6 +11,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <utility>
 
 #include "viewer/server/access.h"
 #include "viewer/server/history.h"
@@ -48,7 +50,8 @@ struct ShownRun {
   SharedText geometry = shared_text("");
 };
 
-/// What the server's thread and its owner's thread both use.
+/// What pages have asked and the owner has not yet taken, and the counts of what has happened. The server's
+/// thread and its owner's thread both use it, under one lock.
 class RequestInbox {
  public:
   void refuse(Refusal reason) {

@@ -1,6 +1,6 @@
 #pragma once
-/// One HTTP connection: serves the page's files and the geometry to who may have them (access.h), until it asks
-/// to become the WebSocket of a page.
+/// One HTTP connection: serves the page's files and the geometry to clients that may have them (access.h),
+/// until the client asks for the WebSocket of a page.
 
 #include <boost/asio/ip/tcp.hpp>
 

@@ -8,8 +8,8 @@
 
 namespace tactum {
 
-/// The facets of A and of B that a patch lies on, each -1 where it lies on none: groups of the surface
-/// (SurfaceGroups). Patches of the same bodies and facets touch on the same two walls, and share one stiffness.
+/// The facets of A and of B that a patch lies on, each -1 where it lies on none: groups of the surface, see
+/// SurfaceGroups. Patches of the same bodies and facets touch on the same two walls: they share a stiffness.
 struct FacetPair {
   int a = -1, b = -1;
 };

@@ -25,8 +25,8 @@ struct PartNotes {
 };
 
 /// The groups of a part's surface: contact patches that lie on the same two groups share one stiffness. Each
-/// piece is a group; of a part that is felt by its surface the coplanar groups of the triangles are the groups,
-/// and the tree of the surface keeps which triangle belongs to which.
+/// piece is a group; of a part that is felt by its surface these are the coplanar groups of the triangles;
+/// the tree of the surface keeps which triangle belongs to which.
 struct SurfaceGroups {
   std::vector<int> of_piece;  ///< of each piece: its group, 0 .. count - 1
   int count = 0;
