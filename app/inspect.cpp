@@ -73,13 +73,13 @@ std::string as_text(const Inspection& of) {
   if (!of.part) return text + fmt::format("as a part: {}\n", of.part.error().message());
   return text +
          fmt::format("as a part: {}; deviation {:.2g} of the size ({} samples of the mesh, {} of the part)\n",
-                     of.part->piece_report, of.deviation.largest() / of.deviation.size,
+                     of.part->notes.pieces, of.deviation.largest() / of.deviation.size,
                      of.deviation.mesh_samples, of.deviation.part_samples);
 }
 
 nlohmann::json part_json(const Inspection& of) {
   if (!of.part) return {{"error", of.part.error().message()}};
-  return {{"way", of.part->piece_report},
+  return {{"way", of.part->notes.pieces},
           {"pieces", of.part->pieces.size()},
           {"mesh_to_part_m", of.deviation.mesh_to_part},
           {"part_to_mesh_m", of.deviation.part_to_mesh},

@@ -74,8 +74,8 @@ Result<PartFile> prepared(const Options& options, const Bar& bar) {
   Result<PartFile> part =
       prepare_part(*mesh, options.prepare, [&](const char* stage, double share) { bar.show(stage, share); });
   if (part)
-    part->part.remarks.insert(part->part.remarks.begin(), mesh->report.remarks.begin(),
-                              mesh->report.remarks.end());
+    part->part.notes.remarks.insert(part->part.notes.remarks.begin(), mesh->report.remarks.begin(),
+                                    mesh->report.remarks.end());
   return part;
 }
 

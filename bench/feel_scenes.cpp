@@ -32,9 +32,9 @@ FeelPiece piece_of(const Polytope& P) {
   if (is_box) return box(0.5 * (high - low), {Mat3::Identity(), 0.5 * (low + high)});
   // Told about its own middle: some engines want the origin inside.
   std::vector<Vec3> corners;
-  for (const Vec3& v : P.vertices) corners.push_back(v - P.center);
+  for (const Vec3& v : P.vertices) corners.push_back(v - P.extent.center);
   FeelPiece piece = hull(corners);
-  piece.X_BP.p = P.center;
+  piece.X_BP.p = P.extent.center;
   return piece;
 }
 
@@ -171,7 +171,7 @@ FeelScene cylinder_in_hole() {
   std::vector<std::pair<Vec3, double>> inner;
   for (const Polytope& P : ring) {
     const auto face = std::min_element(P.faces.begin(), P.faces.end(), [&](const auto& a, const auto& b) {
-      return a.normal.dot(P.center) < b.normal.dot(P.center);
+      return a.normal.dot(P.extent.center) < b.normal.dot(P.extent.center);
     });
     inner.emplace_back(face->normal, face->offset);
   }

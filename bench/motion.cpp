@@ -24,8 +24,8 @@ Pose anywhere(const Shape& a, const Shape& b, Random& random) {
   Pose X;
   const Vec3 axis = random_direction(random);
   X.R = exp_rotation(random.uniform(0.0, kPi) * axis);
-  const double radius = a.polytope.radius + b.polytope.radius;
-  X.p = a.polytope.center + 1.1 * radius * random_direction(random) - X.R * b.polytope.center;
+  const double radius = a.polytope.extent.radius + b.polytope.extent.radius;
+  X.p = a.polytope.extent.center + 1.1 * radius * random_direction(random) - X.R * b.polytope.extent.center;
   return X;
 }
 

@@ -23,7 +23,7 @@ void support(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* result
 
 void center(const void* object, ccd_vec3_t* result) {
   const Piece& piece = *static_cast<const Piece*>(object);
-  const Vec3 p = piece.X * piece.polytope->center;
+  const Vec3 p = piece.X * piece.polytope->extent.center;
   ccdVec3Set(result, p.x(), p.y(), p.z());
 }
 

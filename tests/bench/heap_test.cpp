@@ -46,7 +46,7 @@ struct HeapRig {
     for (const Polytope& piece_b : B.part->pieces) {
       const Vec3 centre_b = X_AB * centre(piece_b);
       for (const Polytope& piece_a : A.part->pieces) {
-        if ((centre(piece_a) - centre_b).norm() > piece_a.size + piece_b.size) continue;
+        if ((centre(piece_a) - centre_b).norm() > piece_a.extent.size + piece_b.extent.size) continue;
         if (oracle::surely_overlap(piece_a, piece_b, X_AB, 1e-9L)) return true;
       }
     }

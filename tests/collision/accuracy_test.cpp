@@ -44,7 +44,7 @@ struct Worst {
 
 void hold_against_scan(const Polytope& A, const Polytope& B, const Pose& X, const PairDistance& answer,
                        Worst& worst) {
-  const double size = std::max(A.size, B.size);
+  const double size = std::max(A.extent.size, B.extent.size);
   worst.uncertified += !answer.certified();
   if (answer.normal.isZero()) return;
   const double gap = double(oracle::support_gap(A, B, X, answer.normal));
@@ -77,7 +77,7 @@ void measure_tracked(Random& random, const Polytope& A, const Polytope& B, int a
   for (int approach = 0; approach < approaches; ++approach) {
     Pose X{cases::random_rotation(random), Vec3::Zero()};
     const Vec3 away = cases::random_unit(random);
-    X.p = A.center - X.R * B.center + away * (A.radius + B.radius);
+    X.p = A.extent.center - X.R * B.extent.center + away * (A.extent.radius + B.extent.radius);
     const double speed = random.uniform(0.1, 0.5);
     const Twist V{-away * speed, cases::random_unit(random) * random.uniform(1.0, 3.0)};
     PairCache cache;

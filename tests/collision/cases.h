@@ -109,90 +109,130 @@ inline double random_gap(Random& random) {
   return kind < 6 ? magnitude : -magnitude;
 }
 
-/// X_AB of the given making: features of A and B set against each other at a random gap along A's outward
-/// direction.
-inline Pose make_pose(Random& random, const Polytope& A, const Polytope& B, Making making) {
-  const double size = 0.5 * (A.size + B.size);
-  Pose X{random_rotation(random), Vec3::Zero()};
-  const auto pick = [&](std::size_t n) {
-    return static_cast<std::size_t>(random.index(static_cast<int>(n)));
+/// What is drawn for a pose, whatever its making: features of A and of B, and numbers.
+struct PoseDraw {
+  const Polytope::Face& face_a;
+  const Polytope::Face& face_b;
+  const Polytope::Edge& edge_a;
+  const Polytope::Edge& edge_b;
+  Vec3 vertex_a, vertex_b;
+  double gap = 0.0;      ///< relative to the size
+  double quarter = 0.0;  ///< a multiple of a right angle
+  double angle = 0.0;    ///< often the same
+  Vec3 tilt = Vec3::Zero();
+  double share = 0.0;  ///< how far along an edge, or over a face; often an end
+};
+
+inline PoseDraw draw_pose(Random& random, const Polytope& A, const Polytope& B) {
+  const auto pick = [&](const auto& list) -> const auto& {
+    return list[static_cast<std::size_t>(random.index(static_cast<int>(list.size())))];
   };
-  const Polytope::Face& fa = A.faces[pick(A.faces.size())];
-  const Polytope::Face& fb = B.faces[pick(B.faces.size())];
-  const Polytope::Edge& ea = A.edges[pick(A.edges.size())];
-  const Polytope::Edge& eb = B.edges[pick(B.edges.size())];
-  const std::size_t va = pick(A.vertices.size());
-  const std::size_t vb = pick(B.vertices.size());
-  const double gap = random_gap(random) * size;
-  const double quarter = 0.5 * kPi * random.index(4);
-  const double angle = random.index(2) ? quarter : random.uniform(-kPi, kPi);
+  PoseDraw draw{.face_a = pick(A.faces),
+                .face_b = pick(B.faces),
+                .edge_a = pick(A.edges),
+                .edge_b = pick(B.edges),
+                .vertex_a = pick(A.vertices),
+                .vertex_b = pick(B.vertices)};
+  draw.gap = random_gap(random);
+  draw.quarter = 0.5 * kPi * random.index(4);
+  draw.angle = random.index(2) ? draw.quarter : random.uniform(-kPi, kPi);
   const double tilt = random.index(3) ? 0.0 : std::pow(10.0, random.uniform(-16.0, -2.0));
-  const Vec3 tilt_axis = random_unit(random) * tilt;
-  const double share = random.index(4) ? random.unit() : random.index(2);
-  Vec3 outward = fa.normal;
-  Vec3 on_a = A.vertices[va];
-  Vec3 on_b = B.vertices[vb];
-  const Vec3 face_point = [&] {  // a point of A's face, often a corner's or a side's
-    const Vec3& p = A.vertices[std::size_t(A.face_vertices[std::size_t(fa.first)])];
-    const Vec3& q = A.vertices[std::size_t(A.face_vertices[std::size_t(fa.first + 1)])];
-    const Vec3& r = A.vertices[std::size_t(A.face_vertices[std::size_t(fa.first + 2)])];
-    return Vec3(p + share * (q - p) + 0.3 * share * (r - q));
-  }();
+  draw.tilt = random_unit(random) * tilt;
+  draw.share = random.index(4) ? random.unit() : random.index(2);
+  return draw;
+}
+
+/// Two points that are set against each other, and how B is turned for it.
+struct Placement {
+  Mat3 R;        ///< of X_AB
+  Vec3 on_a;     ///< in A
+  Vec3 on_b;     ///< in B
+  Vec3 outward;  ///< of A, unit
+};
+
+/// Away from the piece, between the two faces of an edge.
+inline Vec3 outward_of(const Polytope& P, const Polytope::Edge& edge) {
+  return (P.sides[std::size_t(edge.left_slot)].normal + P.sides[std::size_t(edge.right_slot)].normal)
+      .normalized();
+}
+
+/// The point of an edge that is so far along it.
+inline Vec3 point_of(const Polytope& P, const Polytope::Edge& edge, double share) {
+  return P.vertices[std::size_t(edge.tail)] + edge.direction * (edge.length * share);
+}
+
+/// A point of A's face, often a corner's or a side's.
+inline Vec3 face_point(const Polytope& A, const PoseDraw& draw) {
+  const auto corner = [&](int i) -> const Vec3& {
+    return A.vertices[std::size_t(A.face_vertices[std::size_t(draw.face_a.first + i)])];
+  };
+  return corner(0) + draw.share * (corner(1) - corner(0)) + 0.3 * draw.share * (corner(2) - corner(1));
+}
+
+/// B with its vertex toward A, against `on_a`.
+inline Placement vertex_against(const Polytope& B, const PoseDraw& draw, const Vec3& on_a,
+                                const Vec3& outward) {
+  return {turning((draw.vertex_b - B.extent.center).normalized(), -outward, draw.angle), on_a, draw.vertex_b,
+          outward};
+}
+
+inline Placement face_to_face(const Polytope& A, const Polytope& B, const PoseDraw& draw) {
+  return {turning(draw.face_b.normal, -draw.face_a.normal, draw.angle), face_point(A, draw),
+          B.vertices[std::size_t(B.face_vertices[std::size_t(draw.face_b.first)])], draw.face_a.normal};
+}
+
+inline Placement edge_to_edge(Random& random, const Polytope& A, const Polytope& B, const PoseDraw& draw) {
+  const Vec3 outward = outward_of(A, draw.edge_a);
+  Mat3 R = turning(outward_of(B, draw.edge_b), -outward, draw.angle);
+  if (random.index(2)) {  // parallel edges
+    const Vec3 u = R * draw.edge_b.direction;
+    const Vec3 w = draw.edge_a.direction;
+    R = exp_rotation(outward * std::atan2(outward.dot(u.cross(w)), u.dot(w))) * R;
+  }
+  return {R, point_of(A, draw.edge_a, draw.share), point_of(B, draw.edge_b, 0.5), outward};
+}
+
+/// B with its axes along those of A, often flush with it.
+inline Placement aligned(Random& random, const Polytope& A, const PoseDraw& draw, double size) {
+  Placement out{exp_rotation(Vec3(0, 0, draw.quarter)), draw.vertex_a, draw.vertex_b, Vec3::Zero()};
+  const Vec3 step = random_vector(random, 1.0);
+  for (int i = 0; i < 3; ++i)
+    out.on_a[i] = random.index(3) ? out.on_a[i] : A.extent.center[i] + step[i] * size;
+  out.outward = Vec3::Unit(random.index(3));
+  if (random.index(2)) out.outward = -out.outward;
+  return out;
+}
+
+/// X_AB of the given making: features of A and B set against each other at a random gap along A's outward
+/// direction; of kRandom, B anywhere near A.
+inline Pose make_pose(Random& random, const Polytope& A, const Polytope& B, Making making) {
+  const double size = 0.5 * (A.extent.size + B.extent.size);
+  const Mat3 R = random_rotation(random);
+  const PoseDraw draw = draw_pose(random, A, B);
+  const auto posed = [&](const Placement& at) {
+    const Mat3 tilted = exp_rotation(draw.tilt) * at.R;
+    return Pose{tilted, at.on_a + at.outward * (draw.gap * size) - tilted * at.on_b};
+  };
   switch (making) {
     case Making::kFaceToFace:
-      X.R = turning(fb.normal, -fa.normal, angle);
-      on_a = face_point;
-      on_b = B.vertices[std::size_t(B.face_vertices[std::size_t(fb.first)])];
-      break;
-    case Making::kEdgeToEdge: {
-      outward = (A.sides[std::size_t(ea.left_slot)].normal + A.sides[std::size_t(ea.right_slot)].normal)
-                    .normalized();
-      const Vec3 out_b =
-          (B.sides[std::size_t(eb.left_slot)].normal + B.sides[std::size_t(eb.right_slot)].normal)
-              .normalized();
-      X.R = turning(out_b, -outward, angle);
-      if (random.index(2)) {  // parallel edges
-        const Vec3 u = X.R * eb.direction;
-        const Vec3 w = ea.direction;
-        X.R = exp_rotation(outward * std::atan2(outward.dot(u.cross(w)), u.dot(w))) * X.R;
-      }
-      on_a = A.vertices[std::size_t(ea.tail)] + ea.direction * (ea.length * share);
-      on_b = B.vertices[std::size_t(eb.tail)] + eb.direction * (eb.length * 0.5);
-      break;
-    }
+      return posed(face_to_face(A, B, draw));
+    case Making::kEdgeToEdge:
+      return posed(edge_to_edge(random, A, B, draw));
     case Making::kVertexOverEdge:
-      outward = (A.sides[std::size_t(ea.left_slot)].normal + A.sides[std::size_t(ea.right_slot)].normal)
-                    .normalized();
-      X.R = turning((B.vertices[vb] - B.center).normalized(), -outward, angle);
-      on_a = A.vertices[std::size_t(ea.tail)] + ea.direction * (ea.length * share);
-      break;
+      return posed(vertex_against(B, draw, point_of(A, draw.edge_a, draw.share), outward_of(A, draw.edge_a)));
     case Making::kVertexOverFace:
-      X.R = turning((B.vertices[vb] - B.center).normalized(), -outward, angle);
-      on_a = face_point;
-      break;
+      return posed(vertex_against(B, draw, face_point(A, draw), draw.face_a.normal));
     case Making::kVertexToVertex:
-      outward = (A.vertices[va] - A.center).normalized();
-      X.R = turning((B.vertices[vb] - B.center).normalized(), -outward, angle);
-      break;
-    case Making::kAligned: {
-      X.R = exp_rotation(Vec3(0, 0, quarter));
-      const Vec3 step = random_vector(random, 1.0);
-      for (int i = 0; i < 3; ++i)  // often flush with A
-        on_a[i] = random.index(3) ? on_a[i] : A.center[i] + step[i] * size;
-      outward = Vec3::Unit(random.index(3));
-      if (random.index(2)) outward = -outward;
-      break;
-    }
+      return posed(vertex_against(B, draw, draw.vertex_a, (draw.vertex_a - A.extent.center).normalized()));
+    case Making::kAligned:
+      return posed(aligned(random, A, draw, size));
     case Making::kRandom:
-    case Making::kCount: {
-      const Vec3 direction = random_unit(random);
-      X.p = A.center - X.R * B.center + direction * (A.radius + B.radius) * random.uniform(0.0, 1.3);
-      return X;
-    }
+    case Making::kCount:
+      break;
   }
-  X.R = exp_rotation(tilt_axis) * X.R;
-  X.p = on_a + outward * gap - X.R * on_b;
-  return X;
+  const Vec3 direction = random_unit(random);
+  return {R, A.extent.center - R * B.extent.center +
+                 direction * (A.extent.radius + B.extent.radius) * random.uniform(0.0, 1.3)};
 }
 
 #if defined(__has_feature)

@@ -38,7 +38,7 @@ void report(const Tally& tally, std::uint64_t seed) {
 }
 
 bool nearly_touching(const Polytope& A, const Polytope& B, const PairDistance& answer) {
-  return std::abs(answer.distance) < 1e-6 * std::max(A.size, B.size);
+  return std::abs(answer.distance) < 1e-6 * std::max(A.extent.size, B.extent.size);
 }
 
 /// Below a gap of 1e-6 of the size an answer need not be certified, but then its error bound must hold.
@@ -82,7 +82,8 @@ TEST_P(Adversarial, AgreesWithEveryPairOfFeaturesOnSmallShapes) {
     const cases::Shape& b = shapes[std::size_t(random.index(int(shapes.size())))];
     const int making = i % int(Making::kCount);
     const Pose X = cases::make_pose(random, a.polytope, b.polytope, Making(making));
-    const double tolerance = 2.0 * tolerances::kCertificate * std::max(a.polytope.size, b.polytope.size);
+    const double tolerance =
+        2.0 * tolerances::kCertificate * std::max(a.polytope.extent.size, b.polytope.extent.size);
     PairCache cache;
     const PairDistance answer = closest_features(a.polytope, b.polytope, X, cache);
     ++tally.total;
@@ -117,7 +118,8 @@ TEST(ClosestFeatures, LargeShapesProveThemselves) {
     const cases::Shape& b = shapes[std::size_t(int(shapes.size()) - 1 - random.index(5))];
     const int making = i % int(Making::kCount);
     const Pose X = cases::make_pose(random, a.polytope, b.polytope, Making(making));
-    const double tolerance = 2.0 * tolerances::kCertificate * std::max(a.polytope.size, b.polytope.size);
+    const double tolerance =
+        2.0 * tolerances::kCertificate * std::max(a.polytope.extent.size, b.polytope.extent.size);
     PairCache cache;
     const PairDistance answer = closest_features(a.polytope, b.polytope, X, cache);
     ++tally.total;
@@ -154,7 +156,7 @@ void for_cases(std::uint64_t seed, int poses, const Check& check) {
     const Pose X = cases::make_pose(random, a.polytope, b.polytope, Making(i % int(Making::kCount)));
     SCOPED_TRACE(a.name + " / " + b.name + ", seed " + std::to_string(seed) + ", case " + std::to_string(i) +
                  " " + cases::describe(X));
-    check(random, Case{a, b, X, std::max(a.polytope.size, b.polytope.size)});
+    check(random, Case{a, b, X, std::max(a.polytope.extent.size, b.polytope.extent.size)});
   }
 }
 
@@ -254,14 +256,15 @@ TEST(ClosestFeatures, TrackedMotionIsCertifiedInFewSteps) {
     const Polytope& A = shapes[std::size_t(random.index(int(shapes.size())))].polytope;
     const Polytope& B = shapes[std::size_t(random.index(int(shapes.size())))].polytope;
     Pose X{cases::random_rotation(random), Vec3::Zero()};
-    X.p = A.center - X.R * B.center + cases::random_unit(random) * (A.radius + B.radius) * 1.05;
+    X.p = A.extent.center - X.R * B.extent.center +
+          cases::random_unit(random) * (A.extent.radius + B.extent.radius) * 1.05;
     const Vec3 v = cases::random_vector(random, 0.05);
     const Vec3 w = cases::random_vector(random, 1.0);
     PairCache cache;
     for (int frame = 0; frame < 200; ++frame) {
       X = advanced(X, {v, w}, 1e-3);
       const PairDistance x = closest_features(A, B, X, cache);
-      ASSERT_EQ(oracle::complaint(A, B, X, x, 2e-9 * std::max(A.size, B.size)), "")
+      ASSERT_EQ(oracle::complaint(A, B, X, x, 2e-9 * std::max(A.extent.size, B.extent.size)), "")
           << "run " << run << " frame " << frame;
       if (x.distance <= 0.0) break;
       steps += x.steps;
@@ -277,7 +280,7 @@ TEST(ClosestFeatures, TrackedMotionIsCertifiedInFewSteps) {
 TEST(ClosestFeatures, EdgesAreTheSameEitherWayTheyAreTold) {
   const Polytope A = make_prism(3, 0.01, 0.1);
   const Polytope B = make_prism(3, 0.01, 0.1);
-  const double size = A.size;
+  const double size = A.extent.size;
   for (double sine : {0.05, 0.0999999999, 0.1, 0.1000000001, 0.2})
     for (double along : {0.0, 0.049, 0.05, 0.05 - 1e-15, 0.05 + 1e-15, 0.051})
       for (double gap : {0.0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3}) {
@@ -319,7 +322,8 @@ TEST(ClosestFeatures, TheErrorBoundOfCrossingEdgesHolds) {
     const Polytope& A = shapes[std::size_t(random.index(int(shapes.size())))].polytope;
     const Polytope& B = shapes[std::size_t(random.index(int(shapes.size())))].polytope;
     Pose X{cases::random_rotation(random), Vec3::Zero()};
-    X.p = A.center - X.R * B.center + cases::random_unit(random) * (A.radius + B.radius);
+    X.p = A.extent.center - X.R * B.extent.center +
+          cases::random_unit(random) * (A.extent.radius + B.extent.radius);
     PairCache cache;
     const PairDistance x = closest_features(A, B, X, cache);
     if (x.stop != Stop::kCertified || x.distance <= 0.0) continue;
@@ -331,8 +335,8 @@ TEST(ClosestFeatures, TheErrorBoundOfCrossingEdgesHolds) {
     const double left = double(x.distance - oracle::support_gap(A, B, X, x.normal));
     ASSERT_LE(left, x.error_bound) << cases::describe(X);
     ASSERT_LE((x.p_a - x.p_b - x.normal * x.distance).norm(), x.error_bound);
-    ASSERT_LE(off_line(A, x.a.index, {}, x.p_a), x.error_bound + 1e-15 * A.size);
-    ASSERT_LE(off_line(B, x.b.index, X, x.p_b), x.error_bound + 1e-15 * (A.size + B.size));
+    ASSERT_LE(off_line(A, x.a.index, {}, x.p_a), x.error_bound + 1e-15 * A.extent.size);
+    ASSERT_LE(off_line(B, x.b.index, X, x.p_b), x.error_bound + 1e-15 * (A.extent.size + B.extent.size));
   }
   std::printf("  %d pairs of crossing edges\n", crossing);
   EXPECT_GT(crossing, cases::some_of(200000) / 20);
@@ -362,7 +366,7 @@ TEST(ClosestFeatures, RoundingAtASharpEdgeLeadsNobodyInCircles) {
     // Over the border from corner 0 to 1, whose outside is -y, as far out as is still held for the column.
     Vec3 over(random.uniform(0.2, 0.8) * flat[1].x(), 0.0, random.uniform(1e-5, 1e-3));
     over.y() = -random.uniform(0.9, 1.2) * tolerances::kVoronoiTolerance *
-               (over.lpNorm<1>() + tip.magnitude + piece->magnitude);
+               (over.lpNorm<1>() + tip.extent.magnitude + piece->extent.magnitude);
     Pose X_AB;  // the tip's axis up the triangle's normal, its point at `over`
     X_AB.R = turned.transpose();
     X_AB.p = -over;
@@ -414,10 +418,10 @@ TEST(ClosestFeatures, OfAPoseThatIsNotFiniteNothingIsCertified) {
     const Polytope& A = a.polytope;
     const Polytope& B = b.polytope;
     // Apart, touching, inside; with faces level or turned any way, centre over centre or beside.
-    const double apart = random.uniform(0.0, 1.2) * (A.radius + B.radius);
+    const double apart = random.uniform(0.0, 1.2) * (A.extent.radius + B.extent.radius);
     Pose good{i % 2 ? Mat3::Identity() : cases::random_rotation(random), Vec3::Zero()};
     const Vec3 toward = i % 3 ? cases::random_unit(random) : Vec3(Vec3::UnitZ());
-    good.p = A.center - good.R * B.center + apart * toward;
+    good.p = A.extent.center - good.R * B.extent.center + apart * toward;
     Pose broken = good;
     if (random.index(2) == 0) broken.R = cases::random_rotation(random);
     const int entry = random.index(12);

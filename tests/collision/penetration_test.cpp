@@ -15,9 +15,9 @@ namespace {
 /// An overlapping pose: centres nearer than the smaller radius.
 Pose overlapping(Random& random, const Polytope& A, const Polytope& B) {
   Pose X{cases::random_rotation(random), Vec3::Zero()};
-  const double radius = 0.6 * std::min(A.radius, B.radius);
+  const double radius = 0.6 * std::min(A.extent.radius, B.extent.radius);
   const Vec3 offset = cases::random_unit(random) * random.uniform(0.0, radius);
-  X.p = A.center - X.R * B.center + offset;
+  X.p = A.extent.center - X.R * B.extent.center + offset;
   return X;
 }
 
@@ -35,7 +35,7 @@ TEST(Penetration, ColdStartOfSmallPiecesIsTheGlobalMinimum) {
     PairCache cache;
     const PairDistance deep = penetration_depth(a.polytope, b.polytope, X, cache);
     const double axes = double(oracle::axes_separation(a.polytope, b.polytope, X));
-    const double tolerance = 2e-9 * std::max(a.polytope.size, b.polytope.size);
+    const double tolerance = 2e-9 * std::max(a.polytope.extent.size, b.polytope.extent.size);
     if (axes > 0.0) continue;  // separated after all: a thin piece
     ASSERT_NEAR(deep.distance, axes, tolerance)
         << a.name << " / " << b.name << " seed " << seed << " case " << i << " " << cases::describe(X);
@@ -55,7 +55,7 @@ TEST(Penetration, MovingByTheDepthJustSeparates) {
     PairCache cache;
     const PairDistance deep = closest_features(a.polytope, b.polytope, X, cache);
     if (deep.distance >= 0.0) continue;
-    const double size = std::max(a.polytope.size, b.polytope.size);
+    const double size = std::max(a.polytope.extent.size, b.polytope.extent.size);
     PairCache fresh;
     const PairDistance after = closest_features(
         a.polytope, b.polytope, moved_away(X, deep.normal * (1e-6 * size - deep.distance)), fresh);
@@ -83,7 +83,7 @@ TEST(Penetration, WalkMissesFewGlobalMinimaOfCompactShapes) {
     const double walked = penetration_depth(a.polytope, b.polytope, X, cache).distance;
     const double least = penetration_exhaustive(a.polytope, b.polytope, X).distance;
     ++total;
-    const double size = std::max(a.polytope.size, b.polytope.size);
+    const double size = std::max(a.polytope.extent.size, b.polytope.extent.size);
     ASSERT_LE(walked, least + 1e-9 * size);
     missed += walked < least - 1e-9 * size;
     worst = std::max(worst, least - walked);
@@ -131,7 +131,7 @@ TEST(Penetration, AlongADirectionAgreesWithBisection) {
     if (closest_features(a.polytope, b.polytope, X, cache).distance > -1e-6) continue;
     const PairDistance along = depth_along(a.polytope, b.polytope, X, direction);
     double inside = 0.0;
-    double outside = 2.0 * (a.polytope.radius + b.polytope.radius);
+    double outside = 2.0 * (a.polytope.extent.radius + b.polytope.extent.radius);
     for (int k = 0; k < 50; ++k) {
       const double middle = 0.5 * (inside + outside);
       const PairDistance at =
@@ -139,7 +139,7 @@ TEST(Penetration, AlongADirectionAgreesWithBisection) {
       (at.distance < 0.0 ? inside : outside) = middle;
     }
     ASSERT_TRUE(along.certified()) << a.name << " / " << b.name << " seed " << seed << " case " << i;
-    ASSERT_NEAR(-along.distance, outside, 1e-7 * (a.polytope.size + b.polytope.size))
+    ASSERT_NEAR(-along.distance, outside, 1e-7 * (a.polytope.extent.size + b.polytope.extent.size))
         << a.name << " / " << b.name << " seed " << seed << " case " << i << " " << cases::describe(X);
   }
 }
@@ -180,7 +180,7 @@ TEST(Penetration, WarmTrackingStaysCertified) {
       const PairDistance deep = closest_features(a.polytope, b.polytope, X, cache);
       ++frames;
       ASSERT_EQ(oracle::complaint(a.polytope, b.polytope, X, deep,
-                                  2e-9 * std::max(a.polytope.size, b.polytope.size)),
+                                  2e-9 * std::max(a.polytope.extent.size, b.polytope.extent.size)),
                 "")
           << a.name << " / " << b.name << " seed " << seed << " run " << run << " frame " << frame;
     }
@@ -208,7 +208,7 @@ TEST(Penetration, AnyMemoryGivesADepth) {
       *pair = {anything(), anything()};
     cache.turn = std::uint32_t(random.index(24));
     cache.explorer_starts = std::uint32_t(random.index(100));
-    const double size = std::max(a.polytope.size, b.polytope.size);
+    const double size = std::max(a.polytope.extent.size, b.polytope.extent.size);
     const PairDistance fresh = penetration_exhaustive(a.polytope, b.polytope, X);
     if (!fresh.certified()) continue;  // flat pieces that do not overlap
     ++compared;

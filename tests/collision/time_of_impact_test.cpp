@@ -52,11 +52,12 @@ TEST(TimeOfImpact, NeverOvershoots) {
   for (int i = 0; i < runs; ++i) {
     const Polytope& A = shapes[std::size_t(random.index(int(shapes.size())))].polytope;
     const Polytope& B = shapes[std::size_t(random.index(int(shapes.size())))].polytope;
-    const double size = std::max(A.size, B.size);
+    const double size = std::max(A.extent.size, B.extent.size);
     const Mat3 R_WA = cases::random_rotation(random);
     const Mat3 R_WB = cases::random_rotation(random);
     const Pose X_WA{R_WA, cases::random_vector(random, 0.05)};
-    const Vec3 away = cases::random_unit(random) * (A.radius + B.radius) * random.uniform(0.7, 1.5);
+    const Vec3 away =
+        cases::random_unit(random) * (A.extent.radius + B.extent.radius) * random.uniform(0.7, 1.5);
     const Pose X_WB{R_WB, X_WA.p + away};
     const Vec3 aim = away + cases::random_vector(random, 0.03);
     const Twist V_WA{aim * random.uniform(0.0, 2.0), cases::random_vector(random, 6.0)};
@@ -105,8 +106,8 @@ TEST(TimeOfImpact, AgreesWithADenseRefereeForEveryPairOfShapes) {
     for (const cases::Shape& b : shapes) {
       const Polytope& A = a.polytope;
       const Polytope& B = b.polytope;
-      const double size = std::max(A.size, B.size);
-      const Vec3 away = cases::random_unit(random) * 0.5 * (A.size + B.size);
+      const double size = std::max(A.extent.size, B.extent.size);
+      const Vec3 away = cases::random_unit(random) * 0.5 * (A.extent.size + B.extent.size);
       const Pose X_WA{cases::random_rotation(random), cases::random_vector(random, 0.02)};
       const Pose X_WB{cases::random_rotation(random), X_WA.p + away};
       const Vec3 w_A = cases::random_unit(random) * random.uniform(0.0, 3.0);

@@ -27,16 +27,17 @@ struct Hand {
       v = cases::random_unit(random) * random.uniform(1e-4, 5e-4);
       w = cases::random_unit(random) * random.uniform(1e-3, 3e-3);
     }
-    const Vec3 center = X * B.center + v;
+    const Vec3 center = X * B.extent.center + v;
     X.R = renormalized({exp_rotation(w) * X.R, Vec3::Zero()}).R;
-    X.p = center - X.R * B.center;
+    X.p = center - X.R * B.extent.center;
   }
 };
 
 /// B turned at random, its center beside A's by 0.3 radii; then drawn back until it is `depth` deep [m].
 Pose touch(const Polytope& A, const Polytope& B, Random& random, double depth) {
   Pose X{cases::random_rotation(random), Vec3::Zero()};
-  X.p = A.center - X.R * B.center + cases::random_unit(random) * 0.3 * std::min(A.radius, B.radius);
+  X.p = A.extent.center - X.R * B.extent.center +
+        cases::random_unit(random) * 0.3 * std::min(A.extent.radius, B.extent.radius);
   const PairDistance inside = penetration_exhaustive(A, B, X);
   X.p += inside.normal * (inside.distance + depth);
   return X;
@@ -65,7 +66,7 @@ Count track(const Polytope& A, const Polytope& B, std::uint64_t seed, int frames
     PairCache again = cache;
     const PairDistance now = penetration_depth(A, B, X, again);
     const double least = penetration_exhaustive(A, B, X).distance;
-    const double size = std::max(A.size, B.size);
+    const double size = std::max(A.extent.size, B.extent.size);
     EXPECT_LE(now.distance, least + 1e-9 * size) << "deeper than the least depth is no depth";
     ++count.frames;
     count.missed += now.distance < least - 1e-9 * size;
@@ -154,7 +155,7 @@ Count push_on(const Polytope& A, const Polytope& B, std::uint64_t seed, int roun
       const double least = penetration_exhaustive(A, B, X).distance;
       if (least >= 0.0) continue;
       ++count.frames;
-      count.missed += tracked.distance < least - 1e-9 * std::max(A.size, B.size);
+      count.missed += tracked.distance < least - 1e-9 * std::max(A.extent.size, B.extent.size);
       count.worst = std::max(count.worst, least - tracked.distance);
     }
   }
@@ -201,8 +202,9 @@ TEST(TrackedDepth, NamesOrderPlaceAndScaleDoNotMatter) {
     const Polytope& B = shapes[std::size_t(random.index(int(shapes.size())))].polytope;
     if (A.flat || B.flat) continue;
     Pose X{cases::random_rotation(random), Vec3::Zero()};
-    X.p = A.center - X.R * B.center + cases::random_unit(random) * 0.5 * std::min(A.radius, B.radius);
-    const double size = std::max(A.size, B.size);
+    X.p = A.extent.center - X.R * B.extent.center +
+          cases::random_unit(random) * 0.5 * std::min(A.extent.radius, B.extent.radius);
+    const double size = std::max(A.extent.size, B.extent.size);
     const double d = depth(A, B, X);
     if (d >= 0.0) continue;
     SCOPED_TRACE("seed " + std::to_string(seed) + ", case " + std::to_string(i) + " " + cases::describe(X));

@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <span>
+#include <string>
 #include <tuple>
 
 #include "oracles/exhaustive.h"
@@ -44,65 +46,98 @@ Part cluttered_part(Random& random) {
   return std::move(*part);
 }
 
-using Key = std::tuple<int, int, int, int>;
-
-TEST(ContactFinder, FindsEveryPatchThatTestingAllPairsFinds) {
-  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
-    Random random(seed);
-    const double speed = seed % 2 ? 1.0 : 0.05;  // a hasty and a careful hand
-    std::vector<Part> parts;
-    std::vector<CollisionBody> bodies;
-    std::vector<Pose> X;
-    std::vector<Twist> V;
+/// Four cluttered parts that wander about one place, with a speed that changes every 50 frames; the third
+/// stands still.
+class Wanderers {
+ public:
+  Wanderers(Random& random, double speed) : random_(random), speed_(speed) {
     for (int i = 0; i < 4; ++i) {
       parts.push_back(cluttered_part(random));
       X.push_back({exp_rotation(random_vector(random, 1)), random_vector(random, 0.025)});
-      V.emplace_back();
     }
-    for (int i = 0; i < 4; ++i) bodies.push_back({&parts[std::size_t(i)], i != 2});
-    ContactFinder finder(bodies, X);
-    std::vector<double> motion_bound(4, 0.0);
-    const double min_tolerance = 1e-4;
+    for (std::size_t i = 0; i < 4; ++i) bodies.push_back({&parts[i], i != 2});
+  }
+
+  /// Sets the velocities of a frame, and how far each body gets in it.
+  void steer(int frame, const ContactFinder& finder) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      if (frame % 50 == 0) {
+        V_[i].v = speed_ * random_vector(random_, 0.3);
+        V_[i].w = speed_ * random_vector(random_, 5.0);
+      }
+      V_[i].v -= 0.005 * X[i].p;  // stay together
+      if (!bodies[i].moves) V_[i] = {};
+      motion_bound[i] = (V_[i].v.norm() + V_[i].w.norm() * finder.radius(static_cast<int>(i))) * 1e-3;
+    }
+  }
+  void move() {
+    for (std::size_t i = 0; i < 4; ++i) X[i] = renormalized(advanced(X[i], V_[i], 1e-3));
+  }
+
+  std::vector<Part> parts;
+  std::vector<CollisionBody> bodies;
+  std::vector<Pose> X;
+  std::vector<double> motion_bound = std::vector<double>(4, 0.0);
+
+ private:
+  Random& random_;
+  double speed_;
+  std::vector<Twist> V_ = std::vector<Twist>(4);
+};
+
+/// The distance of each patch, by its bodies and pieces.
+using PatchDistances = std::map<std::tuple<int, int, int, int>, double>;
+
+PatchDistances distances_of(std::span<const ContactPatch> patches) {
+  PatchDistances out;
+  for (const ContactPatch& patch : patches)
+    out[{patch.body_a, patch.body_b, patch.piece_a, patch.piece_b}] = patch.distance;
+  return out;
+}
+
+/// Tests all pairs of pieces of two bodies: there is a patch of those that are nearer than the tolerance,
+/// with their distance, and of no others.
+void expect_patches_of_all_near_pairs(const Wanderers& all, int a, int b, double min_tolerance,
+                                      const PatchDistances& found) {
+  const auto A = static_cast<std::size_t>(a);
+  const auto B = static_cast<std::size_t>(b);
+  const Pose X_AB = relative_pose(all.X[A], all.X[B]);
+  const double tolerance = std::max(min_tolerance, all.motion_bound[A] + all.motion_bound[B]);
+  for (int p = 0; p < 14; ++p)
+    for (int q = 0; q < 14; ++q) {
+      PairCache cold;
+      const PairDistance d = closest_features(all.parts[A].pieces[std::size_t(p)],
+                                              all.parts[B].pieces[std::size_t(q)], X_AB, cold);
+      if (std::abs(d.distance - tolerance) < 1e-9) continue;
+      const auto at = found.find({a, b, p, q});
+      ASSERT_EQ(at != found.end(), d.distance < tolerance) << "distance " << d.distance;
+      if (at != found.end() && d.distance > 0.0) {
+        ASSERT_NEAR(at->second, d.distance, 1e-9);
+      }
+    }
+}
+
+TEST(ContactFinder, FindsEveryPatchThatTestingAllPairsFinds) {
+  constexpr double kMinTolerance = 1e-4;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    Random random(seed);
+    const double speed = seed % 2 ? 1.0 : 0.05;  // a hasty and a careful hand
+    Wanderers all(random, speed);
+    ContactFinder finder(all.bodies, all.X);
     int patches = 0;
     int runs = 0;
     for (int frame = 0; frame < 300; ++frame) {
-      for (std::size_t i = 0; i < 4; ++i) {
-        if (frame % 50 == 0) {
-          V[i].v = speed * random_vector(random, 0.3);
-          V[i].w = speed * random_vector(random, 5.0);
-        }
-        V[i].v -= 0.005 * X[i].p;  // stay together
-        if (!bodies[i].moves) V[i] = {};
-        motion_bound[i] = (V[i].v.norm() + V[i].w.norm() * finder.radius(static_cast<int>(i))) * 1e-3;
-      }
-      finder.find_near_pairs(X, motion_bound, min_tolerance);
-      finder.find_patches(X, 1 << 20);
+      SCOPED_TRACE("seed " + std::to_string(seed) + ", frame " + std::to_string(frame));
+      all.steer(frame, finder);
+      finder.find_near_pairs(all.X, all.motion_bound, kMinTolerance);
+      finder.find_patches(all.X, 1 << 20);
       runs += finder.work().broad_phase_runs;
-      std::map<Key, double> found;
-      for (const ContactPatch& patch : finder.patches())
-        found[{patch.body_a, patch.body_b, patch.piece_a, patch.piece_b}] = patch.distance;
+      const PatchDistances found = distances_of(finder.patches());
       patches += static_cast<int>(found.size());
       for (int a = 0; a < 4; ++a)
-        for (int b = a + 1; b < 4; ++b) {
-          const Pose X_AB = relative_pose(X[std::size_t(a)], X[std::size_t(b)]);
-          const double tolerance =
-              std::max(min_tolerance, motion_bound[std::size_t(a)] + motion_bound[std::size_t(b)]);
-          for (int p = 0; p < 14; ++p)
-            for (int q = 0; q < 14; ++q) {
-              PairCache cold;
-              const PairDistance d =
-                  closest_features(parts[std::size_t(a)].pieces[std::size_t(p)],
-                                   parts[std::size_t(b)].pieces[std::size_t(q)], X_AB, cold);
-              const auto at = found.find({a, b, p, q});
-              if (std::abs(d.distance - tolerance) < 1e-9) continue;
-              ASSERT_EQ(at != found.end(), d.distance < tolerance)
-                  << "seed " << seed << " frame " << frame << " distance " << d.distance;
-              if (at != found.end() && d.distance > 0.0) {
-                ASSERT_NEAR(at->second, d.distance, 1e-9) << "seed " << seed;
-              }
-            }
-        }
-      for (std::size_t i = 0; i < 4; ++i) X[i] = renormalized(advanced(X[i], V[i], 1e-3));
+        for (int b = a + 1; b < 4; ++b)
+          ASSERT_NO_FATAL_FAILURE(expect_patches_of_all_near_pairs(all, a, b, kMinTolerance, found));
+      all.move();
     }
     EXPECT_GT(patches, 300) << "seed " << seed << ": the test must have something to find";
     if (speed < 0.1) {

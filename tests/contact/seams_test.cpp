@@ -81,7 +81,7 @@ TEST(Seams, ATrueCornerBetweenPiecesHasBothContacts) {
                              box_between({0.03, -0.05, 0}, {0.05, 0.05, 0.04})});
   const std::vector<ContactPatch> patches = patches_on(part, {Mat3::Identity(), {0.0202, 0, 0.0049}}, 1e-3);
   ASSERT_EQ(patches.size(), 2u);
-  EXPECT_NE(patches[0].facet_b, patches[1].facet_b);
+  EXPECT_NE(patches[0].facets.b, patches[1].facets.b);
   double up = 0.0;
   double side = 0.0;
   for (const ContactPatch& patch : patches) {

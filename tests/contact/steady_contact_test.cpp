@@ -106,9 +106,9 @@ TEST(SteadyContact, TheCentroidTakesNoStepOnAnyShape) {
         v = cases::random_unit(random) * 3e-5;
         w = cases::random_unit(random) * 1e-3;
       }
-      const Vec3 center = X * B.center + v;
+      const Vec3 center = X * B.extent.center + v;
       X.R = renormalized({exp_rotation(w) * X.R, Vec3::Zero()}).R;
-      X.p = center - X.R * B.center;
+      X.p = center - X.R * B.extent.center;
       const PairDistance now = closest_features(A, B, X, cache);
       Manifold patch;
       contact_manifold(A, B, X, now, 1e-4, patch);

@@ -18,6 +18,7 @@ Vec3 random_vector(Random& random, double size) {
   return {x, y, z};
 }
 
+/// Any mass and any inertia, which need not be those of one shape.
 Body random_body(Random& random, JointKind kind) {
   Body body;
   body.mass_kg = random.uniform(0.05, 2.0);
@@ -124,7 +125,8 @@ TEST(Joint, APoseThatIsNoNumberStaysNone) {
   }
 }
 
-/// A hinge or slider of unit mobility, 0.02 from its start, after a millisecond.
+/// A hinge or slider of unit mobility, for which mass and inertia are set to 1, 0.02 from its start, after a
+/// millisecond.
 class AfterJoint : public testing::TestWithParam<JointKind> {
  protected:
   AfterJoint() {
@@ -186,7 +188,8 @@ INSTANTIATE_TEST_SUITE_P(Kinds, AfterJoint, testing::Values(JointKind::kHinge, J
 TEST(Joint, ABallIsDampedAboutEveryAxisAndHeldByItsLimit) {
   Body body;
   body.mass_kg = 1.0;
-  body.inertia_B = Mat3::Identity();
+  body.inertia_B =
+      Mat3::Identity();  // of unit mobility about every axis, so that the rates have round numbers
   body.joint.kind = JointKind::kBall;
   const Pose X_WB = advanced(body.X_WB, {Vec3::Zero(), Vec3(0, 0, 0.02)}, 1.0);
   const Mobility W = mobility(body.joint, X_WB, inertial_resistance(body, X_WB));

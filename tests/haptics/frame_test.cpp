@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "support/add_body.h"
 #include "support/pressed_block.h"
 #include "support/rig.h"
 #include "support/sandbox.h"
@@ -27,7 +28,7 @@ std::shared_ptr<const Part> grid_part(int n) {
   Result<Part> part = part_from_mesh(mesh);
   EXPECT_TRUE(part);
   EXPECT_TRUE(part->is_surface());
-  EXPECT_EQ(part->group_count, 1);
+  EXPECT_EQ(part->groups.count, 1);
   return std::make_shared<const Part>(std::move(*part));
 }
 
@@ -39,15 +40,13 @@ struct Bench {
 
   explicit Bench(const Pose& X = {}, std::shared_ptr<const Part> plate = solid_box({0.05, 0.05, 0.01}))
       : X_WU(X) {
-    world.bodies.resize(2);
-    world.bodies[0].part = solid_box({0.010, 0.007, 0.005});
-    world.bodies[0].mass_kg = 0.05;
-    world.bodies[0].inertia_B = 1e-5 * Mat3::Identity();
-    world.bodies[0].X_WB = X * Pose{Mat3::Identity(), {0, 0, 0.008}};
-    world.bodies[1].part = std::move(plate);
-    world.bodies[1].X_WB =
-        X * Pose{Mat3::Identity(), {0, 0, world.bodies[1].part->is_surface() ? kPlateTop : -0.01}};
-    world.bodies[1].joint.kind = JointKind::kFixed;
+    const Vec3 middle(0, 0, plate->is_surface() ? kPlateTop : -0.01);  // of the plate
+    add_body(world, {.part = solid_box({0.010, 0.007, 0.005}),
+                     .mass_kg = 0.05,
+                     .X_WP = X * Pose{Mat3::Identity(), {0, 0, 0.008}}});
+    add_body(world, {.part = std::move(plate),
+                     .X_WP = X * Pose{Mat3::Identity(), middle},
+                     .joint = {.kind = JointKind::kFixed}});
     settings.tool.body = 0;
     settings.response = ResponseModel::kPenalty;
     settings.workspace.X_WD = {X.R, Vec3::Zero()};

@@ -4,6 +4,7 @@
 
 #include <cstdio>
 
+#include "support/add_body.h"
 #include "support/real_data.h"
 #include "tactum/base/random.h"
 #include "tactum/contact/contact_finder.h"
@@ -21,8 +22,8 @@ namespace {
 using Clouds = std::vector<std::vector<Vec3>>;
 using SharedPart = std::shared_ptr<const Part>;
 
-SharedPart part_of(const Clouds& clouds) {
-  Result<Part> part = part_from_clouds(clouds);
+SharedPart part_of(const Clouds& clouds, const PartOptions& options = {}) {
+  Result<Part> part = part_from_clouds(clouds, options);
   EXPECT_TRUE(part) << (part ? "" : part.error().message());
   return std::make_shared<const Part>(std::move(*part));
 }
@@ -92,13 +93,8 @@ Felt slide(const SharedPart& part, const SharedPart& probe, Motion motion, Respo
            double tremor_m = 0.0) {
   const int frames = 900;
   World world;
-  world.bodies.resize(2);
-  world.bodies[0].part = probe;
-  world.bodies[0].mass_kg = 0.05;
-  world.bodies[0].inertia_B = 1e-5 * Mat3::Identity();
-  world.bodies[0].X_WB = motion(0.0);
-  world.bodies[1].part = part;
-  world.bodies[1].joint.kind = JointKind::kFixed;
+  add_body(world, {.part = probe, .mass_kg = 0.05, .X_WP = motion(0.0)});
+  add_body(world, {.part = part, .joint = {.kind = JointKind::kFixed}});
   FrameSettings settings;
   settings.tool.body = 0;
   settings.response = response;
@@ -322,7 +318,7 @@ SharedPart sheet(int tiles) {
       planes.emplace_back(axis, -0.05 + 0.1 * i / tiles);
   std::vector<Vec3> corners = make_box({0.05, 0.05, 0.00025}).vertices;
   for (Vec3& corner : corners) corner.z() += kPlate.z() - 0.00025;
-  return part_of(cut_by({corners}, planes));
+  return part_of(cut_by({corners}, planes), {.about_center_of_mass = true});
 }
 Pose ball_from_below(double t) {
   Pose X = ball_down(t);

@@ -9,6 +9,7 @@
 #include <limits>
 #include <string>
 
+#include "support/add_body.h"
 #include "support/faulty_device.h"
 #include "support/pressed_block.h"
 #include "tactum/loop/loop_thread.h"
@@ -423,10 +424,9 @@ TEST(SafetyFaults, AbsurdEditsOfTheSceneStayWithinLimitsAndSlew) {
     SCOPED_TRACE(edit.name);
     Experiment experiment;
     // A free cube stands beside the block's way, so that gravity and its mass matter to somebody.
-    experiment.world.bodies.push_back(experiment.world.bodies[0]);
-    experiment.world.bodies[2].mass_kg = 0.02;
-    experiment.world.bodies[2].joint = {};
-    experiment.world.bodies[2].X_WB.p = {0.0235, 0, 0.005};
+    add_body(experiment.world, {.part = experiment.world.bodies[0].part,
+                                .mass_kg = 0.02,
+                                .X_WP = {Mat3::Identity(), {0.0235, 0, 0.005}}});
     experiment.world.gravity_W = {0, 0, -9.81};
     experiment.changes = {{kFaultFrom_s, edit.make}, {kFaultTo_s, edit.undo}};
     const std::vector<Moment> moments = experiment.run(3.2);

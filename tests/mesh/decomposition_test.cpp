@@ -41,10 +41,9 @@ double volume(const Polytope& piece) {
   for (const Polytope::Face& face : piece.faces)
     for (int i = 1; i + 1 < face.count; ++i) {
       const int* loop = piece.face_vertices.data() + face.first;
-      six +=
-          (piece.vertices[loop[0]] - piece.center)
-              .dot(
-                  (piece.vertices[loop[i]] - piece.center).cross(piece.vertices[loop[i + 1]] - piece.center));
+      six += (piece.vertices[loop[0]] - piece.extent.center)
+                 .dot((piece.vertices[loop[i]] - piece.extent.center)
+                          .cross(piece.vertices[loop[i + 1]] - piece.extent.center));
     }
   return six / 6.0;
 }

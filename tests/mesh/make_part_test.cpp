@@ -45,7 +45,7 @@ TEST(Part, ConvexMeshIsOneSolidPiece) {
   EXPECT_EQ(part->pieces[0].faces.size(), 14u);
   EXPECT_NEAR(part->radius, std::hypot(0.01, 0.02), 1e-12);
   EXPECT_NEAR(part->mass.mass, 7800 * part->mass.volume, 1e-12);
-  EXPECT_TRUE(part->remarks.empty());
+  EXPECT_TRUE(part->notes.remarks.empty());
 }
 
 TEST(Part, OtherMeshesAreFeltByTheirSurface) {
@@ -59,7 +59,7 @@ TEST(Part, OtherMeshesAreFeltByTheirSurface) {
     EXPECT_GT(triangle_normal(part->surface, i).dot(part->surface.vertices[part->surface.triangles[i][0]]),
               0.0);
   // No two triangles of it are coplanar.
-  EXPECT_EQ(part->group_count, static_cast<int>(part->surface.triangles.size()));
+  EXPECT_EQ(part->groups.count, static_cast<int>(part->surface.triangles.size()));
 }
 
 TEST(Part, GivenGroupsAreVerifiedConvex) {
@@ -97,7 +97,7 @@ TEST(Part, InwardSurfacesAreTurnedAndTold) {
   const Result<Part> part = part_from_mesh(inward);
   ASSERT_TRUE(part);
   EXPECT_EQ(part->pieces.size(), 1u);
-  EXPECT_EQ(part->remarks.size(), 1u);
+  EXPECT_EQ(part->notes.remarks.size(), 1u);
   EXPECT_NEAR(part->mass.volume, 8.0, 1e-12);
 }
 
@@ -106,16 +106,16 @@ TEST(Part, SaysWhichWayItWentAndWhy) {
   const Result<Part> solid = part_from_mesh(star);
   ASSERT_TRUE(solid);
   EXPECT_FALSE(solid->is_surface());
-  EXPECT_EQ(solid->piece_report,
+  EXPECT_EQ(solid->notes.pieces,
             fmt::format("solid: {} convex pieces from 5 reflex edges", solid->pieces.size()));
   EXPECT_NEAR(solid->mass.volume, report_mesh(star).volume, 1e-12);
-  EXPECT_EQ(part_from_mesh(star, {.pieces = PieceSource::kSurface})->piece_report, "surface: asked for");
-  EXPECT_EQ(part_from_mesh(box_mesh({1, 1, 1}))->piece_report, "solid: convex as it is");
+  EXPECT_EQ(part_from_mesh(star, {.pieces = PieceSource::kSurface})->notes.pieces, "surface: asked for");
+  EXPECT_EQ(part_from_mesh(box_mesh({1, 1, 1}))->notes.pieces, "solid: convex as it is");
   const TriangleMesh gear = testing::extruded_mesh(testing::star(60, 0.04, 0.05), 0.0, 0.03);
   const Result<Part> many = part_from_mesh(gear);
   ASSERT_TRUE(many);
   EXPECT_TRUE(many->is_surface());
-  EXPECT_EQ(many->piece_report, "surface: the solid does not fall into few convex pieces (60 reflex edges)");
+  EXPECT_EQ(many->notes.pieces, "surface: the solid does not fall into few convex pieces (60 reflex edges)");
   EXPECT_FALSE(part_from_mesh(gear, {.pieces = PieceSource::kSolid})->is_surface());
   TriangleMesh open = star;
   open.triangles.pop_back();
@@ -150,7 +150,7 @@ TEST(CoplanarGroups, ASubdividedBoxHasSixHoweverTurnedAndRounded) {
   const Result<Part> part = part_from_mesh(fine);
   ASSERT_TRUE(part);
   EXPECT_EQ(part->surface.triangles.size(), 767u);
-  EXPECT_EQ(part->group_count, 6);
+  EXPECT_EQ(part->groups.count, 6);
 }
 
 TEST(CoplanarGroups, FacetsOfARoundPegStayApart) {
@@ -169,9 +169,9 @@ TEST(Part, RealMeshesBecomeParts) {
     const Result<Part> part = part_from_mesh(mesh->mesh, {.name = name});
     ASSERT_TRUE(part) << part.error().message();
     std::printf("%s: %zu triangles, %d facets, mass %.4g kg\n", name, part->surface.triangles.size(),
-                part->group_count, part->mass.mass);
-    for (const std::string& remark : part->remarks) std::printf("  %s\n", remark.c_str());
-    EXPECT_LE(part->group_count, static_cast<int>(part->surface.triangles.size()));
+                part->groups.count, part->mass.mass);
+    for (const std::string& remark : part->notes.remarks) std::printf("  %s\n", remark.c_str());
+    EXPECT_LE(part->groups.count, static_cast<int>(part->surface.triangles.size()));
     EXPECT_GT(part->mass.mass, 0.0);
   }
 }

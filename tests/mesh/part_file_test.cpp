@@ -34,7 +34,7 @@ PartFile surface_file() {
   dented.vertices[40] *= 0.8;
   PartFile file;
   file.part = *part_from_mesh(dented, {.name = "dented"});
-  file.part.remarks = {"one", "two"};
+  file.part.notes.remarks = {"one", "two"};
   return file;
 }
 
@@ -60,10 +60,10 @@ void expect_same(const Polytope& a, const Polytope& b) {
   expect_same_bits(a.ray_first, b.ray_first);
   EXPECT_EQ(a.direction_table, b.direction_table);
   EXPECT_EQ(a.counts, b.counts);
-  EXPECT_EQ(a.center, b.center);
-  EXPECT_EQ(a.radius, b.radius);
-  EXPECT_EQ(a.size, b.size);
-  EXPECT_EQ(a.magnitude, b.magnitude);
+  EXPECT_EQ(a.extent.center, b.extent.center);
+  EXPECT_EQ(a.extent.radius, b.extent.radius);
+  EXPECT_EQ(a.extent.size, b.extent.size);
+  EXPECT_EQ(a.extent.magnitude, b.extent.magnitude);
   EXPECT_EQ(a.flat, b.flat);
   ASSERT_EQ(a.faces.size(), b.faces.size());
   for (std::size_t i = 0; i < a.faces.size(); ++i) {
@@ -90,7 +90,7 @@ TEST(PartFile, ComesBackBitForBit) {
     EXPECT_EQ(part_bytes(*back), bytes);  // every stored array
     EXPECT_EQ(back->report, file.report);
     EXPECT_EQ(back->origin, file.origin);
-    EXPECT_EQ(back->part.remarks, file.part.remarks);
+    EXPECT_EQ(back->part.notes.remarks, file.part.notes.remarks);
     ASSERT_EQ(back->part.pieces.size(), file.part.pieces.size());
     for (std::size_t i = 0; i < file.part.pieces.size(); ++i)
       expect_same(back->part.pieces[i], file.part.pieces[i]);

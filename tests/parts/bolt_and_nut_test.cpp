@@ -349,7 +349,7 @@ TEST(BoltAndNut, BecomePartsWhoseSurfaceIsTheMesh) {
   const auto part = part_from_mesh(mesh);
   ASSERT_TRUE(part) << part.error().message();
   EXPECT_EQ(part->tree.triangle_count(), static_cast<int>(mesh.triangles.size()));
-  EXPECT_TRUE(part->remarks.empty());
+  EXPECT_TRUE(part->notes.remarks.empty());
   EXPECT_TRUE(part->mass.approximation.empty());
 }
 

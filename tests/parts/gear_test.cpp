@@ -96,7 +96,7 @@ TEST(Gear, IsAboutTwentyConvexPiecesOfAFewHundredPolygons) {
   std::size_t faces = 0;
   for (const Polytope& piece : *pieces) {
     EXPECT_EQ(piece.vertices.size() + piece.faces.size(), piece.edges.size() + 2);
-    EXPECT_LT(convexity_defect(piece), 4 * tolerances::kCoplanar * piece.size);
+    EXPECT_LT(convexity_defect(piece), 4 * tolerances::kCoplanar * piece.extent.size);
     faces += piece.faces.size();
   }
   EXPECT_GE(faces, 300u);

@@ -48,7 +48,7 @@ TEST(SlottedPlate, WeighsThePlateLessItsSlots) {
       EXPECT_NEAR(filling::volume(*pieces) / expected, 1.0, 1e-12)
           << slots << " slots, " << facets << " facets";
       for (const Polytope& piece : *pieces)
-        EXPECT_LT(convexity_defect(piece), 4 * tolerances::kCoplanar * piece.size);
+        EXPECT_LT(convexity_defect(piece), 4 * tolerances::kCoplanar * piece.extent.size);
     }
   }
 }

@@ -33,7 +33,7 @@ TEST(HexKey, IsTwoPrismsThatMeetInTheCorner) {
   for (const Polytope& piece : *pieces) {
     EXPECT_EQ(piece.vertices.size(), 12u);
     EXPECT_EQ(piece.faces.size(), 8u);
-    EXPECT_LT(convexity_defect(piece), 4 * tolerances::kCoplanar * piece.size);
+    EXPECT_LT(convexity_defect(piece), 4 * tolerances::kCoplanar * piece.extent.size);
     box.extend(bounds(piece.vertices));
   }
   const double radius = key.across_flats_m / std::sqrt(3.0);

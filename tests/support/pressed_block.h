@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "support/add_body.h"
 #include "support/solid_box.h"
 #include "tactum/devices/hand_motion.h"
 #include "tactum/haptics/frame.h"
@@ -17,14 +18,12 @@ inline constexpr double kBlockGap_m = 0.003;  ///< between block and plate at th
 /// Body 0 is the block, body 1 the plate, whose top is at z = 0.
 inline World block_over_plate() {
   World world;
-  world.bodies.resize(2);
-  world.bodies[0].part = solid_box({0.010, 0.007, 0.005});
-  world.bodies[0].mass_kg = 0.05;
-  world.bodies[0].inertia_B = 1e-5 /* kg m^2 */ * Mat3::Identity();
-  world.bodies[0].X_WB = {Mat3::Identity(), {0, 0, 0.005 + kBlockGap_m}};
-  world.bodies[1].part = solid_box({0.05, 0.05, 0.01});
-  world.bodies[1].X_WB = {Mat3::Identity(), {0, 0, -0.01}};
-  world.bodies[1].joint.kind = JointKind::kFixed;
+  add_body(world, {.part = solid_box({0.010, 0.007, 0.005}),
+                   .mass_kg = 0.05,
+                   .X_WP = {Mat3::Identity(), {0, 0, 0.005 + kBlockGap_m}}});
+  add_body(world, {.part = solid_box({0.05, 0.05, 0.01}),
+                   .X_WP = {Mat3::Identity(), {0, 0, -0.01}},
+                   .joint = {.kind = JointKind::kFixed}});
   return world;
 }
 

@@ -5,6 +5,7 @@
 
 #include <memory>
 
+#include "support/add_body.h"
 #include "tactum/geometry/primitives.h"
 #include "tactum/haptics/simulation.h"
 #include "tactum/mesh/make_part.h"
@@ -30,10 +31,7 @@ struct Sandbox {
 
   /// Adds a body with the density of water; returns its number.
   int add(const Polytope& shape, const Pose& X_WB, const Twist& V_WB = {}, const Joint& joint = {}) {
-    const Result<int> index =
-        world.add({.part = solid_of(shape), .X_WP = X_WB, .V_WB = V_WB, .joint = joint});
-    EXPECT_TRUE(index);
-    return *index;
+    return add_body(world, {.part = solid_of(shape), .X_WP = X_WB, .V_WB = V_WB, .joint = joint});
   }
   int add_fixed(const Polytope& shape, const Pose& X_WB) {
     return add(shape, X_WB, {}, {.kind = JointKind::kFixed});

@@ -161,7 +161,8 @@ class Overlap {
   const Projection& along_normal() const noexcept { return along_normal_; }
   /// Clips A's face by B's.
   void clip() noexcept {
-    if (reference_.rectangle()) return clip_polygon(own_, reference_.box(), w_.A.size + w_.B.size);
+    if (reference_.rectangle())
+      return clip_polygon(own_, reference_.box(), w_.A.extent.size + w_.B.extent.size);
     PatchPolygon window;
     face_outline(reference_.of_b(), w_.B, w_.b.feature.index, false, window);
     clip_polygon(own_, window);
@@ -258,7 +259,7 @@ void face_face_contact(const PatchWork& w) noexcept {
   if (w.b.face_share < 1.0)
     cut_toward_edge(rise_from_edge(reference.of_b(), w.B, w.b.edge, -reference.slope()), w.b.face_share);
   const PatchMoments m = alone ? moments_of(overlap.own()) : moments_of_all(overlap);
-  const double size = std::max(w.A.size, w.B.size);
+  const double size = std::max(w.A.extent.size, w.B.extent.size);
   if (m.area <= tolerances::kPatchArea * size * size) return sliver_contact(w, reference, gap, overlap.own());
   const PatchSpread arms = spread_of(m, reference.axis());
   w.out.area = m.area * reference.cosine();

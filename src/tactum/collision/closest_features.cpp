@@ -11,7 +11,7 @@ namespace {
 /// The vertices farthest along the line of centres: near the closest features of pieces met for the first
 /// time. A climb goes there faster than a walk, whose every step is a pair.
 [[gnu::noinline]] FeaturePair first_seed(const PiecePair& pair) noexcept {
-  Vec3 toward_b = pair.X_AB * pair.B.center - pair.A.center;
+  Vec3 toward_b = pair.X_AB * pair.B.extent.center - pair.A.extent.center;
   if (toward_b.isZero()) toward_b = Vec3::UnitX();
   return {vclip::vertex(support_vertex(pair.A, toward_b)),
           vclip::vertex(support_vertex(pair.B, -rotated_back(pair.X_AB.R, toward_b)))};

@@ -37,7 +37,7 @@ bool overlap_by_vertices(const PairView& pair, const OverlapProof& proof) noexce
 }
 
 bool overlap_by_facet(const PairView& pair, const PairDistance& depth) noexcept {
-  const Vec3 c = pair.X_AB * pair.B.center - pair.A.center;
+  const Vec3 c = pair.X_AB * pair.B.extent.center - pair.A.extent.center;
   const double behind = -depth.normal.dot(c);
   if (depth.distance >= 0.0 || behind <= 0.0) return false;
   const Vec3 x = c * (depth.distance / behind);

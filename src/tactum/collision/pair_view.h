@@ -28,8 +28,8 @@ struct PiecePair {
       : A(a),
         B(b),
         X_AB(x),
-        size(std::max(a.size, b.size)),
-        scale(x.p.lpNorm<1>() + a.magnitude + b.magnitude) {}
+        size(std::max(a.extent.size, b.extent.size)),
+        scale(x.p.lpNorm<1>() + a.extent.magnitude + b.extent.magnitude) {}
 };
 
 /// What the longer queries need: the inverse as well.

@@ -143,7 +143,7 @@ bool facet_again(const PairView& pair, const FeaturePair& last, MinkowskiFacet& 
 }
 
 Vec3 line_of_centers(const PairView& pair) noexcept {
-  const Vec3 n = pair.A.center - pair.X_AB * pair.B.center;
+  const Vec3 n = pair.A.extent.center - pair.X_AB * pair.B.extent.center;
   return n.isZero() ? Vec3::UnitX() : n;
 }
 

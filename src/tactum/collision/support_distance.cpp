@@ -152,7 +152,7 @@ OverlapProof proof_of(const Simplex& simplex) noexcept {
 FeatureWalk closest_by_supports(const PairView& pair, OverlapProof& proof, PairDistance& x) noexcept {
   constexpr int kSteps = 100;
   Simplex simplex;
-  Vec3 d = pair.A.center - pair.X_AB * pair.B.center;
+  Vec3 d = pair.A.extent.center - pair.X_AB * pair.B.extent.center;
   if (d.isZero()) d = Vec3::UnitX();
   simplex.corners[0] = support(pair, d, nullptr);
   simplex.count = 1;

@@ -24,8 +24,8 @@ struct MovingPiece {
     turning = n.cross(w);
     const double speed_sq = w.squaredNorm();
     // The piece lies in a ball about its center; the axis goes through the origin.
-    const double off_axis = speed_sq > 0.0 ? w.cross(P.center).norm() / std::sqrt(speed_sq) : 0.0;
-    curving = 0.5 * speed_sq * (off_axis + P.radius);
+    const double off_axis = speed_sq > 0.0 ? w.cross(P.extent.center).norm() / std::sqrt(speed_sq) : 0.0;
+    curving = 0.5 * speed_sq * (off_axis + P.extent.radius);
     support = table_vertex(P, n);
   }
 
@@ -81,7 +81,7 @@ TimeOfImpact time_of_impact(const Polytope& A, const Pose& X_WA, const Twist& V_
                             const Pose& X_WB, const Twist& V_WB, double dt, double target,
                             PairCache& cache) noexcept {
   constexpr int kSteps = 64;
-  const double tolerance = tolerances::kImpactGap * std::max(A.size, B.size);
+  const double tolerance = tolerances::kImpactGap * std::max(A.extent.size, B.extent.size);
   TimeOfImpact impact;
   for (impact.steps = 1; impact.steps <= kSteps; ++impact.steps) {
     const Pose X_WA_now = advanced(X_WA, V_WA, impact.time);

@@ -46,14 +46,14 @@ Step edges_along(const PiecePair& pair, double crossing_tolerance, int a, int b,
   const Feature end_p = end_or_edge(e, near.s, edge(a));
   const Feature end_q = end_or_edge(g, near.t, edge(b));
   if (end_p != edge(a) || end_q != edge(b)) return {Outcome::kMoved, end_p, end_q};
-  const Across across = across_edges(S.P.size, crossing_tolerance, c, d, at.gap);
+  const Across across = across_edges(S.P.extent.size, crossing_tolerance, c, d, at.gap);
   const Toward of_p = face_toward(e, out_of_columns(S.P, e, 1.0, across.direction));
   if (of_p.slope > across.crossing_sine) return {Outcome::kMoved, face(of_p.face), edge(b)};
   const Toward of_q = face_toward(g, out_of_columns(S.Q, g, -1.0, S.turned_to_Q(across.direction)));
   if (of_q.slope > across.crossing_sine) return {Outcome::kMoved, edge(a), face(of_q.face)};
   const double error_bound = height_beyond(S.P, e, of_p.slope) + height_beyond(S.Q, g, of_q.slope) +
-                             std::abs(e.direction.dot(across.direction)) * S.P.size +
-                             std::abs(w.dot(across.direction)) * S.Q.size + across.aside;
+                             std::abs(e.direction.dot(across.direction)) * S.P.extent.size +
+                             std::abs(w.dot(across.direction)) * S.Q.extent.size + across.aside;
   set_answer(at.p, -across.direction, at.gap, error_bound, x);
   return {Outcome::kClosest, edge(a), edge(b)};
 }

@@ -52,7 +52,7 @@ inline double height_beyond(const Polytope& P, int v, double slope) noexcept {
   for (const Polytope::Ray& ray : P.rays_at(v)) mean += ray.direction;
   double least = kInfinity;
   for (const Polytope::Ray& ray : P.rays_at(v)) least = std::min(least, ray.direction.dot(mean));
-  return least > 0.0 ? slope * P.size * mean.norm() / least : kInfinity;
+  return least > 0.0 ? slope * P.extent.size * mean.norm() / least : kInfinity;
 }
 
 /// The same at an edge whose steeper face rises by `slope`: the piece lies in the wedge of its two faces.
@@ -61,7 +61,7 @@ inline double height_beyond(const Polytope& P, int v, double slope) noexcept {
 inline double height_beyond(const Polytope& P, const Polytope::Edge& e, double slope) noexcept {
   if (slope <= 0.0) return 0.0;
   const double cosine = P.sides[e.left_slot].normal.dot(P.sides[e.right_slot].normal);
-  return cosine > -1.0 ? slope * P.size * std::sqrt(2.0 / (1.0 + cosine)) : kInfinity;
+  return cosine > -1.0 ? slope * P.extent.size * std::sqrt(2.0 / (1.0 + cosine)) : kInfinity;
 }
 
 /// The edge at a vertex that rises most along a direction, and the sine by which it rises.
@@ -148,7 +148,7 @@ Step vertex_vertex(const Sides<Swapped>& S, Feature fp, Feature fq, Place& at, P
   if (at_p.slope > S.crossing_tolerance) return {Outcome::kMoved, edge(at_p.edge), fq};
   const Steepest at_q = steepest_edge(S.Q, fq.index, -d_Q);
   if (at_q.slope > S.crossing_tolerance) return {Outcome::kMoved, fp, edge(at_q.edge)};
-  if (at.gap <= tolerances::kTouching * S.P.size) {
+  if (at.gap <= tolerances::kTouching * S.P.extent.size) {
     set_points(S, at, x);
   } else {
     set_answer(
@@ -176,14 +176,14 @@ Step vertex_edge(const Sides<Swapped>& S, Feature fp, Feature fq, Place& at, Pai
   const Vec3 d_P = S.turned_to_P(d_Q);
   const Steepest at_p = steepest_edge(S.P, fp.index, d_P);
   if (at_p.slope > S.crossing_tolerance) return {Outcome::kMoved, edge(at_p.edge), fq};
-  if (at.gap <= tolerances::kTouching * S.P.size) {
+  if (at.gap <= tolerances::kTouching * S.P.extent.size) {
     set_points(S, at, x);
   } else {
     // The normal itself is judged: over a small gap it is off by more than the point is.
     const double rise = std::max(left.normal.dot(d_Q), right.normal.dot(d_Q));
     const double error_bound = height_beyond(S.P, fp.index, at_p.slope / at.gap) +
                                height_beyond(S.Q, g, rise / at.gap) +
-                               std::abs(g.direction.dot(d_Q)) / at.gap * S.Q.size;
+                               std::abs(g.direction.dot(d_Q)) / at.gap * S.Q.extent.size;
     set_answer(S.of_A(at.p, at.q), S.normal(d_P, d_Q) / at.gap, at.gap, error_bound, x);
   }
   return {Outcome::kClosest, fp, fq};
@@ -330,15 +330,15 @@ inline Step edge_edge(const PiecePair& pair, const Sides<false>& S, Feature fp, 
   if (out_p.left < 0.0 || out_p.right < 0.0 || out_q.left < 0.0 || out_q.right < 0.0) {
     const Toward of_p = face_toward(e, out_p);
     const Toward of_q = face_toward(g, out_q);
-    if (std::max(of_p.slope, of_q.slope) * S.P.size <= S.crossing_tolerance)
+    if (std::max(of_p.slope, of_q.slope) * S.P.extent.size <= S.crossing_tolerance)
       return edges_along(pair, S.crossing_tolerance, fp.index, fq.index, at, x);
     at.gap = gap;
     at.p = p;
     at.q = g_tail + g.direction * (t * per_square);
-    if (of_p.slope * S.P.size > S.crossing_tolerance) return {Outcome::kMoved, face(of_p.face), fq};
+    if (of_p.slope * S.P.extent.size > S.crossing_tolerance) return {Outcome::kMoved, face(of_p.face), fq};
     return {Outcome::kMoved, fp, face(of_q.face)};
   }
-  const double lengths = S.P.size + S.Q.size + r.lpNorm<1>();
+  const double lengths = S.P.extent.size + S.Q.extent.size + r.lpNorm<1>();
   const double error_bound = (tolerances::kCrossingRounding * lengths + S.crossing_tolerance) * per_square;
   if (error_bound > tolerances::kCertificate * pair.size)
     return edges_along(pair, S.crossing_tolerance, fp.index, fq.index, at, x);

@@ -238,13 +238,9 @@ void ContactFinder::emit_patch(Pair& pair, const PairDistance& found, const Pose
   const bool internal = seams && !is_true_contact(part_a, pair.piece_a, part_b, pair.piece_b, X_AB, found);
   if (seams && points_ == PatchPoints::kQuadrature) {
     SeamCandidate& candidate = candidates_.emplace_back();
-    candidate.body_a = pair.body_a;
-    candidate.body_b = pair.body_b;
-    candidate.piece_a = pair.piece_a;
-    candidate.piece_b = pair.piece_b;
+    candidate.a = {pair.body_a, pair.piece_a, &part_a};
+    candidate.b = {pair.body_b, pair.piece_b, &part_b};
     candidate.pair = static_cast<int>(&pair - pairs_.data());
-    candidate.part_a = &part_a;
-    candidate.part_b = &part_b;
     candidate.shown = &pair.shown;
     candidate.margin = margin;
     candidate.found = found;
@@ -257,8 +253,8 @@ void ContactFinder::emit_patch(Pair& pair, const PairDistance& found, const Pose
   patch.piece_a = pair.piece_a;
   patch.piece_b = pair.piece_b;
   patch.pair = static_cast<int>(&pair - pairs_.data());
-  patch.facet_a = part_a.surface_group[Index(pair.piece_a)];
-  patch.facet_b = part_b.surface_group[Index(pair.piece_b)];
+  patch.facets.a = part_a.groups.of_piece[Index(pair.piece_a)];
+  patch.facets.b = part_b.groups.of_piece[Index(pair.piece_b)];
   patch.tolerance = margin;
   if (points_ == PatchPoints::kClosest) {
     patch.distance = found.distance;

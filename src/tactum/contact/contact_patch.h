@@ -8,6 +8,12 @@
 
 namespace tactum {
 
+/// The facets of A and of B that a patch lies on, each -1 where it lies on none: groups of the surface, see
+/// SurfaceGroups. Patches of the same bodies and facets touch on the same two walls: they share a stiffness.
+struct FacetPair {
+  int a = -1, b = -1;
+};
+
 /// Two pieces nearer than their tolerance, or two triangles of surfaces with a local minimum of their
 /// distance. Manifold in A's body frame.
 struct ContactPatch {
@@ -18,8 +24,7 @@ struct ContactPatch {
   /// An edge or corner of A (of B) touches on another piece; the feature, if any, is the face beside it on
   /// this one.
   bool neighbour_face_a = false, neighbour_face_b = false;
-  /// Patches of the same bodies and facets share one stiffness: they touch on the same two flat walls.
-  int facet_a = -1, facet_b = -1;
+  FacetPair facets;
   double distance = 0.0;   ///< of the pieces, negative when they overlap [m]
   double tolerance = 0.0;  ///< delta of the pair of bodies [m]
   Manifold manifold;

@@ -98,7 +98,8 @@ bool patch_corners(const Polytope& A, const Polytope& B, const Pose& X_AB, const
     corners_of_faces(A, face_a, B, face_b, X_AB, patch, tolerance, corners);
   double least = tolerance;
   for (const PatchCorner& corner : corners) least = std::min(least, corner.distance);
-  if (!corners.empty() && least <= distance + tolerances::kCertificate * std::max(A.size, B.size))
+  if (!corners.empty() &&
+      least <= distance + tolerances::kCertificate * std::max(A.extent.size, B.extent.size))
     return true;
   for (const ContactPoint& point : patch.points)
     corners.push_back({0.5 * (point.p_a + point.p_b), point.distance});

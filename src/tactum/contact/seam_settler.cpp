@@ -36,16 +36,9 @@ class TwoBodies {
   bool full() const noexcept { return full_; }
 
  private:
-  static const Polytope& piece_a(const SeamCandidate& c) noexcept {
-    return c.part_a->pieces[Index(c.piece_a)];
-  }
-  static const Polytope& piece_b(const SeamCandidate& c) noexcept {
-    return c.part_b->pieces[Index(c.piece_b)];
-  }
-
   /// Whether a representative answers for the candidate, which is then settled.
   bool answered(SeamCandidate& candidate) noexcept {
-    const PairView pair(piece_a(candidate), piece_b(candidate), X_AB_);
+    const PairView pair(candidate.a.polytope(), candidate.b.polytope(), X_AB_);
     for (const SeamCandidate* other : candidates_) {
       if (other->patch < 0) continue;
       const ContactPatch& patch = patches_[Index(other->patch)];
@@ -92,13 +85,13 @@ class TwoBodies {
   }
 
   std::optional<PairDistance> on_true_surface(const SeamCandidate& candidate, double beside) const noexcept {
-    return depth_on_true_surface(*candidate.part_a, candidate.piece_a, *candidate.part_b, candidate.piece_b,
+    return depth_on_true_surface(*candidate.a.part, candidate.a.piece, *candidate.b.part, candidate.b.piece,
                                  X_AB_, candidate.on_pieces, candidate.margin, beside);
   }
 
   /// Whether what was found is a true contact, or would be no farther than `beside` away.
   bool touches_beside(const SeamCandidate& candidate, double beside) const noexcept {
-    return is_true_contact(*candidate.part_a, candidate.piece_a, *candidate.part_b, candidate.piece_b, X_AB_,
+    return is_true_contact(*candidate.a.part, candidate.a.piece, *candidate.b.part, candidate.b.piece, X_AB_,
                            candidate.on_pieces, beside);
   }
 
@@ -107,8 +100,8 @@ class TwoBodies {
   /// edge.
   bool touches_in_the_middle(const SeamCandidate& candidate) const noexcept {
     Manifold manifold;
-    contact_manifold(piece_a(candidate), piece_b(candidate), X_AB_, candidate.on_pieces, candidate.margin,
-                     manifold);
+    contact_manifold(candidate.a.polytope(), candidate.b.polytope(), X_AB_, candidate.on_pieces,
+                     candidate.margin, manifold);
     const bool flat = manifold.a.kind == FeatureKind::kFace && manifold.b.kind == FeatureKind::kFace;
     return flat && is_true_stretch(candidate, manifold);
   }
@@ -141,10 +134,10 @@ class TwoBodies {
       return nullptr;
     }
     ContactPatch& patch = patches_.emplace_back();
-    patch.body_a = candidate.body_a;
-    patch.body_b = candidate.body_b;
-    patch.piece_a = candidate.piece_a;
-    patch.piece_b = candidate.piece_b;
+    patch.body_a = candidate.a.body;
+    patch.body_b = candidate.b.body;
+    patch.piece_a = candidate.a.piece;
+    patch.piece_b = candidate.b.piece;
     patch.pair = candidate.pair;
     patch.tolerance = candidate.margin;
     return &patch;
@@ -152,23 +145,24 @@ class TwoBodies {
 
   /// Makes the patch of a true contact: its own stretch and those of its followers, as one.
   void lead(SeamCandidate& nearest) noexcept {
-    PairDistance shown =
-        steady_depth(piece_a(nearest), piece_b(nearest), X_AB_, nearest.found, steady_, *nearest.shown);
-    shown.a = true_feature(*nearest.part_a, nearest.piece_a, shown.a, shown.p_a);
+    PairDistance shown = steady_depth(nearest.a.polytope(), nearest.b.polytope(), X_AB_, nearest.found,
+                                      steady_, *nearest.shown);
+    shown.a = true_feature(*nearest.a.part, nearest.a.piece, shown.a, shown.p_a);
     shown.b =
-        true_feature(*nearest.part_b, nearest.piece_b, shown.b, rotated_back(X_AB_.R, shown.p_b - X_AB_.p));
+        true_feature(*nearest.b.part, nearest.b.piece, shown.b, rotated_back(X_AB_.R, shown.p_b - X_AB_.p));
     ContactPatch* patch = new_patch(nearest);
     if (patch == nullptr) {
       nearest.settled = true;
       return;
     }
-    contact_manifold(piece_a(nearest), piece_b(nearest), X_AB_, shown, nearest.margin, patch->manifold);
+    contact_manifold(nearest.a.polytope(), nearest.b.polytope(), X_AB_, shown, nearest.margin,
+                     patch->manifold);
     patch->distance = shown.distance;
     PairDistance led = shown;
     SeamCandidate& representative = widest(nearest, shown, *patch, led);
     *representative.shown = *nearest.shown;
-    patch->facet_a = representative.part_a->surface_group[Index(representative.piece_a)];
-    patch->facet_b = representative.part_b->surface_group[Index(representative.piece_b)];
+    patch->facets = {representative.a.part->groups.of_piece[Index(representative.a.piece)],
+                     representative.b.part->groups.of_piece[Index(representative.b.piece)]};
     representative.patch = static_cast<int>(patches_.size()) - 1;
     for (SeamCandidate* own : {&nearest, &representative}) {
       own->settled = true;
@@ -179,19 +173,18 @@ class TwoBodies {
       if (!other->settled && !follow(*other, representative, shown, *patch))
         share(*other, nearest, representative.patch);
     if (!stretches_.empty())
-      contact_manifold_over(piece_a(representative), piece_b(representative), X_AB_, led,
-                            representative.margin, {stretches_.begin(), stretches_.size()}, patch->manifold);
+      contact_manifold_over(representative.a.polytope(), representative.b.polytope(), X_AB_, led, representative.margin,
+                            {stretches_.begin(), stretches_.size()}, patch->manifold);
     steady_centroid(X_AB_, patch->manifold, steady_, *representative.shown);
     for (SeamCandidate* other : candidates_)
       if (other != &representative && other->led_by == representative.patch)
         remember(*other, representative, shown);
   }
 
-  /// The representative's memory is that of whom it leads, unless what was shown would be the way through
-  /// another wall.
-  void remember(SeamCandidate& other, const SeamCandidate& representative,
-                const PairDistance& shown) const noexcept {
-    const PairView pair(piece_a(other), piece_b(other), X_AB_);
+  /// The representative's memory is that of whom it leads, unless what was shown would be the way through another
+  /// wall.
+  void remember(SeamCandidate& other, const SeamCandidate& representative, const PairDistance& shown) const noexcept {
+    const PairView pair(other.a.polytope(), other.b.polytope(), X_AB_);
     int a = vertex_of(pair.A, other.found.a);
     int b = vertex_of(pair.B, other.found.b);
     const double likely = other.margin - std::min(shown.distance, 0.0);
@@ -214,11 +207,11 @@ class TwoBodies {
         continue;
       const PairDistance mapped = on_features(shown, same);
       Manifold manifold;
-      contact_manifold(piece_a(*other), piece_b(*other), X_AB_, mapped, other->margin, manifold);
+      contact_manifold(other->a.polytope(), other->b.polytope(), X_AB_, mapped, other->margin, manifold);
       if (size_of(manifold) <= size_of(patch.manifold) || !is_true_stretch(*other, manifold)) continue;
       patch.manifold = manifold;
-      patch.piece_a = other->piece_a;
-      patch.piece_b = other->piece_b;
+      patch.piece_a = other->a.piece;
+      patch.piece_b = other->b.piece;
       patch.pair = other->pair;
       led = mapped;
       best = other;
@@ -229,9 +222,9 @@ class TwoBodies {
   /// The stretches that `other` has of features of `of`; false when it has none.
   static bool same_features(const Feature& a, const Feature& b, const SeamCandidate& of,
                             const SeamCandidate& other, FeaturePair& out) noexcept {
-    out.a = same_feature(*other.part_a, of.piece_a, a, other.piece_a);
+    out.a = same_feature(*other.a.part, of.a.piece, a, other.a.piece);
     if (out.a.index < 0) return false;
-    out.b = same_feature(*other.part_b, of.piece_b, b, other.piece_b);
+    out.b = same_feature(*other.b.part, of.b.piece, b, other.b.piece);
     return out.b.index >= 0;
   }
   static PairDistance on_features(const PairDistance& contact, const FeaturePair& features) noexcept {
@@ -244,8 +237,8 @@ class TwoBodies {
   /// Settles `other` when it touches where the nearest does, with nothing to add: on the same features, or at
   /// a corner that both have.
   static void share(SeamCandidate& other, const SeamCandidate& nearest, int patch) noexcept {
-    const double noise =
-        tolerances::kCoplanarMeshOffset * std::max(piece_a(nearest).size, piece_b(nearest).size);
+    const double noise = tolerances::kCoplanarMeshOffset *
+                         std::max(nearest.a.polytope().extent.size, nearest.b.polytope().extent.size);
     const bool same_place =
         (other.found.p_a - nearest.found.p_a).norm() <= noise &&
         (other.found.p_b - nearest.found.p_b).norm() <= noise &&
@@ -269,9 +262,9 @@ class TwoBodies {
     other.led_by = representative.patch;
     const PairDistance mapped = on_features(shown, same);
     Manifold own;
-    contact_manifold(piece_a(other), piece_b(other), X_AB_, mapped, other.margin, own);
+    contact_manifold(other.a.polytope(), other.b.polytope(), X_AB_, mapped, other.margin, own);
     if (own.points.size() > 1 && is_true_stretch(other, own) &&
-        !stretches_.push_back({&piece_a(other), &piece_b(other), mapped.a, mapped.b}))
+        !stretches_.push_back({&other.a.polytope(), &other.b.polytope(), mapped.a, mapped.b}))
       full_ = true;
     return true;
   }
@@ -286,7 +279,7 @@ class TwoBodies {
       middle.p_a += point.weight * point.p_a;
       middle.p_b += point.weight * point.p_b;
     }
-    return is_true_contact(*candidate.part_a, candidate.piece_a, *candidate.part_b, candidate.piece_b, X_AB_,
+    return is_true_contact(*candidate.a.part, candidate.a.piece, *candidate.b.part, candidate.b.piece, X_AB_,
                            middle);
   }
 
@@ -303,15 +296,15 @@ class TwoBodies {
 bool settle_seams(std::span<SeamCandidate*> candidates, std::span<const Pose> X_WB,
                   const SteadyLimits& steady, std::vector<ContactPatch>& patches) noexcept {
   std::sort(candidates.begin(), candidates.end(), [](const SeamCandidate* p, const SeamCandidate* q) {
-    return std::tie(p->body_a, p->body_b, p->internal, p->found.distance, p->piece_a, p->piece_b) <
-           std::tie(q->body_a, q->body_b, q->internal, q->found.distance, q->piece_a, q->piece_b);
+    return std::tie(p->a.body, p->b.body, p->internal, p->found.distance, p->a.piece, p->b.piece) <
+           std::tie(q->a.body, q->b.body, q->internal, q->found.distance, q->a.piece, q->b.piece);
   });
   bool complete = true;
   for (auto first = candidates.begin(); first != candidates.end();) {
-    const int a = (*first)->body_a;
-    const int b = (*first)->body_b;
+    const int a = (*first)->a.body;
+    const int b = (*first)->b.body;
     const auto last = std::find_if(first, candidates.end(),
-                                   [&](const SeamCandidate* c) { return c->body_a != a || c->body_b != b; });
+                                   [&](const SeamCandidate* c) { return c->a.body != a || c->b.body != b; });
     const Pose X_AB = relative_pose(X_WB[Index(a)], X_WB[Index(b)]);
     TwoBodies bodies({first, last}, X_AB, steady, patches);
     bodies.settle();

@@ -27,10 +27,16 @@ namespace tactum {
 
 /// A pair within its margin, as tested.
 struct SeamCandidate {
-  std::int32_t body_a = -1, body_b = -1, piece_a = -1, piece_b = -1;
-  int pair = -1;  ///< in the finder's list
-  const Part* part_a = nullptr;
-  const Part* part_b = nullptr;
+  /// One of the two pieces.
+  struct Side {
+    std::int32_t body = -1;
+    std::int32_t piece = -1;     ///< within the part
+    const Part* part = nullptr;  ///< of the body
+
+    const Polytope& polytope() const noexcept { return part->pieces[static_cast<std::size_t>(piece)]; }
+  };
+  Side a, b;
+  int pair = -1;                   ///< in the finder's list
   SteadyContact* shown = nullptr;  ///< the pair's memory
   double margin = 0.0;             ///< tolerance of the pair [m]
   PairDistance found;

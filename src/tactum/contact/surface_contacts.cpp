@@ -97,8 +97,8 @@ void ContactFinder::add_surface_patch(int a, int b, const SurfaceMinimum& minimu
   const auto facet = [](const SurfaceTree& tree, const Feature& feature) {
     return feature.kind == FeatureKind::kFace ? tree.group_of(feature.index) : -1;
   };
-  patch.facet_a = facet(bodies_[Index(a)].part->tree, minimum.a);
-  patch.facet_b = facet(bodies_[Index(b)].part->tree, minimum.b);
+  patch.facets.a = facet(bodies_[Index(a)].part->tree, minimum.a);
+  patch.facets.b = facet(bodies_[Index(b)].part->tree, minimum.b);
   patch.distance = minimum.distance;
   patch.tolerance = margin;
   patch.manifold.normal = minimum.normal;

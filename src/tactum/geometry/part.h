@@ -17,22 +17,34 @@
 
 namespace tactum {
 
+/// How a part was made, in words for a person.
+struct PartNotes {
+  /// How the pieces were made, and why so: "solid: 13 convex pieces from 8 reflex edges".
+  std::string pieces;
+  std::vector<std::string> remarks;  ///< what was repaired or approximated, as sentences
+};
+
+/// The groups of a part's surface: contact patches that lie on the same two groups share one stiffness. Each
+/// piece is a group; of a part that is felt by its surface these are the coplanar groups of the triangles;
+/// the tree of the surface keeps which triangle belongs to which.
+struct SurfaceGroups {
+  std::vector<int> of_piece;  ///< of each piece: its group, 0 .. count - 1
+  int count = 0;
+};
+
 struct Part {
   std::string name;
-  /// How the pieces were made, and why so: "solid: 13 convex pieces from 8 reflex edges".
-  std::string piece_report;
-  TriangleMesh surface;            ///< welded, without degenerate triangles [m]
-  std::vector<Polytope> pieces;    ///< in the part's frame
-  std::vector<int> surface_group;  ///< of each piece: its contact patch, 0 .. group_count - 1
-  int group_count = 0;
+  PartNotes notes;
+  TriangleMesh surface;          ///< welded, without degenerate triangles [m]
+  std::vector<Polytope> pieces;  ///< in the part's frame
+  SurfaceGroups groups;
   Bvh hierarchy;             ///< over the pieces
   TrueSurface true_surface;  ///< what of solid pieces can be touched; single_piece() for surfaces
   SurfaceTree tree;          ///< over the surface
   MassProperties mass;
-  Vec3 origin = Vec3::Zero();        ///< the part's origin, in the frame of the input [m]
-  double radius = 0.0;               ///< largest distance of a vertex from the centre of mass [m]
-  double size = 0.0;                 ///< diagonal of the bounding box [m]
-  std::vector<std::string> remarks;  ///< what was repaired or approximated, as sentences
+  Vec3 origin = Vec3::Zero();  ///< the part's origin, in the frame of the input [m]
+  double radius = 0.0;         ///< largest distance of a vertex from the centre of mass [m]
+  double size = 0.0;           ///< diagonal of the bounding box [m]
 
   /// Whether it is felt by its surface, not by convex pieces.
   bool is_surface() const noexcept { return pieces.empty(); }

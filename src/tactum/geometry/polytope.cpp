@@ -189,13 +189,15 @@ bool complete_polytope(Polytope& P, const char** why) {
     if (P.ray_first[v] == P.ray_first[v + 1]) return *why = "a vertex is no face's corner", false;
   build_sides(P);
   for (Polytope::Face& face : P.faces) face.rectangle = has_square_corners(P, face);
-  P.center.setZero();
-  for (const Vec3& vertex : P.vertices) P.center += vertex;
-  P.center /= static_cast<double>(P.vertices.size());
-  P.radius = 0.0;
-  for (const Vec3& vertex : P.vertices) P.radius = std::max(P.radius, (vertex - P.center).norm());
-  P.size = bounds(P.vertices).diagonal();
-  P.magnitude = P.size + P.center.lpNorm<1>();
+  Polytope::Extent& extent = P.extent;
+  extent.center.setZero();
+  for (const Vec3& vertex : P.vertices) extent.center += vertex;
+  extent.center /= static_cast<double>(P.vertices.size());
+  extent.radius = 0.0;
+  for (const Vec3& vertex : P.vertices)
+    extent.radius = std::max(extent.radius, (vertex - extent.center).norm());
+  extent.size = bounds(P.vertices).diagonal();
+  extent.magnitude = extent.size + extent.center.lpNorm<1>();
   P.flat = P.faces.size() == 2;
   P.counts = {static_cast<int>(P.vertices.size()), static_cast<int>(P.edges.size()),
               static_cast<int>(P.faces.size())};

@@ -54,6 +54,13 @@ struct Polytope {
     int edge = 0;
     int far = 0;  ///< the vertex at the other end
   };
+  /// Where the polytope lies and how large it is.
+  struct Extent {
+    Vec3 center = Vec3::Zero();  ///< mean of the vertices: inside
+    double radius = 0.0;         ///< largest distance of a vertex from center [m]
+    double size = 0.0;           ///< diagonal of the bounding box [m]
+    double magnitude = 0.0;      ///< size + |center|: of the numbers that are added up about it [m]
+  };
 
   std::vector<Vec3> vertices;  ///< [m]
   LargeArray<Edge> edges;
@@ -67,10 +74,7 @@ struct Polytope {
   std::vector<int> ray_first;
   LargeArray<Ray> rays;
 
-  Vec3 center = Vec3::Zero();   ///< mean of the vertices: inside
-  double radius = 0.0;          ///< largest distance of a vertex from center [m]
-  double size = 0.0;            ///< diagonal of the bounding box [m]
-  double magnitude = 0.0;       ///< size + |center|: of the numbers that are added up about it [m]
+  Extent extent;
   bool flat = false;            ///< a polygon with two faces, no inside
   std::array<int, 3> counts{};  ///< of vertices, edges and faces
 

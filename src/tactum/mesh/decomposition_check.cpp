@@ -87,7 +87,7 @@ double volume_of(const Polytope& piece) {
   for (std::size_t i = 0; i < piece.faces.size(); ++i) {
     const Polytope::Face& face = piece.faces[i];
     three += polygon_area(face_corners(piece, static_cast<int>(i)), face.normal) *
-             (face.offset - face.normal.dot(piece.center));
+             (face.offset - face.normal.dot(piece.extent.center));
   }
   return three / 3.0;
 }
@@ -141,7 +141,7 @@ Result<void> check_pieces(const std::vector<Polytope>& pieces, double volume, do
     for (std::size_t j = i + 1; j < pieces.size(); ++j)
       if (overlap_deeper(pieces[i], pieces[j], kSureOverlap * noise))
         return Error{"the surface bounds no solid",
-                     "a surface that crosses itself near " + place(pieces[j].center),
+                     "a surface that crosses itself near " + place(pieces[j].extent.center),
                      "pieces that do not overlap", ""};
   double sum = 0.0;
   for (const Polytope& piece : pieces) sum += volume_of(piece);

@@ -65,9 +65,9 @@ void complete(Part& part) {
   part.hierarchy = Bvh(boxes);
   const std::vector<int> groups = coplanar_groups(part.surface);
   part.tree = SurfaceTree(part.surface, groups);
-  if (part.is_surface()) part.group_count = 1 + *std::max_element(groups.begin(), groups.end());
+  if (part.is_surface()) part.groups.count = 1 + *std::max_element(groups.begin(), groups.end());
   find_true_surface(part);
-  if (!part.mass.approximation.empty()) part.remarks.push_back(part.mass.approximation);
+  if (!part.mass.approximation.empty()) part.notes.remarks.push_back(part.mass.approximation);
 }
 
 Error unusable(const PartOptions& options, const std::string& found, const std::string& expected) {
@@ -127,8 +127,8 @@ constexpr int kMostPieces = 512;
 
 void add_solid_pieces(std::vector<Polytope> pieces, Part& part) {
   part.pieces = std::move(pieces);
-  part.group_count = static_cast<int>(part.pieces.size());
-  for (int i = 0; i < part.group_count; ++i) part.surface_group.push_back(i);
+  part.groups.count = static_cast<int>(part.pieces.size());
+  for (int i = 0; i < part.groups.count; ++i) part.groups.of_piece.push_back(i);
 }
 
 /// `closed` is the welded mesh, with all its triangles.
@@ -140,7 +140,7 @@ Result<void> add_pieces(const TriangleMesh& closed, bool convex, const PartOptio
     if (convex) {
       if (Result<Polytope> solid = convex_hull(part.surface.vertices); solid && !solid->flat) {
         add_solid_pieces({std::move(*solid)}, part);
-        part.piece_report = "solid: convex as it is";
+        part.notes.pieces = "solid: convex as it is";
         return {};
       }
     }
@@ -148,22 +148,22 @@ Result<void> add_pieces(const TriangleMesh& closed, bool convex, const PartOptio
     Result<SolidPieces> solid =
         solid_pieces(closed, options.most_solid_pieces > 0 ? options.most_solid_pieces : few);
     if (solid) {
-      part.piece_report = fmt::format("solid: {} convex pieces from {} reflex edges", solid->pieces.size(),
+      part.notes.pieces = fmt::format("solid: {} convex pieces from {} reflex edges", solid->pieces.size(),
                                       solid->reflex_edges);
       add_solid_pieces(std::move(solid->pieces), part);
       return {};
     }
     if (!chosen_here) return unusable(options, solid.error().found, solid.error().expected);
-    part.piece_report = fmt::format("surface: {} ({})", solid.error().what, solid.error().found);
+    part.notes.pieces = fmt::format("surface: {} ({})", solid.error().what, solid.error().found);
   } else {
-    part.piece_report = "surface: asked for";
+    part.notes.pieces = "surface: asked for";
   }
   return {};
 }
 
 void note_repairs(const WeldReport& weld_report, const MeshReport& report, Part& part) {
   const auto note = [&part](std::size_t count, const char* text) {
-    if (count > 0) part.remarks.push_back(fmt::format("{} {}.", count, text));
+    if (count > 0) part.notes.remarks.push_back(fmt::format("{} {}.", count, text));
   };
   note(weld_report.index_degenerate.size(), "triangles with two equal corners were dropped");
   note(weld_report.zero_area.size(), "triangles without area were dropped");
@@ -235,7 +235,7 @@ Result<Part> part_from_clouds(const std::vector<std::vector<Vec3>>& clouds, cons
     append_faces(*piece, part.surface);
     pieces.push_back(std::move(*piece));
   }
-  part.piece_report = fmt::format("given: {} convex pieces", pieces.size());
+  part.notes.pieces = fmt::format("given: {} convex pieces", pieces.size());
   add_solid_pieces(std::move(pieces), part);
   part.mass = joined(masses);
   complete(part);
@@ -265,7 +265,7 @@ Result<Part> part_from_mesh(const TriangleMesh& mesh, const PartOptions& options
   part.name = options.name;
   if (report.closed && report.oriented && report.volume < 0.0) {
     for (Triangle& t : scaled.triangles) std::swap(t[1], t[2]);
-    part.remarks.emplace_back("The normals point inward: the surface was turned round.");
+    part.notes.remarks.emplace_back("The normals point inward: the surface was turned round.");
     report = report_mesh(scaled);
   }
   part.mass = mass_properties_or_hull(scaled, options.density_kg_per_m3);

@@ -23,13 +23,13 @@ void fields(Archive& archive, File& file) {
   archive("origin", file.origin);
   archive("density", file.density_kg_per_m3);
   archive("name", part.name);
-  archive("way", part.piece_report);
-  archive("remarks", part.remarks);
+  archive("way", part.notes.pieces);
+  archive("remarks", part.notes.remarks);
   archive("surface.vertices", part.surface.vertices);
   archive("surface.triangles", part.surface.triangles);
   archive("pieces", part.pieces);
-  archive("surface_group", part.surface_group);
-  archive("group_count", part.group_count);
+  archive("surface_group", part.groups.of_piece);
+  archive("group_count", part.groups.count);
   archive("tree", part.tree);
   archive("volume", part.mass.volume);
   archive("mass", part.mass.mass);
@@ -65,10 +65,10 @@ Fault fault_in(const PartFile& file) {
   for (const Polytope& piece : part.pieces)
     if (!within_range(piece.vertices)) return {"pieces", "a vertex that is no point"};
   if (part.surface.triangles.empty()) return {"surface.triangles", "no triangle"};
-  if (part.surface_group.size() != part.pieces.size()) return {"surface_group", "another count of pieces"};
-  for (int group : part.surface_group)
-    if (group < 0 || group >= part.group_count) return {"surface_group", "a group that is none"};
-  if (part.group_count < 0 || part.group_count > static_cast<int>(part.surface.triangles.size()))
+  if (part.groups.of_piece.size() != part.pieces.size()) return {"surface_group", "another count of pieces"};
+  for (int group : part.groups.of_piece)
+    if (group < 0 || group >= part.groups.count) return {"surface_group", "a group that is none"};
+  if (part.groups.count < 0 || part.groups.count > static_cast<int>(part.surface.triangles.size()))
     return {"group_count", "no count"};
   if (part.tree.triangle_count() != static_cast<int>(part.surface.triangles.size()))
     return {"tree", "another count of triangles"};

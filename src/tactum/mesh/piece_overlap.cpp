@@ -43,7 +43,7 @@ double edge_separation(const Polytope& a, const Polytope& b, double enough) noex
       if (axis.norm() < tolerances::kParallelSine) continue;  // the faces beside them tell the same
       axis.normalize();
       const Vec3& p_a = a.vertices[ea.tail];
-      if (axis.dot(p_a - a.center) < 0.0) axis = -axis;
+      if (axis.dot(p_a - a.extent.center) < 0.0) axis = -axis;
       largest = std::max(largest, axis.dot(b.vertices[eb.tail] - p_a));
       if (largest > enough) return largest;
     }

@@ -207,7 +207,7 @@ Result<PartFile> prepare_part(const ImportedMesh& imported, const PrepareOptions
       !made)
     return made.error();
   for (const RepairNote& note : repaired.notes)
-    if (!note.mended) file.part.remarks.push_back(note.sentence());
+    if (!note.mended) file.part.notes.remarks.push_back(note.sentence());
   file.report = to_json(report, file.part);
   show_progress("writing", 0.95);
   return file;

@@ -33,7 +33,7 @@ Json pieces_of(const PrepareReport& report, const Part& part) {
               {"reason", report.pieces_reason},
               {"solid", solid},
               {"count", solid ? part.pieces.size() : part.surface.triangles.size()},
-              {"patches", part.group_count}};
+              {"patches", part.groups.count}};
   if (solid) {
     int most = 0;
     long sum = 0;

@@ -26,8 +26,8 @@ SurfacePair surfaces_of(const World& world, const ContactPatch& patch) noexcept 
   const Part& A = *world.bodies[Index(patch.body_a)].part;
   const Part& B = *world.bodies[Index(patch.body_b)].part;
   if (!patch.of_surfaces)
-    return {patch.body_a, patch.body_b, A.surface_group[Index(patch.piece_a)],
-            B.surface_group[Index(patch.piece_b)]};
+    return {patch.body_a, patch.body_b, A.groups.of_piece[Index(patch.piece_a)],
+            B.groups.of_piece[Index(patch.piece_b)]};
   const bool face_a = patch.manifold.a.kind == FeatureKind::kFace;
   const bool face_b = patch.manifold.b.kind == FeatureKind::kFace;
   return {patch.body_a, patch.body_b, face_b && !face_a ? kAnyGroup : A.tree.group_of(patch.piece_a),

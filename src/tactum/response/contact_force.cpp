@@ -114,7 +114,7 @@ void make_contact_rows(std::span<const Pose> X_WB, std::span<const ContactPatch>
   out.full = false;
   for (Index i = 0; i < patches.size() && i < out.facets.capacity(); ++i) {
     const ContactPatch& patch = patches[i];
-    out.facets.push_back({patch.body_a, patch.body_b, patch.facet_a, patch.facet_b, static_cast<int>(i)});
+    out.facets.push_back({patch.body_a, patch.body_b, patch.facets.a, patch.facets.b, static_cast<int>(i)});
   }
   std::sort(out.facets.begin(), out.facets.end(),
             [](const Facet& a, const Facet& b) { return key(a) < key(b); });

@@ -138,7 +138,7 @@ void read_body(const TomlReader& reader, const SearchFolders& folders, Scene& sc
   if (reader.errors()) return;
   read_field_points(reader, -spec.part->origin, spec);
   if (reader.errors()) return;
-  for (const std::string& remark : spec.part->remarks)
+  for (const std::string& remark : spec.part->notes.remarks)
     scene.remarks.push_back(fmt::format("{} ({}): {}", spec.name, shape.file, remark));
   if (const Result<int> added = scene.world.add(spec); !added)
     reader.fail(nullptr, added.error().what, added.error().found, added.error().expected);

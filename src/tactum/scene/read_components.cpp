@@ -30,7 +30,7 @@ Result<Pieces> pieces_of(const Shape& shape) {
   const Result<std::shared_ptr<const Part>> part = part_of(shape, 1.0);
   if (!part) return part.error();
   if ((*part)->is_surface())
-    return Error{"a component that is felt by its surface", (*part)->piece_report,
+    return Error{"a component that is felt by its surface", (*part)->notes.pieces,
                  "convex pieces: a shape made of them, or a mesh with pieces = \"solid\" or \"given\"", ""};
   Pieces pieces;
   for (const Polytope& piece : (*part)->pieces) {

@@ -22,6 +22,8 @@ export async function openBrowser() {
   });
 }
 
+export const pause = (seconds) => new Promise((resolve) => setTimeout(resolve, 1000 * seconds));
+
 export function check(condition, sentence) {
   if (!condition) throw new Error(sentence);
 }
@@ -117,6 +119,11 @@ export async function drag(page, right, down, steps = 40, release = true) {
     await new Promise((resolve) => setTimeout(resolve, 25));
   }
   if (release) await page.mouse.up();
+}
+
+/** A picture for people, where TACTUM_KEEP_PICTURES names a folder. */
+export async function keep(page, name) {
+  if (process.env.TACTUM_KEEP_PICTURES) await page.screenshot({ path: join(process.env.TACTUM_KEEP_PICTURES, `${name}.png`) });
 }
 
 /** The content of what a click downloads. */

@@ -1,0 +1,136 @@
+// The panels, the keyboard, and a page on a narrow screen.
+import { check, downloaded, graspedAt, openPage, pause, Program, state, until } from "./support.mjs";
+
+export const topics = {
+  async why(browser, tactum) {
+    const program = await Program.start(tactum, "gears");
+    const page = await openPage(browser, program);
+    await until("the gears touch", async () => (await page.textContent(".sentence")).includes("touches"));
+    const stages = await page.locator(".stages tr").count();
+    check(stages === 5, `every stage has its row: ${stages - 1}`);
+    await page.click(".contacts button");
+    check((await page.locator(".contacts tr.chosen").count()) <= 1, "one contact can be chosen");
+    await page.click("#pause");
+    const chart = await page.locator("#strips .u-over").first().boundingBox();
+    await page.mouse.click(chart.x + chart.width / 2, chart.y + chart.height / 2);
+    await until("the moment is shown", async () => await page.isVisible("#past"));
+    const then = await page.textContent(".sentence");
+    await pause(0.6);
+    check((await page.textContent(".sentence")) === then, "a moment that was picked stays");
+    const png = await downloaded(page, "#charts-png");
+    check(png.length > 3000 && png.subarray(1, 4).toString() === "PNG", "the charts as a picture");
+    const picture = await downloaded(page, "#picture");
+    check(picture.length > 20000 && picture.subarray(1, 4).toString() === "PNG", "the scene as a picture");
+    await page.keyboard.press("l");
+    await until("it is now again", async () => !(await page.isVisible("#past")));
+    await page.selectOption("#also", { index: 1 });
+    await until("a further chart is there", async () => (await page.locator("#strips canvas").count()) === 6);
+    check(page.complaints.length === 0, page.complaints.join("; "));
+    await program.end();
+  },
+
+  async panel(browser, tactum) {
+    const program = await Program.start(tactum, "block-on-plate");
+    const page = await openPage(browser, program);
+    await page.click("#tab-panel");
+    const field = page.locator('[id="set-coupling.stiffness_N_per_m"]');
+    check((await page.locator('[id="set-response"] option').allTextContents()).join() === "penalty,constraint", "a choice is told by its words");
+    const margin = () => page.textContent("#margin");
+    check((await margin()).includes("coupling 600 N/m"), `the stability margin is told: ${await margin()}`);
+    await field.fill("432");
+    await field.press("Enter");
+    await field.blur();
+    await until("the margin follows the gain", async () => (await margin()).includes("coupling 432 N/m"));
+    const toml = (await downloaded(page, "#save-toml")).toString();
+    check(toml.includes("[coupling]") && toml.includes("stiffness_N_per_m = 432  #"), `the saved settings have it: ${toml}`);
+    await field.fill("99999999");
+    await field.press("Enter");
+    await until("what is out of range is told", async () => await page.isVisible("#notice"));
+    const run = (await state(page)).run;
+    await page.selectOption("#device", "pointer:omega.6");
+    await until("the device is another", async () => (await state(page)).run !== run && (await page.textContent("#panel")).includes("no torque"));
+    const units = await page.locator(".setting .unit").allTextContents();
+    check(units.filter((unit) => unit !== "").length >= 15, "settings have units");
+    const unnamed = await page.evaluate(() => [...document.querySelectorAll("button, input, select")].filter((element) =>
+      !element.textContent.trim() && !element.getAttribute("aria-label") && !element.labels?.length && !element.title).length);
+    check(unnamed === 0, `${unnamed} controls have no name`);
+    check(page.complaints.length === 0, page.complaints.join("; "));
+    await program.end();
+  },
+
+  async keyboard(browser, tactum) {
+    const program = await Program.start(tactum, "block-on-plate");
+    const page = await openPage(browser, program);
+    await page.focus("#canvas");
+    await page.keyboard.press("ArrowRight"); // takes the hand; the demonstration ends
+    await pause(1.5);
+    const before = await graspedAt(page);
+    for (let i = 0; i < 25; ++i) await page.keyboard.press("ArrowLeft");
+    await pause(1.5);
+    const after = await graspedAt(page);
+    check(after[0] < before[0] - 10, `arrows move the part: ${before} to ${after}`);
+    await page.keyboard.press("4");
+    await pause(0.3);
+    check((await graspedAt(page)).join() !== after.join(), "digits choose the view");
+    await page.keyboard.press("g");
+    check((await page.getAttribute("#grasp", "aria-pressed")) === "true", "G grasps");
+    await page.keyboard.press("p");
+    check((await page.getAttribute("#pieces", "aria-pressed")) === "true", "P colours the pieces");
+    await page.keyboard.press("?");
+    check(await page.isVisible("#help"), "? explains");
+    await page.keyboard.press("Escape");
+    check(!(await page.isVisible("#help")), "escape closes it");
+    await page.focus("#tab-why");
+    await page.keyboard.press("ArrowRight");
+    check((await page.getAttribute("#tab-panel", "aria-selected")) === "true", "arrows change tabs");
+    for (const [id, role] of [["canvas", "application"], ["summary", "status"], ["stopped", "alert"]])
+      check((await page.getAttribute(`#${id}`, "role")) === role, `${id} is a ${role} to a screen reader`);
+    const lost = await page.evaluate(() => {
+      const seen = [];
+      document.querySelectorAll("header button, .tools button").forEach((button) => {
+        button.focus();
+        if (!button.hidden && document.activeElement !== button) seen.push(button.id);
+      });
+      return seen;
+    });
+    check(lost.length === 0, `these cannot be reached by the keyboard: ${lost}`);
+    await program.end();
+  },
+
+  async narrow(browser, tactum) {
+    const program = await Program.start(tactum, "gears");
+    const page = await openPage(browser, program, { viewport: { width: 390, height: 800 }, colorScheme: "light", hasTouch: true });
+    check((await page.getAttribute("html", "data-theme")) === "light", "a light system gets a light page");
+    const wide = await page.evaluate(() => document.documentElement.scrollWidth - window.innerWidth);
+    check(wide <= 0, `nothing sticks out sideways: ${wide} pixels`);
+    for (const id of ["stop", "scene", "canvas", "pause"]) check(await page.isVisible(`#${id}`), `${id} is there`);
+    const stop = await page.locator("#stop").boundingBox();
+    check(stop.y < 60 && stop.width > 60 && stop.height >= 40, "the stop is at hand and large");
+    for (const width of [390, 700, 1000]) {  // every chart is above what follows it
+      await page.setViewportSize({ width, height: 800 });
+      await pause(0.5);
+      const over = await page.evaluate(() => {
+        const below = document.querySelector("aside").getBoundingClientRect();
+        const strips = document.getElementById("strips").getBoundingClientRect();
+        const last = Math.max(...[...document.querySelectorAll("#strips canvas")].map((c) => c.getBoundingClientRect().bottom));
+        return last - (below.left < strips.right ? below.top : strips.bottom);
+      });
+      check(over <= 1, `at ${width} pixels the charts end ${over} pixels too low`);
+    }
+    await page.setViewportSize({ width: 390, height: 800 });
+    await pause(1);
+    // A finger on the part moves it; the camera stays.
+    const [x, y] = await graspedAt(page);
+    const session = await page.context().newCDPSession(page);
+    const touch = (type, dx, dy) => session.send("Input.dispatchTouchEvent", { type, touchPoints: type === "touchEnd" ? [] : [{ x: x - 45 + dx, y: y + 12 + dy }] });
+    await touch("touchStart", 0, 0);
+    for (let i = 1; i <= 20; ++i) {
+      await touch("touchMove", i, 2 * i);
+      await pause(0.03);
+    }
+    check(await page.evaluate(() => document.getElementById("canvas").classList.contains("holding")), "a finger takes the part");
+    await touch("touchEnd");
+    check(page.complaints.length === 0, page.complaints.join("; "));
+    await program.end();
+  },
+};

@@ -1,0 +1,87 @@
+// The pictures of the README.
+import { mkdirSync, mkdtempSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { check, graspedAt, openPage, pause, Program, root, state, until } from "./support.mjs";
+
+export const topics = {
+  /** The pictures of the README. TACTUM_PICTURES=keep writes them into the sources. */
+  async pictures(browser, tactum) {
+    const keep = process.env.TACTUM_PICTURES === "keep";
+    const folder = keep ? join(root, "docs/pictures") : join(root, "build/pictures");
+    mkdirSync(folder, { recursive: true });
+    const take = async (scene, options, prepare, words = ["feel", scene]) => {
+      const program = await Program.command(tactum, words);
+      const page = await openPage(browser, program, { viewport: { width: 1280, height: 720 }, ...options }, "#fine");
+      await prepare(page);
+      const png = await page.screenshot();
+      check(png.length > 60000, `the picture of ${scene} shows something: ${png.length} bytes`);
+      writeFileSync(join(folder, `${scene}.png`), png);
+      await program.end();
+      console.log(`${join(folder, `${scene}.png`)}: ${png.length} bytes`);
+    };
+    await take("gears", {}, async (page) => {
+      const [x, y] = await graspedAt(page);
+      await page.mouse.move(x - 70, y + 6);
+      await page.mouse.down();
+      for (let i = 1; i <= 30; ++i) {
+        await page.mouse.move(x - 70 - i * 1.5, y + 6 + i * 1.4);
+        await pause(0.03);
+      }
+      await pause(2);
+    });
+    await take("peg-in-hole", { colorScheme: "light" }, async (page) => {
+      await page.click("#see-through");
+      const deep = async () => Number((await state(page)).newest) % 22000 > 6500; // the demonstration, forth and back
+      await until("the peg has been deep in its hole", deep, 60);
+      await page.click("#pause");
+      // The moment of the largest force within reach of the charts.
+      const chart = await page.locator("#strips .u-over").first().boundingBox();
+      let best = [0, 0];
+      for (let share = 0.05; share < 1; share += 0.03) {
+        await page.mouse.move(chart.x + share * chart.width, chart.y + chart.height / 2);
+        const [, size, prefix] = (await page.textContent("#cursor")).match(/size ([\d.]+) (m?)N/) ?? [];
+        const force = Number(size ?? 0) * (prefix ? 1e-3 : 1);
+        if (force > best[0]) best = [force, share];
+      }
+      check(best[0] > 0.2, `a moment with a force was found: ${best[0]} N`);
+      await page.mouse.click(chart.x + best[1] * chart.width, chart.y + chart.height / 2);
+      await page.mouse.move(700, 500);
+      await pause(1.5);
+    });
+    await take("moving-objects", {}, async (page) => {
+      await until("the stick is among the others", async () => Number((await state(page)).newest) % 16180 > 6200, 60);
+      await page.keyboard.press("e");
+      await pause(0.5);
+    });
+    await take("nut-bolt", {}, async (page) => {
+      await page.keyboard.press("e");
+      await until("the nut has been turned for a while", async () => Number((await state(page)).newest) > 1000, 60);
+    });
+    // Of scenes that tell their story by themselves: the frame to wait for.
+    for (const [scene, frame, options] of [["dominoes", 2350, {}], ["scale", 6000, { colorScheme: "light" }], ["lock", 5200, {}],
+      ["shaft", 16600, { colorScheme: "light" }], ["vortex-field", 4000, {}]]) {
+      await take(scene, options, async (page) => {
+        await page.keyboard.press("e");
+        if (scene === "shaft" || scene === "lock") await page.click("#see-through");
+        await until(`${scene} has come so far`, async () => Number((await state(page)).newest) > frame, 120);
+        await page.click("#pause");
+        await pause(1);
+      });
+    }
+    // A bracket like an F, as it falls into pieces.
+    const outline = [[0, 0], [12, 0], [12, 30], [34, 30], [34, 42], [12, 42], [12, 56], [44, 56], [44, 68], [0, 68]];
+    const n = outline.length;
+    const corners = [0, 20].flatMap((z) => outline.map(([x, y]) => `v ${x} ${y} ${z}`));
+    const below = outline.map((_, i) => n - i);
+    const walls = outline.map((_, i) => [i + 1, ((i + 1) % n) + 1, ((i + 1) % n) + 1 + n, i + 1 + n]);
+    const faces = [below, below.map((v) => 2 * n + 1 - v), ...walls];
+    const file = join(mkdtempSync(join(tmpdir(), "tactum-part-")), "bracket.obj");
+    writeFileSync(file, [...corners, ...faces.map((face) => `f ${face.join(" ")}`), ""].join("\n"));
+    await take("pieces", { colorScheme: "light" }, async (page) => {
+      await page.keyboard.press("p");
+      await page.keyboard.press("e");
+      await pause(1);
+    }, ["inspect", file]);
+  },
+};

@@ -1,0 +1,134 @@
+// What a page shows of scenes, of the bodies in them, and of a part that is inspected.
+import { mkdtempSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { check, downloaded, inkOf, keep, openPage, pause, Program, state, until } from "./support.mjs";
+
+const arrowsOf = async (page) => Number((await state(page)).fieldArrows);
+
+export const topics = {
+  async loads(browser, tactum) {
+    const program = await Program.start(tactum, "gears");
+    const page = await openPage(browser, program);
+    check((await page.title()) === "Tactum: gears", "the title names the scene");
+    const response = await page.request.get(program.address);
+    const policy = response.headers()["content-security-policy"];
+    check(policy.includes("default-src 'none'") && !policy.includes("unsafe"), `the policy is strict: ${policy}`);
+    const blocked = await page.evaluate(async () => {
+      const script = document.createElement("script");
+      try {
+        script.textContent = "document.body.dataset.inline = 'ran'";
+        document.body.append(script);
+      } catch {
+        return true;
+      }
+      return document.body.dataset.inline === undefined;
+    });
+    check(blocked, "no inline script runs");
+    page.complaints.length = 0; // that one was ours
+    await pause(3);
+    const strips = await page.locator("#strips canvas").count();
+    check(strips >= 5, `force, torque, stretch, frame time and contacts have their charts: ${strips}`);
+    for (let i = 0; i < 2; ++i) {
+      const before = await inkOf(page, i);
+      await pause(0.6);
+      const after = await inkOf(page, i);
+      check(before[0] > 300, `chart ${i} shows something: ${before[0]} pixels`);
+      check(before[1] !== after[1], `chart ${i} moves on`);
+    }
+    const now = await state(page);
+    check(now.gaps === "0" && now.lost === "0", `no sample is missing: ${JSON.stringify(now)}`);
+    check(page.complaints.length === 0, `no complaints: ${page.complaints.join("; ")}`);
+    await program.end();
+  },
+
+  async field(browser, tactum) {
+    const program = await Program.start(tactum, "vortex-field");
+    const page = await openPage(browser, program);
+    const arrows = () => arrowsOf(page);
+    await until("arrows are drawn", async () => (await arrows()) > 100);
+    check(await page.isVisible("#field"), "there is a button for them");
+    await page.click("#field");
+    await until("the button takes them away", async () => (await arrows()) === 0);
+    await page.focus("#canvas");
+    await page.keyboard.press("f");
+    await until("the key brings them back", async () => (await arrows()) > 100);
+    await until("the page says that a field pulls", async () =>
+      /^[\d.]+ s\. You feel .*Nothing touches “paddle”; force fields pull it with [\d.]+ .?N and turn it with /.test(await page.textContent(".sentence")));
+    check(page.complaints.length === 0, page.complaints.join("; "));
+    await program.end();
+    const without = await Program.start(tactum, "block-on-plate");
+    const other = await openPage(browser, without);
+    await until("a scene without fields has none", async () => (await arrowsOf(other)) === 0);
+    check(!(await other.isVisible("#field")), "and no button");
+    await without.end();
+  },
+
+  async picking(browser, tactum) {
+    const program = await Program.start(tactum, "moving-objects");
+    const page = await openPage(browser, program);
+    const places = async () => JSON.parse((await state(page)).bodiesAt);
+    check(Object.keys(await places()).length === 13, "thirteen bodies move");
+    const holds = async () => (await state(page)).grasped === "cube 1";
+    let [x, y] = [0, 0];
+    // The stick that the demonstration swings may be before it: then once more.
+    for (let tries = 0; tries < 5 && !(await holds()); ++tries) {
+      await page.mouse.up();
+      [x, y] = (await places())["cube 1"];
+      await page.mouse.move(x, y);
+      await page.mouse.down();
+      for (let i = 0; i < 30 && !(await holds()); ++i) await pause(0.1);
+    }
+    check(await holds(), "the cube is held");
+    for (let i = 1; i <= 10; ++i) await page.mouse.move(x + 3 * i, y - 15 * i);
+    await until("it has been lifted", async () => y - (await places())["cube 1"][1] > 80);
+    await keep(page, "picking");
+    const lifted = (await places())["cube 1"][1];
+    for (let i = 1; i <= 4; ++i) await page.mouse.move(x + 30 + 30 * i, y - 150);
+    await page.mouse.up();
+    await until("the hand is empty again", async () => (await state(page)).grasped === "");
+    await until("what was thrown has fallen", async () => (await places())["cube 1"][1] - lifted > 50);
+    check(page.complaints.length === 0, page.complaints.join("; "));
+    await program.end();
+  },
+
+  async inspect(browser, tactum) {
+    // An L without its lid: eight sharp edges and more, one reflex edge, six open ones around the lid.
+    const outline = [[0, 0], [40, 0], [40, 20], [20, 20], [20, 40], [0, 40]];
+    const corners = [...outline.map(([x, y]) => `v ${x} ${y} 0`), ...outline.map(([x, y]) => `v ${x} ${y} 15`)];
+    const walls = outline.map((_, i) => [i + 1, ((i + 1) % 6) + 1, ((i + 1) % 6) + 7, i + 7]);
+    const floor = [[1, 4, 3], [1, 3, 2], [1, 5, 4], [1, 6, 5]];
+    const file = join(mkdtempSync(join(tmpdir(), "tactum-part-")), "corner.obj");
+    writeFileSync(file, [...corners, ...[...walls, ...floor].map((face) => `f ${face.join(" ")}`), ""].join("\n"));
+    const program = await Program.command(tactum, ["inspect", file]);
+    const page = await openPage(browser, program);
+    check((await page.title()) === "Tactum: corner.obj", "the title names the part");
+    check((await page.textContent("#hint")).includes("look around"), "the page says what can be done");
+    check(!(await page.isVisible("#legend")), "no legend before it is asked for");
+    await page.keyboard.press("e");
+    const legend = await page.textContent("#legend");
+    check(legend.includes("reflex: 1") && legend.includes("open: 6") && legend.includes("sharp: 11"), `edges by kind: ${legend}`);
+    await page.keyboard.press("p");
+    const picture = await downloaded(page, "#picture");
+    check(picture.length > 5000 && picture.subarray(1, 4).toString() === "PNG", "the view is saved as a picture");
+    await keep(page, "inspect");
+    check(page.complaints.length === 0, page.complaints.join("; "));
+    await program.end();
+  },
+
+  async scenes(browser, tactum) {
+    const program = await Program.start(tactum, "gears");
+    const page = await openPage(browser, program);
+    for (const scene of ["peg-in-hole", "block-on-plate", "gears-rim"]) {
+      await page.selectOption("#scene", scene);
+      await until(`${scene} is there`, async () => (await state(page)).scene === scene && Number((await state(page)).samples) > 300);
+    }
+    const before = (await state(page)).run;
+    await page.click("#reset");
+    await until("it starts again", async () => (await state(page)).run !== before && Number((await state(page)).newest) < 5000);
+    check((await state(page)).gaps === "0", "no sample is missing");
+    check(page.complaints.length === 0, page.complaints.join("; "));
+    const summary = await program.end();
+    check(summary.scene === "gears-rim", "the summary is of the scene that was felt last");
+  },
+};

@@ -1,0 +1,120 @@
+#pragma once
+/// What all connections of the viewer's server share: the messages that every page is sent, the pages that
+/// are open, which of them steers, and what they have asked.
+
+#include <boost/asio/io_context.hpp>
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <utility>
+
+#include "viewer/server/access.h"
+#include "viewer/server/history.h"
+#include "viewer/server/request.h"
+#include "viewer/server/server.h"
+
+namespace tactum {
+
+class PageConnection;
+
+/// A text that several connections may be writing at once.
+using SharedText = std::shared_ptr<const std::string>;
+
+inline SharedText shared_text(std::string text) {
+  return std::make_shared<const std::string>(std::move(text));
+}
+
+/// How long a client may say or take nothing.
+inline constexpr std::chrono::seconds kClientTimeout{20};
+
+/// A message of which a page needs only the newest.
+struct LatestMessage {
+  SharedText text = shared_text("");
+  std::uint64_t version = 0;  ///< counted up with every change
+
+  void replace(SharedText newer) {
+    text = std::move(newer);
+    ++version;
+  }
+};
+
+/// The run that is shown.
+struct ShownRun {
+  std::uint32_t number = 0;
+  SharedText message = shared_text("{}");
+  SharedText geometry = shared_text("");
+};
+
+/// What pages have asked and the owner has not yet taken, and the counts of what has happened. The server's
+/// thread and its owner's thread both use it, under one lock.
+class RequestInbox {
+ public:
+  void refuse(Refusal reason) {
+    count([reason](ServerStatus& status) { ++status.refused[static_cast<std::size_t>(reason)]; });
+  }
+  /// Adds a request, unless too many wait already.
+  void ask(const Request& request) {
+    constexpr std::size_t kCapacity = 4096;
+    const std::lock_guard lock(guard_);
+    if (waiting_.size() < kCapacity) waiting_.push_back(request);
+    arrived_.notify_one();
+  }
+  template <class Change>
+  void count(Change change) {
+    const std::lock_guard lock(guard_);
+    change(status_);
+  }
+  /// The oldest request; false when there is none.
+  bool take(Request& request) {
+    const std::lock_guard lock(guard_);
+    if (waiting_.empty()) return false;
+    request = std::move(waiting_.front());
+    waiting_.pop_front();
+    return true;
+  }
+  /// Waits for a request, at most so long.
+  void wait(std::chrono::microseconds longest) {
+    std::unique_lock lock(guard_);
+    arrived_.wait_for(lock, longest, [this] { return !waiting_.empty(); });
+  }
+  ServerStatus status() const {
+    const std::lock_guard lock(guard_);
+    return status_;
+  }
+
+ private:
+  mutable std::mutex guard_;
+  std::condition_variable arrived_;
+  std::deque<Request> waiting_;
+  ServerStatus status_;
+};
+
+/// Everything but the inbox belongs to the server's thread.
+struct ConnectionHub {
+  int port = 0;
+  std::string token = new_token();
+  int connections = 0;
+  RateLimit requests{200.0, 400.0};
+
+  ShownRun run;
+  LatestMessage picture, settings, sentence;
+  LatestMessage program_status{shared_text("{}"), 0};  // a new version also when another page steers
+  History history;
+  std::map<std::uint64_t, PageConnection*> pages;  // by their number, which is never used twice
+  std::uint64_t next_page = 1;
+  std::uint64_t steering = 0;  // that page; 0: nobody
+
+  RequestInbox inbox;
+
+  /// Sends every page what it does not have yet.
+  void feed_pages();
+
+  boost::asio::io_context io{1};  // last: what it still holds when it ends refers to the rest
+};
+
+}  // namespace tactum
