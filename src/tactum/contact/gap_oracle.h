@@ -1,6 +1,6 @@
 #pragma once
-/// What a response may ask about poses on trial: the exact gap of every contact patch there. The answers are
-/// what lets a step be taken or not; how they are found, and what they cost, is the contact finder's
+/// What a response may ask beyond the patches of a frame: the exact gap of every patch at poses on trial, and
+/// how deep an overlap is along a motion. How answers are found, and what they cost, is the contact finder's
 /// business.
 
 #include <cstdint>
@@ -33,6 +33,12 @@ class GapOracle {
   /// Returns how many tests were made.
   virtual int distances_at(std::span<const Pose> X_WB, std::span<double> distance, std::span<GapAnswer> asked,
                            std::span<const double> enough, int keep_back) noexcept = 0;
+  /// The depth of an overlapping patch along a motion: how far A must move along unit `direction_W` until
+  /// the two pieces of the patch are apart [m]. Where they come apart at a wall between pieces of a part,
+  /// which nothing can touch, it is the distance out through the plane of the patch instead. `patch` is the
+  /// number of a patch of this frame, and the bodies are where it was found. Zero where no depth is known:
+  /// for surfaces without pieces, for a motion that leads no way out, and where no test is left. One test.
+  virtual double depth_along(int patch, std::span<const Pose> X_WB, const Vec3& direction_W) noexcept = 0;
   /// Exact tests that are left of the frame's budget.
   virtual int tests_left() const noexcept = 0;
   /// Whether the budget was not ample in this frame.

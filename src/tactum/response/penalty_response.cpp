@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "tactum/base/tolerances.h"
 #include "tactum/dynamics/step.h"
 #include "tactum/math/screw.h"
 #include "tactum/response/coupling.h"
@@ -39,13 +40,39 @@ void limit_held(const MotionInput& input, WorldState& bodies) {
                                        input.settings.penalty.max_step_m, input.dt_s);
 }
 
+/// Up to so many times the shortest depth, the depth along the motion is taken as it is; from so many times
+/// on it says no more than that the motion follows the surface or leaves it, and the shortest one is taken.
+/// Between, the one passes into the other without a step.
+constexpr double kTrustedDepth = 2.0;
+constexpr double kIgnoredDepth = 4.0;
+
+/// By how much the shortest depth is multiplied where the depth along the motion is `ratio` times as large.
+double depth_scale(double ratio) {
+  if (!(ratio < kIgnoredDepth)) return 1.0;
+  if (ratio <= kTrustedDepth) return ratio;
+  return 1.0 + (kTrustedDepth - 1.0) * (kIgnoredDepth - ratio) / (kIgnoredDepth - kTrustedDepth);
+}
+
+/// How A moves relative to B in the middle of a patch, with the bodies at X_WB [m/s].
+Vec3 velocity_across(const ContactPatch& patch, std::span<const Pose> X_WB, std::span<const Twist> V_WB) {
+  const Index a = Index(patch.body_a);
+  const Index b = Index(patch.body_b);
+  Vec3 middle = Vec3::Zero();
+  for (const ContactPoint& point : patch.manifold.points)
+    middle += 0.5 * point.weight * (point.p_a + point.p_b);
+  const Vec3 p_W = X_WB[a] * middle;
+  return velocity_at(V_WB[a], p_W - X_WB[a].p) - velocity_at(V_WB[b], p_W - X_WB[b].p);
+}
+
 }  // namespace
 
 PenaltyResponse::PenaltyResponse(const World& world, const FrameSettings& settings)
     : contacts_(settings.budget.capacity.patches, Index(settings.budget.max_contact_points)),
       resistance_(world.bodies.size(), Resistance::Zero()),
       mobility_(world.bodies.size(), Mobility::Zero()),
-      reach_(world.bodies.size(), 0.0) {}
+      reach_(world.bodies.size(), 0.0) {
+  depth_scale_.reserve(settings.budget.capacity.patches);
+}
 
 std::span<const double> PenaltyResponse::bound_motion(const MotionInput& input, WorldState& bodies) noexcept {
   const World& world = input.world;
@@ -72,6 +99,26 @@ std::span<const double> PenaltyResponse::bound_motion(const MotionInput& input, 
   return reach_;
 }
 
+std::span<const double> PenaltyResponse::scale_depths(const StepInput& input, GapOracle& gaps,
+                                                      std::span<const Twist> V_WB) noexcept {
+  depth_scale_.clear();
+  if (input.settings.penalty.depth == OverlapDepth::kShortest) return depth_scale_;
+  const std::span<const Pose> X_WB = input.X_WB_start;
+  for (Index i = 0; i < input.patches.size() && i < depth_scale_.capacity(); ++i) {
+    const ContactPatch& patch = input.patches[i];
+    double& scale = depth_scale_.emplace_back(1.0);
+    if (patch.distance >= 0.0) continue;
+    const Vec3 v = velocity_across(patch, X_WB, V_WB);
+    const double speed = v.norm();
+    const double size = input.world.bodies[Index(patch.body_a)].part->size +
+                        input.world.bodies[Index(patch.body_b)].part->size;
+    if (speed * input.dt_s <= tolerances::kPenetrating * size) continue;  // no motion, no direction
+    const double depth = gaps.depth_along(static_cast<int>(i), X_WB, -v / speed);
+    if (depth > 0.0) scale = depth_scale(depth / -patch.distance);
+  }
+  return depth_scale_;
+}
+
 /// Gives the held part the whole way that is left to the hand over the rest of the frame, and what resists
 /// that.
 void PenaltyResponse::pull_held(const StepInput& input, double rest_s, WorldState& bodies) noexcept {
@@ -94,13 +141,15 @@ void PenaltyResponse::slow_joints(const World& world, double h_s, int spared, Wo
   }
 }
 
-void PenaltyResponse::step(const StepInput& input, GapOracle& /*gaps*/, WorldState& bodies,
+void PenaltyResponse::step(const StepInput& input, GapOracle& gaps, WorldState& bodies,
                            FrameReport& report) noexcept {
   const World& world = input.world;
   std::vector<Pose>& X_WB = bodies.X_WB;
   std::vector<Twist>& V_WB = bodies.V_WB;
   std::vector<ContactRow>& rows = contacts_.rows;
-  make_contact_rows(X_WB, input.patches, input.shading, input.settings.penalty.stiffness_N_per_m, contacts_);
+  const int tests_before = gaps.tests_left();
+  make_contact_rows(X_WB, input.patches, input.shading, input.settings.penalty.stiffness_N_per_m,
+                    scale_depths(input, gaps, V_WB), contacts_);
   const double impact_s = smallest_time_of_impact(rows, X_WB, V_WB, input.dt_s);
   const double rest_s = input.dt_s - impact_s;
   const int held = input.held.body;
@@ -127,6 +176,7 @@ void PenaltyResponse::step(const StepInput& input, GapOracle& /*gaps*/, WorldSta
   for (Index i = 0; i < world.bodies.size(); ++i)
     if (world.bodies[i].moves()) X_WB[i] = constrained_pose(world.bodies[i], X_WB[i]);
   report.time_of_impact_s = impact_s;
+  report.validation_tests = tests_before - gaps.tests_left();
 }
 
 Wrench PenaltyResponse::felt(const StepInput& input, const WorldState& bodies) const noexcept {

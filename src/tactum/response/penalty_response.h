@@ -42,6 +42,9 @@ class PenaltyResponse {
   bool rows_full() const noexcept { return contacts_.full; }
 
  private:
+  /// Of each patch, by how much its depth is to be multiplied; none where the shortest depth is wanted.
+  std::span<const double> scale_depths(const StepInput& input, GapOracle& gaps,
+                                       std::span<const Twist> V_WB) noexcept;
   void pull_held(const StepInput& input, double rest_s, WorldState& bodies) noexcept;
   void slow_joints(const World& world, double h_s, int spared, WorldState& bodies) noexcept;
 
@@ -49,6 +52,7 @@ class PenaltyResponse {
   std::vector<Resistance> resistance_;  // by body; scratch of one frame
   std::vector<Mobility> mobility_;
   std::vector<double> reach_;
+  ReservedVector<double> depth_scale_;  // by patch
 };
 
 }  // namespace tactum
