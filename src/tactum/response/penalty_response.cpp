@@ -64,6 +64,25 @@ Vec3 velocity_across(const ContactPatch& patch, std::span<const Pose> X_WB, std:
   return velocity_at(V_WB[a], p_W - X_WB[a].p) - velocity_at(V_WB[b], p_W - X_WB[b].p);
 }
 
+/// When the first contact closes, in [0, dt]: of convex pieces of bodies that turn, as the bodies move; else,
+/// and where the budget has no test left, by the published estimate, distance over closing speed.
+double first_impact(const StepInput& input, std::span<const ContactRow> rows, GapOracle& gaps,
+                    std::span<const Twist> V_WB) noexcept {
+  const std::span<const Pose> X_WB = input.X_WB_start;
+  if (std::any_of(rows.begin(), rows.end(), [](const ContactRow& row) { return row.distance <= 0.0; }))
+    return 0.0;
+  const bool some_turn =
+      std::any_of(V_WB.begin(), V_WB.end(), [&](const Twist& V) { return turns_in(input.dt_s, V, V); });
+  FirstImpact turning{input.dt_s, true};
+  if (some_turn) turning = gaps.first_impact(X_WB, V_WB, input.dt_s);
+  double first = turning.time_s;
+  for (const ContactRow& row : rows)
+    if (!some_turn || !turning.complete || input.patches[Index(row.patch)].of_surfaces ||
+        !turns_in(input.dt_s, V_WB[Index(row.body_a)], V_WB[Index(row.body_b)]))
+      first = time_of_closing(row, X_WB, V_WB, first);
+  return first;
+}
+
 }  // namespace
 
 PenaltyResponse::PenaltyResponse(const World& world, const FrameSettings& settings)
@@ -150,7 +169,7 @@ void PenaltyResponse::step(const StepInput& input, GapOracle& gaps, WorldState& 
   const int tests_before = gaps.tests_left();
   make_contact_rows(X_WB, input.patches, input.shading, input.settings.penalty.stiffness_N_per_m,
                     scale_depths(input, gaps, V_WB), contacts_);
-  const double impact_s = smallest_time_of_impact(rows, X_WB, V_WB, input.dt_s);
+  const double impact_s = first_impact(input, rows, gaps, V_WB);
   const double rest_s = input.dt_s - impact_s;
   const int held = input.held.body;
   if (impact_s > 0.0) {  // in no time nothing moves, and no joint slows anything
