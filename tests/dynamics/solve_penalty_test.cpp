@@ -164,24 +164,21 @@ TEST(SolvePenalty, AVeryStiffContactDoesNotShake) {
   EXPECT_NEAR(c.rows[0].distance + problem.displacement(1)[2], 0.0, 1e-8);
 }
 
-TEST(Step, SmallestTimeOfImpactIsWhenTheFirstGapCloses) {
+TEST(Step, AContactClosesAfterItsDistanceOverItsSpeed) {
   const std::vector<Pose> X(2);
   std::vector<Twist> V(2);
   V[1] = {Vec3(0, 0, -0.5), Vec3::Zero()};
-  std::vector<ContactRow> rows;
-  for (double d : {3e-4, 1e-4, 2e-4}) {
-    ContactRow row;
-    row.body_a = 1;
-    row.body_b = 0;
-    row.n_BA_W = Vec3::UnitZ();
-    row.distance = d;
-    rows.push_back(row);
-  }
-  EXPECT_DOUBLE_EQ(smallest_time_of_impact(rows, X, V, 0.001), 1e-4 / 0.5);
+  ContactRow row;
+  row.body_a = 1;
+  row.body_b = 0;
+  row.n_BA_W = Vec3::UnitZ();
+  row.distance = 1e-4;
+  EXPECT_DOUBLE_EQ(time_of_closing(row, X, V, 0.001), 1e-4 / 0.5);
+  EXPECT_EQ(time_of_closing(row, X, V, 1e-4), 1e-4);
   V[1].v.z() = 0.5;
-  EXPECT_EQ(smallest_time_of_impact(rows, X, V, 0.001), 0.001);
-  rows[1].distance = -1e-5;
-  EXPECT_EQ(smallest_time_of_impact(rows, X, V, 0.001), 0.0);
+  EXPECT_EQ(time_of_closing(row, X, V, 0.001), 0.001);
+  row.distance = -1e-5;
+  EXPECT_EQ(time_of_closing(row, X, V, 0.001), 0.0);
 }
 
 }  // namespace

@@ -45,15 +45,15 @@ std::vector<double> all_of(const Kernels& kernels, std::uint64_t seed, std::size
 }
 
 TEST(ColumnKernels, TwoLanesAndFourMakeTheSameBits) {
-  const Kernels* wide = columns::wide_kernels();
+  const Kernels* wide = columns::builds().usable_wide();
   if (!wide) GTEST_SKIP() << "this processor has no AVX2: nothing to compare";
   for (std::size_t n = 8; n <= 40; n += 8)
-    EXPECT_EQ(all_of(columns::narrow_kernels(), n, n), all_of(*wide, n, n)) << n << " numbers";
+    EXPECT_EQ(all_of(*columns::builds().narrow, n, n), all_of(*wide, n, n)) << n << " numbers";
 }
 
 TEST(ColumnKernels, DoWhatTheySay) {
   constexpr std::size_t n = 16;
-  const Kernels& kernels = columns::best_kernels();
+  const Kernels& kernels = columns::builds().best();
   Random random(5);
   const std::vector<double> columns = random_numbers(random, kCount * kColumn);
   const std::vector<double> shares = random_numbers(random, kCount);

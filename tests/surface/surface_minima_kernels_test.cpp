@@ -106,9 +106,9 @@ void expect_of_features(lanes::Matches matches, const SurfaceTree::Corners& ones
 }
 
 TEST(SurfaceMinimaKernels, TellTheSameOfBoxesInFourLanesAndInEight) {
-  const Kernels* wide = lanes::wide_kernels();
+  const Kernels* wide = lanes::builds().usable_wide();
   if (!wide) GTEST_SKIP() << "this processor has no AVX2: nothing to compare";
-  const Kernels& narrow = lanes::narrow_kernels();
+  const Kernels& narrow = *lanes::builds().narrow;
   Draw draw(31);
   int set = 0;
   constexpr int kRounds = 20000;
@@ -128,9 +128,9 @@ TEST(SurfaceMinimaKernels, TellTheSameOfBoxesInFourLanesAndInEight) {
 }
 
 TEST(SurfaceMinimaKernels, TellTheSameOfFeaturesInFourLanesAndInEight) {
-  const Kernels* wide = lanes::wide_kernels();
+  const Kernels* wide = lanes::builds().usable_wide();
   if (!wide) GTEST_SKIP() << "this processor has no AVX2: nothing to compare";
-  const Kernels& narrow = lanes::narrow_kernels();
+  const Kernels& narrow = *lanes::builds().narrow;
   Draw draw(32);
   std::array<int, 4> set{};
   constexpr int kRounds = 20000;
@@ -168,9 +168,9 @@ TEST(SurfaceMinimaKernels, TellTheSameOfFeaturesInFourLanesAndInEight) {
 }
 
 TEST(SurfaceMinimaKernels, TurnAndLayOutTheSameInFourLanesAndInEight) {
-  const Kernels* wide = lanes::wide_kernels();
+  const Kernels* wide = lanes::builds().usable_wide();
   if (!wide) GTEST_SKIP() << "this processor has no AVX2: nothing to compare";
-  const Kernels& narrow = lanes::narrow_kernels();
+  const Kernels& narrow = *lanes::builds().narrow;
   Draw draw(34);
   Random random(35);
   for (int i = 0; i < 1000; ++i) {
@@ -220,8 +220,8 @@ TEST(SurfaceMinimaKernels, LayLeavesOutAsTheMeshSays) {
       lanes::EdgeLeaf edges;
       lanes::FaceLeaf faces;
       lanes::gather_leaf(tree, box, vertices);
-      lanes::gather_leaf(tree, box, lanes::kernels(), edges);
-      lanes::gather_leaf(tree, box, lanes::kernels(), 0.0F, faces);
+      lanes::gather_leaf(tree, box, lanes::builds().best(), edges);
+      lanes::gather_leaf(tree, box, lanes::builds().best(), 0.0F, faces);
       for (std::size_t lane = 0; lane < lanes::kLanes; ++lane) {
         const std::int32_t c = tree.leaves()[lanes::leaf_under(box)][lane];
         ASSERT_EQ(vertices.corner[lane], c);
@@ -259,7 +259,7 @@ TEST(SurfaceMinimaKernels, LayLeavesOutAsTheMeshSays) {
 }
 
 TEST(SurfaceMinimaKernels, FindTheSameMinimaInFourLanesAndInEight) {
-  const Kernels* wide = lanes::wide_kernels();
+  const Kernels* wide = lanes::builds().usable_wide();
   if (!wide) GTEST_SKIP() << "this processor has no AVX2: nothing to compare";
   testing::Thread shape;
   const SurfaceTree bolt(testing::thread_mesh(shape));
@@ -274,7 +274,7 @@ TEST(SurfaceMinimaKernels, FindTheSameMinimaInFourLanesAndInEight) {
   for (int i = 0; i < 20; ++i) {
     Pose X;
     for (int k = 0; k < 3; ++k) X.p[k] = random.uniform(-5e-5, 5e-5);
-    const MinimaWork four = lanes::surface_minima(lanes::narrow_kernels(), bolt, nut, X, query, found[0]);
+    const MinimaWork four = lanes::surface_minima(*lanes::builds().narrow, bolt, nut, X, query, found[0]);
     const MinimaWork eight = lanes::surface_minima(*wide, bolt, nut, X, query, found[1]);
     EXPECT_EQ(four.box_tests, eight.box_tests);
     EXPECT_EQ(four.leaf_pairs, eight.leaf_pairs);

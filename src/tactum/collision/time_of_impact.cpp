@@ -78,12 +78,11 @@ double free_time(GapBound& bound, double room, double target, double rest) noexc
 }  // namespace
 
 TimeOfImpact time_of_impact(const Polytope& A, const Pose& X_WA, const Twist& V_WA, const Polytope& B,
-                            const Pose& X_WB, const Twist& V_WB, double dt, double target,
-                            PairCache& cache) noexcept {
-  constexpr int kSteps = 64;
+                            const Pose& X_WB, const Twist& V_WB, double dt, double target, PairCache& cache,
+                            int most_steps) noexcept {
   const double tolerance = tolerances::kImpactGap * std::max(A.extent.size, B.extent.size);
   TimeOfImpact impact;
-  for (impact.steps = 1; impact.steps <= kSteps; ++impact.steps) {
+  for (impact.steps = 1; impact.steps <= most_steps; ++impact.steps) {
     const Pose X_WA_now = advanced(X_WA, V_WA, impact.time);
     const Pose X_WB_now = advanced(X_WB, V_WB, impact.time);
     impact.closest = closest_features(A, B, relative_pose(X_WA_now, X_WB_now), cache);

@@ -35,10 +35,12 @@ struct TimeOfImpact {
   int steps = 0;         ///< distance queries
 };
 
-/// First time in [0, dt] when the distance is `target` [m] or less. `target` should be above zero (a skin):
-/// at zero the normal of the last step comes from touching features.
+inline constexpr int kMostImpactSteps = 64;
+
+/// First time in [0, dt] when the distance is `target` [m] or less, in at most `most_steps` distance queries.
+/// `target` should be above zero (a skin): at zero the normal of the last step comes from touching features.
 TimeOfImpact time_of_impact(const Polytope& A, const Pose& X_WA, const Twist& V_WA, const Polytope& B,
-                            const Pose& X_WB, const Twist& V_WB, double dt, double target,
-                            PairCache& cache) noexcept;
+                            const Pose& X_WB, const Twist& V_WB, double dt, double target, PairCache& cache,
+                            int most_steps = kMostImpactSteps) noexcept;
 
 }  // namespace tactum

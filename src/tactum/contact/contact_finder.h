@@ -84,6 +84,9 @@ class ContactFinder final : public GapOracle {
   std::span<const ContactPatch> patches() const noexcept { return patches_; }
   int distances_at(std::span<const Pose> X_WB, std::span<double> distance, std::span<GapAnswer> asked,
                    std::span<const double> enough, int keep_back = 0) noexcept override;
+  double depth_along(int patch, std::span<const Pose> X_WB, const Vec3& direction_W) noexcept override;
+  FirstImpact first_impact(std::span<const Pose> X_WB, std::span<const Twist> V_WB,
+                           double dt_s) noexcept override;
   const ContactWork& work() const noexcept { return work_; }
   /// Largest distance of a point of body i from its origin [m].
   double radius(int i) const noexcept { return radius_[static_cast<std::size_t>(i)]; }

@@ -1,12 +1,12 @@
 #pragma once
-/// What a response may ask about poses on trial: the exact gap of every contact patch there. The answers are
-/// what lets a step be taken or not; how they are found, and what they cost, is the contact finder's
-/// business.
+/// What a response may ask beyond the patches of a frame: the exact gap of every patch at poses on trial, how
+/// deep an overlap is along a motion, and when moving bodies first touch. How answers are found, and what
+/// they cost, is the contact finder's business.
 
 #include <cstdint>
 #include <span>
 
-#include "tactum/math/pose.h"
+#include "tactum/math/spatial.h"
 
 namespace tactum {
 
@@ -18,6 +18,21 @@ enum class GapAnswer : std::uint8_t {
   kProven,  ///< what has moved since it was computed proves that it is enough
   kUnknown  ///< the budget was spent
 };
+
+/// When moving bodies first touch.
+struct FirstImpact {
+  double time_s = 0.0;   ///< no two of the pieces asked touch before [s]
+  bool complete = true;  ///< false: the budget was spent before all pairs were asked
+};
+
+/// Bodies that turn by less in a frame move on lines, as far as an impact goes: distance over closing speed
+/// then mistakes a distance by at most half this share of the margin delta = v_c dt [rad].
+inline constexpr double kLeastTurn = 0.025;
+
+/// Whether two bodies turn so much in `dt_s` that the estimate of an impact must not leave it out.
+inline bool turns_in(double dt_s, const Twist& V_WA, const Twist& V_WB) noexcept {
+  return (V_WA.w.norm() + V_WB.w.norm()) * dt_s > kLeastTurn;
+}
 
 class GapOracle {
  public:
@@ -33,6 +48,19 @@ class GapOracle {
   /// Returns how many tests were made.
   virtual int distances_at(std::span<const Pose> X_WB, std::span<double> distance, std::span<GapAnswer> asked,
                            std::span<const double> enough, int keep_back) noexcept = 0;
+  /// The depth of an overlapping patch along a motion: how far A must move along unit `direction_W` until
+  /// the two pieces of the patch are apart [m]. Where they come apart at a wall between pieces of a part,
+  /// which nothing can touch, it is the distance out through the plane of the patch instead. `patch` is the
+  /// number of a patch of this frame, and the bodies are where it was found. Zero where no depth is known:
+  /// for surfaces without pieces, for a motion that leads no way out, and where no test is left. One test.
+  virtual double depth_along(int patch, std::span<const Pose> X_WB, const Vec3& direction_W) noexcept = 0;
+  /// When the first two pieces touch, if every body moves as advanced(X_WB, V_WB, t), turns included; `dt_s`
+  /// when none does by then. Asked are the pairs of pieces that this frame found apart and within the margin,
+  /// of bodies that turn (turns_in), with the bodies where they were found; surfaces without pieces are not.
+  /// The time is that of the contact to rounding; where that takes too many steps, before it. Costs the tests
+  /// of time_of_impact.h for pairs that may touch in that time, and nothing for others.
+  virtual FirstImpact first_impact(std::span<const Pose> X_WB, std::span<const Twist> V_WB,
+                                   double dt_s) noexcept = 0;
   /// Exact tests that are left of the frame's budget.
   virtual int tests_left() const noexcept = 0;
   /// Whether the budget was not ample in this frame.

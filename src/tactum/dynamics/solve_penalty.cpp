@@ -196,17 +196,17 @@ class Newton {
   bool is_wrong(const Row& row) const {
     const double force = row.missing * row.stiffness;
     // Of a force with bounds a share of these; else what the law makes of the length that may be missing.
-    const double slack =
+    const double tolerance =
         row.most < kInfinity ? tolerances::kContactVelocity * row.most : allowed_ * row.stiffness;
     switch (row.state) {
       case kIdle:
-        return !(force <= row.least + slack);  // NaN is wrong
+        return !(force <= row.least + tolerance);  // NaN is wrong
       case kYields:
-        return !(force >= row.least - slack && force <= row.most + slack);
+        return !(force >= row.least - tolerance && force <= row.most + tolerance);
       case kSaturated:
         break;
     }
-    return !(force >= row.most - slack);
+    return !(force >= row.most - tolerance);
   }
 
   Index n_ = 0, unknowns_;

@@ -1,7 +1,5 @@
 #include "tactum/dynamics/step.h"
 
-#include <algorithm>
-
 #include "tactum/math/screw.h"
 
 namespace tactum {
@@ -17,15 +15,11 @@ double normal_velocity(const ContactRow& row, std::span<const Pose> X_WB, std::s
 
 }  // namespace
 
-double smallest_time_of_impact(std::span<const ContactRow> rows, std::span<const Pose> X_WB,
-                               std::span<const Twist> V, double dt) noexcept {
-  double first = dt;
-  for (const ContactRow& row : rows) {
-    if (row.distance <= 0.0) return 0.0;
-    const double closing = -normal_velocity(row, X_WB, V);
-    if (closing * first > row.distance) first = row.distance / closing;
-  }
-  return first;
+double time_of_closing(const ContactRow& row, std::span<const Pose> X_WB, std::span<const Twist> V,
+                       double dt) noexcept {
+  if (row.distance <= 0.0) return 0.0;
+  const double closing = -normal_velocity(row, X_WB, V);
+  return closing * dt > row.distance ? row.distance / closing : dt;
 }
 
 void advance_distances(std::span<ContactRow> rows, std::span<const Pose> X_WB, std::span<const Twist> V,

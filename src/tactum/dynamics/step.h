@@ -9,10 +9,10 @@
 
 namespace tactum {
 
-/// When the first of the approaching contacts closes, from distance and closing speed, in [0, dt]; an
-/// overlapping or touching one gives 0; dt when none closes.
-double smallest_time_of_impact(std::span<const ContactRow> rows, std::span<const Pose> X_WB,
-                               std::span<const Twist> V, double dt) noexcept;
+/// When the contact closes, from distance and closing speed, in [0, dt]; 0 when it overlaps or touches, dt
+/// when it does not close by then.
+double time_of_closing(const ContactRow& row, std::span<const Pose> X_WB, std::span<const Twist> V,
+                       double dt) noexcept;
 
 /// Moves the distances of the rows as the bodies move: d += vn t.
 void advance_distances(std::span<ContactRow> rows, std::span<const Pose> X_WB, std::span<const Twist> V,

@@ -18,6 +18,7 @@ constexpr SettingKind kInteger = SettingKind::kInteger;
 constexpr SettingKind kOnOff = SettingKind::kOnOff;
 constexpr SettingKind kChoice = SettingKind::kChoice;
 constexpr const char* kResponses[] = {"penalty", "constraint"};  // as in ResponseModel
+constexpr const char* kDepths[] = {"shortest", "along_motion"};  // as in OverlapDepth
 
 /// Reading and writing a member of a section of the frame's settings, and of what is asked of safety.
 template <auto Section, auto Member>
@@ -27,7 +28,11 @@ double get_field(const Frame& frame, const Safety&) {
 template <auto Section, auto Member>
 void set_field(Frame& frame, Safety&, double value) {
   auto& member = (frame.*Section).*Member;
-  member = static_cast<std::remove_reference_t<decltype(member)>>(value);
+  using Field = std::remove_reference_t<decltype(member)>;
+  if constexpr (std::is_enum_v<Field>)
+    member = static_cast<Field>(static_cast<int>(value));
+  else
+    member = static_cast<Field>(value);
 }
 template <auto Member>
 double get_limit(const Frame&, const Safety& safety) {
@@ -79,6 +84,9 @@ constexpr SettingInfo kSettings[] = {
   {"penalty", "min_tolerance_m", "Least tolerance", "m", "distance at which resting parts still push", 0, 0.001, kNumber, true,
    get_field<&Frame::penalty, &Penalty::min_tolerance_m>,
    set_field<&Frame::penalty, &Penalty::min_tolerance_m>},
+  {"penalty", "depth", "Depth", "", "how an overlap is measured: the shortest way out, or back along the motion", 0, 1, kChoice, true,
+   get_field<&Frame::penalty, &Penalty::depth>,
+   set_field<&Frame::penalty, &Penalty::depth>, kDepths},
 
   {"impacts", "expansion_s", "Length of a blow", "s", "a blow on the held part is felt as a pulse so long, of the same momentum", 0, 0.1, kNumber, true,
    get_field<&Frame::impacts, &Impacts::expansion_s>,

@@ -6,6 +6,8 @@
 
 #include <cstddef>
 
+#include "tactum/base/cpu_dispatch.h"
+
 namespace tactum {
 
 inline constexpr std::size_t kMostUnknowns = 36;  ///< six free bodies
@@ -30,13 +32,8 @@ struct Kernels {
   void (*turn)(double cosine, double sine, std::size_t n, double* one, double* other);
 };
 
-const Kernels& narrow_kernels() noexcept;
-/// Null where the processor, or what the library was built for, has no AVX2.
-const Kernels* wide_kernels() noexcept;
-inline const Kernels& best_kernels() noexcept {
-  const Kernels* const wide = wide_kernels();
-  return wide != nullptr ? *wide : narrow_kernels();
-}
+/// Two lanes at a time on any processor, four with AVX2.
+CpuBuilds<Kernels> builds() noexcept;
 
 }  // namespace columns
 }  // namespace tactum

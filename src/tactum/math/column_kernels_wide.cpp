@@ -1,15 +1,22 @@
 /// The loops of column_kernels.h for processors with AVX2; compiled for them where the program is built for
-/// x86-64 (CMakeLists.txt), empty elsewhere.
+/// x86-64 (CMakeLists.txt), none elsewhere.
 
 #include "tactum/math/column_kernels_of.h"
 
-#ifdef __AVX2__
-
 namespace tactum::columns {
 
-extern const Kernels kWide;
-constinit const Kernels kWide = KernelsOf<4>::table();
+extern const Kernels* const kWide;
+
+#ifdef __AVX2__
+namespace {
+
+constexpr Kernels kTable = KernelsOf<4>::table();
+
+}  // namespace
+
+constinit const Kernels* const kWide = &kTable;
+#else
+constinit const Kernels* const kWide = nullptr;
+#endif
 
 }  // namespace tactum::columns
-
-#endif

@@ -128,7 +128,7 @@ class SmallQp {
   void append(std::size_t row, double multiplier) noexcept;
   void release(std::size_t leaving) noexcept;
 
-  const columns::Kernels* kernels_ = &columns::best_kernels();
+  const columns::Kernels* kernels_ = &columns::builds().best();
   QpProblem problem_;
   QpAnswer answer_;
   StaticVector<std::uint32_t, kMostBroken> broken_rows_, broken_cones_;  // in the last scan of all

@@ -24,6 +24,7 @@ bool same_facet(const Facet& a, const Facet& b) {
 struct Source {
   std::span<const ContactPatch> patches;
   const std::vector<ShadingNormals>& shading;
+  std::span<const double> depth_scale;  // by patch; empty: 1
 };
 
 /// Where the bodies of a facet are, which are those of the next one too as a rule.
@@ -55,10 +56,12 @@ void gather_points(const Source& from, const BodyPoses& poses, std::span<const F
     else
       shaded_normals(from.shading[Index(patch.body_a)], from.shading[Index(patch.body_b)], poses.X_AB,
                      poses.X_BA, patch, {normals_A.data(), count});
+    const double scale = from.depth_scale.empty() ? 1.0 : from.depth_scale[Index(f.patch)];
     for (Index i = 0; i < count; ++i) {
       const ContactPoint& point = patch.manifold.points[i];
       points.push_back({poses.X_WA * (0.5 * (point.p_a + point.p_b)), rotated(poses.X_WA.R, normals_A[i]),
-                        point.distance, share * point.weight});
+                        point.distance < 0.0 ? scale * point.distance : point.distance,
+                        share * point.weight});
     }
   }
 }
@@ -108,7 +111,7 @@ void reduce_to_four(std::vector<FacetPoint>& points) {
 
 void make_contact_rows(std::span<const Pose> X_WB, std::span<const ContactPatch> patches,
                        const std::vector<ShadingNormals>& shading, double stiffness_N_per_m,
-                       ContactRows& out) noexcept {
+                       std::span<const double> depth_scale, ContactRows& out) noexcept {
   out.rows.clear();
   out.facets.clear();
   out.full = false;
@@ -120,7 +123,7 @@ void make_contact_rows(std::span<const Pose> X_WB, std::span<const ContactPatch>
             [](const Facet& a, const Facet& b) { return key(a) < key(b); });
 
   if (out.facets.empty()) return;
-  const Source source{patches, shading};
+  const Source source{patches, shading, depth_scale};
   BodyPoses poses(X_WB, out.facets.front());
   for (auto first = out.facets.begin(); first != out.facets.end();) {
     const auto last =

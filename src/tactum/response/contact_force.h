@@ -44,9 +44,10 @@ struct ContactRows {
 };
 
 /// Fills `out.rows`. `shading` has one entry per body, or is empty for force directions without shading.
+/// `depth_scale` has one entry per patch, by which the depth of points that overlap is multiplied; empty: 1.
 void make_contact_rows(std::span<const Pose> X_WB, std::span<const ContactPatch> patches,
                        const std::vector<ShadingNormals>& shading, double stiffness_N_per_m,
-                       ContactRows& out) noexcept;
+                       std::span<const double> depth_scale, ContactRows& out) noexcept;
 
 /// The sum of the contact forces on `body` at its origin, T = sum R_i x F_i [Gregory 2000, 5.1], from solved
 /// rows.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "tactum/base/tolerances.h"
 #include "tactum/dynamics/solver_choice.h"
 #include "tactum/dynamics/step.h"
 #include "tactum/math/screw.h"
@@ -33,6 +34,49 @@ void limit_grasped(const MotionInput& input, WorldState& bodies) {
                                           input.settings.penalty.max_step_m, input.dt_s);
 }
 
+/// Up to so many times the shortest depth, the depth along the motion is taken as it is; from so many times
+/// on it says no more than that the motion follows the surface or leaves it, and the shortest one is taken.
+/// Between, the one passes into the other without a step.
+constexpr double kTrustedDepth = 2.0;
+constexpr double kIgnoredDepth = 4.0;
+
+/// By how much the shortest depth is multiplied where the depth along the motion is `ratio` times as large.
+double depth_scale(double ratio) {
+  if (!(ratio < kIgnoredDepth)) return 1.0;
+  if (ratio <= kTrustedDepth) return ratio;
+  return 1.0 + (kTrustedDepth - 1.0) * (kIgnoredDepth - ratio) / (kIgnoredDepth - kTrustedDepth);
+}
+
+/// How A moves relative to B in the middle of a patch, with the bodies at X_WB [m/s].
+Vec3 velocity_across(const ContactPatch& patch, std::span<const Pose> X_WB, std::span<const Twist> V_WB) {
+  const Index a = Index(patch.body_a);
+  const Index b = Index(patch.body_b);
+  Vec3 middle = Vec3::Zero();
+  for (const ContactPoint& point : patch.manifold.points)
+    middle += 0.5 * point.weight * (point.p_a + point.p_b);
+  const Vec3 p_W = X_WB[a] * middle;
+  return velocity_at(V_WB[a], p_W - X_WB[a].p) - velocity_at(V_WB[b], p_W - X_WB[b].p);
+}
+
+/// When the first contact closes, in [0, dt]: of convex pieces of bodies that turn, as the bodies move; else,
+/// and where the budget has no test left, by the published estimate, distance over closing speed.
+double first_impact(const StepInput& input, std::span<const ContactRow> rows, GapOracle& gaps,
+                    std::span<const Twist> V_WB) noexcept {
+  const std::span<const Pose> X_WB = input.X_WB_start;
+  if (std::any_of(rows.begin(), rows.end(), [](const ContactRow& row) { return row.distance <= 0.0; }))
+    return 0.0;
+  const bool some_turn =
+      std::any_of(V_WB.begin(), V_WB.end(), [&](const Twist& V) { return turns_in(input.dt_s, V, V); });
+  FirstImpact turning{input.dt_s, true};
+  if (some_turn) turning = gaps.first_impact(X_WB, V_WB, input.dt_s);
+  double first = turning.time_s;
+  for (const ContactRow& row : rows)
+    if (!some_turn || !turning.complete || input.patches[Index(row.patch)].of_surfaces ||
+        !turns_in(input.dt_s, V_WB[Index(row.body_a)], V_WB[Index(row.body_b)]))
+      first = time_of_closing(row, X_WB, V_WB, first);
+  return first;
+}
+
 }  // namespace
 
 PenaltyResponse::PenaltyResponse(const World& world, const FrameSettings& settings)
@@ -45,6 +89,7 @@ PenaltyResponse::PenaltyResponse(const World& world, const FrameSettings& settin
       V_before_joints_(world.bodies.size()),
       motion_bound_(world.bodies.size(), 0.0) {
   gathered_.reserve(Index(settings.budget.max_contact_points));
+  depth_scale_.reserve(settings.budget.capacity.patches);
   forces_.reserve(Index(settings.budget.max_contact_points) + 4 * world.bodies.size());
 }
 
@@ -139,14 +184,16 @@ void PenaltyResponse::solve(const StepInput& input, double rest_s, WorldState& b
     if (!bodies_[island].empty()) solve_island(input, island, rest_s, bodies, report);
 }
 
-void PenaltyResponse::step(const StepInput& input, GapOracle& /*gaps*/, WorldState& bodies,
+void PenaltyResponse::step(const StepInput& input, GapOracle& gaps, WorldState& bodies,
                            FrameReport& report) noexcept {
   const World& world = input.world;
   std::vector<Pose>& X_WB = bodies.X_WB;
   std::vector<Twist>& V_WB = bodies.V_WB;
   std::vector<ContactRow>& rows = contacts_.rows;
-  make_contact_rows(X_WB, input.patches, input.shading, input.settings.penalty.stiffness_N_per_m, contacts_);
-  const double impact_s = smallest_time_of_impact(rows, X_WB, V_WB, input.dt_s);
+  const int tests_before = gaps.tests_left();
+  make_contact_rows(X_WB, input.patches, input.shading, input.settings.penalty.stiffness_N_per_m,
+                    scale_depths(input, gaps, V_WB), contacts_);
+  const double impact_s = first_impact(input, rows, gaps, V_WB);
   const double rest_s = input.dt_s - impact_s;
   const int grasped = input.grasped.body;
   if (impact_s > 0.0) {
@@ -165,6 +212,7 @@ void PenaltyResponse::step(const StepInput& input, GapOracle& /*gaps*/, WorldSta
   for (Index i = 0; i < world.bodies.size(); ++i)
     if (world.bodies[i].moves()) X_WB[i] = constrained_pose(world.bodies[i], X_WB[i]);
   report.time_of_impact_s = impact_s;
+  report.validation_tests = tests_before - gaps.tests_left();
 }
 
 Wrench PenaltyResponse::felt(const StepInput& input, const WorldState& bodies) const noexcept {

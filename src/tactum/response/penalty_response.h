@@ -45,6 +45,9 @@ class PenaltyResponse {
   bool rows_full() const noexcept { return contacts_.full; }
 
  private:
+  /// Of each patch, by how much its depth is to be multiplied; none where the shortest depth is wanted.
+  std::span<const double> scale_depths(const StepInput& input, GapOracle& gaps,
+                                       std::span<const Twist> V_WB) noexcept;
   static Vec6 to_hand(const MotionInput& input, const Pose& X_WB) noexcept;
   void add_body(const MotionInput& input, int body, double h_s, const WorldState& bodies) noexcept;
   void solve_island(const StepInput& input, std::size_t island, double rest_s, WorldState& bodies,
@@ -61,6 +64,7 @@ class PenaltyResponse {
   std::vector<char> all_move_;          // no body is deferred
   std::vector<Twist> V_before_joints_;  // by body
   std::vector<double> motion_bound_;
+  ReservedVector<double> depth_scale_;  // by patch
 };
 
 }  // namespace tactum

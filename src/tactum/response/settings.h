@@ -29,11 +29,18 @@ struct Coupling {
   double damping_Nms_per_rad = 0.0005;  ///< b_r [N m s/rad]
 };
 
+/// Which depth of an overlap loads the springs of the penalty response.
+enum class OverlapDepth {
+  kShortest,    ///< of the shortest translation that separates the two pieces
+  kAlongMotion  ///< back along the relative motion, as published, 4.1; the force keeps the contact normal
+};
+
 /// The penalty response as published.
 struct Penalty {
   double stiffness_N_per_m = 600.0;  ///< k_s, 0.6 N/mm in the paper, 5.1 [N/m]
   double max_step_m = 0.5e-3;     ///< the "safe threshold distance" the proxy may travel in a frame, 3.2 [m]
   double min_tolerance_m = 2e-5;  ///< smallest delta, so that a resting part keeps its contacts [m]
+  OverlapDepth depth = OverlapDepth::kShortest;
 };
 
 /// Which of the two responses moves the held part.

@@ -26,7 +26,7 @@ lanes::Bounds bounds_of(const MinimaQuery& query, double size) noexcept {
 
 MinimaWork surface_minima(const SurfaceTree& a, const SurfaceTree& b, const Pose& X_AB,
                           const MinimaQuery& query, std::vector<SurfaceMinimum>& minima) noexcept {
-  return lanes::surface_minima(lanes::kernels(), a, b, X_AB, query, minima);
+  return lanes::surface_minima(lanes::builds().best(), a, b, X_AB, query, minima);
 }
 
 namespace {
@@ -64,7 +64,7 @@ double surface_clearance(const SurfaceTree& a, const SurfaceTree& b, const Pose&
   std::vector<SurfaceMinimum> none;  // without room: takes no memory
   FeatureComparison features(a, b, X_AB, query, none);
   features.narrow_by(kShort);
-  walk_all(lanes::kernels(), a, b, X_AB, query, features);
+  walk_all(lanes::builds().best(), a, b, X_AB, query, features);
   work = features.work;
   work.full = false;
   return features.max_distance();

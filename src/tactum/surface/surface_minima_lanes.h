@@ -14,6 +14,7 @@
 #include <array>
 #include <cstdint>
 
+#include "tactum/base/cpu_dispatch.h"
 #include "tactum/geometry/surface_tree.h"
 #include "tactum/math/pose.h"
 
@@ -108,14 +109,7 @@ struct Kernels {
   void (*lay_faces)(const std::array<Points, 3>& corners, float grown, FaceLeaf& leaf) noexcept;
 };
 
-/// Four lanes at a time, on any processor.
-const Kernels& narrow_kernels() noexcept;
-/// Eight at a time with AVX2; null where the program or the processor is without.
-const Kernels* wide_kernels() noexcept;
-/// The best there are.
-inline const Kernels& kernels() noexcept {
-  const Kernels* wide = wide_kernels();
-  return wide ? *wide : narrow_kernels();
-}
+/// Four lanes at a time on any processor, eight with AVX2.
+CpuBuilds<Kernels> builds() noexcept;
 
 }  // namespace tactum::lanes

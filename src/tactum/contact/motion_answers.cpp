@@ -1,0 +1,97 @@
+/// What the contact finder answers about motions (gap_oracle.h).
+
+#include <algorithm>
+
+#include "tactum/base/tolerances.h"
+#include "tactum/collision/penetration.h"
+#include "tactum/collision/time_of_impact.h"
+#include "tactum/contact/contact_finder.h"
+#include "tactum/contact/seams.h"
+#include "tactum/math/screw.h"
+
+namespace tactum {
+namespace {
+
+using Index = std::size_t;
+
+/// A piece, and how it moves.
+struct MovingPiece {
+  const Polytope& P;
+  const Pose& X_W;
+  const Twist& V_W;
+
+  /// The greatest distance by which a point of the piece goes along unit `n_W` in `dt`.
+  double farthest_along(const Vec3& n_W, double dt) const noexcept {
+    const Vec3 center = rotated(X_W.R, P.center);
+    const double turning = n_W.cross(V_W.w).norm() * P.radius;
+    const double curving = 0.5 * V_W.w.squaredNorm() * (center.norm() + P.radius);
+    return dt * (n_W.dot(velocity_at(V_W, center)) + turning + dt * curving);
+  }
+};
+
+/// Steps that a pair may take. A slow roll just over a surface would take many, and its impact is then early.
+constexpr int kMostSteps = 16;
+
+/// How long the gap that is left at a hit takes to close; 0 where there was no hit, or nothing approaches.
+/// The gap is so small that the motion is a line, and where the search stops in it depends on how parts are
+/// cut.
+double time_to_close(const TimeOfImpact& impact, const MovingPiece& A, const MovingPiece& B) noexcept {
+  if (impact.status != ImpactStatus::kHit) return 0.0;
+  const Pose X_WA = advanced(A.X_W, A.V_W, impact.time);
+  const Pose X_WB = advanced(B.X_W, B.V_W, impact.time);
+  const Vec3 p_W = X_WA * impact.closest.p_a;
+  const Vec3 n_W = rotated(X_WA.R, impact.closest.normal);
+  const double closing = n_W.dot(velocity_at(B.V_W, p_W - X_WB.p) - velocity_at(A.V_W, p_W - X_WA.p));
+  return closing > 0.0 ? impact.closest.distance / closing : 0.0;
+}
+
+}  // namespace
+
+double ContactFinder::depth_along(int patch, std::span<const Pose> X_WB, const Vec3& direction_W) noexcept {
+  const ContactPatch& at = patches_[Index(patch)];
+  if (at.of_surfaces || tests_left_ <= 0) return 0.0;
+  --tests_left_;
+  const Part& part_a = *bodies_[Index(at.body_a)].part;
+  const Part& part_b = *bodies_[Index(at.body_b)].part;
+  const Pose& X_WA = X_WB[Index(at.body_a)];
+  const Pose X_AB = relative_pose(X_WA, X_WB[Index(at.body_b)]);
+  const Vec3 direction = rotated_back(X_WA.R, direction_W);
+  const PairDistance exit = tactum::depth_along(part_a.pieces[Index(at.piece_a)],
+                                                part_b.pieces[Index(at.piece_b)], X_AB, direction);
+  if (!exit.certified()) return 0.0;
+  if (is_true_contact(part_a, at.piece_a, part_b, at.piece_b, X_AB, exit)) return -exit.distance;
+  const double across = at.manifold.normal.dot(direction);
+  return across > 0.0 ? -at.distance / across : 0.0;
+}
+
+FirstImpact ContactFinder::first_impact(std::span<const Pose> X_WB, std::span<const Twist> V_WB,
+                                        double dt_s) noexcept {
+  FirstImpact first{dt_s, true};
+  for (const std::int32_t number : emitted_) {
+    Pair& pair = pairs_[Index(number)];
+    const PairDistance& found = pair.last.found;
+    const Index a = Index(pair.body_a);
+    const Index b = Index(pair.body_b);
+    if (!pair.in_contact || found.distance <= 0.0 || !turns_in(dt_s, V_WB[a], V_WB[b])) continue;
+    const MovingPiece A{bodies_[a].part->pieces[Index(pair.piece_a)], X_WB[a], V_WB[a]};
+    const MovingPiece B{bodies_[b].part->pieces[Index(pair.piece_b)], X_WB[b], V_WB[b]};
+    const double target = tolerances::kImpactGap * std::max(A.P.size, B.P.size);
+    if (pair.last_checked == frame_) {  // else the normal is that of an earlier frame, and proves nothing
+      const Vec3 n = rotated(A.X_W.R, found.normal);
+      const double nearer = A.farthest_along(-n, first.time_s) + B.farthest_along(n, first.time_s);
+      if (found.distance - nearer > target) continue;
+    }
+    if (tests_left_ <= 0) {
+      first.complete = false;
+      break;
+    }
+    const TimeOfImpact impact = time_of_impact(A.P, A.X_W, A.V_W, B.P, B.X_W, B.V_W, first.time_s, target,
+                                               pair.cache, std::min(tests_left_, kMostSteps));
+    tests_left_ -= impact.steps;
+    if (impact.status == ImpactStatus::kMiss) continue;
+    first.time_s = std::min(first.time_s, impact.time + time_to_close(impact, A, B));
+  }
+  return first;
+}
+
+}  // namespace tactum
