@@ -120,9 +120,9 @@ Result<Scene> heap_scene(const HeapOptions& options) {
   const int across = static_cast<int>(options.width_m / kPitch_m);
   const int layers = (options.bodies + across * across - 1) / (across * across);
   const double top = (layers + 1) * kPitch_m;
-  const Result<int> held =
+  const Result<int> jack_in_hand =
       world.add({.name = "held jack", .part = jack, .X_WP = {Mat3::Identity(), {0.0, 0.0, top}}});
-  if (!held) return held.error();
+  if (!jack_in_hand) return jack_in_hand.error();
   if (const Result<void> bin = add_bin(options.width_m, top, world); !bin) return bin.error();
   Random random(options.seed);
   for (int i = 0; i < options.bodies; ++i) {
@@ -139,7 +139,7 @@ Result<Scene> heap_scene(const HeapOptions& options) {
 
   const int bodies = static_cast<int>(world.bodies.size());
   FrameSettings& settings = scene.settings;
-  settings.tool.body = *held;
+  settings.tool.body = *jack_in_hand;
   settings.workspace.X_WD.p = world.bodies[0].X_WB.p;
   settings.shading.on = false;
   settings.friction = {std::vector<double>(world.bodies.size() * world.bodies.size(), kFriction), bodies};

@@ -14,7 +14,7 @@ if(TACTUM_INSTALL)
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
     INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/src/tactum DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT library
-    FILES_MATCHING PATTERN "*.h" PATTERN "toml_reader.h" EXCLUDE)  # that one shows toml++
+    FILES_MATCHING PATTERN "*.h" PATTERN "toml_reader.h" EXCLUDE PATTERN "read_description.h" EXCLUDE)  # these show toml++
   install(EXPORT tactumTargets NAMESPACE tactum:: DESTINATION ${package} COMPONENT library)
   configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/tactumConfig.cmake.in
     ${PROJECT_BINARY_DIR}/generated/tactumConfig.cmake INSTALL_DESTINATION ${package})

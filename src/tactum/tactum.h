@@ -27,8 +27,10 @@
 #include "tactum/haptics/simulation.h"
 #include "tactum/loop/loop_thread.h"
 
-// Scenes and sessions.
+// Scenes, from files or made in code, and sessions.
+#include "tactum/scene/build_scene.h"
 #include "tactum/scene/builtin_scenes.h"
+#include "tactum/scene/scene_description.h"
 #include "tactum/scene/scene_file.h"
 #include "tactum/session/session.h"
 

@@ -25,7 +25,7 @@ struct Case {
   double falling_m = 0.0;    ///< by which a bar that is free falls in a frame
   double rising_m = 0.0;     ///< by which the plate rises in a frame
   int bar_pieces = 1, plate_pieces = 1;
-  bool held = false;  ///< the hand turns it, at the largest step
+  bool grasped = false;  ///< the hand turns it, at the largest step
 };
 
 /// A box of so many boxes side by side along x.
@@ -67,7 +67,7 @@ struct Swing {
     FrameSettings settings;
     settings.response = ResponseModel::kPenalty;
     settings.dt_s = at.dt_s;
-    if (at.held) {
+    if (at.grasped) {
       settings.tool.body = 0;
       settings.penalty.max_step_m = at.turn_rad * half().norm();
     }
@@ -100,9 +100,9 @@ struct Swing {
         at.falling_m + at.rising_m + at.turn_rad * rho() * std::sin(at.before_rad - at.turn_rad * frame);
     return frame + gap_after(frame) / speed;
   }
-  /// A held bar is turned as far ahead as a frame may follow.
+  /// A grasped bar is turned as far ahead as a frame may follow.
   void step() {
-    const double ahead = at.held ? 1.0 : 0.0;
+    const double ahead = at.grasped ? 1.0 : 0.0;
     simulation->step(Pose{exp_rotation({0.0, ahead, 0.0}), Vec3::Zero()});
   }
 
@@ -119,14 +119,14 @@ std::vector<Case> striking() {
           {.name = "a bar that falls", .gap_m = -1.5e-4, .falling_m = 5e-6},
           {.name = "a plate that rises", .gap_m = -1.5e-4, .rising_m = 5e-6},
           {.name = "both of several pieces", .bar_pieces = 3, .plate_pieces = 4},
-          {.name = "in the hand", .held = true}};
+          {.name = "in the hand", .grasped = true}};
 }
 
 TEST(FirstImpact, OfABarThatTurnsIsWhereItsCornerReachesThePlate) {
   for (const Case& at : striking()) {
     SCOPED_TRACE(at.name);
     Swing swing(at);
-    if (at.held) swing.simulation->step(Pose{});  // the hand takes the bar
+    if (at.grasped) swing.simulation->step(Pose{});  // the hand takes the bar
     const double expected = swing.impact();
     const int frame = static_cast<int>(expected);
     for (int i = 0; i < frame; ++i) {
@@ -144,7 +144,7 @@ TEST(FirstImpact, OfABarThatTurnsIsWhereItsCornerReachesThePlate) {
 /// The closing speed at the start of the frame would take the corner into the plate; turning lifts it before.
 TEST(FirstImpact, WhatSwingsPastIsNotPushed) {
   for (Case at : striking()) {
-    if (at.held || at.falling_m > 0.0 || at.rising_m > 0.0) continue;
+    if (at.grasped || at.falling_m > 0.0 || at.rising_m > 0.0) continue;
     SCOPED_TRACE(at.name);
     at.gap_m = 2e-5;
     Swing swing(at);
@@ -161,7 +161,7 @@ TEST(FirstImpact, WhatSwingsPastIsNotPushed) {
 
 /// Where no test is left the published estimate stands.
 TEST(FirstImpact, WithoutBudgetItIsThePublishedEstimate) {
-  const Case at{.name = "no budget", .held = true};
+  const Case at{.name = "no budget", .grasped = true};
   Swing swing(at);
   swing.simulation->step(Pose{});
   const int frame = static_cast<int>(swing.impact());

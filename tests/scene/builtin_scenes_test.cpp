@@ -9,6 +9,8 @@
 #include <iostream>
 #include <sstream>
 
+#include "scene/same_scene.h"
+#include "tactum/scene/build_scene.h"
 #include "tactum/scene/scene_file.h"
 
 namespace tactum {
@@ -96,30 +98,6 @@ TEST(BuiltinScenes, GearsAreThePapers) {
   EXPECT_TRUE(scene->world.bodies[1].X_WB.p.isApprox(Vec3(0.076, 0, 0), 1e-12));
 }
 
-/// Two scenes with the same bits in everything a frame is made of.
-void expect_equal(const Scene& a, const Scene& b) {
-  ASSERT_EQ(a.world.bodies.size(), b.world.bodies.size());
-  for (std::size_t i = 0; i < a.world.bodies.size(); ++i) {
-    const Body& x = a.world.bodies[i];
-    const Body& y = b.world.bodies[i];
-    EXPECT_EQ(x.name, y.name);
-    EXPECT_EQ(x.mass_kg, y.mass_kg);
-    EXPECT_EQ(x.inertia_B, y.inertia_B);
-    EXPECT_EQ(x.X_WB.p, y.X_WB.p);
-    EXPECT_EQ(x.X_WB.R, y.X_WB.R);
-    EXPECT_EQ(x.joint.axis_W, y.joint.axis_W);
-    ASSERT_EQ(x.part->pieces.size(), y.part->pieces.size());
-    for (std::size_t p = 0; p < x.part->pieces.size(); ++p)
-      EXPECT_EQ(x.part->pieces[p].vertices, y.part->pieces[p].vertices);
-  }
-  for (double t = 0.0; t < a.hand->duration_s(); t += 0.37) {
-    EXPECT_EQ(a.hand->at(t).X_DH.p, b.hand->at(t).X_DH.p);
-    EXPECT_EQ(a.hand->at(t).X_DH.R, b.hand->at(t).X_DH.R);
-  }
-  EXPECT_EQ(a.hand->duration_s(), b.hand->duration_s());
-  EXPECT_EQ(a.goals.size(), b.goals.size());
-}
-
 #if defined(__has_feature)
 #if __has_feature(undefined_behavior_sanitizer)
 #define TACTUM_TOML_WRITER_IS_REFUSED
@@ -138,7 +116,23 @@ TEST(BuiltinScenes, RoundTripThroughTomlChangesNoBit) {
     written << toml::parse(source.text);
     const std::optional<Scene> first = built(source, source.text);
     const std::optional<Scene> second = built(source, written.str());
-    if (first && second) expect_equal(*first, *second);
+    if (first && second) testing::expect_equal(*first, *second);
+  }
+}
+
+TEST(BuiltinScenes, DescriptionsHoldAllThatTheirFilesSay) {
+  for (const BuiltinScene& source : builtin_scenes()) {
+    SCOPED_TRACE(source.name);
+    const std::optional<Scene> from_file = built(source, source.text);
+    if (!from_file) continue;
+    Result<SceneDescription> description =
+        parse_description(source.text, std::string(source.name), "scene.toml", meshes());
+    ASSERT_TRUE(description) << description.error().message();
+    description->source.file.clear();  // as if it were made in code
+    description->source.places.clear();
+    const Result<Scene> from_description = build_scene(*description);
+    ASSERT_TRUE(from_description) << from_description.error().message();
+    testing::expect_equal(*from_file, *from_description);
   }
 }
 

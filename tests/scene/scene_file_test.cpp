@@ -271,12 +271,14 @@ TEST(SceneErrors, Contradictions) {
                "found box and sphere");
   expect_error(10, "part = { }", "test.toml:10:8", "must have one shape: found none");
   expect_error(10, "part = { scale = 2, box = { size_m = [1, 1, 1] } }", "test.toml:10:18",
-               "for meshes only");
+               "found box, expected mesh");
   expect_error(13, "joint = { kind = \"free\", axis = [0, 0, 1] }", "test.toml:13:33",
                "expected hinge, slider");
   expect_error(17, "body = \"plate\"", "test.toml:17:8", "a fixed body cannot be held");
-  expect_error(17, "body = \"box\"\nradius_m = 0.1", "test.toml:18:12", "grasp = \"rim\" only");
-  expect_error(21, "turn_deg = 30\nhold_s = 1", "test.toml:20:1", "must do one thing: found several");
+  expect_error(17, "body = \"box\"\nradius_m = 0.1", "test.toml:18:12",
+               "not for this kind of grasp: found centre, expected rim");
+  expect_error(21, "turn_deg = 30\nhold_s = 1", "test.toml:20:1",
+               "must do one thing: found hold_s and turn_deg");
   expect_error(21, "", "test.toml:20:1", "must do one thing: found none");
   expect_error(26, "", "test.toml:23:1", "must tell one angle: found none");
   expect_error(25, "body = \"plate\"", "test.toml:25:8", "only a hinged body has an angle");

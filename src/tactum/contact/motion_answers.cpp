@@ -22,9 +22,9 @@ struct MovingPiece {
 
   /// The greatest distance by which a point of the piece goes along unit `n_W` in `dt`.
   double farthest_along(const Vec3& n_W, double dt) const noexcept {
-    const Vec3 center = rotated(X_W.R, P.center);
-    const double turning = n_W.cross(V_W.w).norm() * P.radius;
-    const double curving = 0.5 * V_W.w.squaredNorm() * (center.norm() + P.radius);
+    const Vec3 center = rotated(X_W.R, P.extent.center);
+    const double turning = n_W.cross(V_W.w).norm() * P.extent.radius;
+    const double curving = 0.5 * V_W.w.squaredNorm() * (center.norm() + P.extent.radius);
     return dt * (n_W.dot(velocity_at(V_W, center)) + turning + dt * curving);
   }
 };
@@ -75,7 +75,7 @@ FirstImpact ContactFinder::first_impact(std::span<const Pose> X_WB, std::span<co
     if (!pair.in_contact || found.distance <= 0.0 || !turns_in(dt_s, V_WB[a], V_WB[b])) continue;
     const MovingPiece A{bodies_[a].part->pieces[Index(pair.piece_a)], X_WB[a], V_WB[a]};
     const MovingPiece B{bodies_[b].part->pieces[Index(pair.piece_b)], X_WB[b], V_WB[b]};
-    const double target = tolerances::kImpactGap * std::max(A.P.size, B.P.size);
+    const double target = tolerances::kImpactGap * std::max(A.P.extent.size, B.P.extent.size);
     if (pair.last_checked == frame_) {  // else the normal is that of an earlier frame, and proves nothing
       const Vec3 n = rotated(A.X_W.R, found.normal);
       const double nearer = A.farthest_along(-n, first.time_s) + B.farthest_along(n, first.time_s);

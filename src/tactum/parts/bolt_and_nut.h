@@ -30,7 +30,7 @@ namespace tactum {
 struct ScrewShape {
   std::string size = "M16";
   std::string tolerance_class = "medium";  ///< metric_thread.h
-  std::optional<double> clearance_m;       ///< between the flanks, in place of a class [m]
+  std::optional<double> clearance_m = {};  ///< between the flanks, in place of a class [m]
   double length_m = 0.04;                  ///< of a bolt under its head: 3 to 100 pitches [m]
   int facets_per_turn = 64;                ///< a multiple of 16, 16 to 256 [-]
 };

@@ -139,6 +139,26 @@ std::span<const double> PenaltyResponse::bound_motion(const MotionInput& input, 
   return motion_bound_;
 }
 
+std::span<const double> PenaltyResponse::scale_depths(const StepInput& input, GapOracle& gaps,
+                                                      std::span<const Twist> V_WB) noexcept {
+  depth_scale_.clear();
+  if (input.settings.penalty.depth == OverlapDepth::kShortest) return depth_scale_;
+  const std::span<const Pose> X_WB = input.X_WB_start;
+  for (Index i = 0; i < input.patches.size() && i < depth_scale_.capacity(); ++i) {
+    const ContactPatch& patch = input.patches[i];
+    double& scale = depth_scale_.emplace_back(1.0);
+    if (patch.distance >= 0.0) continue;
+    const Vec3 v = velocity_across(patch, X_WB, V_WB);
+    const double speed = v.norm();
+    const double size = input.world.bodies[Index(patch.body_a)].part->size +
+                        input.world.bodies[Index(patch.body_b)].part->size;
+    if (speed * input.dt_s <= tolerances::kPenetrating * size) continue;  // no motion, no direction
+    const double depth = gaps.depth_along(static_cast<int>(i), X_WB, -v / speed);
+    if (depth > 0.0) scale = depth_scale(depth / -patch.distance);
+  }
+  return depth_scale_;
+}
+
 /// Solves for the velocities of an island over the rest of the frame.
 void PenaltyResponse::solve_island(const StepInput& input, Index island, double rest_s, WorldState& bodies,
                                    FrameReport& report) noexcept {

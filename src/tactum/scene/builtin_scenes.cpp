@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "tactum/scene/build_scene.h"
 #include "tactum/scene/scene_file.h"
 #include "tactum/scene/toml_reader.h"
 
@@ -17,14 +18,14 @@ std::vector<SceneEntry> list_scenes() {
   return entries;
 }
 
-Result<Scene> open_scene(const std::string& name_or_path) {
+Result<SceneDescription> describe_scene(const std::string& name_or_path) {
   if (name_or_path.ends_with(".toml") || name_or_path.find('/') != std::string::npos)
-    return read_scene_file(name_or_path);
+    return read_description_file(name_or_path);
   std::vector<std::string> names;
   for (const BuiltinScene& scene : builtin_scenes()) {
     if (scene.name == name_or_path)
-      return parse_scene(scene.text, name_or_path, fmt::format("scenes/{}.toml", name_or_path),
-                         data_folders());
+      return parse_description(scene.text, name_or_path, fmt::format("scenes/{}.toml", name_or_path),
+                               data_folders());
     names.emplace_back(scene.name);
   }
   const std::string nearest = nearest_word(name_or_path, names);
@@ -32,6 +33,11 @@ Result<Scene> open_scene(const std::string& name_or_path) {
                nearest.empty() ? fmt::format("one of {}, or a path to a .toml file", fmt::join(names, ", "))
                                : fmt::format("\"{}\", or a path to a .toml file", nearest),
                ""};
+}
+
+Result<Scene> open_scene(const std::string& name_or_path) {
+  const Result<SceneDescription> scene = describe_scene(name_or_path);
+  return scene ? build_scene(*scene) : scene.error();
 }
 
 }  // namespace tactum

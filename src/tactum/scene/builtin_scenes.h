@@ -8,6 +8,7 @@
 
 #include "tactum/base/result.h"
 #include "tactum/scene/scene.h"
+#include "tactum/scene/scene_description.h"
 
 namespace tactum {
 
@@ -27,7 +28,11 @@ struct SceneEntry {
 /// Name and description of every built-in scene, in order.
 std::vector<SceneEntry> list_scenes();
 
-/// A built-in scene by name, or a scene file by path. What ends in .toml or holds a slash is a path.
+/// The description of a built-in scene by name, or of a scene file by path. What ends in .toml or holds a
+/// slash is a path. A program may change it before it builds the scene.
+Result<SceneDescription> describe_scene(const std::string& name_or_path);
+
+/// The scene of that description, built.
 Result<Scene> open_scene(const std::string& name_or_path);
 
 }  // namespace tactum

@@ -1,11 +1,12 @@
 #pragma once
 /// A scene: bodies, which of them the hand holds and how, what the hand does with it, and what counts as
-/// done. Made from a scene file (scene_file.h); constant while frames run.
+/// done. Made from a description (build_scene.h) or a scene file (scene_file.h); constant while frames run.
 
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "tactum/devices/device.h"
 #include "tactum/devices/hand_motion.h"
 #include "tactum/dynamics/world.h"
 #include "tactum/loop/safety.h"
@@ -18,9 +19,8 @@ struct Scene {
   std::string name;         ///< "gears"
   std::string description;  ///< one line
   World world;
-  FrameSettings settings;  ///< its safety limits are the device's, see `safety`
-  bool coupling_by_device =
-      false;              ///< the file tells no coupling: a session chooses it for its device and rate
+  FrameSettings settings;           ///< its safety limits are the device's, see `safety`
+  bool coupling_by_device = false;  ///< a session chooses the coupling for its device and rate
   SafetySettings safety;  ///< what the scene tightens; the session applies it to the device's limits
   std::string device;     ///< preset of the simulated device the hand motion was made for
   std::string grip;       ///< hand model of the simulated hand
@@ -41,5 +41,10 @@ inline long frames_of_motion(const Scene& scene) {
   if (!scene.hand) return 0;
   return static_cast<long>(scene.hand->duration_s() / scene.settings.dt_s);
 }
+
+/// The scene's settings with what depends on the device: the limits of safety, tightened by the scene's, what
+/// the passivity stage knows of it, and the coupling where the scene leaves that to the device. For a session
+/// it is done; a Simulation of the scene's world takes these.
+FrameSettings settings_for(const Scene& scene, const DeviceInfo& info);
 
 }  // namespace tactum

@@ -6,53 +6,35 @@
 #include <filesystem>
 #include <fstream>
 
-#include "tactum/scene/scene_sections.h"
+#include "tactum/scene/build_scene.h"
+#include "tactum/scene/read_description.h"
 
 namespace tactum {
 namespace {
 
-constexpr int kSchema = 1;
 constexpr std::uintmax_t kMaxBytes = 1 << 20;  // of a scene file; parts are in files of their own
-
-void read_root(const TomlReader& root, const SearchFolders& folders, Scene& scene) {
-  root.integer("schema", {}, kSchema, kSchema);
-  if (root.errors()) return;
-  scene.description = root.text("description", "");
-  scene.world.gravity_W = root.vector3("gravity_m_per_s2", Vec3::Zero());
-  // Each section builds on those before it.
-  read_bodies(root, folders, scene);
-  if (!root.errors()) read_fields(root, folders, scene);
-  if (!root.errors()) read_settings(root, scene);
-  if (!root.errors()) read_hand(root, scene);
-  if (!root.errors()) read_goals(root, scene);
-}
 
 }  // namespace
 
-Result<Scene> parse_scene(std::string_view text, const std::string& name, const std::string& file,
-                          const std::vector<std::string>& mesh_folders) {
+Result<SceneDescription> parse_description(std::string_view text, const std::string& name,
+                                           const std::string& file, const std::vector<std::string>& folders) {
   toml::table document;
   try {
     document = toml::parse(text, file);
   } catch (const toml::parse_error& error) {
     return Error{"not TOML", std::string(error.description()), "", place(file, error.source().begin)};
   }
-  Scene scene;
+  SceneDescription scene;
   scene.name = name;
+  scene.source.file = file;
+  scene.source.folders = folders;
   FirstError errors;
-  const TomlReader root(
-      document, file, "",
-      {"schema",    "description", "gravity_m_per_s2", "dt_s",     "device",      "workspace", "coupling",
-       "response",  "penalty",     "constraint",       "friction", "restitution", "impacts",   "shading",
-       "smoothing", "safety",      "budget",           "body",     "tool",        "hand",      "goal",
-       "field"},
-      errors);
-  read_root(root, mesh_folders, scene);
+  read_description(document, scene, errors);
   if (errors) return errors.error();
   return scene;
 }
 
-Result<Scene> read_scene_file(const std::string& path) {
+Result<SceneDescription> read_description_file(const std::string& path) {
   namespace fs = std::filesystem;
   std::error_code failure;
   if (!fs::is_regular_file(path, failure))
@@ -67,7 +49,18 @@ Result<Scene> read_scene_file(const std::string& path) {
     return Error{"cannot read the scene", "a read error", "a readable file", path};
   std::vector<std::string> folders = data_folders();
   folders.insert(folders.begin(), fs::path(path).parent_path().string());
-  return parse_scene(text, fs::path(path).stem().string(), path, folders);
+  return parse_description(text, fs::path(path).stem().string(), path, folders);
+}
+
+Result<Scene> parse_scene(std::string_view text, const std::string& name, const std::string& file,
+                          const std::vector<std::string>& folders) {
+  const Result<SceneDescription> scene = parse_description(text, name, file, folders);
+  return scene ? build_scene(*scene) : scene.error();
+}
+
+Result<Scene> read_scene_file(const std::string& path) {
+  const Result<SceneDescription> scene = read_description_file(path);
+  return scene ? build_scene(*scene) : scene.error();
 }
 
 std::vector<std::string> data_folders() {

@@ -3,6 +3,8 @@
 /// a number out of range or a name that leads nowhere is an error "FILE:LINE:COLUMN: what: found ...,
 /// expected ...".
 ///
+/// A file becomes a description (scene_description.h), and that a scene.
+///
 /// Poses in a file speak of a part's own frame (that of its mesh file, or as generated_parts.h and gear.h
 /// draw it); the World that comes out speaks of centres of mass. docs/scene-format.md lists the keys.
 
@@ -12,15 +14,23 @@
 
 #include "tactum/base/result.h"
 #include "tactum/scene/scene.h"
+#include "tactum/scene/scene_description.h"
 
 namespace tactum {
 
-/// The scene of a file. Meshes are looked for beside the file, then in data_folders().
+/// The description in a file. Meshes are looked for beside the file, then in data_folders().
+Result<SceneDescription> read_description_file(const std::string& path);
+
+/// The same from text. `file` is how errors call it; `folders` are searched for meshes in this order.
+Result<SceneDescription> parse_description(std::string_view text, const std::string& name,
+                                           const std::string& file, const std::vector<std::string>& folders);
+
+/// The scene of a file: its description, built (build_scene.h).
 Result<Scene> read_scene_file(const std::string& path);
 
-/// The same from text. `file` is how errors call it; `mesh_folders` are searched in order.
+/// The same from text, as parse_description has it.
 Result<Scene> parse_scene(std::string_view text, const std::string& name, const std::string& file,
-                          const std::vector<std::string>& mesh_folders);
+                          const std::vector<std::string>& folders);
 
 /// The folders named by the environment's TACTUM_DATA, colons between.
 std::vector<std::string> data_folders();

@@ -1,12 +1,12 @@
 #include "tactum/scene/toml_reader.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "tactum/base/tolerances.h"
+#include "tactum/scene/scene_description.h"
 
 namespace tactum {
 namespace {
@@ -24,57 +24,10 @@ std::string shown(const toml::node& node) {
   return "a date or time";
 }
 
-std::string shown(Range range) {
-  if (std::isinf(range.high) && std::isinf(range.low)) return "a finite number";
-  if (std::isinf(range.high))
-    return fmt::format("{} {}", range.above_low ? "more than" : "at least", range.low);
-  return fmt::format("{} to {}", range.low, range.high);
-}
-
-bool within(double number, Range range) {
-  return std::isfinite(number) && number <= range.high &&
-         (range.above_low ? number > range.low : number >= range.low);
-}
-
-/// Optimal string alignment distance: insertions, deletions, substitutions, swaps of neighbours.
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
-  for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = i;
-  for (std::size_t k = 0; k <= b.size(); ++k) d[0][k] = k;
-  for (std::size_t i = 1; i <= a.size(); ++i)
-    for (std::size_t k = 1; k <= b.size(); ++k) {
-      const std::size_t change = a[i - 1] == b[k - 1] ? 0 : 1;
-      d[i][k] = std::min({d[i - 1][k] + 1, d[i][k - 1] + 1, d[i - 1][k - 1] + change});
-      if (i > 1 && k > 1 && a[i - 1] == b[k - 2] && a[i - 2] == b[k - 1])
-        d[i][k] = std::min(d[i][k], d[i - 2][k - 2] + 1);
-    }
-  return d[a.size()][b.size()];
-}
-
-std::string one_of(const std::vector<std::string>& words) {
-  if (words.empty()) return "nothing";
-  return fmt::format("{}\"{}\"", words.size() == 1 ? "" : "one of ", fmt::join(words, "\", \""));
-}
-
 }  // namespace
 
 std::string place(const std::string& file, const toml::source_position& position) {
   return fmt::format("{}:{}:{}", file, position.line, position.column);
-}
-
-std::string nearest_word(std::string_view word, const std::vector<std::string>& known) {
-  std::string nearest;
-  std::size_t least = std::max<std::size_t>(2, word.size() / 2) + 1;
-  for (const std::string& candidate : known) {
-    std::size_t distance = edit_distance(word, candidate);
-    // "stiffness" is near "stiffness_N_per_m": a forgotten unit is the commonest slip.
-    if (word.size() >= 3 && candidate.starts_with(word)) distance = std::min<std::size_t>(distance, 1);
-    if (distance < least) {
-      least = distance;
-      nearest = candidate;
-    }
-  }
-  return nearest;
 }
 
 TomlReader::TomlReader(const toml::table& table, const std::string& file, std::string path,
@@ -94,13 +47,13 @@ void TomlReader::check_keys(std::span<const char* const> keys) const {
   }
 }
 
-std::string TomlReader::where(const char* key) const {
+toml::source_position TomlReader::position(const char* key) const {
   const toml::node* value = key ? table_.get(key) : nullptr;
-  return place(file_, (value ? value->source() : table_.source()).begin);
+  return (value ? value->source() : table_.source()).begin;
 }
 
 void TomlReader::fail(const char* key, std::string what, std::string found, std::string expected) const {
-  errors_.add({std::move(what), std::move(found), std::move(expected), where(key)});
+  errors_.add({std::move(what), std::move(found), std::move(expected), place(file_, position(key))});
 }
 
 const toml::node* TomlReader::node(const char* key, bool required, const char* expected) const {
@@ -194,16 +147,6 @@ Vec3 TomlReader::vector3(const char* key, std::optional<Vec3> fallback) const {
   return read.empty() ? otherwise : Vec3(read[0], read[1], read[2]);
 }
 
-Vec3 TomlReader::unit_vector3(const char* key, std::optional<Vec3> fallback) const {
-  const Vec3 read = vector3(key, fallback);
-  const double length = read.norm();
-  if (length > 0.0) return read / length;
-  if (has(key))
-    fail(key, fmt::format("\"{}\" in {} has no direction", key, section()), "a vector of length 0",
-         "an axis");
-  return Vec3::UnitZ();
-}
-
 Mat3 TomlReader::rotation() const {
   if (has("quat_wxyz") && has("rpy_deg")) {
     fail("rpy_deg", "two orientations in " + section(), "quat_wxyz and rpy_deg", "one of them");
@@ -220,42 +163,35 @@ Mat3 TomlReader::rotation() const {
     }
     return quat.normalized().toRotationMatrix();
   }
-  const Vec3 rpy = vector3("rpy_deg", Vec3::Zero()) * (kPi / 180.0);
-  const Eigen::AngleAxisd roll(rpy.x(), Vec3::UnitX());
-  const Eigen::AngleAxisd pitch(rpy.y(), Vec3::UnitY());
-  const Eigen::AngleAxisd yaw(rpy.z(), Vec3::UnitZ());
-  return (yaw * pitch * roll).toRotationMatrix();
+  return rotation_rpy_deg(vector3("rpy_deg", Vec3::Zero()));
 }
-
-std::string TomlReader::path_of(const char* key) const { return path_.empty() ? key : path_ + "." + key; }
 
 TomlReader TomlReader::table(const char* key, std::span<const char* const> keys) const {
   const toml::node* value = table_.get(key);
   const toml::table* inner = value ? value->as_table() : nullptr;
   if (value && !inner)
     fail(key, fmt::format("wrong type of \"{}\" in {}", key, section()), shown(*value), "a table");
-  return {inner ? *inner : kEmptyTable, file_, path_of(key), keys, errors_};
+  return {inner ? *inner : kEmptyTable, file_, item_path(path_, key), keys, errors_};
 }
 
-std::vector<TomlReader> TomlReader::tables(const char* key, Keys keys) const {
-  std::vector<TomlReader> readers;
+std::size_t TomlReader::size(const char* key) const {
   const toml::node* value = table_.get(key);
-  if (!value) return readers;
+  if (!value) return 0;
   const auto* array = value->as_array();
   if (!array) {
     fail(key, fmt::format("wrong type of \"{}\" in {}", key, section()), shown(*value), "an array of tables");
-    return readers;
+    return 0;
   }
-  for (const toml::node& item : *array) {
-    if (const auto* inner = item.as_table()) {
-      readers.emplace_back(*inner, file_, fmt::format("{} {}", path_of(key), readers.size() + 1), keys,
-                           errors_);
-    } else {
+  for (const toml::node& item : *array)
+    if (!item.is_table())
       errors_.add({fmt::format("wrong value in \"{}\" in {}", key, section()), shown(item), "a table",
                    place(file_, item.source().begin)});
-    }
-  }
-  return readers;
+  return array->size();
+}
+
+TomlReader TomlReader::element(const char* key, std::size_t index, std::span<const char* const> keys) const {
+  const toml::table* inner = table_.get(key)->as_array()->get(index)->as_table();
+  return {inner ? *inner : kEmptyTable, file_, item_path(path_, key, index), keys, errors_};
 }
 
 }  // namespace tactum

@@ -3,9 +3,9 @@
 #include <cmath>
 
 #include "tactum/devices/registry.h"
-#include "tactum/haptics/coupling_gains.h"
 #include "tactum/haptics/setting_table.h"
 #include "tactum/haptics/simulation.h"
+#include "tactum/scene/build_scene.h"
 
 namespace tactum {
 namespace {
@@ -45,6 +45,19 @@ Result<std::unique_ptr<Session>> Session::open_with(Scene scene, std::unique_ptr
   return std::unique_ptr<Session>(new Session(std::move(scene), std::move(device)));
 }
 
+Result<std::unique_ptr<Session>> Session::open(const SceneDescription& scene, const SessionOptions& options) {
+  Result<Scene> built = build_scene(scene);
+  if (!built) return built.error();
+  return open(std::move(*built), options);
+}
+
+Result<std::unique_ptr<Session>> Session::open_with(const SceneDescription& scene,
+                                                    std::unique_ptr<Device> device, double rate_Hz) {
+  Result<Scene> built = build_scene(scene);
+  if (!built) return built.error();
+  return open_with(std::move(*built), std::move(device), rate_Hz);
+}
+
 Session::Session(Scene scene, std::unique_ptr<Device> device)
     : scene_(std::move(scene)),
       device_limits_(safety_limits(device->info())),
@@ -54,10 +67,7 @@ Session::Session(Scene scene, std::unique_ptr<Device> device)
       state_(scene_.world, scene_.settings),
       goals_(scene_.world, scene_.goals),
       glances_(kGlances) {
-  scene_.settings.safety = tightened(device_limits_, scene_.safety);
-  scene_.settings.port = port_settings(device_->info(), rate_Hz());
-  if (scene_.coupling_by_device)
-    scene_.settings.coupling = coupling_gains(device_->info(), rate_Hz()).coupling;
+  scene_.settings = settings_for(scene_, device_->info());
 }
 
 Result<VirtualRun> Session::run_virtual(std::uint64_t frames, LoopObserver* observer) {

@@ -1,7 +1,7 @@
 #pragma once
 /// The façade: open a scene and a device, run, watch, stop. One Session is one run.
 ///
-///   Scene + device or its name --open, open_with--> Session --run_virtual()--> or
+///   Scene (or its description) + device or its name --open, open_with--> Session --run_virtual()--> or
 ///   --start(), poll(), stop()--> RunRecord, goals
 ///
 /// The loop's thread owns the frame; other threads see it only through rings of small records, and ask for
@@ -17,6 +17,7 @@
 #include "tactum/haptics/frame.h"
 #include "tactum/loop/loop_thread.h"
 #include "tactum/scene/scene.h"
+#include "tactum/scene/scene_description.h"
 #include "tactum/session/command.h"
 #include "tactum/telemetry/frame_feed.h"
 #include "tactum/telemetry/run_record.h"
@@ -49,6 +50,10 @@ class Session final : private HapticFrame {
   /// scene's [Hz].
   static Result<std::unique_ptr<Session>> open_with(Scene scene, std::unique_ptr<Device> device,
                                                     double rate_Hz = 0.0);
+  /// The same of a description, which is built first (build_scene.h).
+  static Result<std::unique_ptr<Session>> open(const SceneDescription& scene, const SessionOptions& options);
+  static Result<std::unique_ptr<Session>> open_with(const SceneDescription& scene,
+                                                    std::unique_ptr<Device> device, double rate_Hz = 0.0);
   ~Session() override { stop(); }
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;

@@ -3,14 +3,14 @@
 #include "tactum/base/tolerances.h"
 #include "tactum/collision/closest_features.h"
 #include "tactum/geometry/hull.h"
-#include "tactum/scene/scene_sections.h"
+#include "tactum/scene/scene_builder.h"
 
 namespace tactum {
 namespace {
 
 using Pieces = std::vector<Polytope>;
 
-/// One `[[body.component]]`, its pieces in the body's frame P.
+/// One component, its pieces in the body's frame P.
 struct Component {
   std::string name;
   Pose X_PC;
@@ -60,42 +60,43 @@ double size_of(const Component& component) {
   return box.diagonal();
 }
 
-/// The frame that a component's pose is told in.
-Pose parent_frame(const TomlReader& reader, const std::vector<Component>& before) {
-  if (!reader.has("on")) return Pose{};
-  const std::string name = reader.text("on");
+/// The frame that a component's pose is described in.
+Pose parent_frame(SceneBuilder& builder, const std::string& path, const std::string& name,
+                  const std::vector<Component>& before) {
+  if (name.empty()) return Pose{};
   std::vector<std::string> names;
   for (const Component& component : before) {
-    if (!component.name.empty() && component.name == name) return component.X_PC;
+    if (component.name == name) return component.X_PC;
     names.push_back(component.name);
   }
   const std::string nearest = nearest_word(name, names);
-  reader.fail("on", "no earlier component of this name, in " + reader.section(), fmt::format("\"{}\"", name),
-              nearest.empty() ? "the name of a component before this one" : fmt::format("\"{}\"", nearest));
+  builder.fail(item_path(path, "on"), "no earlier component of this name, in " + builder.section(path),
+               fmt::format("\"{}\"", name),
+               nearest.empty() ? "the name of a component before this one" : fmt::format("\"{}\"", nearest));
   return Pose{};
 }
 
-Component read_component(const TomlReader& reader, const SearchFolders& folders,
-                         const std::vector<Component>& before) {
+Component build_component(SceneBuilder& builder, const std::string& path,
+                          const ComponentDescription& description, const std::vector<Component>& before) {
   Component component;
-  component.name = reader.text("name", "");
+  component.name = description.name;
   for (const Component& other : before)
     if (!component.name.empty() && other.name == component.name)
-      reader.fail("name", "two components of one name", fmt::format("\"{}\"", component.name),
-                  "a name of its own");
-  component.X_PC =
-      parent_frame(reader, before) * Pose{reader.rotation(), reader.vector3("pos_m", Vec3::Zero())};
-  const Shape shape = read_shape(reader, folders);
-  if (reader.errors()) return component;
+      builder.fail(item_path(path, "name"), "two components of one name",
+                   fmt::format("\"{}\"", component.name), "a name of its own");
+  component.X_PC = parent_frame(builder, path, description.on, before) * description.X_OC;
+  const std::string part = item_path(path, "part");
+  const Shape shape = build_shape(builder, part, *description.part);
+  if (builder.errors()) return component;
   const Result<Pieces> pieces = pieces_of(shape);
   if (!pieces) {
-    reader.fail("part", pieces.error().what, pieces.error().found, pieces.error().expected);
+    builder.fail(part, pieces.error());
     return component;
   }
   for (const Polytope& piece : *pieces) {
     Result<Polytope> placed = moved(piece, component.X_PC);
     if (!placed) {
-      reader.fail("part", placed.error().message());
+      builder.fail(part, placed.error().message());
       return component;
     }
     component.pieces.push_back(std::move(*placed));
@@ -110,24 +111,20 @@ std::string called(const Component& component, std::size_t index) {
 
 }  // namespace
 
-Shape read_components(const TomlReader& body, const SearchFolders& folders) {
+Shape build_components(SceneBuilder& builder, const std::string& path, const BodyDescription& body) {
   Shape shape;
-  if (body.has("part")) {
-    body.fail("part", "two ways to make " + body.section(), "part and component", "one of them");
-    return shape;
-  }
   std::vector<Component> components;
-  for (const TomlReader& reader :
-       body.tables("component", {"name", "part", "on", "pos_m", "quat_wxyz", "rpy_deg"})) {
-    Component component = read_component(reader, folders, components);
-    if (body.errors()) return shape;
+  for (const ComponentDescription& description : body.components) {
+    const std::string item = item_path(path, "component", components.size());
+    Component component = build_component(builder, item, description, components);
+    if (builder.errors()) return shape;
     for (std::size_t i = 0; i < components.size(); ++i) {
       const double depth = overlap(component, components[i]);
       if (depth <= tolerances::kPenetrating * (size_of(component) + size_of(components[i]))) continue;
-      reader.fail("part", "two components of one body overlap",
-                  fmt::format("{} and {} are {:.6g} m inside each other", called(components[i], i),
-                              called(component, components.size()), depth),
-                  "components that touch or stand apart: what is in both would weigh twice");
+      builder.fail(item_path(item, "part"), "two components of one body overlap",
+                   fmt::format("{} and {} are {:.6g} m inside each other", called(components[i], i),
+                               called(component, components.size()), depth),
+                   "components that touch or stand apart: what is in both would weigh twice");
       return shape;
     }
     shape.pieces.insert(shape.pieces.end(), component.pieces.begin(), component.pieces.end());

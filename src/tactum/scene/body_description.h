@@ -1,0 +1,88 @@
+#pragma once
+/// The bodies of a scene, as values in memory. Poses speak of the part's own frame P (that of its mesh file,
+/// or as parts/generated_parts.h and its neighbours draw it), not of the centre of mass.
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "tactum/math/spatial.h"
+#include "tactum/scene/part_description.h"
+
+namespace tactum {
+
+/// From a least to a largest value.
+struct Interval {
+  double lower = 0.0;
+  double upper = 0.0;
+};
+
+struct FreeJoint {
+  static constexpr const char* kKind = "free";
+};
+
+struct FixedJoint {
+  static constexpr const char* kKind = "fixed";
+};
+
+struct HingeJoint {
+  static constexpr const char* kKind = "hinge";
+  Vec3 axis = Vec3::Zero();                 ///< axes of P, of any length but zero [-]
+  Vec3 anchor_m = Vec3::Zero();             ///< a point of the axis, in P [m]
+  double damping_Nms = 0.0;                 ///< viscous [N m s/rad]
+  double friction_Nm = 0.0;                 ///< largest dry friction [N m]
+  double stiffness_Nm_per_rad = 0.0;        ///< of a spring [N m/rad]
+  double rest_rad = 0.0;                    ///< the angle it pulls to [rad]
+  std::optional<Interval> limits_rad = {};  ///< about the pose at the start, which lies within [rad]
+};
+
+struct SliderJoint {
+  static constexpr const char* kKind = "slider";
+  Vec3 axis = Vec3::Zero();               ///< axes of P, of any length but zero [-]
+  double damping_Ns_per_m = 0.0;          ///< viscous [N s/m]
+  double friction_N = 0.0;                ///< largest dry friction [N]
+  double stiffness_N_per_m = 0.0;         ///< of a spring [N/m]
+  double rest_m = 0.0;                    ///< the position it pulls to [m]
+  std::optional<Interval> limits_m = {};  ///< about the pose at the start, which lies within [m]
+};
+
+struct BallJoint {
+  static constexpr const char* kKind = "ball";
+  Vec3 anchor_m = Vec3::Zero();          ///< its centre, in P [m]
+  double damping_Nms = 0.0;              ///< viscous [N m s/rad]
+  std::optional<double> swing_rad = {};  ///< the largest angle it turns by; no limit when absent [rad]
+};
+
+using JointDescription = std::variant<FreeJoint, FixedJoint, HingeJoint, SliderJoint, BallJoint>;
+
+/// One of several shapes of a body.
+struct ComponentDescription {
+  std::string name = {};                     ///< for those that stand on it; may be empty
+  std::optional<PartDescription> part = {};  ///< it must come to convex pieces
+  std::string on = {};                       ///< an earlier component, in whose frame the pose is; empty: P
+  Pose X_OC = {};                            ///< the component's frame in that one [m]
+};
+
+/// A point at which force fields act on the body.
+struct SamplePoint {
+  Vec3 pos_m = Vec3::Zero();          ///< in P [m]
+  std::optional<double> weight = {};  ///< 1 / the number of points when absent [-]
+};
+
+struct BodyDescription {
+  std::string name = {};                              ///< one of its own
+  std::optional<PartDescription> part = {};           ///< either this
+  std::vector<ComponentDescription> components = {};  ///< ... or these
+  std::string on = {};  ///< an earlier body, in whose part's frame the pose is; empty: the world
+  Pose X_OP = {};       ///< the part's frame in that one, at the start [m]
+  Twist V_WB = {};      ///< at the start, of the centre of mass, axes of the world [m/s, rad/s]
+  std::optional<double> mass_kg = {};            ///< either this [kg]
+  std::optional<double> density_kg_per_m3 = {};  ///< ... or this; 1000 when both are absent [kg/m^3]
+  JointDescription joint = FreeJoint{};
+  std::string material = {};                  ///< for friction and restitution; may be empty
+  std::optional<int> field_points = {};       ///< so many points feel fields, spread over the surface [-]
+  std::vector<SamplePoint> field_point = {};  ///< ... or these
+};
+
+}  // namespace tactum

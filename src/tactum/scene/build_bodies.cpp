@@ -1,0 +1,123 @@
+#include <fmt/format.h>
+
+#include "tactum/scene/scene_builder.h"
+
+namespace tactum {
+namespace {
+
+constexpr double kWaterDensity = 1000.0;  // of a part whose description says nothing [kg/m^3]
+
+void set_limits(const std::optional<Interval>& limits, Joint& joint) {
+  if (!limits) return;
+  joint.lower = limits->lower;
+  joint.upper = limits->upper;
+}
+
+/// Joints in the world, from those in the part's frame P.
+class JointMaker {
+ public:
+  explicit JointMaker(const Pose& X_WP) : X_WP_(X_WP) {}
+
+  Joint operator()(const FreeJoint&) const { return {}; }
+  Joint operator()(const FixedJoint&) const {
+    Joint made;
+    made.kind = JointKind::kFixed;
+    return made;
+  }
+  Joint operator()(const HingeJoint& joint) const {
+    Joint made;
+    made.kind = JointKind::kHinge;
+    made.axis_W = X_WP_.R * (joint.axis / joint.axis.norm());
+    made.anchor_W = X_WP_ * joint.anchor_m;
+    made.damping = joint.damping_Nms;
+    made.friction = joint.friction_Nm;
+    made.stiffness = joint.stiffness_Nm_per_rad;
+    made.rest = joint.rest_rad;
+    set_limits(joint.limits_rad, made);
+    return made;
+  }
+  Joint operator()(const SliderJoint& joint) const {
+    Joint made;
+    made.kind = JointKind::kSlider;
+    made.axis_W = X_WP_.R * (joint.axis / joint.axis.norm());
+    made.damping = joint.damping_Ns_per_m;
+    made.friction = joint.friction_N;
+    made.stiffness = joint.stiffness_N_per_m;
+    made.rest = joint.rest_m;
+    set_limits(joint.limits_m, made);
+    return made;
+  }
+  Joint operator()(const BallJoint& joint) const {
+    Joint made;
+    made.kind = JointKind::kBall;
+    made.anchor_W = X_WP_ * joint.anchor_m;
+    made.damping = joint.damping_Nms;
+    if (joint.swing_rad) made.upper = *joint.swing_rad;
+    return made;
+  }
+
+ private:
+  const Pose& X_WP_;
+};
+
+/// Where force fields act: so many points over the surface, or each by itself.
+std::vector<FieldPoint> field_points(const BodyDescription& body, const Part& part) {
+  if (body.field_points) return spread_over(part.surface, *body.field_points);
+  std::vector<FieldPoint> points;
+  const double share = 1.0 / static_cast<double>(body.field_point.size());
+  for (const SamplePoint& point : body.field_point)
+    points.push_back({point.pos_m - part.origin, point.weight.value_or(share)});
+  return points;
+}
+
+/// Names and velocity.
+void check_body(SceneBuilder& builder, const std::string& path, const BodyDescription& body,
+                const World& world) {
+  for (const Body& other : world.bodies)
+    if (other.name == body.name)
+      builder.fail(item_path(path, "name"), "two bodies of one name", fmt::format("\"{}\"", body.name),
+                   "a name of its own");
+  const bool linear = !body.V_WB.v.isZero(0.0);
+  if (std::holds_alternative<FixedJoint>(body.joint) && (linear || !body.V_WB.w.isZero(0.0)))
+    builder.fail(item_path(path, linear ? "velocity_m_per_s" : "angular_velocity_rad_per_s"),
+                 "a fixed body has a velocity", fmt::format("\"{}\"", body.name), "a body that moves");
+}
+
+void build_body(SceneBuilder& builder, const std::string& path, const BodyDescription& body, Scene& scene) {
+  BodySpec spec;
+  spec.name = body.name;
+  check_body(builder, path, body, scene.world);
+  // Described in the world, or in the frame of the part it stands on.
+  spec.X_WP = body.X_OP;
+  if (!body.on.empty()) {
+    const int on = builder.find_body(item_path(path, "on"), body.on, scene.world);
+    if (on < 0) return;
+    const Body& below = scene.world.bodies[static_cast<std::size_t>(on)];
+    spec.X_WP = part_pose(below, below.X_WB) * spec.X_WP;
+  }
+  spec.V_WB = body.V_WB;
+  spec.joint = std::visit(JointMaker(spec.X_WP), body.joint);
+  spec.material = body.material;
+  const std::string item = item_path(path, "part");
+  const Shape shape =
+      body.part ? build_shape(builder, item, *body.part) : build_components(builder, path, body);
+  if (builder.errors()) return;
+  Result<std::shared_ptr<const Part>> part = part_of(shape, body.density_kg_per_m3.value_or(kWaterDensity));
+  if (!part) return builder.fail(item, part.error().message());
+  spec.part = std::move(*part);
+  spec.mass_kg = body.mass_kg;
+  spec.field_points = field_points(body, *spec.part);
+  for (const std::string& remark : spec.part->notes.remarks)
+    scene.remarks.push_back(fmt::format("{} ({}): {}", spec.name, shape.file, remark));
+  if (const Result<int> added = scene.world.add(spec); !added) builder.fail(path, added.error());
+}
+
+}  // namespace
+
+void build_bodies(SceneBuilder& builder, Scene& scene) {
+  std::size_t index = 0;
+  for (const BodyDescription& body : builder.description().bodies)
+    build_body(builder, item_path("", "body", index++), body, scene);
+}
+
+}  // namespace tactum

@@ -1,0 +1,116 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "tactum/devices/simulated_device.h"
+#include "tactum/scene/scene_builder.h"
+
+namespace tactum {
+namespace {
+
+/// World and device frame, and back: X_WH.p = X_WD (scale p_DH).
+class DeviceMap {
+ public:
+  explicit DeviceMap(const Workspace& workspace) : X_WD_(workspace.X_WD), scale_(workspace.scale) {}
+
+  Vec3 point_to_device(const Vec3& p_W) const { return X_WD_.R.transpose() * (p_W - X_WD_.p) / scale_; }
+  Vec3 direction_to_device(const Vec3& axis_W) const { return X_WD_.R.transpose() * axis_W; }
+  Pose to_device(const Pose& X_WH) const { return {X_WD_.R.transpose() * X_WH.R, point_to_device(X_WH.p)}; }
+  Pose to_world(const Pose& X_DH) const { return {X_WD_.R * X_DH.R, X_WD_ * (scale_ * X_DH.p)}; }
+
+ private:
+  Pose X_WD_;
+  double scale_;
+};
+
+/// The body that is grasped at the start; null when none is.
+const Body* grasped_body(const Scene& scene) {
+  const int body = scene.settings.tool.body;
+  return body < 0 ? nullptr : &scene.world.bodies[static_cast<std::size_t>(body)];
+}
+
+Pose handle_at_start(const Scene& scene) {
+  const Body* body = grasped_body(scene);
+  return body ? body->X_WB * scene.settings.tool.X_BH : scene.settings.workspace.X_WD;
+}
+
+/// Appends steps to a motion.
+class StepPlayer {
+ public:
+  StepPlayer(SceneBuilder& builder, const Scene& scene, ScriptedMotion& motion)
+      : builder_(builder), scene_(scene), map_(scene.settings.workspace), motion_(motion) {}
+
+  void play(const HandStep& step, const std::string& path) {
+    std::visit([&](const auto& kind) { append(kind, path); }, step);
+  }
+
+ private:
+  void append(const HoldStep& step, const std::string&) { motion_.hold(step.hold_s, step.button ? 1u : 0u); }
+
+  /// About a line of the world; where it is absent, the grasped body's hinge.
+  void append(const TurnStep& step, const std::string& path) {
+    std::optional<Vec3> axis = step.axis, anchor = step.anchor_m;
+    if (const Body* body = grasped_body(scene_); body && body->joint.kind == JointKind::kHinge) {
+      if (!axis) axis = body->joint.axis_W;
+      if (!anchor) anchor = body->joint.anchor_W;
+    }
+    if (!axis || !anchor)
+      return builder_.fail(
+          path, fmt::format("missing key \"{}\" in {}", axis ? "anchor_m" : "axis", builder_.section(path)),
+          "none", "3 numbers, or a tool whose joint is a hinge");
+    motion_.turn_about(step.duration_s, map_.point_to_device(*anchor),
+                       map_.direction_to_device(*axis / axis->norm()), step.turn_rad, step.profile,
+                       step.button ? 1u : 0u);
+  }
+
+  void append(const MoveStep& step, const std::string&) {
+    const Pose X_WH_start = handle_at_start(scene_);
+    Pose X_WH = map_.to_world(motion_.end_pose());
+    if (step.offset_m) X_WH.p = X_WH_start.p + *step.offset_m;
+    if (step.rotation_W) X_WH.R = *step.rotation_W * X_WH_start.R;
+    motion_.move_to(step.duration_s, map_.to_device(X_WH), step.profile, step.button ? 1u : 0u);
+  }
+
+  SceneBuilder& builder_;
+  const Scene& scene_;
+  DeviceMap map_;
+  ScriptedMotion& motion_;
+};
+
+/// The hand must not be sent where the device ends.
+void check_workspace(SceneBuilder& builder, const HandMotion& motion, const SimulatedDeviceModel& device) {
+  constexpr double kLook_s = 0.01;
+  double farthest = 0.0;
+  for (double t = 0.0; t <= motion.duration_s(); t += kLook_s)
+    farthest = std::max(farthest, motion.at(t).X_DH.p.norm());
+  if (farthest <= device.workspace_radius_m) return;
+  builder.fail("hand", fmt::format("the motion leaves the workspace of the {}", device.name),
+               fmt::format("{:.4f} m from its middle", farthest),
+               fmt::format("at most {:.4f} m; see [workspace] scale and pos_m", device.workspace_radius_m));
+}
+
+}  // namespace
+
+void build_hand(SceneBuilder& builder, Scene& scene) {
+  const HandDescription& hand = builder.description().hand;
+  scene.device = hand.device;
+  const Result<SimulatedDeviceModel> device = simulated_device_preset(scene.device);
+  if (!device) return builder.fail("device", device.error());
+  scene.grip = hand.grip;
+  if (const Result<HandModel> grip = hand_model(scene.grip); !grip) builder.fail("hand.grip", grip.error());
+
+  ScriptedMotion motion(DeviceMap(scene.settings.workspace).to_device(handle_at_start(scene)));
+  StepPlayer player(builder, scene, motion);
+  for (int round = 0; round < hand.repeat && !builder.errors(); ++round)
+    for (std::size_t i = 0; i < hand.steps.size(); ++i)
+      player.play(hand.steps[i], item_path("hand", "step", i));
+  if (builder.errors()) return;
+  scene.hand = std::make_shared<ScriptedMotion>(std::move(motion));
+  if (const auto& tremor = hand.tremor)
+    scene.hand = std::make_shared<TremorMotion>(
+        scene.hand, physiological_tremor(tremor->translation_m, tremor->rotation_rad,
+                                         static_cast<std::uint64_t>(tremor->seed)));
+  check_workspace(builder, *scene.hand, *device);
+}
+
+}  // namespace tactum

@@ -1,0 +1,63 @@
+#pragma once
+/// The steps of build_scene, for src/tactum/scene/*.cpp only. They add to the builder's errors and go on.
+
+#include <optional>
+#include <string>
+
+#include "tactum/math/spatial.h"
+#include "tactum/scene/item_errors.h"
+#include "tactum/scene/scene.h"
+#include "tactum/scene/scene_description.h"
+#include "tactum/scene/shape.h"
+
+namespace tactum {
+
+/// The description and the first of its errors.
+class SceneBuilder {
+ public:
+  explicit SceneBuilder(const SceneDescription& description) : description_(description) {}
+
+  const SceneDescription& description() const { return description_; }
+  FirstError& errors() { return errors_; }
+  /// An error at an item by its path.
+  void fail(const std::string& path, std::string what, std::string found = "", std::string expected = "") {
+    errors_.add({std::move(what), std::move(found), std::move(expected), description_.source.where(path)});
+  }
+  /// The same of an error that knows no place.
+  void fail(const std::string& path, const Error& error) {
+    fail(path, error.what, error.found, error.expected);
+  }
+  /// How messages call the table at a path.
+  std::string section(const std::string& path) const { return description_.source.section(path); }
+  /// The path of a file by its name, absolute or in one of the source's folders; an error at the item when
+  /// there is none says where it was searched.
+  std::optional<std::string> find_file(const std::string& path, const char* kind, const std::string& name);
+  /// The index of a body by name; -1 and an error at the item when there is none.
+  int find_body(const std::string& path, const std::string& name, const World& world);
+
+ private:
+  const SceneDescription& description_;
+  FirstError errors_;
+};
+
+/// The shape of a part whose table is at `path`.
+Shape build_shape(SceneBuilder& builder, const std::string& path, const PartDescription& part);
+
+/// The components of a body, as one shape of convex pieces.
+Shape build_components(SceneBuilder& builder, const std::string& path, const BodyDescription& body);
+
+/// Bodies, into scene.world.bodies and remarks.
+void build_bodies(SceneBuilder& builder, Scene& scene);
+
+/// Fields; bodies without sample points get some when there are fields.
+void build_fields(SceneBuilder& builder, Scene& scene);
+
+/// Settings, coefficients of pairs, the grasp and the device's place.
+void build_settings(SceneBuilder& builder, Scene& scene);
+
+/// The hand's motion: needs the settings, since it is described in the world and played in the device frame.
+void build_hand(SceneBuilder& builder, Scene& scene);
+
+void build_goals(SceneBuilder& builder, Scene& scene);
+
+}  // namespace tactum

@@ -1,0 +1,98 @@
+#include <fmt/format.h>
+
+#include "tactum/scene/item_visitor.h"
+
+namespace tactum {
+namespace {
+
+constexpr int kMostFieldPoints = 10'000;  // of a body
+
+/// Limits that hold the joint as it stands; `unit` as in ItemVisitor::interval.
+void visit_limits(ItemVisitor& visitor, const char* key, std::optional<Interval>& limits, double unit) {
+  visitor.optional(key, limits, [&](Interval& ends) {
+    visitor.interval(key, ends, unit);
+    if (!(ends.lower <= 0.0 && ends.upper >= 0.0 && ends.lower < ends.upper))
+      visitor.fail(key, "the limits do not hold the joint as it stands, at 0",
+                   fmt::format("{:.9g} to {:.9g}", ends.lower / unit, ends.upper / unit),
+                   "a negative and a positive one, or 0");
+  });
+}
+
+}  // namespace
+
+void visit_items(ItemVisitor&, FreeJoint&) {}
+void visit_items(ItemVisitor&, FixedJoint&) {}
+
+void visit_items(ItemVisitor& visitor, HingeJoint& joint) {
+  visitor.direction("axis", joint.axis, Need::kRequired);
+  visitor.vector("anchor_m", joint.anchor_m);
+  visitor.number("damping_Nms", joint.damping_Nms, kNotNegative);
+  visitor.number("friction_Nm", joint.friction_Nm, kNotNegative);
+  visitor.number("stiffness_Nm_per_rad", joint.stiffness_Nm_per_rad, kNotNegative);
+  visitor.angle("rest_deg", joint.rest_rad);
+  visit_limits(visitor, "limits_deg", joint.limits_rad, radians(1.0));
+}
+
+void visit_items(ItemVisitor& visitor, SliderJoint& joint) {
+  visitor.direction("axis", joint.axis, Need::kRequired);
+  visitor.number("damping_Ns_per_m", joint.damping_Ns_per_m, kNotNegative);
+  visitor.number("friction_N", joint.friction_N, kNotNegative);
+  visitor.number("stiffness_N_per_m", joint.stiffness_N_per_m, kNotNegative);
+  visitor.number("rest_m", joint.rest_m);
+  visit_limits(visitor, "limits_m", joint.limits_m, 1.0);
+}
+
+void visit_items(ItemVisitor& visitor, BallJoint& joint) {
+  visitor.vector("anchor_m", joint.anchor_m);
+  visitor.number("damping_Nms", joint.damping_Nms, kNotNegative);
+  visitor.angle("swing_deg", joint.swing_rad, {0.0, 180.0});
+}
+
+void visit_items(ItemVisitor& visitor, JointDescription& joint) {
+  visitor.kinds("kind", "joint", joint, Need::kRequired);
+}
+
+void visit_items(ItemVisitor& visitor, ComponentDescription& component) {
+  visitor.text("name", component.name);
+  visitor.text("on", component.on);
+  visitor.pose(component.X_OC);
+  visitor.optional("part", component.part, [&](PartDescription& part) { visitor.table("part", part); });
+  if (!component.part) visitor.missing("part", "a table such as { box = {...} }");
+}
+
+void visit_items(ItemVisitor& visitor, SamplePoint& point) {
+  visitor.vector("pos_m", point.pos_m, Need::kRequired);
+  visitor.number("weight", point.weight);
+}
+
+void visit_items(ItemVisitor& visitor, BodyDescription& body) {
+  visitor.text("name", body.name, Need::kRequired);
+  if (body.name.empty())
+    visitor.fail("name", "a body without a name in " + visitor.section(), "\"\"", "a text");
+  visitor.text("on", body.on);
+  visitor.pose(body.X_OP);
+  visitor.vector("velocity_m_per_s", body.V_WB.v);
+  visitor.vector("angular_velocity_rad_per_s", body.V_WB.w);
+  if (visitor.present("joint", true)) visitor.table("joint", body.joint);
+  visitor.text("material", body.material);
+
+  visitor.optional("part", body.part, [&](PartDescription& part) { visitor.table("part", part); });
+  visitor.tables("component", body.components);
+  if (body.part && !body.components.empty())
+    visitor.fail("part", "two ways to make " + visitor.section(), "part and component", "one of them");
+  if (!body.part && body.components.empty()) visitor.missing("part", "a table such as { box = {...} }");
+  visitor.number("mass_kg", body.mass_kg, kPositive);
+  visitor.number("density_kg_per_m3", body.density_kg_per_m3, kPositive);
+  if (body.mass_kg && body.density_kg_per_m3)
+    visitor.fail("mass_kg", "two masses in " + visitor.section(), "mass_kg and density_kg_per_m3",
+                 "one of them");
+
+  visitor.tables("field_point", body.field_point);
+  visitor.optional("field_points", body.field_points,
+                   [&](int& count) { visitor.integer("field_points", count, 1, kMostFieldPoints); });
+  if (body.field_points && !body.field_point.empty())
+    visitor.fail("field_points", "two sets of sample points in " + visitor.section(),
+                 "field_points and field_point", "one of them");
+}
+
+}  // namespace tactum

@@ -1,0 +1,100 @@
+#include <algorithm>
+#include <string_view>
+
+#include "tactum/scene/item_visitor.h"
+
+namespace tactum {
+namespace {
+
+constexpr int kSchema = 1;
+
+template <class Take>
+void each_setting(std::string_view section, const Take& take) {
+  for (const SettingInfo& info : setting_table())
+    if (section == info.section) take(info);
+}
+
+void visit_section(ItemVisitor& visitor, std::string_view section, SettingsDescription& settings) {
+  each_setting(section,
+               [&](const SettingInfo& info) { visitor.setting(info, settings.frame, settings.safety); });
+}
+
+/// The sections of settings; that of the workspace also tells where the device stands.
+void visit_sections(ItemVisitor& visitor, SettingsDescription& settings, WorkspaceDescription& workspace) {
+  std::string_view last;
+  for (const SettingInfo& info : setting_table()) {
+    const std::string_view section = info.section;
+    if (section.empty() || section == last) continue;
+    last = section;
+    const bool places = section == "workspace";
+    KeyList keys;
+    each_setting(section, [&](const SettingInfo& setting) { keys.push_back(setting.key); });
+    const KeyList& pose = known_keys<WorkspaceDescription>();
+    if (places) keys.insert(keys.end(), pose.begin(), pose.end());
+    visitor.table(info.section, keys, [&](ItemVisitor& inside) {
+      visit_section(inside, section, settings);
+      if (places) visit_items(inside, workspace);
+    });
+  }
+}
+
+void visit_pair(ItemVisitor& visitor, MaterialPair& pair, Range range) {
+  visitor.text("material_a", pair.material_a, Need::kRequired);
+  visitor.text("material_b", pair.material_b, Need::kRequired);
+  visitor.number("coefficient", pair.coefficient, range, Need::kRequired);
+}
+
+void visit_pairs(ItemVisitor& visitor, const char* key, std::vector<MaterialPair>& pairs, Range range) {
+  KeyVisitor keys;
+  MaterialPair scratch;
+  visit_pair(keys, scratch, range);
+  pairs.resize(visitor.size(key, pairs.size()));
+  for (std::size_t i = 0; i < pairs.size(); ++i)
+    visitor.element(key, i, keys.keys, [&](ItemVisitor& inside) { visit_pair(inside, pairs[i], range); });
+}
+
+/// What code could say twice; a file cannot.
+void check_settings(ItemVisitor& visitor, const SettingsDescription& settings) {
+  const FrameSettings& frame = settings.frame;
+  const FrameSettings usual;
+  bool same = true;
+  each_setting("coupling",
+               [&](const SettingInfo& info) { same = same && info.get(frame, {}) == info.get(usual, {}); });
+  if (settings.coupling_by_device && !same)
+    visitor.fail("coupling", "the coupling is set, and chosen by the device", "settings.frame.coupling",
+                 "coupling_by_device = false with it");
+  if (frame.tool.body >= 0 || frame.tool.picks)
+    visitor.fail("tool", "the grasp is set by a body's index", "settings.frame.tool",
+                 "SceneDescription::tool");
+  if (!frame.friction.coefficients.empty() || !frame.impacts.restitution.coefficients.empty())
+    visitor.fail("friction", "coefficients are set by the indices of bodies", "settings.frame",
+                 "SettingsDescription::friction and restitution");
+}
+
+void visit_settings(ItemVisitor& visitor, SettingsDescription& settings, WorkspaceDescription& workspace) {
+  settings.coupling_by_device = !visitor.present("coupling", !settings.coupling_by_device);
+  visit_section(visitor, "", settings);
+  visit_sections(visitor, settings, workspace);
+  visit_pairs(visitor, "friction", settings.friction, kNotNegative);
+  visit_pairs(visitor, "restitution", settings.restitution, {0.0, 1.0});
+  check_settings(visitor, settings);
+}
+
+}  // namespace
+
+void visit_items(ItemVisitor& visitor, SceneDescription& scene) {
+  int schema = kSchema;
+  visitor.integer("schema", schema, kSchema, kSchema, Need::kRequired);
+  visitor.text("description", scene.description);
+  visitor.vector("gravity_m_per_s2", scene.gravity_W);
+  visitor.tables("body", scene.bodies);
+  if (scene.bodies.empty()) visitor.fail(nullptr, "the scene has no [[body]]", "none", "at least one");
+  visitor.tables("field", scene.fields);
+  visit_settings(visitor, scene.settings, scene.workspace);
+  visitor.optional("tool", scene.tool, [&](ToolDescription& tool) { visitor.table("tool", tool); });
+  visitor.text("device", scene.hand.device);
+  visitor.table("hand", scene.hand);
+  visitor.tables("goal", scene.goals);
+}
+
+}  // namespace tactum
