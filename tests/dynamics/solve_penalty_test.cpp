@@ -57,8 +57,8 @@ ContactRow random_row(Random& random, int bodies) {
   return row;
 }
 
-/// Bodies that are free, turn on a hinge, slide, turn about a point, or are fixed, named in any order. The law
-/// at the end of the step and the momentum of every body along its free motions have one solution.
+/// Bodies that are free, turn on a hinge, slide, turn about a point, or are fixed, named in any order. The
+/// law at the end of the step and the momentum of every body along its free motions have one solution.
 TEST(SolvePenalty, SolvesForBodiesOfAnyFreedomInAnyOrder) {
   constexpr std::array kKinds{JointKind::kFixed, JointKind::kHinge, JointKind::kSlider, JointKind::kBall,
                               JointKind::kFree};

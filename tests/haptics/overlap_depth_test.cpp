@@ -13,7 +13,7 @@
 namespace tactum {
 namespace {
 
-/// A held block that its joint leads obliquely into a fixed plate, whose top is at z = 0.
+/// A grasped block that its joint leads obliquely into a fixed plate, whose top is at z = 0.
 struct Case {
   const char* name;
   double size_m = 0.02;      ///< length of the block
@@ -46,15 +46,15 @@ struct Oblique {
       : at(of), block(of.plate_first ? 1 : 0) {
     World world;
     world.bodies.resize(2);
-    Body& held = world.bodies[block];
-    held.part = solid_box(half());
-    held.mass_kg = 0.05;
-    held.inertia_B = 1e-5 * Mat3::Identity();
-    held.X_WB.p = Vec3(0.0, 0.0, half().z()) - start_m() * motion();
+    Body& grasped = world.bodies[block];
+    grasped.part = solid_box(half());
+    grasped.mass_kg = 0.05;
+    grasped.inertia_B = 1e-5 * Mat3::Identity();
+    grasped.X_WB.p = Vec3(0.0, 0.0, half().z()) - start_m() * motion();
     if (at.on_hinge) {
-      held.joint = {.kind = JointKind::kHinge, .axis_W = Vec3::UnitY(), .anchor_W = anchor()};
+      grasped.joint = {.kind = JointKind::kHinge, .axis_W = Vec3::UnitY(), .anchor_W = anchor()};
     } else {
-      held.joint = {.kind = JointKind::kSlider, .axis_W = motion()};
+      grasped.joint = {.kind = JointKind::kSlider, .axis_W = motion()};
     }
     Body& plate = world.bodies[1 - block];
     const Vec3 plate_half = at.size_m * Vec3(3.0, 3.0, 1.0);

@@ -203,8 +203,9 @@ TEST(DescriptionErrors, KeysOfAnotherKind) {
   EXPECT_EQ(
       error("[[goal]]\nkind = \"touched\"\nbody = \"b\"\nratio = 1\n"),
       "b.toml:8:9: \"ratio\" in [goal 1] is not for this kind of goal: found touched, expected followed");
-  EXPECT_EQ(error("[tool]\nbody = \"b\"\nreach_m = 1\n"),
-            "b.toml:7:11: \"pick_distance_m\" in [tool] is not for this kind of tool: found picks = false, expected "
+  EXPECT_EQ(error("[tool]\nbody = \"b\"\npick_distance_m = 1\n"),
+            "b.toml:7:11: \"pick_distance_m\" in [tool] is not for this kind of tool: found picks = false, "
+            "expected "
             "picks = true");
   EXPECT_EQ(error("[[hand.step]]\nhold_s = 1\nprofile = \"steady\"\n"),
             "b.toml:7:11: \"profile\" in [hand.step 1] is not for this kind of step: found hold_s, expected "

@@ -89,6 +89,18 @@ inline constexpr double kRestingVelocity = 1e-8;
 /// nearer: impulses then grow against each other while velocities stay.
 inline constexpr double kSlidingVelocity = 3e-5;
 
+/// The friction of a sliding patch has settled when it changes by less than this share of mu N from one
+/// answer to the next.
+inline constexpr double kSameFriction = 1e-6;
+
+/// Friction at so little less than mu N, as a share, slides: what sweeps bring to the bound is off by
+/// rounding.
+inline constexpr double kAtFrictionBound = 1e-9;
+
+/// In an impact, velocities of less than this share of the approach are none, and energies are the same when
+/// they differ by less.
+inline constexpr double kImpactSettled = 1e-10;
+
 /// A direction in which less than this share of a body's mobility is left, once the directions found before
 /// are taken away, is none: a hinge's mobility is of rank one, but for rounding.
 inline constexpr double kNoMobility = 1e-12;

@@ -173,17 +173,18 @@ class TwoBodies {
       if (!other->settled && !follow(*other, representative, shown, *patch))
         share(*other, nearest, representative.patch);
     if (!stretches_.empty())
-      contact_manifold_over(representative.a.polytope(), representative.b.polytope(), X_AB_, led, representative.margin,
-                            {stretches_.begin(), stretches_.size()}, patch->manifold);
+      contact_manifold_over(representative.a.polytope(), representative.b.polytope(), X_AB_, led,
+                            representative.margin, {stretches_.begin(), stretches_.size()}, patch->manifold);
     steady_centroid(X_AB_, patch->manifold, steady_, *representative.shown);
     for (SeamCandidate* other : candidates_)
       if (other != &representative && other->led_by == representative.patch)
         remember(*other, representative, shown);
   }
 
-  /// The representative's memory is that of whom it leads, unless what was shown would be the way through another
-  /// wall.
-  void remember(SeamCandidate& other, const SeamCandidate& representative, const PairDistance& shown) const noexcept {
+  /// The representative's memory is that of whom it leads, unless what was shown would be the way through
+  /// another wall.
+  void remember(SeamCandidate& other, const SeamCandidate& representative,
+                const PairDistance& shown) const noexcept {
     const PairView pair(other.a.polytope(), other.b.polytope(), X_AB_);
     int a = vertex_of(pair.A, other.found.a);
     int b = vertex_of(pair.B, other.found.b);

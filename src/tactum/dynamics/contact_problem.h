@@ -85,8 +85,9 @@ class ContactProblem {
 
   /// Forgets everything; then the bodies are added, then the rows of their joints, then other rows.
   void clear() noexcept;
-  /// `centre_W` is where the metric and the target are stated. The joint acts for `h` seconds; with 0, as in an
-  /// impact, it leaves its free motions alone. A fixed body needs no entry: what was not added does not move.
+  /// `centre_W` is where the metric and the target are stated. The joint acts for `h` seconds; with 0, as in
+  /// an impact, it leaves its free motions alone. A fixed body needs no entry: what was not added does not
+  /// move.
   void add_body(int body, const Body& what, const Pose& X_WB, const Vec3& centre_W, const BodyMetric& metric,
                 const Vec6& target, double h) noexcept;
   /// A body whose displacement is given: nothing in this problem changes it.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tactum/base/tolerances.h"
+
 namespace tactum {
 namespace {
 
@@ -306,9 +308,9 @@ double Friction::give_of(const FrictionPatch& patch) noexcept {
   return most > 0.0 ? 1.0 / most : 0.0;
 }
 
-/// The friction that the last answer's slide makes of the friction it had: against the slide, force and torque
-/// sharing mu N as on an area all of whose points slide, an ellipse [Howe and Cutkosky 1996]. Where it stays
-/// what it was, it is mu N against the slide, or less and nothing slides.
+/// The friction that the last answer's slide makes of the friction it had: against the slide, force and
+/// torque sharing mu N as on an area all of whose points slide, an ellipse [Howe and Cutkosky 1996]. Where it
+/// stays what it was, it is mu N against the slide, or less and nothing slides.
 SlidingForce Friction::next_force(const FrictionPatch& patch, const SlidingForce& last, double most_N,
                                   const ContactProblem& problem) const noexcept {
   const double give = give_of(patch);
@@ -329,7 +331,6 @@ SlidingForce Friction::next_force(const FrictionPatch& patch, const SlidingForce
 }
 
 bool Friction::update_sliding(const RowsInProblem& contacts, ContactProblem& problem) noexcept {
-  constexpr double kSameForce = 1e-6;  // share of mu N
   bool changed = false;
   for (FrictionPatch& patch : patches_) {
     if (!patch.acts || !patch.slip.any()) continue;
@@ -344,7 +345,7 @@ bool Friction::update_sliding(const RowsInProblem& contacts, ContactProblem& pro
     const double arm = patch.radius_m > 0.0 ? 1.0 / patch.radius_m : 0.0;
     const double difference =
         (next.force_W - last.force_W).norm() + arm * std::abs(next.torque_Nm - last.torque_Nm);
-    if (patch.sliding.acts && difference <= kSameForce * most_N) continue;
+    if (patch.sliding.acts && difference <= tolerances::kSameFriction * most_N) continue;
     if (!patch.sliding.acts) release_cone(patch, problem);
     set_load(next, patch, problem);
     changed = true;

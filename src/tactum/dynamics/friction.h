@@ -110,13 +110,13 @@ class Friction {
   ContactScale scale_;
 };
 
-/// Sets the anchor of a patch, and its centre in the patch's plane, to the last frame's; a patch that had none
-/// is anchored at its centre. Returns the last frame's, or null.
+/// Sets the anchor of a patch, and its centre in the patch's plane, to the last frame's; a patch that had
+/// none is anchored at its centre. Returns the last frame's, or null.
 const FrictionAnchor* take_anchor(const FrictionAnchors& anchors, std::span<const Pose> X_WB,
                                   const ContactScale& scale, FrictionPatch& patch) noexcept;
 
-/// What a patch keeps for the next frame, when its forces had their centre at `centre_W` and the step began at
-/// X_WB: the anchor of a patch that stuck goes with the centre, that of one that slid is set anew.
+/// What a patch keeps for the next frame, when its forces had their centre at `centre_W` and the step began
+/// at X_WB: the anchor of a patch that stuck goes with the centre, that of one that slid is set anew.
 FrictionAnchor next_anchor(const FrictionPatch& patch, const Vec3& centre_W, bool pushed,
                            std::span<const Pose> X_WB) noexcept;
 

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "tactum/base/static_vector.h"
+#include "tactum/base/tolerances.h"
 
 namespace tactum {
 namespace {
@@ -11,10 +12,6 @@ namespace {
 using Index = std::size_t;
 
 constexpr int kMostIterations = 200;
-/// Velocities of less than this share of the approach are none.
-constexpr double kSettledShare = 1e-10;
-/// Energy is known to this share.
-constexpr double kEnergyRounding = 1e-10;
 
 /// The corners of one pair that are hit together; each asks for its normal velocity after the impact [m/s].
 using Corners = StaticVector<ContactRow, ImpactScratch::kMostCorners>;
@@ -82,7 +79,7 @@ class PairImpact {
  public:
   PairImpact(const Corners& corners, double speed, const ImpactBodies& bodies, ImpactScratch& scratch)
       : corners_(corners),
-        input_{bodies.X_WB, {.settled_m = kSettledShare * speed}, scratch.no_anchors},
+        input_{bodies.X_WB, {.settled_m = tolerances::kImpactSettled * speed}, scratch.no_anchors},
         bodies_(bodies),
         scratch_(scratch) {}
 
@@ -165,7 +162,7 @@ bool hit(std::span<const ContactRow> rows, const ContactRow& first, const Impact
   const double most_J = impact.energy(before);
   // A given velocity does work on the other body: then energy says nothing.
   const bool closed = impact.is_closed();
-  if (!closed || !(impact.energy(newton) > most_J * (1.0 + kEnergyRounding))) {
+  if (!closed || !(impact.energy(newton) > most_J * (1.0 + tolerances::kImpactSettled))) {
     impact.give(1.0, observer);
     impact.set(newton);
     return true;
@@ -175,7 +172,7 @@ bool hit(std::span<const ContactRow> rows, const ContactRow& first, const Impact
   const PairTwists plastic = impact.answer();
   const PairTwists poisson = mixed(1.0 + e, plastic, before);
   double share = 0.0;
-  for (double step = 0.5; step > kEnergyRounding; step *= 0.5)
+  for (double step = 0.5; step > tolerances::kImpactSettled; step *= 0.5)
     if (impact.energy(mixed(share + step, newton, poisson)) <= most_J) share += step;
   impact.give((1.0 - share) * (1.0 + e), observer);
   const bool newton_solved = impact.solve(false);

@@ -1,12 +1,13 @@
 #pragma once
-/// Impacts: what bodies do to each other in no time at all [Mirtich 1996b]. One pair of bodies after the other,
-/// the fastest approach first, until none approaches faster than what rests does. So an impact travels
+/// Impacts: what bodies do to each other in no time at all [Mirtich 1996b]. One pair of bodies after the
+/// other, the fastest approach first, until none approaches faster than what rests does. So an impact travels
 /// through a row of touching balls as it does through Newton's cradle, where all contacts at once would share
 /// it.
 ///
 /// Within a pair all its corners are hit together:  vn after >= -e vn before,  impulses >= 0, with Coulomb's
-/// friction for each pair of surfaces; a box that falls flat on its face leaves flat. It is the contact problem
-/// of two bodies with velocities for displacements, and is solved exactly: the order of corners means nothing.
+/// friction for each pair of surfaces; a box that falls flat on its face leaves flat. It is the contact
+/// problem of two bodies with velocities for displacements, and is solved exactly: the order of corners means
+/// nothing.
 
 #include <span>
 

@@ -26,9 +26,9 @@ class RowMemory {
     now_.clear();
     next_ = 0;
   }
-  /// The number of the next row of this frame, with what the row of the same name had in the last one; -1 when
-  /// there is no room. Rows come in the same order from frame to frame but for those that come and go; so many
-  /// may at once before a force is forgotten.
+  /// The number of the next row of this frame, with what the row of the same name had in the last one; -1
+  /// when there is no room. Rows come in the same order from frame to frame but for those that come and go;
+  /// so many may at once before a force is forgotten.
   int recall(std::uint64_t name) noexcept {
     if (now_.size() == now_.capacity()) return -1;
     RowState state{.name = name};

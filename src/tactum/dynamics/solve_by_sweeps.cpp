@@ -29,9 +29,6 @@ constexpr int kLimitedShare = 6;
 /// contact at a steady rate, it has as much, give or take a little, and there momentum is what helps most.
 constexpr double kMoreToChange = 1.01;
 
-/// Friction at so little less than its bound slides.
-constexpr double kAtBound = 1.0 - 1e-9;
-
 auto key(const ContactRow& row) { return std::tuple(row.body_a, row.body_b, row.group_a, row.group_b); }
 
 }  // namespace
@@ -300,7 +297,8 @@ void Sweeps::keep_anchors(const RowsInProblem& contacts, std::span<const Pose> X
     const Friction3& friction = frictions_[i];
     const double twisting = patch.radius_m > 0.0 ? friction.about.now / patch.radius_m : 0.0;
     const double used = std::hypot(friction.along.now, friction.across.now, twisting);
-    if (!(used < kAtBound * patch.coefficient * patch.load_N)) patch.slip.displacement_m = kInfinity;
+    if (!(used < (1.0 - tolerances::kAtFrictionBound) * patch.coefficient * patch.load_N))
+      patch.slip.displacement_m = kInfinity;
     FrictionAnchor anchor = next_anchor(patch, patch.centre_W, used > 0.0, X_WB);
     anchor.force_W = friction_force(i);
     anchor.torque_Nm = friction.about.now;

@@ -12,8 +12,8 @@
 /// Contacts that overlap are asked to open. If a body is wedged, that makes the rows infeasible, and each
 /// sweep would add as much to the forces as the one before. A problem whose sweeps have not converged after a
 /// third of their number is therefore set back to the forces it began with; from then on, and for some time
-/// after, its contacts are only kept from closing further. Forces that friction makes grow from sweep to sweep
-/// are bounded in the last sweeps, in which friction may not exceed what it was.
+/// after, its contacts are only kept from closing further. Forces that friction makes grow from sweep to
+/// sweep are bounded in the last sweeps, in which friction may not exceed what it was.
 
 #include "tactum/dynamics/friction.h"
 #include "tactum/dynamics/row_memory.h"
@@ -24,14 +24,15 @@ class Sweeps {
  public:
   Sweeps(std::size_t most_rows, std::size_t bodies);
 
-  /// Takes a problem whose contact rows are `contacts`; their states are in `memory`. Steps are of `h` seconds.
+  /// Takes a problem whose contact rows are `contacts`; their states are in `memory`. Steps are of `h`
+  /// seconds.
   void begin(const RowsInProblem& contacts, const ContactScale& scale, std::span<const Pose> X_WB,
              const FrictionAnchors& anchors, RowMemory& memory, double h, ContactProblem& problem) noexcept;
   /// Asks of a contact to close by `by_m` less.
   void tighten(std::size_t contact, double by_m, ContactProblem& problem) noexcept;
-  /// At most so many sweeps; may be called again after tighten(). They have converged when the last one changed
-  /// no displacement by more than `harmless_m`, with friction as the last sweeps have it; sweeps go on to far
-  /// less.
+  /// At most so many sweeps; may be called again after tighten(). They have converged when the last one
+  /// changed no displacement by more than `harmless_m`, with friction as the last sweeps have it; sweeps go
+  /// on to far less.
   SolverResult solve(int max_sweeps, double harmless_m, ContactProblem& problem) noexcept;
   /// Sets the rows' impulses and their states.
   void end(std::span<ContactRow> rows, RowMemory& memory) const noexcept;

@@ -1,6 +1,6 @@
 #pragma once
-/// The exact solver of the contact problem, for few bodies: the active set method of small_qp.h, first without
-/// friction, then with a cone for every patch that pushes (friction.h).
+/// The exact solver of the contact problem, for few bodies: the active set method of small_qp.h, first
+/// without friction, then with a cone for every patch that pushes (friction.h).
 
 #include "tactum/dynamics/friction.h"
 
@@ -28,8 +28,8 @@ struct FrictionInput {
   const FrictionAnchors& anchors;
 };
 
-/// Solves the problem, whose contact rows are `contacts`. Friction is that of the rows' coefficients. Where no
-/// answer keeps the anchors they are taken off; where there is none at all, friction.
+/// Solves the problem, whose contact rows are `contacts`. Friction is that of the rows' coefficients. Where
+/// no answer keeps the anchors they are taken off; where there is none at all, friction.
 ExactResult solve_exactly(const RowsInProblem& contacts, const FrictionInput& input, int max_iterations,
                           ExactStart& start, Friction& friction, ContactProblem& problem) noexcept;
 

@@ -85,8 +85,8 @@ class Newton {
     most_wanted_ = std::max(most_wanted_, std::abs(row.wanted));
   }
 
-  /// Begins with the rows that approach too fast; where the same number of rows stays wrong it changes one at a
-  /// time [Portugal 1994]. Returns the rounds, 0 when they ran out.
+  /// Begins with the rows that approach too fast; where the same number of rows stays wrong it changes one at
+  /// a time [Portugal 1994]. Returns the rounds, 0 when they ran out.
   int solve() {
     allowed_ = tolerances::kContactVelocity * most_wanted_;
     Index fewest = n_ + 1;

@@ -10,8 +10,8 @@ namespace tactum {
 Vec6 wanted_by_hand(const ConstraintStep& step) noexcept;
 /// The displacement that `wanted` becomes when weight and force fields load the held part, (m, rad).
 Vec6 with_load(const ConstraintStep& step, const Vec6& wanted) noexcept;
-/// Adds the grasped part to a contact problem: its coupling over one frame is its metric, stated at the handle,
-/// `target` its displacement there.
+/// Adds the grasped part to a contact problem: its coupling over one frame is its metric, stated at the
+/// handle, `target` its displacement there.
 void add_grasped(const Vec6& target, const ConstraintStep& step, ContactProblem& problem) noexcept;
 /// What the hand feels when the handle moves so: sets ConstraintState::felt.
 void feel(const Vec6& displacement, ConstraintStep& step) noexcept;
