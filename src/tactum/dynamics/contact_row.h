@@ -28,6 +28,8 @@ struct ImpactLaw {
 
 /// One contact point between two bodies: normal from B to A, as in collision/contact.h, in world axes.
 struct ContactRow : SurfacePair {
+  const SurfacePair& surfaces() const noexcept { return *this; }
+
   int patch = -1;              ///< the caller's number of the patch it stands for; solvers ignore it
   int friction_patch = -1;     ///< the caller's number of the friction it takes part in; solvers ignore it
   int state = -1;              ///< number of its state in RowMemory; -1: none is kept

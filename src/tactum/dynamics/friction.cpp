@@ -89,7 +89,7 @@ void Friction::find_pushing(const RowsInProblem& contacts, const ContactProblem&
       FrictionPatch* found = patch_of(*row);
       if (found == nullptr) {
         FrictionPatch next;
-        next.surfaces = *row;
+        next.surfaces = row->surfaces();
         next.source_patch = row->patch;
         next.coefficient = row->friction;
         if (!patches_.push_back(next)) continue;
@@ -128,7 +128,7 @@ void Friction::find_last_pushing(const RowsInProblem& contacts, const FrictionAn
       const FrictionAnchor* const last = anchors.find(row);
       if (last == nullptr || !last->pushed) continue;
       FrictionPatch patch;
-      patch.surfaces = row;
+      patch.surfaces = row.surfaces();
       patch.coefficient = row.friction;
       patch.centre_W = X_WB[Index(row.body_a)] * last->centre_A;
       patch.radius_m = last->radius_m;

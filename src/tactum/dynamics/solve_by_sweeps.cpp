@@ -56,7 +56,7 @@ void Sweeps::make_patches(const RowsInProblem& contacts, const ContactScale& sca
   for (auto first = order_.begin(), last = first; first != order_.end(); first = last) {
     last = std::find_if(first, order_.end(), [&](int i) { return key(row(i)) != key(row(*first)); });
     FrictionPatch& patch = patches_.emplace_back();
-    patch.surfaces = row(*first);
+    patch.surfaces = row(*first).surfaces();
     patch.source_patch = row(*first).patch;
     patch.coefficient = row(*first).friction;
     const double share = 1.0 / static_cast<double>(last - first);

@@ -73,7 +73,7 @@ class Sweeps {
                     const FrictionAnchors& anchors, ContactProblem& problem) noexcept;
   double sweep(ContactProblem& problem) noexcept;
   double relax_joint(std::size_t joint, ContactProblem& problem) noexcept;
-  double relax_friction(std::size_t patch, ContactProblem& problem) noexcept;
+  double relax_friction(std::size_t number, ContactProblem& problem) noexcept;
   bool close_only(ContactProblem& problem) noexcept;
   void limit_friction() noexcept;
   void accelerate(Pace& pace, ContactProblem& problem) noexcept;
