@@ -204,7 +204,7 @@ TEST(DescriptionErrors, KeysOfAnotherKind) {
       error("[[goal]]\nkind = \"touched\"\nbody = \"b\"\nratio = 1\n"),
       "b.toml:8:9: \"ratio\" in [goal 1] is not for this kind of goal: found touched, expected followed");
   EXPECT_EQ(error("[tool]\nbody = \"b\"\npick_distance_m = 1\n"),
-            "b.toml:7:11: \"pick_distance_m\" in [tool] is not for this kind of tool: found picks = false, "
+            "b.toml:7:19: \"pick_distance_m\" in [tool] is not for this kind of tool: found picks = false, "
             "expected "
             "picks = true");
   EXPECT_EQ(error("[[hand.step]]\nhold_s = 1\nprofile = \"steady\"\n"),
