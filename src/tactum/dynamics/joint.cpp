@@ -91,25 +91,6 @@ Vec6 joint_rate(const Body& body, const Pose& X_WB) noexcept {
   return rate;
 }
 
-Mobility mobility(const Joint& joint, const Pose& X_WB, const Resistance& M) noexcept {
-  if (joint.kind == JointKind::kFixed) return Mobility::Zero();
-  if (joint.kind == JointKind::kFree) return M.llt().solve(Mat6::Identity());
-  if (has_single_motion(joint)) {  // a number stands for the small matrix
-    const Vec6 s = single_motion(joint, X_WB);
-    return s * (s / s.dot(M * s)).transpose();
-  }
-  const JointMotions S = joint_motions(joint, X_WB);
-  return S * SmallMatrix(S.transpose() * M * S).llt().solve(S.transpose());
-}
-
-Mobility inertial_mobility(const Body& body, const Pose& X_WB) noexcept {
-  if (body.joint.kind != JointKind::kFree) return mobility(body.joint, X_WB, inertial_resistance(body, X_WB));
-  Mobility W = Mobility::Zero();
-  W.topLeftCorner<3, 3>().diagonal().setConstant(1.0 / body.mass_kg);
-  W.bottomRightCorner<3, 3>() = X_WB.R * body.inertia_B.inverse() * X_WB.R.transpose();
-  return W;
-}
-
 Twist constrained_velocity(const Joint& joint, const Pose& X_WB, const Resistance& M,
                            const Twist& V) noexcept {
   if (joint.kind == JointKind::kFixed) return {};

@@ -1,7 +1,6 @@
 #pragma once
 /// Joints as the paper applies them: to the velocities at the start of the frame and to the transforms at its
-/// end [Gregory 2000, 6.2]. In between, a body answers impulses through its mobility, which lets through only
-/// what the joint leaves free.
+/// end [Gregory 2000, 6.2]. In between, the contact problem has only what the joint leaves free as unknowns.
 
 #include "tactum/dynamics/world.h"
 
@@ -11,9 +10,6 @@ namespace tactum {
 /// mass, world axes, twist order (v, w). A rigid body's is its inertia; a held proxy's comes from the
 /// coupling.
 using Resistance = Mat6;
-
-/// The twist change of an impulse: the inverse of the resistance, restricted to the joint's free motions.
-using Mobility = Mat6;
 
 /// Mass and inertia at the present orientation.
 Resistance inertial_resistance(const Body& body, const Pose& X_WB) noexcept;
@@ -27,11 +23,6 @@ JointMotions joint_motions(const Joint& joint, const Pose& X_WB) noexcept;
 /// The twist that changes the joint's position, and how: position' = rate . V. Zero where there is none. For
 /// a ball the axis it has turned about.
 Vec6 joint_rate(const Body& body, const Pose& X_WB) noexcept;
-
-/// What the joint lets through of a resistance. Zero for a fixed body.
-Mobility mobility(const Joint& joint, const Pose& X_WB, const Resistance& M) noexcept;
-/// The same of mass and inertia.
-Mobility inertial_mobility(const Body& body, const Pose& X_WB) noexcept;
 
 /// The velocity the joint allows that is nearest to V in the metric of the resistance: constraints applied to
 /// velocities at the start of the frame.

@@ -32,9 +32,4 @@ struct JointForces {
 /// For a step of `h` seconds from the pose X_WB. Negative travels say that a limit has been overrun.
 JointForces joint_forces(const Body& body, const Pose& X_WB, double h) noexcept;
 
-/// What is left of a jointed body's twist after its joint alone has acted for `h` seconds: friction stops but
-/// never reverses, limits are not overrun. Applied after whatever else pushed in these `h` seconds, so that
-/// pushes below the friction move nothing. W is the body's mobility.
-Twist after_joint(const Body& body, const Pose& X_WB, const Mobility& W, double h, const Twist& V) noexcept;
-
 }  // namespace tactum
