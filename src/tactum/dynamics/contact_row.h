@@ -58,20 +58,21 @@ struct RowsInProblem {
 
 /// Which lengths count.
 struct ContactScale {
-  double skin_m = 0.0;     ///< the gap at which contacts are kept [m]
-  double settled_m = 0.0;  ///< a lift, or a gap beyond the skin, below this is none [m]
+  double skin_m = 0.0;         ///< the gap at which contacts are kept [m]
+  double settled_m = 0.0;      ///< a lift, or a gap beyond the skin, below this is none [m]
+  double opening_share = 0.0;  ///< of what is missing to the skin, opened in a step [-]
 };
 
-/// How far a gap below the skin is asked to open in a step of h seconds [m].
-inline double opening_of(const ContactRow& row, const ContactScale& scale, double h) noexcept {
-  constexpr double kOpening_s = 0.0095;  // a tenth in a millisecond
-  if (!(row.distance < scale.skin_m)) return 0.0;
-  return (scale.skin_m - row.distance) * (1.0 - std::exp(-h / kOpening_s));
+/// The share that opens in a step of h seconds: a tenth in a millisecond.
+inline double opening_share(double h) noexcept {
+  constexpr double kOpening_s = 0.0095;
+  return 1.0 - std::exp(-h / kOpening_s);
 }
 
 /// What a step asks of a row: that its gap closes to the skin at most, or opens towards it [m].
-inline double asked_of(const ContactRow& row, const ContactScale& scale, double h) noexcept {
-  return row.distance < scale.skin_m ? opening_of(row, scale, h) : scale.skin_m - row.distance;
+inline double asked_of(const ContactRow& row, const ContactScale& scale) noexcept {
+  const double missing = scale.skin_m - row.distance;
+  return missing > 0.0 ? scale.opening_share * missing : missing;
 }
 
 /// How a search for forces ended.

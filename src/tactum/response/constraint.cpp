@@ -170,7 +170,7 @@ bool find_forces(ConstraintStep& step) {
   ExactStart start{.without_friction = rows_of(c.warm_start.without_friction, c.rows.first, step),
                    .sticking = rows_of(c.warm_start.sticking, c.rows.first, step)};
   const bool found =
-      solved(solve_exactly(contacts_of(step), {step.bodies.X_WB, c.scale(), c.anchors},
+      solved(solve_exactly(contacts_of(step), {step.bodies.X_WB, c.scale, c.anchors},
                            step.settings.budget.solver_iterations, start, c.friction, c.problem),
              step.report);
   c.warm_start.without_friction = names_of(start.without_friction, step);
@@ -271,7 +271,7 @@ int pushing_points(std::span<const ContactRow> corners, int body, const Constrai
 }
 
 /// Appends what friction pushes with as contact rows; returns its torques about normals on `body`.
-Vec3 append_friction(int body, ConstraintStep& step) {
+Vec3 report_friction(int body, ConstraintStep& step) {
   const ConstraintState& c = step.own.constraint;
   std::vector<ContactRow>& rows = step.own.contact_rows.rows;
   Vec3 torque = Vec3::Zero();
@@ -279,16 +279,7 @@ Vec3 append_friction(int body, ConstraintStep& step) {
     const FrictionPatch& patch = c.friction.patches()[number];
     if (patch.surfaces.body_a == body) torque += multiplier * push.torque;
     if (patch.surfaces.body_b == body) torque -= multiplier * push.torque;
-    const double force_N = multiplier * push.force.norm();
-    if (rows.size() == rows.capacity() || !(force_N > 0.0)) return;
-    ContactRow& row = rows.emplace_back();
-    static_cast<SurfacePair&>(row) = patch.surfaces;
-    row.patch = patch.source_patch;
-    row.friction_patch = static_cast<int>(number);
-    row.p_W = patch.centre_W;
-    row.n_BA_W = push.force.normalized();
-    row.distance = patch.gap_m;
-    row.impulse = force_N * step.dt_s;
+    append_friction(patch, static_cast<int>(number), multiplier * push.force, step.dt_s, rows);
   });
   return torque;
 }
@@ -300,12 +291,12 @@ void report_rows(ConstraintStep& step) {
   if (c.rows.shades) exchange_normals(step);
   step.report.contact_points = static_cast<int>(c.rows.count);
   c.friction_uses.clear();
-  Vec3 torque = Vec3::Zero();
+  Vec3 torque = step.own.free.grasped_here ? step.own.free.grasped_torque : Vec3(Vec3::Zero());
   Vec3 origin = grasped < 0 ? Vec3(Vec3::Zero()) : step.X_WB_start[Index(grasped)].p;
   if (step.own.free.grasped_island >= 0) {
     use_of_friction(c.friction, c.problem, c.rows.first, own_rows(step), c.friction_uses);
     origin = c.problem.bodies().front().origin;
-    torque = append_friction(grasped, step);
+    torque = report_friction(grasped, step);
   }
   step.report.friction = sum_of(c.friction_uses);
   step.report.grasped_contact_points =

@@ -105,7 +105,7 @@ struct RowMaker {
       row.p_W = X_WA * corners[i].p_A;
       row.distance = corners[i].distance;
       row.margin = patch.tolerance;
-      row.asked = asked_of(row, c.scale(), step.dt_s);
+      row.asked = asked_of(row, c.scale);
       row.friction = friction;
       row.impact = {.restitution = restitution, .enabled = struck};
       row.state = c.rows.memory.recall(name_of(patch, i));

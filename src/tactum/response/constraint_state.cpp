@@ -10,7 +10,8 @@ using Index = std::size_t;
 
 ConstraintState::ConstraintState(const World& world, const FrameSettings& settings)
     : problem(Index(settings.budget.max_contact_points), world.bodies.size()),
-      position_problem(Index(settings.budget.max_contact_points), world.bodies.size()),
+      position_problem(Index(settings.budget.max_contact_points), world.bodies.size(),
+                       std::min(kMostUnknowns, world.bodies.size())),
       anchors(Index(settings.budget.max_contact_points)),
       trust{.length_m = settings.constraint.least_step_m},
       corner_memory(settings.budget.capacity.patches / 4 + 1),
@@ -18,7 +19,10 @@ ConstraintState::ConstraintState(const World& world, const FrameSettings& settin
   double size = 0.0;
   for (const Body& body : world.bodies)
     if (body.moves()) size = std::max(size, body.part->size);
+  constexpr double kSettledSkins = 0.25;
   skin_m = tolerances::kSkin * size;
+  scale = {
+      .skin_m = skin_m, .settled_m = kSettledSkins * skin_m, .opening_share = opening_share(settings.dt_s)};
   const Index most_patches = settings.budget.capacity.patches;
   trial.X_WB.resize(world.bodies.size());
   trial.gap_now.reserve(most_patches);

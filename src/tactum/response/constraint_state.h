@@ -74,6 +74,7 @@ struct ConstraintState {
   FrictionAnchors anchors;
   FrictionUses friction_uses;  ///< what friction does, for displays
   double skin_m;               ///< the gap contacts are held at [m]
+  ContactScale scale;          ///< the same and the other lengths that contacts are kept to
   StepTrust trust;
   Vec6 wanted;  ///< what the coupling asked of the handle [m, rad]
   Wrench felt;  ///< of the contact forces, at the handle, world axes [N, N m]
@@ -81,10 +82,6 @@ struct ConstraintState {
   CornerMemory corner_memory;
   CornerRows rows;
   TrialPose trial;
-
-  /// The lengths that contacts are kept to.
-  ContactScale scale() const noexcept { return {.skin_m = skin_m, .settled_m = kSettled * skin_m}; }
-  static constexpr double kSettled = 0.25;
 
   /// The problem whose answer is the step.
   ContactProblem& step_problem() { return rows.shades ? position_problem : problem; }
@@ -118,11 +115,12 @@ struct FreeBodies {
   Islands islands;
   Sweeps sweeps;
   Momentum momentum;
-  int grasped_island = -1;         ///< the island that constraint.h answers for; -1: none
-  bool grasped_here = false;       ///< the held part's island had no room there
-  bool others = false;             ///< some body moves by itself
-  bool alone = true;               ///< nothing but the held part's island moves
-  std::vector<char> near_grasped;  ///< of each body: in the held part's island in the last frame
+  int grasped_island = -1;             ///< the island that constraint.h answers for; -1: none
+  bool grasped_here = false;           ///< the held part's island had no room there
+  Vec3 grasped_torque = Vec3::Zero();  ///< of friction about normals on the grasped part, found here [N m]
+  bool others = false;                 ///< some body moves by itself
+  bool alone = true;                   ///< nothing but the held part's island moves
+  std::vector<char> near_grasped;      ///< of each body: in the held part's island in the last frame
 
   /// Whether a patch belongs to the island that constraint.h answers for.
   bool of_grasped(const ContactPatch& patch) const noexcept {

@@ -151,6 +151,20 @@ void make_contact_rows(std::span<const Pose> X_WB, std::span<const ContactPatch>
   }
 }
 
+void append_friction(const FrictionPatch& patch, int number, const Vec3& force_W, double h,
+                     std::vector<ContactRow>& rows) noexcept {
+  const double size_N = force_W.norm();
+  if (rows.size() == rows.capacity() || !(size_N > 0.0)) return;
+  ContactRow& row = rows.emplace_back();
+  static_cast<SurfacePair&>(row) = patch.surfaces;
+  row.patch = patch.source_patch;
+  row.friction_patch = number;
+  row.p_W = patch.centre_W;
+  row.n_BA_W = force_W / size_N;
+  row.distance = patch.gap_m;
+  row.impulse = size_N * h;
+}
+
 Wrench contact_wrench(std::span<const ContactRow> rows, int body, const Vec3& p_WB, double h) noexcept {
   Wrench sum;
   if (h <= 0.0) return sum;

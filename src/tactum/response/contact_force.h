@@ -13,7 +13,7 @@
 #include "tactum/base/reserved_vector.h"
 #include "tactum/contact/contact_patch.h"
 #include "tactum/contact/shading.h"
-#include "tactum/dynamics/contact_row.h"
+#include "tactum/dynamics/friction_patch.h"
 #include "tactum/math/spatial.h"
 
 namespace tactum {
@@ -48,6 +48,10 @@ struct ContactRows {
 void make_contact_rows(std::span<const Pose> X_WB, std::span<const ContactPatch> patches,
                        const std::vector<ShadingNormals>& shading, double stiffness_N_per_m,
                        std::span<const double> depth_scale, ContactRows& out) noexcept;
+
+/// Appends what friction pushes A of a patch with as a contact row, as far as there is room.
+void append_friction(const FrictionPatch& patch, int number, const Vec3& force_W, double h,
+                     std::vector<ContactRow>& rows) noexcept;
 
 /// The sum of the contact forces on `body` at its origin, T = sum R_i x F_i [Gregory 2000, 5.1], from solved
 /// rows.

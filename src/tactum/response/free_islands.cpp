@@ -54,26 +54,20 @@ void give(const SurfacePair& bodies, const Vec3& force_W, const IslandProblem& p
   f.given_Ns[p.island] += f.momentum.counted(bodies.body_a, bodies.body_b, p.step.dt_s * force_W);
 }
 
-/// What friction on the grasped part pushes with is reported as a row of its own.
-void report_friction(const FrictionPatch& patch, const Vec3& force_W, const IslandProblem& p) {
+/// Reports what friction pushes with on the grasped part as a row of its own, and its torque beside it.
+void report_friction(const FrictionPatch& patch, const Vec3& force_W, const Vec3& torque_W,
+                     const IslandProblem& p) {
   give(patch.surfaces, force_W, p);
-  std::vector<ContactRow>& rows = p.step.own.contact_rows.rows;
   const int grasped = p.step.grasped.body;
-  const bool on_grasped = patch.surfaces.body_a == grasped || patch.surfaces.body_b == grasped;
-  const double size_N = force_W.norm();
-  if (!on_grasped || !(size_N > 0.0) || rows.size() == rows.capacity()) return;
-  ContactRow& row = rows.emplace_back();
-  static_cast<SurfacePair&>(row) = patch.surfaces;
-  row.patch = patch.source_patch;
-  row.p_W = patch.centre_W;
-  row.n_BA_W = force_W / size_N;
-  row.impulse = size_N * p.step.dt_s;
+  if (patch.surfaces.body_a != grasped && patch.surfaces.body_b != grasped) return;
+  append_friction(patch, -1, force_W, p.step.dt_s, p.step.own.contact_rows.rows);
+  p.step.own.free.grasped_torque += patch.surfaces.body_a == grasped ? torque_W : Vec3(-torque_W);
 }
 
 /// The exact solution; false when there is none, or the iterations ran out.
 bool solve_exact(IslandProblem& p) {
   ConstraintState& c = p.step.own.constraint;
-  const FrictionInput input{p.step.bodies.X_WB, c.scale(), c.anchors};
+  const FrictionInput input{p.step.bodies.X_WB, c.scale, c.anchors};
   ExactResult result;
   for (const bool opening : {true, false}) {
     assemble(true, opening, p);
@@ -98,7 +92,7 @@ bool solve_exact(IslandProblem& p) {
   for (const ContactRow& row : p.contacts)
     if (row.state >= 0) c.rows.memory[row.state].force_N = row.impulse / p.step.dt_s;
   c.friction.for_each_force(p.problem, [&](Index patch, const Push& push, double multiplier) {
-    report_friction(c.friction.patches()[patch], multiplier * push.force, p);
+    report_friction(c.friction.patches()[patch], multiplier * push.force, multiplier * push.torque, p);
   });
   c.friction.end(p.in_problem, p.problem, p.step.bodies.X_WB, c.anchors);
   return true;
@@ -108,7 +102,7 @@ void solve_swept(IslandProblem& p) {
   ConstraintState& c = p.step.own.constraint;
   Sweeps& sweeps = p.step.own.free.sweeps;
   assemble(false, true, p);
-  sweeps.begin(p.in_problem, c.scale(), p.step.bodies.X_WB, c.anchors, c.rows.memory, p.step.dt_s, p.problem);
+  sweeps.begin(p.in_problem, c.scale, p.step.bodies.X_WB, c.anchors, c.rows.memory, p.step.dt_s, p.problem);
   // What is left moves nothing by more than the skin, and every step is looked at before it is taken.
   const SolverResult solved = sweeps.solve(p.step.settings.budget.solver_iterations, c.skin_m, p.problem);
   p.step.report.solvers |= static_cast<int>(ContactSolver::kSweeps);
@@ -117,15 +111,19 @@ void solve_swept(IslandProblem& p) {
   sweeps.keep_anchors(p.in_problem, p.step.bodies.X_WB, c.anchors);
   sweeps.end(p.contacts, c.rows.memory);
   for (Index i = 0; i < sweeps.patches().size(); ++i)
-    report_friction(sweeps.patches()[i], sweeps.friction_force(i), p);
+    report_friction(sweeps.patches()[i], sweeps.friction_force(i), sweeps.friction_torque(i), p);
 }
 
 void solve_island(IslandProblem& p) {
   const ConstraintStep& step = p.step;
   if (is_idle(p)) return;
   Index unknowns = 0;
-  for (const int body : p.bodies) unknowns += exact_unknowns_of(step.world.bodies[Index(body)].joint);
-  const bool exact = choose_solver(unknowns) == ContactSolver::kExact && solve_exact(p);
+  bool coupled = false;
+  for (const int body : p.bodies) {
+    unknowns += exact_unknowns_of(step.world.bodies[Index(body)].joint);
+    coupled |= body == step.grasped.body;
+  }
+  const bool exact = choose_solver(unknowns, coupled) == ContactSolver::kExact && solve_exact(p);
   if (!exact) solve_swept(p);
   for (const ContactRow& row : p.contacts) give(row, row.impulse / step.dt_s * row.n_BA_W, p);
   for (const ProblemBody& body : p.problem.bodies()) {
@@ -161,9 +159,10 @@ void solve_islands(ConstraintStep& step) noexcept {
   for (Index island = 0; island < f.given_Ns.size(); ++island) {
     IslandProblem p{step, island, f.bodies[island], f.rows[island], step.own.constraint.problem, {}, {}};
     if (p.bodies.empty() || f.settled[island] != 0) continue;
-    if (step.grasped.body >= 0 && f.grasped_here &&
-        f.islands.of(step.grasped.body) == static_cast<int>(island))
+    if (f.grasped_here && f.islands.of(step.grasped.body) == static_cast<int>(island)) {
       rows.resize(step.own.constraint.rows.count);  // without the friction of an earlier solution
+      f.grasped_torque.setZero();
+    }
     f.given_Ns[island].setZero();
     f.gathered.clear();
     for (const int row : p.rows) f.gathered.push_back(rows[Index(row)]);
