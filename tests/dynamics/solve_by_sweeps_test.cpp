@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kStep = 1e-3;
 constexpr double kSkin = 1e-7;
-constexpr ContactScale kScale{.skin_m = kSkin, .settled_m = 0.25 * kSkin};
+const ContactScale kScale{.skin_m = kSkin, .settled_m = 0.25 * kSkin, .opening_share = opening_share(kStep)};
 
 /// Bodies of 10 g, or of a mass each; the last one does not move. What is kept from frame to frame.
 struct Pile {
@@ -47,7 +47,7 @@ struct Pile {
     row.p_W = p_W;
     row.n_BA_W = n_BA_W;
     row.distance = kSkin + gap_m;
-    row.asked = gap_m < 0.0 ? opening_of(row, kScale, kStep) : -gap_m;
+    row.asked = asked_of(row, kScale);
     row.friction = friction;
     rows.push_back(row);
   }

@@ -64,7 +64,8 @@ std::size_t exact_unknowns_of(const Joint& joint) noexcept {
   return freedom_of(joint) + (joint.friction > 0.0 ? 1 : 0);
 }
 
-ContactProblem::ContactProblem(std::size_t most_rows, std::size_t bodies) : index_of_(bodies, -1) {
+ContactProblem::ContactProblem(std::size_t most_rows, std::size_t world_bodies, std::size_t bodies)
+    : index_of_(world_bodies, -1) {
   bodies_.reserve(bodies);
   joint_frictions_.reserve(bodies);
   limits_.reserve(2 * bodies);

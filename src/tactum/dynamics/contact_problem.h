@@ -80,8 +80,11 @@ inline void push(const QpRow& row, double force, double* z) noexcept {
 class ContactProblem {
  public:
   static constexpr std::size_t kMostCones = 16;
-  /// Room for `most_rows` rows beside those of joints, and for as many bodies as the world has.
-  ContactProblem(std::size_t most_rows, std::size_t bodies);
+  /// Room for `most_rows` rows beside those of joints and for `most_bodies` of the world's bodies.
+  ContactProblem(std::size_t most_rows, std::size_t world_bodies, std::size_t most_bodies);
+  /// Room for all of the world's bodies.
+  ContactProblem(std::size_t most_rows, std::size_t world_bodies)
+      : ContactProblem(most_rows, world_bodies, world_bodies) {}
 
   /// Forgets everything; then the bodies are added, then the rows of their joints, then other rows.
   void clear() noexcept;

@@ -19,6 +19,10 @@
 /// Turning about the normal has two rows of the same kind, with the torque mu N r of the patch's mean radius
 /// r; force and torque share the cone linearly, a diamond inside the ellipse that an area has.
 ///
+/// What slips has its friction as a load in the end, in place of its cone: mu N against the slide and the turn,
+/// on the ellipse, with N from whatever carries it (update_sliding). Cones alone say too little where corners,
+/// which have no friction of their own, carry a part of the load.
+///
 /// Patches have a cone that would push without friction, and those whose cone pushed in the last frame and
 /// that still touch: where the line between two of these lies inside both cones no motion is left, and the
 /// part is wedged though nothing presses it there [Simunovic 1975; Whitney 1982]. Forces within the cones

@@ -39,8 +39,8 @@ struct SlidingForce {
 /// The patch's forces, as rows of the exact solver.
 struct PatchRows {
   std::size_t first = 0;  ///< the number of its cone's first edge
-  std::uint32_t sticking =
-      0;  ///< which of its edges push while it sticks, a bit each; of the last frame first
+  /// Which of its edges push while it sticks, a bit each; of the last frame first.
+  std::uint32_t sticking = 0;
 };
 
 /// A patch that pushes, in this frame.
@@ -58,10 +58,10 @@ struct FrictionPatch {
   PatchMotion motion;
   PatchSlip slip;
   SlidingForce sliding;
+  PatchRows rows;
 
   /// Whether the bodies slide on each other, or turn.
   bool slides() const { return sliding.acts ? !sliding.sticks : slip.any(); }
-  PatchRows rows;
 };
 
 /// What a patch slides by in the step of an answer, from its anchor, and turns by about its normal.

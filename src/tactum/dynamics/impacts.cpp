@@ -57,7 +57,7 @@ RowsInProblem set_problem(const Corners& corners, const ImpactBodies& bodies, Co
   return contacts;
 }
 
-/// The share of an answer's impulses that a pair is given.
+/// Gives the observer a share of an answer's impulses.
 void report(const RowsInProblem& contacts, const Friction& friction, const ContactProblem& problem,
             double share, ImpactObserver* observer) {
   if (observer == nullptr || !(share > 0.0)) return;
@@ -85,10 +85,9 @@ class PairImpact {
 
   /// Solves for the velocities after the impact, each corner leaving with `asked`, or, plastic, with none.
   bool solve(bool plastic) {
-    Corners corners = corners_;
+    corners_now_ = corners_;
     if (plastic)
-      for (ContactRow& row : corners) row.asked = 0.0;
-    corners_now_ = corners;
+      for (ContactRow& row : corners_now_) row.asked = 0.0;
     contacts_ = set_problem(corners_now_, bodies_, scratch_.problem);
     ExactStart start;
     return solve_exactly(contacts_, input_, kMostIterations, start, scratch_.friction, scratch_.problem)

@@ -44,7 +44,7 @@ struct ImpactResult {
 
 /// Working memory of resolve_impacts().
 struct ImpactScratch {
-  explicit ImpactScratch(std::size_t bodies) : problem(kMostCorners, bodies) {}
+  explicit ImpactScratch(std::size_t bodies) : problem(kMostCorners, bodies, 2) {}
   /// Corners of one pair that are hit together; of more, the first ones.
   static constexpr std::size_t kMostCorners = 32;
 

@@ -40,7 +40,7 @@ class Sweeps {
   void keep_anchors(const RowsInProblem& contacts, std::span<const Pose> X_WB,
                     FrictionAnchors& anchors) noexcept;
 
-  /// The patches with friction, and the force in the surface that acts on body_a of each [N].
+  /// The patches with friction, and the force in the surface on body_a of each [N].
   std::span<const FrictionPatch> patches() const noexcept { return patches_; }
   Vec3 friction_force(std::size_t patch) const noexcept;
   /// ... and the torque beside it.

@@ -14,8 +14,10 @@ bool solve_on(int max_iterations, ContactProblem& problem, ExactResult& result) 
   return result.solved;
 }
 
-/// How often the loads of sliding patches are brought to what the answer with them says.
+/// How often the loads of sliding patches are brought to what the answer with them says: of one body, whose
+/// answers cost little, until they stay; of several only as far as that takes no longer than all the rest.
 constexpr int kSlidingRounds = 60;
+constexpr int kSlidingRoundsOfSeveral = 16;
 
 /// Lets every patch stick, then slip where it must, until none slips further.
 void solve_cones(const RowsInProblem& contacts, int max_iterations, ExactStart& start, Friction& friction,
@@ -37,7 +39,8 @@ void solve_cones(const RowsInProblem& contacts, int max_iterations, ExactStart& 
 /// Gives what slides its friction.
 void solve_sliding(const RowsInProblem& contacts, int max_iterations, Friction& friction,
                    ContactProblem& problem, ExactResult& result) {
-  for (int round = 0; round < kSlidingRounds; ++round) {
+  const int rounds = problem.bodies().size() == 1 ? kSlidingRounds : kSlidingRoundsOfSeveral;
+  for (int round = 0; round < rounds; ++round) {
     if (!friction.update_sliding(contacts, problem)) return;
     if (solve_on(max_iterations, problem, result)) continue;
     friction.refuse_loads(problem);

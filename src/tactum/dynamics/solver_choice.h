@@ -7,16 +7,21 @@ namespace tactum {
 
 /// A bit each, so that a report can name all that were at work.
 enum class ContactSolver : std::uint8_t {
-  kNone = 0,
   kExact = 1,    ///< the active set method, solve_exactly.h
   kSweeps = 2,   ///< projected Gauss-Seidel, solve_by_sweeps.h
   kPenalty = 4,  ///< rows that yield, solve_penalty.h
 };
 
-/// For rows that do not yield: the exact solver as long as it has room for the unknowns, one for each joint's
-/// dry friction among them.
-inline ContactSolver choose_solver(std::size_t exact_unknowns) noexcept {
-  return exact_unknowns <= kMostUnknowns ? ContactSolver::kExact : ContactSolver::kSweeps;
+/// Unknowns of an island that nothing but its bodies' inertia resists: two free bodies. Beyond that sweeps,
+/// which begin with the last frame's forces, take less time for what rests.
+inline constexpr std::size_t kMostExactAlone = 12;
+
+/// For rows that do not yield. `coupled`: a coupling pulls one of the island's bodies, so its forces are felt;
+/// then the exact solver, as long as it has room for the unknowns, one for each joint's dry friction among
+/// them.
+inline ContactSolver choose_solver(std::size_t exact_unknowns, bool coupled) noexcept {
+  const std::size_t most = coupled ? kMostUnknowns : kMostExactAlone;
+  return exact_unknowns <= most ? ContactSolver::kExact : ContactSolver::kSweeps;
 }
 
 }  // namespace tactum

@@ -228,7 +228,7 @@ void find_islands(ConstraintStep& step) noexcept {
     if (near) unknowns += exact_unknowns_of(step.world.bodies[i].joint);
   }
   if (grasped < 0) return;
-  f.grasped_here = choose_solver(unknowns) != ContactSolver::kExact;
+  f.grasped_here = choose_solver(unknowns, true) != ContactSolver::kExact;
   if (!f.grasped_here) f.grasped_island = island;
 }
 
