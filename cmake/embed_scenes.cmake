@@ -13,15 +13,11 @@ function(tactum_embed_scenes)
 // Made from scenes/*.toml by cmake/embed_scenes.cmake.
 #include "tactum/scene/builtin_scenes.h"
 
-namespace tactum {
-
-const std::vector<BuiltinScene>& builtin_scenes() {
+const std::vector<tactum::BuiltinScene>& tactum::builtin_scenes() {
   static const std::vector<BuiltinScene> scenes = {
 @entries@  };
   return scenes;
 }
-
-}  // namespace tactum
 ]])
   target_sources(tactum_scene PRIVATE ${generated})
 endfunction()

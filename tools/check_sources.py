@@ -7,6 +7,8 @@
   (0.023e-3), a conversion as a division (nanoseconds / 1e9): none of them can be mistaken for a tolerance.
 - Comments are wrapped by hand, at most 110 columns: clang-format would break the drawings in them.
 - haptics/frame.cpp is read from top to bottom: at most 80 lines.
+- The library's namespace holds an inline one that names the version, v0_1 for 0.1.x and v1 for 1.x, so that two versions
+  can be linked into one program.
 - Nothing is left for later, no merge is left unfinished, and no file knows the folders of the machine it was written on.
 """
 import pathlib
@@ -25,6 +27,8 @@ UNIT = r"(?:kg|N|Nm|Ns|Nms|m|m2|m3|s|rad|J|W|Hz)(?:_(?:per_)?(?:kg|N|Nm|m|m2|m3|
 NAMED_QUANTITY = re.compile(rf"_{UNIT}\s*(?:=|\{{)\s*-?$")
 TAGGED_QUANTITY = re.compile(r"//.*\[(?:kg|N|m|s|rad|J|W|Hz)\b[^\]\n]*\]")
 LONG_COMMENT = re.compile(rf"^(?=[ \t]*//)[^\n]{{{COMMENT_COLUMNS + 1},}}$", re.MULTILINE)
+NAMESPACE = re.compile(r"^namespace tactum\b[^\n]*", re.MULTILINE)
+VERSION = re.compile(r"^#define TACTUM_VERSION_(MAJOR|MINOR) (\d+)$", re.MULTILINE)
 FOR_LATER = re.compile(r"\b(?:TODO|FIXME|XXX|HACK)\b")
 UNFINISHED_MERGE = re.compile(r"^(?:<{7}|>{7}) \S+", re.MULTILINE)
 MACHINE_PATH = re.compile(r"(?<![\w.~*-])/(?:home|root|work|Users|tmp)/\w")
@@ -50,8 +54,18 @@ def epsilon_faults(text, name):
                 yield f"{place}: {match.group(0)} looks like an epsilon; those live in base/tolerances.h (a quantity has a unit)"
 
 
+def versioned_namespace(root):
+    """How the library's namespace begins, by its version; empty where the tree has no version."""
+    path = root / "src/tactum/version.h"
+    version = dict(VERSION.findall(path.read_text())) if path.is_file() else {}
+    if not version:
+        return ""
+    return "namespace tactum::inline v" + (version["MAJOR"] if version["MAJOR"] != "0" else f"0_{version['MINOR']}")
+
+
 def faults(root):
     """Everything that is wrong under `root`, a sentence each."""
+    namespace = versioned_namespace(root)
     for top in (root / name for name in LOOKED_AT):
         for path in sorted(top.rglob("*")) if top.is_dir() else [top]:
             name = path.relative_to(root).as_posix()
@@ -68,6 +82,9 @@ def faults(root):
                 yield f"{name}:{line}: a comment of {len(words)} columns; there is room for {COMMENT_COLUMNS}"
             if name.startswith("src/") and path.suffix in (".h", ".cpp") and name != "src/tactum/base/tolerances.h":
                 yield from epsilon_faults(text, name)
+            for line, found in places(NAMESPACE, text) if name.startswith("src/tactum/") else ():
+                if not re.match(re.escape(namespace) + r"(?!\w)", found):
+                    yield f"{name}:{line}: found {found.rstrip(' {')}, expected {namespace}"
             if name == "src/tactum/haptics/frame.cpp" and text.count("\n") > FRAME_LINES:
                 yield f"{name}: {text.count(chr(10))} lines; the frame is read at one glance, in at most {FRAME_LINES}"
 

@@ -44,6 +44,15 @@ class Sources(TreeTest):
         self.assertEqual(self.code("x\n" * 80, frame), [])
         self.assert_one_fault(self.code("x\n" * 81, frame), "frame.cpp", "81")
 
+    def test_the_namespace_names_the_version(self):
+        version = "#define TACTUM_VERSION_MAJOR {}\n#define TACTUM_VERSION_MINOR 7\n"
+        for major, wanted, wrong in (0, "v0_7", "v0_71"), (2, "v2", "v0_7"):
+            self.write("src/tactum/version.h", version.format(major))
+            self.assertEqual(self.code(f"namespace tactum::inline {wanted} {{\n}}\n"), [])
+            self.assertEqual(self.code(f"namespace tactum::inline {wanted}::detail {{\n}}\n"), [])
+            for start in "tactum", "tactum::detail", f"tactum::inline {wrong}":
+                self.assert_one_fault(self.code(f"namespace {start} {{\n}}\n"), "x.h:1", wanted)
+
     def test_things_left_for_later_are_caught(self):
         self.assert_one_fault(self.code("a\n// TODO mend\n"), "x.h:2", "TODO")
 

@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 std::atomic<ZeroWrenchHook> g_hook{nullptr};
@@ -24,4 +24,4 @@ void assertion_failed(const char* condition, const char* file, int line) noexcep
   std::abort();
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -5,7 +5,7 @@
 ///   TACTUM_DEMAND(cond)   checked in every build: cheap, and wrong forces would follow if it failed
 ///   TACTUM_ASSERT(cond)   checked in debug builds only: on the frame's path
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// Called once, with `context`, before the program stops on a failed assertion. Must not allocate or throw.
 using ZeroWrenchHook = void (*)(void* context) noexcept;
@@ -16,7 +16,7 @@ void set_zero_wrench_hook(ZeroWrenchHook hook, void* context) noexcept;
 /// Calls the hook (if any), writes the place to stderr and aborts.
 [[noreturn]] void assertion_failed(const char* condition, const char* file, int line) noexcept;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1
 
 #define TACTUM_DEMAND(condition) \
   ((condition) ? static_cast<void>(0) : ::tactum::assertion_failed(#condition, __FILE__, __LINE__))

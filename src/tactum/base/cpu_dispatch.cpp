@@ -1,6 +1,6 @@
 #include "tactum/base/cpu_dispatch.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 bool cpu_has_avx2() noexcept {
 #if defined(__x86_64__)
@@ -10,4 +10,4 @@ bool cpu_has_avx2() noexcept {
 #endif
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -10,7 +10,7 @@
 /// the linker must have no copy in another file (tools/check_wide_symbols.py): it might be called on any
 /// processor. So wide files do not call the functions below.
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// Whether the processor that this runs on has AVX2. The processor itself is asked once, when the program
 /// starts; a call reads the answer.
@@ -31,4 +31,4 @@ struct CpuBuilds {
   }
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// The step at which limits that are told for one frame hold as they stand [s].
 inline constexpr double kReferenceStep_s = 0.001;
@@ -14,4 +14,4 @@ inline int frames_in(double time_s, double dt_s) noexcept {
   return std::max(1, static_cast<int>(std::lround(time_s / dt_s)));
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

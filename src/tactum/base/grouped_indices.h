@@ -5,7 +5,7 @@
 
 #include "tactum/base/reserved_vector.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 class GroupedIndices {
  public:
@@ -35,4 +35,4 @@ class GroupedIndices {
   ReservedVector<int> items_;
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

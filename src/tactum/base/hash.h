@@ -8,7 +8,7 @@
 #include <cstring>
 #include <type_traits>
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// A chain of words.
 class HashChain {
@@ -71,4 +71,4 @@ class FrameHash {
   std::array<HashChain, 4> chains_;
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

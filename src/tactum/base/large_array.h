@@ -13,7 +13,7 @@
 #include <sys/mman.h>
 #endif
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// For std::vector; as the standard one, with the alignment above.
 template <class T>
@@ -59,4 +59,4 @@ struct LargeArrayAllocator {
 template <class T>
 using LargeArray = std::vector<T, LargeArrayAllocator<T>>;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -8,7 +8,7 @@
 #include <array>
 #include <atomic>
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 template <class T>
 class Newest {
@@ -42,4 +42,4 @@ class Newest {
   unsigned char reading_ = 2;
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

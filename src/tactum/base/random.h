@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 class Random {
  public:
@@ -28,4 +28,4 @@ class Random {
   std::uint64_t state_;
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

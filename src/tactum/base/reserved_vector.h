@@ -5,7 +5,7 @@
 
 #include <vector>
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 template <class T>
 class ReservedVector : public std::vector<T> {
@@ -23,4 +23,4 @@ class ReservedVector : public std::vector<T> {
   ~ReservedVector() = default;
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

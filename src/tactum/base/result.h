@@ -9,7 +9,7 @@
 
 #include "tactum/base/assert.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// What went wrong, told so that the reader can mend it.
 struct Error {
@@ -72,4 +72,4 @@ class [[nodiscard]] Result<void> {
   std::optional<Error> error_;
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -7,7 +7,7 @@
 #include <type_traits>
 #include <vector>
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 template <class T>
 class SpscRing {
@@ -50,4 +50,4 @@ class SpscRing {
   alignas(64) std::atomic<std::size_t> tail_{0};  // consumer's line
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -10,7 +10,7 @@
 
 #include "tactum/base/assert.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 template <class T, std::size_t N>
 class StaticVector {
@@ -80,4 +80,4 @@ class StaticVector {
   std::size_t size_ = 0;
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

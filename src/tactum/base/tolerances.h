@@ -2,7 +2,7 @@
 /// Every epsilon of the library, with its story. Lengths are relative: multiply by the size of the part (the
 /// diagonal of its bounding box), unless the name ends in a unit. No other file may hold a literal epsilon.
 
-namespace tactum::tolerances {
+namespace tactum::inline v0_1::tolerances {
 
 /// Points of one facet lie in its plane to this much of the size. Qhull's own coordinates are good to a few
 /// 1e-16; merging facets that are less planar than this gives wrong distances, leaving planar ones apart does
@@ -196,4 +196,4 @@ inline constexpr double kQuaternionNear = 1e-3;
 /// what the hand can tell of a weight, far above what the volume integrals of a mesh leave.
 inline constexpr double kCentered = 1e-6;
 
-}  // namespace tactum::tolerances
+}  // namespace tactum::inline v0_1::tolerances

@@ -7,7 +7,7 @@
 #include "tactum/base/tolerances.h"
 #include "tactum/collision/patch_work.h"
 
-namespace tactum::detail {
+namespace tactum::inline v0_1::detail {
 namespace {
 
 /// B's face as the plane a patch of two faces is told on: x along its first side, y from there inward, from
@@ -284,4 +284,4 @@ void face_face_contact(const PatchWork& w) noexcept {
   (center - v).store(points[3]);
 }
 
-}  // namespace tactum::detail
+}  // namespace tactum::inline v0_1::detail

@@ -4,7 +4,7 @@
 
 #include "tactum/collision/segments.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using Kind = FeatureKind;
@@ -70,4 +70,4 @@ void brute_force_distance(const PairView& pair, PairDistance& x) noexcept {
   }
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -4,10 +4,10 @@
 
 #include "tactum/collision/pair_view.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// In `x` the points and features of the nearest of all vertex-face and edge-edge pairs (which hold all
 /// others), at the vertex or edge the points are on.
 void brute_force_distance(const PairView& pair, PairDistance& x) noexcept;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -5,7 +5,7 @@
 #include "tactum/collision/distance_fallback.h"
 #include "tactum/collision/vclip_steps.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 /// The vertices farthest along the line of centres: near the closest features of pieces met for the first
@@ -42,4 +42,4 @@ namespace {
   return x;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

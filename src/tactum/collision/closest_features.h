@@ -20,10 +20,10 @@
 #include "tactum/collision/contact.h"
 #include "tactum/geometry/polytope.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// `cache` holds the pair's features of the last frame, or is value-initialised; it is brought up to date.
 PairDistance closest_features(const Polytope& A, const Polytope& B, const Pose& X_AB,
                               PairCache& cache) noexcept;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -18,7 +18,7 @@
 #include "tactum/geometry/feature.h"
 #include "tactum/math/pose.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// A feature of A and one of B.
 struct FeaturePair {
@@ -97,4 +97,4 @@ struct Manifold {
   StaticVector<ContactPoint, kMostPoints> points;
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -9,7 +9,7 @@
 #include "tactum/collision/support_distance.h"
 #include "tactum/collision/vclip.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using Kind = FeatureKind;
@@ -225,4 +225,4 @@ bool still_inside(const PairView& pair, PairCache& cache, PairDistance& x) noexc
   return x.certified() && (overlap_by_facet(pair, x) || overlap_by_vertices(pair, cache.overlap));
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

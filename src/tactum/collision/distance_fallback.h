@@ -5,7 +5,7 @@
 #include "tactum/collision/feature_walk.h"
 #include "tactum/collision/pair_view.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// An answer is certified when its error bound is at most this [m].
 inline double certificate(const PiecePair& pair) noexcept { return tolerances::kCertificate * pair.size; }
@@ -18,4 +18,4 @@ PairDistance resolve_uncertified(const PairView& pair, PairCache& cache, const F
 /// Pieces that overlapped in the last frame: true with their depth in `x`, when that is proved to be one.
 bool still_inside(const PairView& pair, PairCache& cache, PairDistance& x) noexcept;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

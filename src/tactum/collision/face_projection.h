@@ -6,7 +6,7 @@
 #include "tactum/geometry/polytope.h"
 #include "tactum/math/two.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// Two coordinates of the points of a piece's frame: (r1, r2) . (p - origin) scale, side by side. The scale
 /// by itself: what it follows from can be waited for meanwhile. All its numbers apart: in a copy of a vector
@@ -49,4 +49,4 @@ inline void face_outline(const Projection& plane, const Polytope& P, int face_in
             [&](std::size_t i) { return flat.flat(vertices[corners[first + step * static_cast<int>(i)]]); });
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

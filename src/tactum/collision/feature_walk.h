@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <limits>
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 enum class FeatureWalkEnd : std::uint8_t {
   kClosest,  ///< no Voronoi plane is violated
@@ -22,4 +22,4 @@ struct FeatureWalk {
   int steps = 0;
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

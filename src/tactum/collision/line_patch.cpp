@@ -6,7 +6,7 @@
 #include "tactum/base/tolerances.h"
 #include "tactum/collision/patch_work.h"
 
-namespace tactum::detail {
+namespace tactum::inline v0_1::detail {
 namespace {
 
 /// Intervals of a line, apart from each other: one, but where the stretches of an edge leave a part of it
@@ -282,4 +282,4 @@ void strip_contact(const PatchWork& w, const Strip& strip) noexcept {
   interval_contact(w, strip, Intervals(PatchInterval()));
 }
 
-}  // namespace tactum::detail
+}  // namespace tactum::inline v0_1::detail

@@ -5,7 +5,7 @@
 #include "tactum/base/tolerances.h"
 #include "tactum/collision/patch_work.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using detail::PatchWork;
@@ -55,4 +55,4 @@ void contact_manifold_over(const Polytope& A, const Polytope& B, const Pose& X_A
   make_patch(A, B, X_AB, closest, tolerance, tolerances::kPatchAngle, others, out);
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

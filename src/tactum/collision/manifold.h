@@ -28,7 +28,7 @@
 #include "tactum/collision/stretch.h"
 #include "tactum/geometry/polytope.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// The patch at `closest`, an answer of closest_features or penetration_depth for the same pose, where the
 /// gap is below `tolerance` [m]. Empty only when closest.distance >= tolerance (or it has no normal).
@@ -46,4 +46,4 @@ void contact_manifold_over(const Polytope& A, const Polytope& B, const Pose& X_A
                            const PairDistance& closest, double tolerance, std::span<const Stretch> others,
                            Manifold& out) noexcept;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -5,7 +5,7 @@
 
 #include "tactum/collision/segments.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using Kind = FeatureKind;
@@ -457,4 +457,4 @@ MinkowskiWalk walk_along_ray(const PairView& pair, const MinkowskiFacet& start,
   return walk(pair, start, &direction, false, kAllMoves);
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

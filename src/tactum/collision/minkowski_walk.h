@@ -20,7 +20,7 @@
 
 #include "tactum/collision/pair_view.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// A facet of N.
 struct MinkowskiFacet {
@@ -80,4 +80,4 @@ MinkowskiWalk walk_to_any_foot(const PairView& pair, const MinkowskiFacet& start
 MinkowskiWalk walk_along_ray(const PairView& pair, const MinkowskiFacet& start,
                              const Vec3& direction) noexcept;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -2,7 +2,7 @@
 
 #include "tactum/collision/segments.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using Kind = FeatureKind;
@@ -49,4 +49,4 @@ bool overlap_by_facet(const PairView& pair, const PairDistance& depth) noexcept 
          inside_parallelogram(pair, depth.a, depth.b, x);
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

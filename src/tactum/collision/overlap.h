@@ -19,7 +19,7 @@
 
 #include "tactum/collision/pair_view.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// Do the corners of `proof` hold the origin between them? `proof` may be any pair's.
 bool overlap_by_vertices(const PairView& pair, const OverlapProof& proof) noexcept;
@@ -27,4 +27,4 @@ bool overlap_by_vertices(const PairView& pair, const OverlapProof& proof) noexce
 /// Is the origin behind the facet of D that `depth`, an answer of penetration_depth for this pose, stands on?
 bool overlap_by_facet(const PairView& pair, const PairDistance& depth) noexcept;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

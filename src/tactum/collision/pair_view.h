@@ -14,7 +14,7 @@
 #include "tactum/collision/contact.h"
 #include "tactum/geometry/polytope.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// What a walk needs.
 struct PiecePair {
@@ -104,4 +104,4 @@ inline bool in_column(const Polytope& P, int face_index, const Vec3& point) noex
   return true;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -10,7 +10,7 @@
 #include "tactum/collision/stretch.h"
 #include "tactum/collision/supporting_feature.h"
 
-namespace tactum::detail {
+namespace tactum::inline v0_1::detail {
 
 /// What a maker works on. Built in place: copying vectors that have just been written makes the processor
 /// wait for them.
@@ -83,4 +83,4 @@ void face_face_contact(const PatchWork& w) noexcept;
 /// Two points on a strip: what is left of two faces without a common area.
 void strip_contact(const PatchWork& w, const Strip& strip) noexcept;
 
-}  // namespace tactum::detail
+}  // namespace tactum::inline v0_1::detail

@@ -9,7 +9,7 @@
 #include "tactum/collision/manifold.h"
 #include "tactum/collision/minkowski_walk.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using Kind = FeatureKind;
@@ -470,4 +470,4 @@ PairDistance depth_along(const Polytope& A, const Polytope& B, const Pose& X_AB,
   return result;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -9,7 +9,7 @@
 
 #include "tactum/collision/pair_view.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// From the last frame's features or normal when `cache` has them, with a search for a better minimum spread
 /// over the frames beside; else from many directions, or over all separating axes of small pieces. Cost: 0.1
@@ -32,4 +32,4 @@ PairDistance penetration_exhaustive(const Polytope& A, const Polytope& B, const 
 PairDistance depth_along(const Polytope& A, const Polytope& B, const Pose& X_AB,
                          const Vec3& direction) noexcept;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

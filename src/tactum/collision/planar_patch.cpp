@@ -10,7 +10,7 @@
 #include "tactum/base/tolerances.h"
 #include "tactum/math/two.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 double cross(const Vec2& a, const Vec2& b) noexcept { return a.x() * b.y() - a.y() * b.x(); }
@@ -422,4 +422,4 @@ PatchMoments together(const PatchMoments& a, const PatchMoments& b) noexcept {
   return m;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -8,7 +8,7 @@
 #include "tactum/base/static_vector.h"
 #include "tactum/math/types.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// Corners taken of one face; of a face with more, every k-th: an inner polygon, so that no contact is
 /// invented.
@@ -90,4 +90,4 @@ struct PatchInterval {
   }
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

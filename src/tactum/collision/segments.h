@@ -6,7 +6,7 @@
 #include "tactum/base/tolerances.h"
 #include "tactum/math/types.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// Where two lines come nearest: p0 + s u and q0 + t w, u and w unit, r = q0 - p0, c = u x w. Solved by cross
 /// products, whose error grows with 1/sine where that of the normal equations grows with its square. False
@@ -47,4 +47,4 @@ inline SegmentPair nearest_on_segments(const Vec3& u, double lp, const Vec3& w, 
   return x;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

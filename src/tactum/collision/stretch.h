@@ -4,7 +4,7 @@
 #include "tactum/geometry/feature.h"
 #include "tactum/geometry/polytope.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// Features of two other pieces in the plane (or line) of a contact's: together they are one true face, or
 /// edge, that was cut (seams.h). Of the same kinds as the contact's.
@@ -14,4 +14,4 @@ struct Stretch {
   Feature a, b;
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using Kind = FeatureKind;
@@ -183,4 +183,4 @@ FeatureWalk closest_by_supports(const PairView& pair, OverlapProof& proof, PairD
   return walk;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -8,10 +8,10 @@
 #include "tactum/collision/feature_walk.h"
 #include "tactum/collision/pair_view.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// Closest points in `x`, with the lowest features they lie on; or kOverlap and a common point, and then in
 /// `proof` what shows it.
 FeatureWalk closest_by_supports(const PairView& pair, OverlapProof& proof, PairDistance& x) noexcept;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

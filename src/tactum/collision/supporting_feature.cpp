@@ -5,7 +5,7 @@
 
 #include "tactum/collision/pair_view.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using Kind = FeatureKind;
@@ -101,4 +101,4 @@ SupportingFeature supporting_feature(const Polytope& P, const Feature& f, const 
   return shrunk(P, f, face, std::sqrt(lean), std::sqrt(next), outward, angle);
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -8,7 +8,7 @@
 #include "tactum/collision/contact.h"
 #include "tactum/geometry/polytope.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// How much of the patch is kept when a feature leans by `lean` out of `most`: all up to half, then less, to
 /// none.
@@ -31,4 +31,4 @@ struct SupportingFeature {
 SupportingFeature supporting_feature(const Polytope& P, const Feature& f, const Vec3& outward,
                                      double angle) noexcept;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

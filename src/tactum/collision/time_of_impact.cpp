@@ -7,7 +7,7 @@
 #include "tactum/collision/closest_features.h"
 #include "tactum/math/screw.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 /// One moving piece at the start of a step, in its own frame.
@@ -112,4 +112,4 @@ TimeOfImpact time_of_impact(const Polytope& A, const Pose& X_WA, const Twist& V_
   return impact;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

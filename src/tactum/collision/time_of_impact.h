@@ -19,7 +19,7 @@
 #include "tactum/geometry/polytope.h"
 #include "tactum/math/spatial.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 enum class ImpactStatus : std::uint8_t {
   kHit,            ///< at `time` the distance is the target, up to kImpactGap of the size above it
@@ -43,4 +43,4 @@ TimeOfImpact time_of_impact(const Polytope& A, const Pose& X_WA, const Twist& V_
                             const Pose& X_WB, const Twist& V_WB, double dt, double target, PairCache& cache,
                             int most_steps = kMostImpactSteps) noexcept;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

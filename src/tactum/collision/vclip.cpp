@@ -3,7 +3,7 @@
 #include "tactum/collision/segments.h"
 #include "tactum/collision/vclip_steps.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace vclip {
 namespace {
 
@@ -149,4 +149,4 @@ FeatureWalk feature_walk(const PiecePair& pair, Feature a, Feature b, double cro
   return vclip::walk_features(pair, {a, b}, crossing_tolerance, x);
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

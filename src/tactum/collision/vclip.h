@@ -26,7 +26,7 @@
 #include "tactum/collision/feature_walk.h"
 #include "tactum/collision/pair_view.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// Walks from the features `a`, `b` (which must exist) and sets in `x` the features where it ended, and
 /// their points, normal and distance when it ended kClosest, kCircle or kBounded (the normal only when
@@ -35,4 +35,4 @@ namespace tactum {
 FeatureWalk feature_walk(const PiecePair& pair, Feature a, Feature b, double crossing_tolerance,
                          PairDistance& x) noexcept;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

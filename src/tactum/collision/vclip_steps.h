@@ -8,7 +8,7 @@
 #include "tactum/collision/feature_walk.h"
 #include "tactum/collision/pair_view.h"
 
-namespace tactum::vclip {
+namespace tactum::inline v0_1::vclip {
 
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -430,4 +430,4 @@ inline FeatureWalk walk_features(const PiecePair& pair, FeaturePair at, double c
   return walk;
 }
 
-}  // namespace tactum::vclip
+}  // namespace tactum::inline v0_1::vclip

@@ -9,7 +9,7 @@
 #include "tactum/contact/patch_corners.h"
 #include "tactum/contact/seams.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using Index = std::size_t;
@@ -312,4 +312,4 @@ GapAnswer ContactFinder::distance_at(const ContactPatch& patch, std::span<const 
   return GapAnswer::kExact;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -46,7 +46,7 @@
 #include "tactum/geometry/part.h"
 #include "tactum/surface/surface_minima.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// A body as the finder sees it. The part must outlive the finder.
 struct CollisionBody {
@@ -195,4 +195,4 @@ class ContactFinder final : public GapOracle {
   ContactWork work_;
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

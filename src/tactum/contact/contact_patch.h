@@ -6,7 +6,7 @@
 #include "tactum/base/tolerances.h"
 #include "tactum/collision/contact.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// The facets of A and of B that a patch lies on, each -1 where it lies on none: groups of the surface, see
 /// SurfaceGroups. Patches of the same bodies and facets touch on the same two walls: they share a stiffness.
@@ -39,4 +39,4 @@ inline double patch_weight(const Manifold& manifold) noexcept {
   return std::max(length * tolerances::kLineWidth_m, tolerances::kLeastWeight_m2);
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 constexpr double kFarthest = 1e300;
@@ -128,4 +128,4 @@ ReductionReport reduce_contacts(std::span<SurfaceMinimum> minima, std::span<Redu
   return report;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -24,7 +24,7 @@
 
 #include "tactum/surface/surface_minimum.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 struct ReductionBounds {
   Vec3 center = Vec3::Zero();    ///< the centre of rotations, A's frame [m]
@@ -58,4 +58,4 @@ struct ReductionScratch {
 ReductionReport reduce_contacts(std::span<SurfaceMinimum> minima, std::span<ReductionScratch> scratch,
                                 std::size_t room, const ReductionBounds& bounds) noexcept;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -4,7 +4,7 @@
 
 #include <cstddef>
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// Room reserved at load time; a full one sets a flag and drops the rest of that step.
 struct ContactFinderCapacity {
@@ -36,4 +36,4 @@ struct ContactWork {
   bool capacity_reached = false;  ///< something was dropped: raise the capacity
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

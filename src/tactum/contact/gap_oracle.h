@@ -8,7 +8,7 @@
 
 #include "tactum/math/spatial.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// What is asked and known of a patch's distance at other poses.
 enum class GapAnswer : std::uint8_t {
@@ -76,4 +76,4 @@ class GapOracle {
   GapOracle& operator=(GapOracle&&) = default;
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -9,7 +9,7 @@
 #include "tactum/contact/seams.h"
 #include "tactum/math/screw.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using Index = std::size_t;
@@ -94,4 +94,4 @@ FirstImpact ContactFinder::first_impact(std::span<const Pose> X_WB, std::span<co
   return first;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

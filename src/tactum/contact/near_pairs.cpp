@@ -7,7 +7,7 @@
 #include "tactum/contact/contact_finder.h"
 #include "tactum/contact/motion_bound.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using Index = std::size_t;
@@ -178,4 +178,4 @@ void ContactFinder::append_pairs(int a, int b, const BodyPair& old) noexcept {
   }
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -6,7 +6,7 @@
 #include "tactum/collision/face_projection.h"
 #include "tactum/collision/pair_view.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 /// A face that leans by more than this cosine says (84 degrees) is an edge, seen along the normal.
@@ -126,4 +126,4 @@ void CornerMemory::corners_of(const Polytope& A, const Polytope& B, const Pose& 
   for (const PatchCorner& corner : corners) slot.corners.push_back(corner);
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -18,7 +18,7 @@
 #include "tactum/contact/contact_patch.h"
 #include "tactum/geometry/polytope.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 struct PatchCorner {
   Vec3 p_A = Vec3::Zero();  ///< halfway between the two surfaces, A's frame [m]
@@ -58,4 +58,4 @@ class CornerMemory {
   std::vector<Slot> slots_;
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

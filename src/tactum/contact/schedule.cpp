@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 /// A strict order without ties, so that every standard library selects the same pairs.
@@ -27,4 +27,4 @@ int prioritise(std::span<DuePair> due, int budget, int head_start) noexcept {
   return std::max(budget, 0);
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

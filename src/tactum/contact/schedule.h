@@ -13,7 +13,7 @@
 #include <cstdint>
 #include <span>
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// How a body's pairs stand in the order: what the hand feels, what it feels next, the rest.
 namespace priority {
@@ -35,4 +35,4 @@ inline constexpr double kHeadStart_s = 0.008;  ///< [s]
 /// expectation.
 int prioritise(std::span<DuePair> due, int budget, int head_start) noexcept;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

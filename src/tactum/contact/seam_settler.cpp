@@ -7,7 +7,7 @@
 #include "tactum/collision/manifold.h"
 #include "tactum/contact/seams.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using Index = std::size_t;
@@ -315,4 +315,4 @@ bool settle_seams(std::span<SeamCandidate*> candidates, std::span<const Pose> X_
   return complete;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

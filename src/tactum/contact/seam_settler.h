@@ -23,7 +23,7 @@
 #include "tactum/contact/steady_contact.h"
 #include "tactum/geometry/part.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// A pair within its margin, as tested.
 struct SeamCandidate {
@@ -52,4 +52,4 @@ struct SeamCandidate {
 bool settle_seams(std::span<SeamCandidate*> candidates, std::span<const Pose> X_WB,
                   const SteadyLimits& steady, std::vector<ContactPatch>& patches) noexcept;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -4,7 +4,7 @@
 
 #include "tactum/base/tolerances.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using Index = std::size_t;
@@ -277,4 +277,4 @@ bool answered_by(const PairView& pair, const PairDistance& found, const Vec3& n,
   }
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -20,7 +20,7 @@
 #include "tactum/collision/pair_view.h"
 #include "tactum/geometry/part.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// Whether the whole part could be touched at `p` on `feature` of `piece`, or on the piece within `margin`
 /// [m] of it, outward along unit `outward`; both in the part's frame. Cost: 2 ns, and 30-60 ns for each piece
@@ -54,4 +54,4 @@ std::optional<PairDistance> depth_on_true_surface(const Part& part_a, int piece_
 /// normal and distance, answers for them.
 bool answered_by(const PairView& pair, const PairDistance& found, const Vec3& n, double distance) noexcept;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -10,7 +10,7 @@
 #include "tactum/geometry/hull.h"
 #include "tactum/geometry/polygon_clip.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using Index = std::size_t;
@@ -299,4 +299,4 @@ void shaded_normals(const ShadingNormals& a, const ShadingNormals& b, const Pose
   }
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

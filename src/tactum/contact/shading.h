@@ -16,7 +16,7 @@
 #include "tactum/contact/contact_patch.h"
 #include "tactum/geometry/part.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// A corner of a face, as Wachspress coordinates need it; of two, one of the sides that a ruled face is
 /// between: its normal, and the side across.
@@ -69,4 +69,4 @@ class ShadingNormals {
 void shaded_normals(const ShadingNormals& a, const ShadingNormals& b, const Pose& X_AB, const Pose& X_BA,
                     const ContactPatch& patch, std::span<Vec3> normals) noexcept;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

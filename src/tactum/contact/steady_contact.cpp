@@ -5,7 +5,7 @@
 
 #include "tactum/collision/pair_view.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 /// The depth along unit `n`, told at the point of `found`.
@@ -67,4 +67,4 @@ void steady_centroid(const Pose& X_AB, Manifold& patch, const SteadyLimits& limi
   last.has_centroid = true;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -18,7 +18,7 @@
 #include "tactum/collision/contact.h"
 #include "tactum/geometry/polytope.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 inline constexpr double kNormalTurnRate = 50.0;  ///< [rad/s]
 inline constexpr double kCentroidSpeed = 0.05;   ///< [m/s]
@@ -57,4 +57,4 @@ PairDistance steady_depth(const Polytope& A, const Polytope& B, const Pose& X_AB
 void steady_centroid(const Pose& X_AB, Manifold& patch, const SteadyLimits& limits,
                      SteadyContact& last) noexcept;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

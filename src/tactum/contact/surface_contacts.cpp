@@ -5,7 +5,7 @@
 #include "tactum/base/tolerances.h"
 #include "tactum/contact/contact_finder.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using Index = std::size_t;
@@ -138,4 +138,4 @@ void ContactFinder::surface_distances_at(std::span<const ContactPatch> patches, 
   }
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 SweepAndPrune::SweepAndPrune(const std::vector<Aabb>& boxes) : count_(static_cast<int>(boxes.size())) {
   const std::size_t n = boxes.size();
@@ -92,4 +92,4 @@ void SweepAndPrune::end_overlap(int a, int b) noexcept {
   listed_at_[pair] = -1;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -14,7 +14,7 @@
 
 #include "tactum/geometry/triangle_mesh.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 class SweepAndPrune {
  public:
@@ -55,4 +55,4 @@ class SweepAndPrune {
   std::vector<Pair> pairs_;
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -16,7 +16,7 @@
 #include "tactum/base/tolerances.h"
 #include "tactum/math/spatial.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// What the device says about the hand at one instant.
 struct DeviceSample {
@@ -96,4 +96,4 @@ class Device {
   virtual bool write(const Wrench& F_D) noexcept = 0;
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

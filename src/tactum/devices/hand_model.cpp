@@ -2,7 +2,7 @@
 
 #include <array>
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 // Chosen by us inside what is commonly reported for a hand that holds a stylus: stiffness 100 to 1000 N/m
@@ -38,4 +38,4 @@ HandModel no_hand() {
   return model;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -14,7 +14,7 @@
 
 #include "tactum/base/result.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 struct HandModel {
   std::string name;                   ///< "medium"
@@ -32,4 +32,4 @@ Result<HandModel> hand_model(const std::string& grip);
 /// Nobody holds the device: it moves by its own inertia only.
 HandModel no_hand();
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

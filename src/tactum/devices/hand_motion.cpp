@@ -8,7 +8,7 @@
 #include "tactum/math/rotation.h"
 #include "tactum/math/screw.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 /// Share of the way done and its rate against the share of the time spent.
@@ -145,4 +145,4 @@ HandState TremorMotion::at(double time_s) const noexcept {
   return state;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -15,7 +15,7 @@
 #include "tactum/base/result.h"
 #include "tactum/math/spatial.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// The intention at one instant, in the device frame D.
 struct HandState {
@@ -116,4 +116,4 @@ class TremorMotion final : public HandMotion {
   std::vector<TremorComponent> components_;
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

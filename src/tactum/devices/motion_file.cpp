@@ -11,7 +11,7 @@
 #include "tactum/math/rotation.h"
 #include "tactum/math/screw.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using Row = std::span<const double>;
@@ -216,4 +216,4 @@ HandState RecordedMotion::at(double time_s) const noexcept {
   return {advanced(motion_.X[i], V, time_s - times[i]), V, motion_.buttons[i]};
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

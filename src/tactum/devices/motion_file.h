@@ -22,7 +22,7 @@
 #include "tactum/devices/hand_motion.h"
 #include "tactum/math/pose.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// What had to be mended while reading, to be told to the user.
 struct MotionRepairs {
@@ -70,4 +70,4 @@ class RecordedMotion final : public HandMotion {
   Motion motion_;
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

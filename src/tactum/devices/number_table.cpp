@@ -7,7 +7,7 @@
 #include <fstream>
 #include <string_view>
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 constexpr std::uintmax_t kMaxFileBytes = 1ull << 30;  // days of motion at 1 kHz; more is a wrong file
@@ -147,4 +147,4 @@ Result<NumberTable> read_number_table(const std::string& path,
   return table;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

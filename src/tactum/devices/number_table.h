@@ -9,7 +9,7 @@
 
 #include "tactum/base/result.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 struct NumberTable {
   std::string path;
@@ -33,4 +33,4 @@ struct NumberTable {
 Result<NumberTable> read_number_table(const std::string& path,
                                       const std::vector<std::string>& names_without_header);
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -5,7 +5,7 @@
 
 #include "tactum/math/screw.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 /// Error and its rate after `t` of a critically damped spring of rate w.
@@ -102,4 +102,4 @@ void PointerDevice::rest() noexcept {
   aimed_ = true;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -19,7 +19,7 @@
 
 #include "tactum/devices/simulated_device.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 class PointerDevice final : public Device {
  public:
@@ -71,4 +71,4 @@ class PointerDevice final : public Device {
   Twist V_aim_;  // of the intended pose while it follows
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

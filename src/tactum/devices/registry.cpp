@@ -8,7 +8,7 @@
 #include "tactum/devices/replay_device.h"
 #include "tactum/devices/simulated_device.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using MadeDevice = Result<std::unique_ptr<Device>>;
@@ -95,4 +95,4 @@ std::vector<DeviceListing> list_devices() {
   return listings;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -13,7 +13,7 @@
 #include "tactum/devices/device.h"
 #include "tactum/devices/hand_motion.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// What a device may need beside its name. Real devices ignore the hand.
 struct DeviceOptions {
@@ -33,4 +33,4 @@ Result<std::unique_ptr<Device>> make_device(const std::string& name, const Devic
 
 std::vector<DeviceListing> list_devices();
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 ReplayDevice::ReplayDevice(std::string name, std::shared_ptr<const HandMotion> motion,
                            const ReplaySettings& settings)
@@ -58,4 +58,4 @@ bool ReplayDevice::write(const Wrench& F_D) noexcept {
   return true;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -9,7 +9,7 @@
 #include "tactum/devices/device.h"
 #include "tactum/devices/hand_motion.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// What happens when the motion is over.
 enum class AtEnd {
@@ -53,4 +53,4 @@ class ReplayDevice final : public Device {
   Wrench last_;
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -5,7 +5,7 @@
 
 #include "tactum/math/screw.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 /// `v` no longer than `limit`, its direction kept, as motor groups are scaled together.
@@ -239,4 +239,4 @@ void SimulatedDevice::estimate_velocity(double now_s, DeviceSample& sample) noex
   reading_count_ = std::min(reading_count_ + 1, kReadingRoom);
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

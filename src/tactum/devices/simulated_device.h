@@ -32,7 +32,7 @@
 #include "tactum/devices/hand_model.h"
 #include "tactum/devices/hand_motion.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// The numbers of one device.
 struct SimulatedDeviceModel {
@@ -135,4 +135,4 @@ class SimulatedDevice final : public Device {
   int reading_count_ = 0;
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -12,7 +12,7 @@
 #include "tactum/devices/simulated_device.h"
 #include "tactum/math/types.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 constexpr double degrees(double angle) { return angle * kPi / 180.0; }
@@ -124,4 +124,4 @@ Result<SimulatedDeviceModel> simulated_device_preset(const std::string& name) {
   return Error{"unknown simulated device", "'" + name + "'", "one of " + names, ""};
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -5,7 +5,7 @@
 #include "tactum/base/tolerances.h"
 #include "tactum/dynamics/world.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 bool not_negative(double value) { return std::isfinite(value) && value >= 0.0; }
@@ -95,4 +95,4 @@ Result<int> World::add(const BodySpec& spec) {
   return static_cast<int>(bodies.size()) - 1;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

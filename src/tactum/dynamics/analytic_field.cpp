@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 double steepness(const Mat3& gradient) noexcept {
   const Mat3 size = gradient.cwiseAbs();
@@ -66,4 +66,4 @@ double steepest(const VortexField& field) noexcept {
   return std::abs(field.circulation_J) / (2.0 * kPi * field.core_m * field.core_m);
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

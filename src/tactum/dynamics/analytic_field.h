@@ -10,7 +10,7 @@
 
 #include "tactum/math/types.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// A field at a place: the force and how it changes.
 struct FieldValue {
@@ -48,4 +48,4 @@ double steepest(const DipoleField& field) noexcept;
 double steepest(const WellField& field) noexcept;
 double steepest(const VortexField& field) noexcept;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -6,7 +6,7 @@
 
 #include "tactum/base/tolerances.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using Index = std::size_t;
@@ -290,4 +290,4 @@ Vec6 ContactProblem::displacement(int body) const noexcept {
   return at_point(displacement_at_centre(*found), found->origin - found->centre);
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

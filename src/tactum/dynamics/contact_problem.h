@@ -24,7 +24,7 @@
 #include "tactum/dynamics/joint_forces.h"
 #include "tactum/math/small_qp.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// How a body resists a displacement from its target, stated at a point of it.
 struct BodyMetric {
@@ -187,4 +187,4 @@ class ContactProblem {
   SmallQp qp_;
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

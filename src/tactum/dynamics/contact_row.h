@@ -7,7 +7,7 @@
 
 #include "tactum/math/types.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// Which surfaces of two bodies touch, by groups of coplanar faces that their parts name. The corners and
 /// edges of one body that touch the same face of the other are on one pair of surfaces, whatever faces they
@@ -81,4 +81,4 @@ struct SolverResult {
   bool converged = false;  ///< false: the iterations ran out; the forces are usable, not exact
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

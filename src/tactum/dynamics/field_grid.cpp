@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using Index = std::size_t;
@@ -195,4 +195,4 @@ FieldValue FieldGrid::at(const Vec3& p) const noexcept {
   return value;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

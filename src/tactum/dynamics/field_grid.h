@@ -20,7 +20,7 @@
 #include "tactum/base/result.h"
 #include "tactum/dynamics/analytic_field.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// Where the nodes are, in the field's frame F.
 struct GridShape {
@@ -74,4 +74,4 @@ std::vector<Number> sampled(const GridShape& shape, const std::function<Vec3(con
   return samples;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using GridPointer = std::shared_ptr<const FieldGrid>;
@@ -99,4 +99,4 @@ std::vector<FieldPoint> spread_over(const TriangleMesh& surface, int count) {
   return points;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -18,7 +18,7 @@
 #include "tactum/geometry/triangle_mesh.h"
 #include "tactum/math/spatial.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 struct FieldPoint {
   Vec3 p_B = Vec3::Zero();  ///< from the centre of mass [m]
@@ -55,4 +55,4 @@ FieldLoad field_load(std::span<const ForceField> fields, std::span<const FieldPo
 /// The same surface gives the same points.
 std::vector<FieldPoint> spread_over(const TriangleMesh& surface, int count);
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

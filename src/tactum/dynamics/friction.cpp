@@ -5,7 +5,7 @@
 
 #include "tactum/base/tolerances.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using Index = std::size_t;
@@ -381,4 +381,4 @@ void Friction::end(const RowsInProblem& contacts, const ContactProblem& problem,
   }
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

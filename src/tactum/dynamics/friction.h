@@ -36,7 +36,7 @@
 #include "tactum/dynamics/friction_anchors.h"
 #include "tactum/dynamics/friction_patch.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 class Friction {
  public:
@@ -124,4 +124,4 @@ const FrictionAnchor* take_anchor(const FrictionAnchors& anchors, std::span<cons
 FrictionAnchor next_anchor(const FrictionPatch& patch, const Vec3& centre_W, bool pushed,
                            std::span<const Pose> X_WB) noexcept;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

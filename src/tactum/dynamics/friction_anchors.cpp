@@ -4,7 +4,7 @@
 #include <cmath>
 #include <tuple>
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using Index = std::size_t;
@@ -63,4 +63,4 @@ void FrictionAnchors::sort_and_exchange() noexcept {
   now_.clear();
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -8,7 +8,7 @@
 #include "tactum/dynamics/friction_patch.h"
 #include "tactum/math/pose.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 struct FrictionAnchor {
   SurfacePair surfaces;
@@ -61,4 +61,4 @@ class FrictionAnchors {
   ReservedVector<int> order_;                  // scratch
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

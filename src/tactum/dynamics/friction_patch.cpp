@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using Index = std::size_t;
@@ -77,4 +77,4 @@ Slide slide_of(const FrictionPatch& patch, const ContactProblem& problem) noexce
   return slide;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -5,7 +5,7 @@
 #include "tactum/dynamics/contact_problem.h"
 #include "tactum/dynamics/contact_row.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// How an answer of the contact problem moves A's point at a patch's centre against B's, as rows of the
 /// problem: off the surface and along two directions in it [m], and how far it turns about the normal [rad].
@@ -83,4 +83,4 @@ PatchMotion motion_of(const FrictionPatch& patch, const Vec3& along_W,
 void turn_directions(const Vec3& along_W, PatchMotion& motion) noexcept;
 Slide slide_of(const FrictionPatch& patch, const ContactProblem& problem) noexcept;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

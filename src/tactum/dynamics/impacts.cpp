@@ -6,7 +6,7 @@
 #include "tactum/base/static_vector.h"
 #include "tactum/base/tolerances.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using Index = std::size_t;
@@ -205,4 +205,4 @@ ImpactResult resolve_impacts(std::span<ContactRow> rows, const ImpactBodies& bod
   }
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -14,7 +14,7 @@
 #include "tactum/dynamics/solve_exactly.h"
 #include "tactum/dynamics/world.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// Approach slower than this is rest, not impact: a few frames' worth of gravity [m/s].
 inline constexpr double kImpactSpeed = 0.03;
@@ -59,4 +59,4 @@ struct ImpactScratch {
 ImpactResult resolve_impacts(std::span<ContactRow> rows, const ImpactBodies& bodies, double h, int most,
                              ImpactScratch& scratch, ImpactObserver* observer) noexcept;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -7,7 +7,7 @@
 
 #include "tactum/dynamics/world.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 class Islands {
  public:
@@ -44,4 +44,4 @@ class Islands {
   std::vector<char> moves_;
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

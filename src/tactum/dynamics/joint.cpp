@@ -7,7 +7,7 @@
 
 #include "tactum/math/screw.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 /// One or three unknowns, without allocation.
@@ -125,4 +125,4 @@ Pose constrained_pose(const Body& body, const Pose& X_WB) noexcept {
   return X_WB;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

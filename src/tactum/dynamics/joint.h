@@ -4,7 +4,7 @@
 
 #include "tactum/dynamics/world.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// How a body resists: the symmetric positive matrix M of  impulse = M (change of twist), about the centre of
 /// mass, world axes, twist order (v, w). A rigid body's is its inertia; a held proxy's comes from the
@@ -40,4 +40,4 @@ inline Vec6 to_vector(const Twist& V) {
 }
 inline Twist to_twist(const Vec6& v) { return {v.head<3>(), v.tail<3>()}; }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -1,6 +1,6 @@
 #include "tactum/dynamics/joint_forces.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 JointForces joint_forces(const Body& body, const Pose& X_WB, double h) noexcept {
   JointForces forces;
@@ -25,4 +25,4 @@ JointForces joint_forces(const Body& body, const Pose& X_WB, double h) noexcept 
   return forces;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

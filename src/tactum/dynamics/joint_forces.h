@@ -13,7 +13,7 @@
 
 #include "tactum/dynamics/joint.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 struct JointForces {
   bool acts = false;             ///< false: the joint leaves its free motions alone
@@ -32,4 +32,4 @@ struct JointForces {
 /// For a step of `h` seconds from the pose X_WB. Negative travels say that a limit has been overrun.
 JointForces joint_forces(const Body& body, const Pose& X_WB, double h) noexcept;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

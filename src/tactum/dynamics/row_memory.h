@@ -6,7 +6,7 @@
 
 #include "tactum/base/reserved_vector.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 struct RowState {
   std::uint64_t name = 0;
@@ -54,4 +54,4 @@ class RowMemory {
   std::size_t next_ = 0;  // in last_
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -11,7 +11,7 @@
 #include "tactum/base/frame_rate.h"
 #include "tactum/base/tolerances.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using Index = std::size_t;
@@ -315,4 +315,4 @@ Vec3 Sweeps::friction_torque(std::size_t patch) const noexcept {
   return frictions_[patch].about.now * patches_[patch].n_BA_W;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

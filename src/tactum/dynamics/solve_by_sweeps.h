@@ -18,7 +18,7 @@
 #include "tactum/dynamics/friction.h"
 #include "tactum/dynamics/row_memory.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 class Sweeps {
  public:
@@ -89,4 +89,4 @@ class Sweeps {
   double h_ = 0.0;  // of the step [s]
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

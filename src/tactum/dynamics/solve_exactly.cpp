@@ -1,6 +1,6 @@
 #include "tactum/dynamics/solve_exactly.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 /// How often patches that slid are let slip further: what is left of the error is mu^2 a round.
@@ -107,4 +107,4 @@ ExactResult solve_again(const RowsInProblem& contacts, int max_iterations, Exact
   return result;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

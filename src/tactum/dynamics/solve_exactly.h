@@ -4,7 +4,7 @@
 
 #include "tactum/dynamics/friction.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// Numbers of rows of the problem.
 using RowNumbers = StaticVector<int, kMostUnknowns>;
@@ -43,4 +43,4 @@ ExactResult solve_again(const RowsInProblem& contacts, int max_iterations, Exact
 /// The contact rows that push in the last answer.
 void list_pushing(const RowsInProblem& contacts, const ContactProblem& problem, RowNumbers& rows) noexcept;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

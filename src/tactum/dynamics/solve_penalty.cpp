@@ -8,7 +8,7 @@
 
 #include "tactum/base/tolerances.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using Index = std::size_t;
@@ -270,4 +270,4 @@ SolverResult solve_penalty(std::span<ContactRow> rows, std::size_t first, double
   return result;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

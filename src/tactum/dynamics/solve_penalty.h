@@ -25,7 +25,7 @@
 #include "tactum/dynamics/contact_problem.h"
 #include "tactum/dynamics/contact_row.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// Solves the problem, whose contact rows are `rows` and begin at number `first` there, and sets the rows'
 /// impulses over the step of `h` seconds. `forces` is scratch, with room for as many as the problem has rows
@@ -33,4 +33,4 @@ namespace tactum {
 SolverResult solve_penalty(std::span<ContactRow> rows, std::size_t first, double h, int max_sweeps,
                            ReservedVector<double>& forces, ContactProblem& problem) noexcept;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -3,7 +3,7 @@
 
 #include "tactum/dynamics/contact_problem.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// A bit each, so that a report can name all that were at work.
 enum class ContactSolver : std::uint8_t {
@@ -24,4 +24,4 @@ inline ContactSolver choose_solver(std::size_t exact_unknowns, bool coupled) noe
   return exact_unknowns <= most ? ContactSolver::kExact : ContactSolver::kSweeps;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -2,7 +2,7 @@
 
 #include <Eigen/LU>
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 Vec3 rate_midway(const Mat3& inertia_B, const Mat3& R_WB, const Vec3& w_WB, double h) noexcept {
   const Vec3 momentum = inertia_at(inertia_B, R_WB) * w_WB;
@@ -21,4 +21,4 @@ Vec3 rate_after(const Mat3& inertia_B, const Mat3& R_WB, const Vec3& w_WB, const
   return inertia_at(inertia_B, R_WB_end).inverse() * momentum;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

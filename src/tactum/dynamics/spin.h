@@ -6,7 +6,7 @@
 
 #include "tactum/math/screw.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// Inertia about world axes at an orientation.
 inline Mat3 inertia_at(const Mat3& inertia_B, const Mat3& R_WB) {
@@ -21,4 +21,4 @@ Vec3 rate_midway(const Mat3& inertia_B, const Mat3& R_WB, const Vec3& w_WB, doub
 Vec3 rate_after(const Mat3& inertia_B, const Mat3& R_WB, const Vec3& w_WB, const Vec3& impulse,
                 const Mat3& R_WB_end) noexcept;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -2,7 +2,7 @@
 
 #include "tactum/math/screw.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using Index = std::size_t;
@@ -32,4 +32,4 @@ void advance_bodies(const World& world, std::span<const Twist> V, double t, std:
     if (world.bodies[i].moves()) X_WB[i] = advanced(X_WB[i], V[i], t);
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -7,7 +7,7 @@
 #include "tactum/dynamics/contact_row.h"
 #include "tactum/dynamics/joint.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// When the contact closes, from distance and closing speed, in [0, dt]; 0 when it overlaps or touches, dt
 /// when it does not close by then.
@@ -21,4 +21,4 @@ void advance_distances(std::span<ContactRow> rows, std::span<const Pose> X_WB, s
 /// Moves every body with its twist for `t` seconds.
 void advance_bodies(const World& world, std::span<const Twist> V, double t, std::span<Pose> X_WB) noexcept;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -4,7 +4,7 @@
 
 #include "tactum/math/screw.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 WorldState initial_state(const World& world) {
   WorldState state;
@@ -40,4 +40,4 @@ double joint_position(const Body& body, const Pose& X_WB) {
   return 0.0;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

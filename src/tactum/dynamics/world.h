@@ -17,7 +17,7 @@
 #include "tactum/geometry/part.h"
 #include "tactum/math/spatial.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// What holds a body to the world.
 enum class JointKind {
@@ -101,4 +101,4 @@ double hinge_angle(const Body& body, const Pose& X_WB);
 /// The position of the body's joint (see Joint); 0 for a free or fixed body [rad or m].
 double joint_position(const Body& body, const Pose& X_WB);
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

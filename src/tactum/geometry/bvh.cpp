@@ -4,7 +4,7 @@
 
 #include "tactum/base/assert.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 constexpr int kBins = 16;
@@ -129,4 +129,4 @@ Bvh::Bvh(const std::vector<Aabb>& boxes, int leaf_size) {
   if (!boxes.empty()) Builder(boxes, std::max(1, leaf_size), nodes_, order_);
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -17,7 +17,7 @@
 #include "tactum/geometry/triangle_mesh.h"
 #include "tactum/math/pose.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 class Bvh {
  public:
@@ -133,4 +133,4 @@ bool for_each_pair_within(const Bvh& bvh_a, const Bvh& bvh_b, const Pose& X_AB, 
   return true;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -7,7 +7,7 @@
 #include "tactum/base/tolerances.h"
 #include "tactum/geometry/mesh_edges.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 struct Plane {
@@ -84,4 +84,4 @@ std::vector<int> coplanar_groups(const TriangleMesh& welded) {
   return group;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -5,11 +5,11 @@
 
 #include "tactum/geometry/triangle_mesh.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// The patch of each triangle: connected triangles in one plane, to the tolerances kCoplanarMeshSine and
 /// kCoplanarMeshOffset. Patches grow from the largest triangles, whose planes are known best. Numbered from
 /// 0.
 std::vector<int> coplanar_groups(const TriangleMesh& welded);
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

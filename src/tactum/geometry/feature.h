@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 enum class FeatureKind : std::uint8_t { kVertex, kEdge, kFace };
 
@@ -14,4 +14,4 @@ struct Feature {
   bool operator==(const Feature&) const = default;
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -16,7 +16,7 @@ extern "C" {
 #include "tactum/base/tolerances.h"
 #include "tactum/geometry/bvh.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using Index = std::size_t;
@@ -325,4 +325,4 @@ Result<Polytope> convex_hull(const std::vector<Vec3>& points) {
   return P;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -12,7 +12,7 @@
 #include "tactum/base/result.h"
 #include "tactum/geometry/polytope.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// The hull of `points` [m]. Points of one plane give a flat polytope (two faces). An error says when points
 /// are not finite, fewer than three, all on one line, or when the hull has more than 65 535 vertices. Cost: n
@@ -22,4 +22,4 @@ Result<Polytope> convex_hull(const std::vector<Vec3>& points);
 /// A flat polytope from a convex polygon's corners in order; face 0 is seen counter-clockwise.
 Result<Polytope> flat_polygon(const std::vector<Vec3>& corners);
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -6,7 +6,7 @@
 #include "tactum/geometry/hull.h"
 #include "tactum/geometry/mesh_report.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 /// Moments of order 0, 1, 2 about `origin`, signed: negative for a surface that is inside out.
@@ -116,4 +116,4 @@ MassProperties mass_properties_or_hull(const TriangleMesh& mesh, double density_
   return out;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -9,7 +9,7 @@
 #include "tactum/base/result.h"
 #include "tactum/geometry/triangle_mesh.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 struct MassProperties {
   double volume = 0.0;          ///< [m^3]
@@ -27,4 +27,4 @@ Result<MassProperties> mass_properties(const TriangleMesh& mesh, double density_
 /// the convex hull, or of the bounding box when the points lie in a plane; `approximation` says which.
 MassProperties mass_properties_or_hull(const TriangleMesh& mesh, double density_kg_per_m3);
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

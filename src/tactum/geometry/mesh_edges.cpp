@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 std::vector<HalfEdge> sorted_half_edges(const TriangleMesh& mesh) {
   std::vector<HalfEdge> sides;
@@ -21,4 +21,4 @@ std::vector<HalfEdge> sorted_half_edges(const TriangleMesh& mesh) {
   return sides;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

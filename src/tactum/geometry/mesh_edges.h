@@ -7,7 +7,7 @@
 
 #include "tactum/geometry/triangle_mesh.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// One side of one triangle. Sides of the same edge stand together when sorted.
 struct HalfEdge {
@@ -54,4 +54,4 @@ class DisjointSets {
   std::vector<int> parent_;
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -9,7 +9,7 @@
 #include "tactum/geometry/mesh_edges.h"
 #include "tactum/geometry/weld.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 int count_duplicates(const TriangleMesh& mesh) {
@@ -172,4 +172,4 @@ std::string describe(const MeshReport& report) {
   return text;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -9,7 +9,7 @@
 #include "tactum/base/tolerances.h"
 #include "tactum/geometry/triangle_mesh.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// The unit a file seems to be in. Files seldom say, so this is a guess with its reason.
 struct UnitGuess {
@@ -55,4 +55,4 @@ UnitGuess guess_unit(const Aabb& box);
 /// The report as lines of text, lengths in metres.
 std::string describe(const MeshReport& report);
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

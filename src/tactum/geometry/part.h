@@ -15,7 +15,7 @@
 #include "tactum/geometry/triangle_mesh.h"
 #include "tactum/geometry/true_surface.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// How a part was made, in words for a person.
 struct PartNotes {
@@ -53,4 +53,4 @@ struct Part {
 /// Finds what of the pieces can be touched, from the pieces and their hierarchy.
 void find_true_surface(Part& part);
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -1,6 +1,6 @@
 #include "tactum/geometry/polygon_clip.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 std::vector<Vec3> face_corners(const Polytope& polytope, int face) {
   const Polytope::Face& loop = polytope.faces[face];
@@ -33,4 +33,4 @@ double polygon_area(const std::vector<Vec3>& polygon, const Vec3& normal) {
   return 0.5 * sum.dot(normal);
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -5,7 +5,7 @@
 
 #include "tactum/geometry/polytope.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// The corners of a face, counter-clockwise seen from outside [m].
 std::vector<Vec3> face_corners(const Polytope& polytope, int face);
@@ -16,4 +16,4 @@ void keep_below(std::vector<Vec3>& polygon, const Vec3& normal, double offset);
 /// Of a convex polygon, seen from where `normal` points to [m^2].
 double polygon_area(const std::vector<Vec3>& polygon, const Vec3& normal);
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -8,7 +8,7 @@
 
 #include "tactum/base/tolerances.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using Index = std::size_t;
@@ -213,4 +213,4 @@ double convexity_defect(const Polytope& polytope) noexcept {
   return defect;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

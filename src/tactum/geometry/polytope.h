@@ -20,7 +20,7 @@
 #include "tactum/base/large_array.h"
 #include "tactum/geometry/triangle_mesh.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 struct Polytope {
   /// Seen from outside, the left face runs tail -> head and the right face head -> tail.
@@ -114,4 +114,4 @@ bool complete_polytope(Polytope& polytope, const char** why);
 /// Largest height of a vertex above a face plane [m]: zero up to rounding for a convex polytope.
 double convexity_defect(const Polytope& polytope) noexcept;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -8,7 +8,7 @@
 #include "tactum/base/assert.h"
 #include "tactum/geometry/hull.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 Polytope hull_of(const std::vector<Vec3>& points) {
@@ -77,4 +77,4 @@ Polytope make_ellipsoid(int subdivisions, const Vec3& radii_m) {
   return hull_of(points);
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -3,7 +3,7 @@
 
 #include "tactum/geometry/polytope.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// A box with the given half edge lengths [m].
 Polytope make_box(const Vec3& half_m);
@@ -17,4 +17,4 @@ Polytope make_icosphere(int subdivisions, double radius_m);
 /// An ellipsoid: the icosphere scaled along the axes.
 Polytope make_ellipsoid(int subdivisions, const Vec3& radii_m);
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

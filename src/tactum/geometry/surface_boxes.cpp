@@ -6,7 +6,7 @@
 
 #include "tactum/base/tolerances.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 constexpr std::size_t kLanes = SurfaceLayout::kLanes;
@@ -208,4 +208,4 @@ void SurfaceBoxes::make_box(SurfaceLayout::Node& node, std::size_t lane, Range r
   node.extent[lane] = (kNarrow + node.cone[lane]) * static_cast<float>(half.maxCoeff());
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

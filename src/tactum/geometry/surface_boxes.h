@@ -9,7 +9,7 @@
 #include "tactum/geometry/surface_cones.h"
 #include "tactum/geometry/surface_layout.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// Leaves hold eight features each but the last, nodes as many children as fill them: a node of n leaves has
 /// children of the largest power of eight below n. Features that stay together lie near each other and look
@@ -56,4 +56,4 @@ class SurfaceBoxes {
   std::vector<std::pair<double, ConedFeature>> keyed_;
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

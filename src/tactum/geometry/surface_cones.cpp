@@ -8,7 +8,7 @@
 #include "tactum/geometry/mesh_edges.h"
 #include "tactum/geometry/surface_layout.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
@@ -203,4 +203,4 @@ SurfaceCones surface_cones(const TriangleMesh& mesh, const std::vector<int>& gro
   return Finder(mesh, group).run();
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -8,7 +8,7 @@
 
 #include "tactum/geometry/triangle_mesh.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// A feature that can be nearest to something, with the cone around its normal cone.
 struct ConedFeature {
@@ -31,4 +31,4 @@ SurfaceCones surface_cones(const TriangleMesh& mesh, const std::vector<int>& gro
 /// inside.
 std::vector<Vec3> polar_cone(const std::vector<Vec3>& edges);
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

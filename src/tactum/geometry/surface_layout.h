@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdint>
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 struct SurfaceLayout {
   static constexpr int kLanes = 8;
@@ -32,4 +32,4 @@ struct SurfaceLayout {
   static constexpr std::int32_t kWall = -1;
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

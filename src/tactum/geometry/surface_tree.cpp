@@ -6,7 +6,7 @@
 #include "tactum/geometry/surface_boxes.h"
 #include "tactum/geometry/surface_cones.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 SurfaceTree::SurfaceTree(const TriangleMesh& welded) : SurfaceTree(welded, coplanar_groups(welded)) {}
 
@@ -80,4 +80,4 @@ bool SurfaceTree::sound() const noexcept {
   return first[0] == 0 && sound(first[0], first[1]) && sound(first[1], first[2]) && sound(first[2], first[3]);
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -34,7 +34,7 @@
 #include "tactum/geometry/surface_layout.h"
 #include "tactum/geometry/triangle_mesh.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 class SurfaceTree : public SurfaceLayout {
  public:
@@ -149,4 +149,4 @@ class SurfaceTree : public SurfaceLayout {
   LargeArray<Corners> leaves_;
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -6,7 +6,7 @@
 
 #include "tactum/math/types.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 using Triangle = std::array<int, 3>;  ///< vertex indices, counter-clockwise seen from outside
 
@@ -52,4 +52,4 @@ inline Aabb bounds(const std::vector<Vec3>& points) {
   return box;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

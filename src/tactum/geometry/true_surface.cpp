@@ -10,7 +10,7 @@
 #include "tactum/geometry/mesh_edges.h"
 #include "tactum/geometry/polygon_clip.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 /// Touching intervals and areas are worth the name when they are longer, or wider, than this many times the
@@ -226,4 +226,4 @@ TrueSurface true_surface(const std::vector<Polytope>& pieces, const Bvh& hierarc
   return builder.result();
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

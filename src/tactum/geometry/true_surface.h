@@ -20,7 +20,7 @@
 #include "tactum/geometry/bvh.h"
 #include "tactum/geometry/polytope.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 struct TrueSurface {
   /// Number of the first vertex, edge and face of each piece. Empty when no two pieces touch.
@@ -66,4 +66,4 @@ struct TrueSurface {
 /// faces.
 TrueSurface true_surface(const std::vector<Polytope>& pieces, const Bvh& hierarchy, double noise);
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -8,7 +8,7 @@
 
 #include "tactum/base/hash.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using Cell = std::array<std::int64_t, 3>;
@@ -125,4 +125,4 @@ WeldedMesh weld(const TriangleMesh& mesh, const WeldOptions& options) {
   return out;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -11,7 +11,7 @@
 #include "tactum/base/tolerances.h"
 #include "tactum/geometry/triangle_mesh.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 struct WeldOptions {
   double tolerance = tolerances::kWeld;  ///< share of the mesh's diagonal; 0 joins only equal coordinates [-]
@@ -39,4 +39,4 @@ WeldedMesh weld(const TriangleMesh& mesh, const WeldOptions& options = {});
 /// tolerances::kDegenerateTriangle.
 bool has_no_area(const Vec3& a, const Vec3& b, const Vec3& c);
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

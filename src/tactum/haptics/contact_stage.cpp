@@ -4,7 +4,7 @@
 
 #include "tactum/base/tolerances.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using Index = std::size_t;
@@ -72,4 +72,4 @@ std::span<const ContactPatch> find_patches(const World& world, const FrameSettin
   return stage.finder.patches();
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

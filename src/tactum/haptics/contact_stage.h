@@ -7,7 +7,7 @@
 #include "tactum/response/frame_report.h"
 #include "tactum/response/step_input.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 struct ContactStage {
   ContactStage(const World& world, const FrameSettings& settings, std::span<const Pose> X_WB);
@@ -27,4 +27,4 @@ std::span<const ContactPatch> find_patches(const World& world, const FrameSettin
                                            std::span<const Pose> X_WB, PatchPoints points,
                                            ContactStage& stage, FrameReport& report) noexcept;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -8,7 +8,7 @@
 
 #include "tactum/devices/hand_model.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 constexpr double kUsed = 0.5;         // share of the bound that is used
@@ -129,4 +129,4 @@ std::string margin_sentence(const Coupling& coupling, const DeviceInfo& info, do
                                   allowed(info.handle.damping_Nms_per_rad, 0.0), "N m/rad"));
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -25,7 +25,7 @@
 #include "tactum/loop/passivity.h"
 #include "tactum/response/settings.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// The damping that a coupling asks for: K (T / 2 + tau) + |B|. The same for rotation.
 double damping_needed(double stiffness, double damping, double period_s, double delay_s) noexcept;
@@ -55,4 +55,4 @@ PortSettings port_settings(const DeviceInfo& info, double rate_Hz);
 /// How much of the bounds a coupling uses, in a sentence for people.
 std::string margin_sentence(const Coupling& coupling, const DeviceInfo& info, double rate_Hz);
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

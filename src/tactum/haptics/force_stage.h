@@ -11,7 +11,7 @@
 #include "tactum/devices/device.h"
 #include "tactum/response/frame_report.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 class ForceStage {
  public:
@@ -28,4 +28,4 @@ class ForceStage {
   ForceStage& operator=(const ForceStage&) = default;
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -2,7 +2,7 @@
 
 #include "tactum/response/energy.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 void report_grasp(const GraspedPart& grasped, const WorldState& bodies, FrameReport& report) {
@@ -68,4 +68,4 @@ Wrench haptic_frame(const World& world, const FrameSettings& settings, const Dev
   return report.shown;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

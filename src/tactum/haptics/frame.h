@@ -5,11 +5,11 @@
 #include "tactum/loop/loop.h"
 #include "tactum/response/frame_report.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// The wrench for the hand, device axes, at the handle. A function of its arguments: it allocates nothing,
 /// locks nothing, throws nothing and reads no clock, and the same inputs give the same bits.
 Wrench haptic_frame(const World& world, const FrameSettings& settings, const DeviceSample& sample,
                     const FrameTick& tick, FrameState& state, FrameReport& report) noexcept;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

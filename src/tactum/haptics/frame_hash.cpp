@@ -2,7 +2,7 @@
 
 #include "tactum/haptics/report_fields.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 // That no member of the report is missing in the list of its fields: as many members are named as there are.
@@ -90,4 +90,4 @@ void add_to(FrameHash& hash, const WorldState& state) noexcept {
   }
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

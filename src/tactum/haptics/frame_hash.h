@@ -4,7 +4,7 @@
 #include "tactum/base/hash.h"
 #include "tactum/response/frame_report.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// Adds everything that was computed and counted to the hash (a negative zero as zero): equal hashes mean
 /// equal frames.
@@ -12,4 +12,4 @@ void add_to(FrameHash& hash, const FrameReport& report) noexcept;
 /// The same for where the bodies are and how they move.
 void add_to(FrameHash& hash, const WorldState& state) noexcept;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

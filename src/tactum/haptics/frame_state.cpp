@@ -1,6 +1,6 @@
 #include "tactum/haptics/frame_state.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 FrameState::FrameState(const World& constant_world, const FrameSettings& settings,
                        StageObserver* stage_observer)
@@ -17,4 +17,4 @@ FrameState::FrameState(const World& constant_world, const FrameSettings& setting
                                contacts.priority);
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -11,7 +11,7 @@
 #include "tactum/loop/smoothing.h"
 #include "tactum/response/response.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// The parts of a frame that a stage observer is told the end of.
 enum class Stage { kHand, kVelocities, kNearPairs, kExactTests, kResponse, kShow };
@@ -43,4 +43,4 @@ struct FrameState {
   }
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -4,7 +4,7 @@
 
 #include "tactum/math/screw.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 void follow_hand(const Workspace& workspace, const DeviceSample& sample, double dt_s,
                  HandTracking& hand) noexcept {
@@ -37,4 +37,4 @@ Wrench to_device(const HandTracking& hand, const Wrench& F_W) noexcept {
   return rotated(hand.X_WD.R.transpose(), F_W);
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -9,7 +9,7 @@
 #include "tactum/devices/device.h"
 #include "tactum/response/settings.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 struct HandTracking {
   Pose X_WD;              ///< the mapping as the clutch has left it [m]
@@ -28,4 +28,4 @@ void follow_hand(const Workspace& workspace, const DeviceSample& sample, double 
 /// A wrench at the handle, told with the device's axes.
 Wrench to_device(const HandTracking& hand, const Wrench& F_W) noexcept;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -1,6 +1,6 @@
 #include "tactum/haptics/hand_stage.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using Index = std::size_t;
@@ -42,4 +42,4 @@ GraspedPart track_hand(const World& world, const FrameSettings& settings, const 
   return grasped;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -5,7 +5,7 @@
 #include "tactum/haptics/picking.h"
 #include "tactum/response/field_pull.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// What the stage keeps from frame to frame.
 struct HandStage : HandTracking {
@@ -21,4 +21,4 @@ HandStage begin_hand(const FrameSettings& settings);
 GraspedPart track_hand(const World& world, const FrameSettings& settings, const DeviceSample& sample,
                        std::span<const Pose> X_WB, HandStage& hand) noexcept;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 Result<void> check_known(const World& world, const std::string& material, const char* where) {
@@ -36,4 +36,4 @@ Result<void> set_coefficient(const World& world, const MaterialPair& pair, PairC
   return {};
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

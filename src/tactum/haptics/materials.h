@@ -10,7 +10,7 @@
 #include "tactum/dynamics/world.h"
 #include "tactum/response/settings.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// A coefficient for every body of one material with every body of the other; the order is of no account.
 struct MaterialPair {
@@ -24,4 +24,4 @@ struct MaterialPair {
 /// not finite; Error::where then names the member of MaterialPair.
 Result<void> set_coefficient(const World& world, const MaterialPair& pair, PairCoefficients& table);
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

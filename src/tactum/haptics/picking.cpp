@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using Index = std::size_t;
@@ -62,4 +62,4 @@ void pick_or_release(const World& world, std::span<const Pose> X_WB, const Tool&
   grasp.X_BH = relative_pose(X_WB[Index(body)], X_WH);
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -10,7 +10,7 @@
 #include "tactum/dynamics/world.h"
 #include "tactum/response/settings.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// The body that moves and is nearest to a point of the world, and no farther than `pick_distance_m`; -1 when
 /// there is none. The distance is to the nearest plane of the nearest convex piece, so it is short beside
@@ -29,4 +29,4 @@ struct Grasp {
 void pick_or_release(const World& world, std::span<const Pose> X_WB, const Tool& tool, const Pose& X_WH,
                      std::uint32_t buttons, Grasp& grasp) noexcept;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

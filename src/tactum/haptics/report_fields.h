@@ -19,7 +19,7 @@
 
 #include "tactum/response/frame_report.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// What a run keeps of a field (telemetry/run_record.h).
 enum class InRun {
@@ -189,4 +189,4 @@ struct ReportFieldName {
   std::size_t place;
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <type_traits>
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 constexpr double degrees(double radians) { return radians * (180.0 / kPi); }
@@ -195,4 +195,4 @@ std::string settings_toml(const FrameSettings& frame, const SafetySettings& safe
   return top + text;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

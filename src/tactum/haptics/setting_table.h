@@ -10,7 +10,7 @@
 
 #include "tactum/response/settings.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// What can be set: the frame's settings, and what the user asks of safety (which only tightens the device's
 /// limits).
@@ -53,4 +53,4 @@ bool in_range(const SettingInfo& setting, double value) noexcept;
 /// settings of this table.
 std::string settings_toml(const FrameSettings& frame, const SafetySettings& safety);
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -4,7 +4,7 @@
 
 #include "tactum/haptics/coupling_gains.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 Result<void> check_world(const World& world, const FrameSettings& settings) {
   for (const Body& body : world.bodies) {
@@ -68,4 +68,4 @@ Wrench Simulation::run(const DeviceSample& sample, const FrameTick& tick) noexce
   return haptic_frame(world_, settings_, sample, tick, state_, report_);
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

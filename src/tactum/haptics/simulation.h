@@ -15,7 +15,7 @@
 
 #include "tactum/haptics/frame.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// An error when the world cannot be stepped: a body without a part, a pose that is not finite, a moving body
 /// without mass or inertia, a tool that holds no body of the world, a step that is not positive.
@@ -66,4 +66,4 @@ class Simulation final : public HapticFrame {
   std::uint64_t next_index_ = 0;
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

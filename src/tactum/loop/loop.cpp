@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 Result<void> check_rate(double rate_Hz) {
   constexpr double kLowest = 10.0;    // below, no hand would take it for touch
@@ -49,4 +49,4 @@ Result<VirtualRun> run_virtual(Device& device, HapticFrame& frame, double rate_H
   return run;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -11,7 +11,7 @@
 #include "tactum/base/result.h"
 #include "tactum/devices/device.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// What the loop tells the frame beside the sample.
 struct FrameTick {
@@ -79,4 +79,4 @@ inline bool is_zero(const Wrench& F) { return F.f.isZero(0.0) && F.t.isZero(0.0)
 /// An error unless a loop can run at this rate.
 Result<void> check_rate(double rate_Hz);
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

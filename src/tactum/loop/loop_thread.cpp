@@ -8,7 +8,7 @@
 
 #include "tactum/base/assert.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 constexpr std::int64_t kNanoseconds = 1'000'000'000;
@@ -168,4 +168,4 @@ LoopStatus LoopThread::status() const noexcept {
   return status;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -22,7 +22,7 @@
 #include "tactum/loop/loop.h"
 #include "tactum/loop/realtime.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 struct LoopSettings {
   double rate_Hz = 1000.0;          ///< [Hz]
@@ -100,4 +100,4 @@ class LoopThread {
   std::atomic<std::uint64_t> dropped_timings_{0};
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

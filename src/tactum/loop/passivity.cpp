@@ -5,7 +5,7 @@
 
 #include "tactum/math/screw.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 /// One of the two balances over one step.
@@ -100,4 +100,4 @@ Wrench passive_wrench(const PortSettings& settings, PortState& state, const Devi
   return F;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

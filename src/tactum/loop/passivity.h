@@ -27,7 +27,7 @@
 #include "tactum/devices/device.h"
 #include "tactum/math/spatial.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// What is known of the device's port, from coupling_gains.h. The defaults only watch.
 struct PortSettings {
@@ -80,4 +80,4 @@ struct PortReport {
 Wrench passive_wrench(const PortSettings& settings, PortState& state, const DeviceSample& sample,
                       const PortInput& input, PortReport& report) noexcept;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -10,7 +10,7 @@
 #include <cerrno>
 #include <cstring>
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 constexpr unsigned long kWakeUpTolerance_ns = 1;   // the kernel's default is 50 us
@@ -73,4 +73,4 @@ LoopPrivileges acquire_privileges(const RealtimeSettings& settings) {
   return got;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

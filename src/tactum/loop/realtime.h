@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 struct LoopPrivileges {
   bool realtime = false;               ///< scheduled before ordinary threads (SCHED_FIFO)
@@ -25,4 +25,4 @@ struct RealtimeSettings {
 /// memory lock is the process's and stays.
 LoopPrivileges acquire_privileges(const RealtimeSettings& settings);
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

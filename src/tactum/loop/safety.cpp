@@ -5,7 +5,7 @@
 
 #include "tactum/math/screw.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using namespace safety_flag;
@@ -179,4 +179,4 @@ std::string safety_flag_names(std::uint32_t flags) {
   return text;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -27,7 +27,7 @@
 #include "tactum/loop/loop.h"
 #include "tactum/math/spatial.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// The limits in force. Made by safety_limits and tightened, not by hand.
 struct SafetyLimits {
@@ -120,4 +120,4 @@ struct SafetyReport {
 Wrench safe_wrench(const SafetyLimits& limits, SafetyState& state, const SafetyInput& input,
                    SafetyReport& report) noexcept;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -2,7 +2,7 @@
 
 #include "tactum/base/frame_rate.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 Vec3 smoothed(const Vec3& F0, const Vec3& F1, double F_max) noexcept {
   const Vec3 d = F1 - F0;
@@ -24,4 +24,4 @@ Wrench smooth_wrench(const SmoothingSettings& settings, double dt_s, SmoothingSt
   return state.shown;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

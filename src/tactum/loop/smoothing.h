@@ -15,7 +15,7 @@
 
 #include "tactum/math/spatial.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 struct SmoothingSettings {
   double max_force_step_N = 0.5;     ///< F_max of the force in 1 ms; infinity: no smoothing [N]
@@ -34,4 +34,4 @@ Vec3 smoothed(const Vec3& F0, const Vec3& F1, double F_max) noexcept;
 Wrench smooth_wrench(const SmoothingSettings& settings, double dt_s, SmoothingState& state,
                      const Wrench& computed) noexcept;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

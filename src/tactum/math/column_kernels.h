@@ -8,7 +8,7 @@
 
 #include "tactum/base/cpu_dispatch.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 inline constexpr std::size_t kMostUnknowns = 36;  ///< six free bodies
 
@@ -36,4 +36,4 @@ struct Kernels {
 CpuBuilds<Kernels> builds() noexcept;
 
 }  // namespace columns
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -2,7 +2,7 @@
 
 #include "tactum/math/column_kernels_of.h"
 
-namespace tactum::columns {
+namespace tactum::inline v0_1::columns {
 
 extern const Kernels* const kWide;  // column_kernels_wide.cpp
 
@@ -14,4 +14,4 @@ constexpr Kernels kNarrow = KernelsOf<2>::table();
 
 CpuBuilds<Kernels> builds() noexcept { return {&kNarrow, kWide}; }
 
-}  // namespace tactum::columns
+}  // namespace tactum::inline v0_1::columns

@@ -6,7 +6,7 @@
 
 #include "tactum/math/column_kernels.h"
 
-namespace tactum::columns {
+namespace tactum::inline v0_1::columns {
 
 /// Vectors of so many numbers, as g++ and clang++ share them.
 template <std::size_t Width>
@@ -92,4 +92,4 @@ struct KernelsOf {
   static constexpr Kernels table() { return {combine, dots, dot, solve_upper, turn}; }
 };
 
-}  // namespace tactum::columns
+}  // namespace tactum::inline v0_1::columns

@@ -3,7 +3,7 @@
 
 #include "tactum/math/column_kernels_of.h"
 
-namespace tactum::columns {
+namespace tactum::inline v0_1::columns {
 
 extern const Kernels* const kWide;
 
@@ -19,4 +19,4 @@ constinit const Kernels* const kWide = &kTable;
 constinit const Kernels* const kWide = nullptr;
 #endif
 
-}  // namespace tactum::columns
+}  // namespace tactum::inline v0_1::columns

@@ -3,7 +3,7 @@
 
 #include "tactum/math/types.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// R v, written out: Eigen's general product is a call.
 inline Vec3 rotated(const Mat3& R, const Vec3& v) {
@@ -34,4 +34,4 @@ inline Pose relative_pose(const Pose& X_WA, const Pose& X_WB) {
   return {X_WA.R.transpose() * X_WB.R, X_WA.R.transpose() * (X_WB.p - X_WA.p)};
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

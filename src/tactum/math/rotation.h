@@ -9,7 +9,7 @@
 #include "tactum/base/tolerances.h"
 #include "tactum/math/types.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 struct NearestRotation {
   Mat3 R = Mat3::Identity();  ///< proper rotation; identity when `exists` is false [-]
@@ -36,4 +36,4 @@ inline NearestRotation orthonormalized(const Mat3& M) {
   return result;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

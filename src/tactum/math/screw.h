@@ -6,7 +6,7 @@
 #include "tactum/base/tolerances.h"
 #include "tactum/math/spatial.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// The rotation by |w| radians about w.
 inline Mat3 exp_rotation(const Vec3& w) {
@@ -55,4 +55,4 @@ inline Pose interpolated(const Pose& X_WB, const Pose& X_WC, double s) {
   return advanced(X_WB, twist_between(X_WB, X_WC, 1.0), s);
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -8,7 +8,7 @@
 #include "tactum/base/tolerances.h"
 #include "tactum/math/types.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using Index = std::size_t;
@@ -336,4 +336,4 @@ void SmallQp::release(Index leaving) noexcept {
   }
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

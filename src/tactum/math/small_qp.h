@@ -27,7 +27,7 @@
 #include "tactum/base/static_vector.h"
 #include "tactum/math/column_kernels.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// g_i and b_i. A row pushes on two bodies at most: its normal is zero outside of two runs of unknowns, and g
 /// from `count` on.
@@ -145,4 +145,4 @@ class SmallQp {
   double off_square_ = 0.0, free_off_square_ = 0.0;
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

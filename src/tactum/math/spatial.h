@@ -6,7 +6,7 @@
 
 #include "tactum/math/pose.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 struct Twist {
   Vec3 v = Vec3::Zero();  ///< linear, of the reference point [m/s]
@@ -45,4 +45,4 @@ inline Vec3 velocity_at(const Twist& V, const Vec3& r) { return V.v + V.w.cross(
 /// Power of the load on the motion [W]; both at the same reference point.
 inline double power(const Wrench& F, const Twist& V) { return F.f.dot(V.v) + F.t.dot(V.w); }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

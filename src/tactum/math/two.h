@@ -8,7 +8,7 @@
 
 #include "tactum/math/types.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 using Two = double __attribute__((vector_size(16)));
 
@@ -33,4 +33,4 @@ inline Vec2 vec2(Two pair) noexcept {
   return x;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 using Vec2 = Eigen::Vector2d;
 using Vec3 = Eigen::Vector3d;
@@ -35,4 +35,4 @@ inline Vec3 any_orthogonal(const Vec3& n) {
   return n.cross(axis).normalized();
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

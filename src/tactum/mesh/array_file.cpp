@@ -9,7 +9,7 @@
 
 #include "tactum/base/hash.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 constexpr std::size_t kMagic = 8;
@@ -243,4 +243,4 @@ Result<void> ArrayReader::finish() {
   return {};
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

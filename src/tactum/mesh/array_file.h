@@ -31,7 +31,7 @@
 #include "tactum/base/result.h"
 #include "tactum/geometry/polytope.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// Copied byte by byte. Eigen's small matrices are plain numbers too, though they do not say so.
 template <class T>
@@ -121,4 +121,4 @@ class ArrayReader {
   std::optional<Error> error_;
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -5,7 +5,7 @@
 #include "tactum/geometry/mesh_edges.h"
 #include "tactum/geometry/weld.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 bool is_cap(const TriangleMesh& mesh, int triangle) {
@@ -113,4 +113,4 @@ CapReport mend_caps(TriangleMesh& mesh, std::vector<int>& source) {
   return report;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -11,7 +11,7 @@
 
 #include "tactum/geometry/triangle_mesh.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 inline constexpr int kMostCapRounds = 16;
 
@@ -23,4 +23,4 @@ struct CapReport {
 /// Numbers in the report are those of `source`, which is kept in step with the triangles.
 CapReport mend_caps(TriangleMesh& mesh, std::vector<int>& source);
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

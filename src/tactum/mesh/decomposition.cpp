@@ -13,7 +13,7 @@
 #include "tactum/mesh/decomposition_check.h"
 #include "tactum/mesh/decomposition_cut.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using detail::CutPlane;
@@ -232,4 +232,4 @@ Result<SolidPieces> solid_pieces(const TriangleMesh& mesh, int most_pieces) {
   return result;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -21,7 +21,7 @@
 #include "tactum/geometry/polytope.h"
 #include "tactum/geometry/triangle_mesh.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// So many pieces are few enough for the solid to be the better way than the surface, measured by the cost of
 /// near pairs.
@@ -39,4 +39,4 @@ struct SolidPieces {
 /// pieces.
 Result<SolidPieces> solid_pieces(const TriangleMesh& mesh, int most_pieces);
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

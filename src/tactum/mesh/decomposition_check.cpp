@@ -10,7 +10,7 @@
 #include "tactum/geometry/hull.h"
 #include "tactum/geometry/polygon_clip.h"
 
-namespace tactum::detail {
+namespace tactum::inline v0_1::detail {
 namespace {
 
 double highest(const Polytope& piece, const Polytope::Face& plane) {
@@ -151,4 +151,4 @@ Result<void> check_pieces(const std::vector<Polytope>& pieces, double volume, do
   return {};
 }
 
-}  // namespace tactum::detail
+}  // namespace tactum::inline v0_1::detail

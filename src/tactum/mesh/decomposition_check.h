@@ -7,7 +7,7 @@
 #include "tactum/geometry/polytope.h"
 #include "tactum/mesh/decomposition_solid.h"
 
-namespace tactum::detail {
+namespace tactum::inline v0_1::detail {
 
 /// The hull of a body without reflex edges. An error when it holds more than the body by more than `noise`
 /// [m] everywhere on its surface.
@@ -27,4 +27,4 @@ bool overlap_deeper(const Polytope& a, const Polytope& b, double depth);
 /// [m^3]
 double volume_of(const Polytope& piece);
 
-}  // namespace tactum::detail
+}  // namespace tactum::inline v0_1::detail

@@ -5,7 +5,7 @@
 
 #include "tactum/base/tolerances.h"
 
-namespace tactum::detail {
+namespace tactum::inline v0_1::detail {
 namespace {
 
 enum class Where : signed char { kBelow = -1, kOn = 0, kAbove = 1 };
@@ -162,4 +162,4 @@ Result<Halves> cut(std::vector<Vec3>& all, const Solid& solid, const CutPlane& p
   return halves;
 }
 
-}  // namespace tactum::detail
+}  // namespace tactum::inline v0_1::detail

@@ -11,7 +11,7 @@
 
 #include "tactum/mesh/decomposition_solid.h"
 
-namespace tactum::detail {
+namespace tactum::inline v0_1::detail {
 
 struct CutPlane {
   Vec3 normal = Vec3::Zero();  ///< unit
@@ -26,4 +26,4 @@ struct Halves {
 /// there, or is thinner than the noise. O(sides log sides).
 Result<Halves> cut(std::vector<Vec3>& corners, const Solid& solid, const CutPlane& plane, double noise);
 
-}  // namespace tactum::detail
+}  // namespace tactum::inline v0_1::detail

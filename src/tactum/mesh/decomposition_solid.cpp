@@ -12,7 +12,7 @@
 #include "tactum/geometry/coplanar_groups.h"
 #include "tactum/geometry/mesh_edges.h"
 
-namespace tactum::detail {
+namespace tactum::inline v0_1::detail {
 namespace {
 
 /// A side with its face, under the name of its edge.
@@ -350,4 +350,4 @@ std::vector<int> corners_of(const Solid& solid) {
   return corners;
 }
 
-}  // namespace tactum::detail
+}  // namespace tactum::inline v0_1::detail

@@ -18,7 +18,7 @@
 #include "tactum/base/result.h"
 #include "tactum/geometry/triangle_mesh.h"
 
-namespace tactum::detail {
+namespace tactum::inline v0_1::detail {
 
 /// From corner to corner.
 using SolidSide = std::array<int, 2>;
@@ -61,4 +61,4 @@ std::vector<int> corners_of(const Solid& solid);
 /// "(x y z)", for sentences.
 std::string place(const Vec3& p);
 
-}  // namespace tactum::detail
+}  // namespace tactum::inline v0_1::detail

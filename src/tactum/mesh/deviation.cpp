@@ -6,7 +6,7 @@
 
 #include "tactum/base/tolerances.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 /// The nearest point of a segment, squared distance from p.
@@ -190,4 +190,4 @@ Deviation surface_deviation(const TriangleMesh& mesh, const Part& part, const Ve
   return out;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

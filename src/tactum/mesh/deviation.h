@@ -16,7 +16,7 @@
 #include "tactum/geometry/part.h"
 #include "tactum/geometry/triangle_mesh.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 inline constexpr int kAreaSamples = 4000;
 
@@ -58,4 +58,4 @@ TriangleMesh faces_of(const Part& part, const Vec3& origin, std::vector<int>& pi
 Deviation surface_deviation(const TriangleMesh& mesh, const Part& part, const Vec3& origin = Vec3::Zero(),
                             int area_samples = kAreaSamples);
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-namespace tactum::detail {
+namespace tactum::inline v0_1::detail {
 namespace {
 
 using nlohmann::json;
@@ -430,4 +430,4 @@ Result<std::string> reduced_glb(std::string_view bytes, MeshBuilder& builder) {
   return GltfReducer(builder).reduce(bytes);
 }
 
-}  // namespace tactum::detail
+}  // namespace tactum::inline v0_1::detail

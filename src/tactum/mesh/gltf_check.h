@@ -9,9 +9,9 @@
 
 #include "tactum/mesh/mesh_builder.h"
 
-namespace tactum::detail {
+namespace tactum::inline v0_1::detail {
 
 /// The bytes of the reduced GLB; points and lines are counted in the builder's report.
 Result<std::string> reduced_glb(std::string_view bytes, MeshBuilder& builder);
 
-}  // namespace tactum::detail
+}  // namespace tactum::inline v0_1::detail

@@ -7,7 +7,7 @@
 
 #include "tactum/geometry/mesh_edges.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 constexpr double kForbidden = std::numeric_limits<double>::infinity();
@@ -128,4 +128,4 @@ std::vector<Rim> close_holes(TriangleMesh& mesh, int most_edges) {
   return rims;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

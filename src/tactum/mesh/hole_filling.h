@@ -13,7 +13,7 @@
 
 #include "tactum/geometry/triangle_mesh.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 inline constexpr int kMostRimEdges = 256;  ///< longer rims are never closed: 256^3 / 6 areas are 3 million
 
@@ -30,4 +30,4 @@ std::vector<Rim> rims_of(const TriangleMesh& mesh);
 /// Closes rims of at most `most_edges` edges. New triangles are appended; the rims tell which were closed.
 std::vector<Rim> close_holes(TriangleMesh& mesh, int most_edges);
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

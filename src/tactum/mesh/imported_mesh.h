@@ -8,7 +8,7 @@
 
 #include "tactum/geometry/triangle_mesh.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 struct ImportOptions {
   double scale = 1.0;                  ///< metres per unit of the file [m]
@@ -43,4 +43,4 @@ struct ImportedMesh {
   ImportReport report;
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

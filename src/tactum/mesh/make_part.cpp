@@ -13,7 +13,7 @@
 #include "tactum/geometry/weld.h"
 #include "tactum/mesh/decomposition.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 /// The faces of a polytope, cut into triangles, behind `surface`.
@@ -280,4 +280,4 @@ Result<Part> part_from_mesh(const TriangleMesh& mesh, const PartOptions& options
   return part;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -14,7 +14,7 @@
 #include "tactum/geometry/part.h"
 #include "tactum/mesh/imported_mesh.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// Where the pieces of a mesh come from.
 enum class PieceSource {
@@ -43,4 +43,4 @@ Result<Part> part_from_convex_groups(const ImportedMesh& mesh, const PartOptions
 /// pieces. Given pieces are groups, which a bare mesh has not: see part_from_convex_groups.
 Result<Part> part_from_mesh(const TriangleMesh& mesh, const PartOptions& options = {});
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

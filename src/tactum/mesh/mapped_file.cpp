@@ -10,7 +10,7 @@
 #include <cstring>
 #include <utility>
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 /// A descriptor that closes itself.
@@ -78,4 +78,4 @@ Result<void> write_whole_file(const std::string& path, std::string_view bytes) {
   return {};
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

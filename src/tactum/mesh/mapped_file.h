@@ -10,7 +10,7 @@
 
 #include "tactum/base/result.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 class MappedFile {
  public:
@@ -34,4 +34,4 @@ class MappedFile {
 /// Writes beside the file and renames: a reader sees the old file or the new one, never half of it.
 Result<void> write_whole_file(const std::string& path, std::string_view bytes);
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

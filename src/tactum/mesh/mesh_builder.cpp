@@ -2,7 +2,7 @@
 
 #include "tactum/mesh/polygon_split.h"
 
-namespace tactum::detail {
+namespace tactum::inline v0_1::detail {
 
 std::string in_quotes(std::string_view word) {
   constexpr std::size_t kLongest = 40;
@@ -107,4 +107,4 @@ Result<ImportedMesh> MeshBuilder::finish() {
   return std::move(out_);
 }
 
-}  // namespace tactum::detail
+}  // namespace tactum::inline v0_1::detail

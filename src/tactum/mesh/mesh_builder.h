@@ -9,7 +9,7 @@
 #include "tactum/base/result.h"
 #include "tactum/mesh/imported_mesh.h"
 
-namespace tactum::detail {
+namespace tactum::inline v0_1::detail {
 
 class MeshBuilder {
  public:
@@ -56,4 +56,4 @@ Result<void> read_ply(std::string_view bytes, MeshBuilder& builder);
 Result<void> read_off(std::string_view text, MeshBuilder& builder);
 Result<void> read_gltf(std::string_view bytes, MeshBuilder& builder);
 
-}  // namespace tactum::detail
+}  // namespace tactum::inline v0_1::detail

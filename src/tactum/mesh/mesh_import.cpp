@@ -8,7 +8,7 @@
 #include "tactum/mesh/mesh_builder.h"
 #include "tactum/mesh/text_scanner.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using Reader = Result<void> (*)(std::string_view, detail::MeshBuilder&);
@@ -121,4 +121,4 @@ Result<ImportedMesh> import_mesh(const std::string& path, const ImportOptions& o
   }
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

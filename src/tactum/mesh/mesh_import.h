@@ -16,7 +16,7 @@
 #include "tactum/base/result.h"
 #include "tactum/mesh/imported_mesh.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// The mesh of a file; its format is told by its content, helped by the ending of its name.
 Result<ImportedMesh> import_mesh(const std::string& path, const ImportOptions& options = {});
@@ -26,4 +26,4 @@ Result<ImportedMesh> import_mesh(const std::string& path, const ImportOptions& o
 Result<ImportedMesh> import_mesh_bytes(std::string_view bytes, const std::string& name,
                                        const ImportOptions& options = {});
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -7,7 +7,7 @@
 #include "tactum/geometry/mesh_edges.h"
 #include "tactum/mesh/surface_crossings.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 /// Across each side of each triangle: the neighbour, and whether both run along the side the same way.
@@ -172,4 +172,4 @@ OrientedMesh orient_components(TriangleMesh& mesh) {
   return out;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

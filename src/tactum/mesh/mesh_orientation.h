@@ -20,7 +20,7 @@
 
 #include "tactum/geometry/triangle_mesh.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 struct MeshComponent {
   int first_triangle = 0;   ///< its lowest number
@@ -47,4 +47,4 @@ struct OrientedMesh {
 /// Turns triangles in place. They must have three different corners each.
 OrientedMesh orient_components(TriangleMesh& mesh);
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -10,7 +10,7 @@
 #include "tactum/mesh/cap_triangles.h"
 #include "tactum/mesh/hole_filling.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 /// Collects findings with the place of the first triangle of each.
@@ -213,4 +213,4 @@ RepairedMesh repair_mesh(const TriangleMesh& mesh, const RepairOptions& options)
   return out;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

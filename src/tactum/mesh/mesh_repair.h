@@ -22,7 +22,7 @@
 #include "tactum/geometry/triangle_mesh.h"
 #include "tactum/mesh/mesh_orientation.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 struct RepairOptions {
   int close_holes = 0;  ///< holes of at most this many edges are closed; 0: none
@@ -50,4 +50,4 @@ struct RepairedMesh {
 
 RepairedMesh repair_mesh(const TriangleMesh& mesh, const RepairOptions& options = {});
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -9,7 +9,7 @@
 #include "tactum/mesh/array_file.h"
 #include "tactum/mesh/mapped_file.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 constexpr std::string_view kMagic = "TACTUM\x1a\n";
@@ -144,4 +144,4 @@ TriangleMesh surface_in_mesh_frame(const PartFile& file) {
   return surface;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

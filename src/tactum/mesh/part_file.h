@@ -13,7 +13,7 @@
 #include "tactum/base/result.h"
 #include "tactum/geometry/part.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// Raised whenever the arrays of a part change.
 inline constexpr std::uint32_t kPartFileVersion = 4;
@@ -44,4 +44,4 @@ void set_density(PartFile& file, double density_kg_per_m3);
 /// The surface of the part in the frame of the mesh it was made from, to rounding.
 TriangleMesh surface_in_mesh_frame(const PartFile& file);
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

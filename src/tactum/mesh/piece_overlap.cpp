@@ -5,7 +5,7 @@
 
 #include "tactum/base/tolerances.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 /// Largest gap along the normals of a's faces.
@@ -80,4 +80,4 @@ PieceOverlaps overlapping_pieces(const Part& part, double deeper_than) {
   return out;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

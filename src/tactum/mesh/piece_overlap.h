@@ -13,7 +13,7 @@
 #include "tactum/geometry/part.h"
 #include "tactum/geometry/polytope.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// Largest gap over all axes [m]; negative: they overlap this deep. Stops at the first gap above `enough`.
 double separation(const Polytope& a, const Polytope& b, double enough) noexcept;
@@ -27,4 +27,4 @@ struct PieceOverlaps {
 /// Over all pairs of solid pieces of a part whose boxes meet. Flat pieces have no inside and are left out.
 PieceOverlaps overlapping_pieces(const Part& part, double deeper_than);
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -4,7 +4,7 @@
 
 #include "tactum/base/tolerances.h"
 
-namespace tactum::detail {
+namespace tactum::inline v0_1::detail {
 namespace {
 
 double turn(const Vec2& a, const Vec2& b, const Vec2& c) {
@@ -116,4 +116,4 @@ SplitKind split_polygon(const std::vector<Vec3>& vertices, const std::vector<int
   return SplitKind::kConcave;
 }
 
-}  // namespace tactum::detail
+}  // namespace tactum::inline v0_1::detail

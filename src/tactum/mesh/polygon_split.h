@@ -7,7 +7,7 @@
 
 #include "tactum/geometry/triangle_mesh.h"
 
-namespace tactum::detail {
+namespace tactum::inline v0_1::detail {
 
 /// Largest concave polygon that is cut; the bound keeps a hostile file from taking minutes.
 inline constexpr int kMaxConcaveCorners = 2048;
@@ -19,4 +19,4 @@ enum class SplitKind { kConvex, kConcave, kFailed };
 SplitKind split_polygon(const std::vector<Vec3>& vertices, const std::vector<int>& corners,
                         std::vector<Triangle>& triangles);
 
-}  // namespace tactum::detail
+}  // namespace tactum::inline v0_1::detail

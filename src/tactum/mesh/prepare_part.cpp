@@ -10,7 +10,7 @@
 #include "tactum/mesh/make_part.h"
 #include "tactum/mesh/prepare_pieces.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 // Beyond these a hand can feel nothing, and the unit is wrong more likely than the part.
@@ -213,4 +213,4 @@ Result<PartFile> prepare_part(const ImportedMesh& imported, const PrepareOptions
   return file;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

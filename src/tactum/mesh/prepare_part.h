@@ -21,7 +21,7 @@
 #include "tactum/mesh/part_file.h"
 #include "tactum/mesh/piece_overlap.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 struct PrepareOptions {
   std::string name = {};              ///< of the part
@@ -75,4 +75,4 @@ Result<void> verdict_on(const Verification& found, const std::string& name);
 
 std::string to_json(const PrepareReport& report, const Part& part);
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -7,7 +7,7 @@
 #include "tactum/mesh/make_part.h"
 #include "tactum/mesh/mesh_repair.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 std::string groups_suit(const PiecesInput& input) {
@@ -108,4 +108,4 @@ const std::vector<PieceMethod>& all_piece_methods() {
   return methods;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -10,7 +10,7 @@
 #include "tactum/mesh/make_part.h"
 #include "tactum/mesh/mesh_import.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// What a way to pieces may look at.
 struct PiecesInput {
@@ -35,4 +35,4 @@ struct PieceMethod {
 /// In the order they are tried.
 const std::vector<PieceMethod>& all_piece_methods();
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

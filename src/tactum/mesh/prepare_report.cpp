@@ -6,7 +6,7 @@
 
 /// The numbers of a preparation as JSON, kept in the part file.
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -113,4 +113,4 @@ std::string to_json(const PrepareReport& report, const Part& part) {
   return out.dump(1, ' ', false, Json::error_handler_t::replace);
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

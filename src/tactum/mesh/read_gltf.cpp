@@ -10,7 +10,7 @@
 /// glTF and GLB by assimp, from the reduced copy that gltf_check.h writes. No post-processing: triangles come
 /// as they are, node transforms are applied here, and a mirroring transform turns the triangles round.
 
-namespace tactum::detail {
+namespace tactum::inline v0_1::detail {
 namespace {
 
 /// An importer that knows glTF 2 and nothing else: no other loader gets to look at the bytes.
@@ -85,4 +85,4 @@ Result<void> read_gltf(std::string_view bytes, MeshBuilder& builder) {
   return add_node(*scene, *scene->mRootNode, aiMatrix4x4(), builder);
 }
 
-}  // namespace tactum::detail
+}  // namespace tactum::inline v0_1::detail

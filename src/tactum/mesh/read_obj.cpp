@@ -6,7 +6,7 @@
 /// Wavefront OBJ: `v`, `f`, `o`, `g`; points and lines are counted, normals, textures and materials passed
 /// over. Indices start at 1; negative ones count back from the last vertex read.
 
-namespace tactum::detail {
+namespace tactum::inline v0_1::detail {
 namespace {
 
 class ObjReader {
@@ -101,4 +101,4 @@ Result<void> read_obj(std::string_view text, MeshBuilder& builder) {
   return ObjReader(text, builder).read();
 }
 
-}  // namespace tactum::detail
+}  // namespace tactum::inline v0_1::detail

@@ -3,7 +3,7 @@
 
 /// OFF: the word, the counts of vertices, faces and edges, then a line each; # begins a comment.
 
-namespace tactum::detail {
+namespace tactum::inline v0_1::detail {
 namespace {
 
 class OffReader {
@@ -89,4 +89,4 @@ Result<void> read_off(std::string_view text, MeshBuilder& builder) {
   return OffReader(text, builder).read();
 }
 
-}  // namespace tactum::detail
+}  // namespace tactum::inline v0_1::detail

@@ -12,7 +12,7 @@
 /// properties; of vertices x, y, z are taken, of faces the list vertex_indices or vertex_index, everything
 /// else is passed over.
 
-namespace tactum::detail {
+namespace tactum::inline v0_1::detail {
 namespace {
 
 static_assert(std::endian::native == std::endian::little);
@@ -295,4 +295,4 @@ Result<void> read_ply(std::string_view bytes, MeshBuilder& builder) {
   return PlyReader(bytes, builder).read();
 }
 
-}  // namespace tactum::detail
+}  // namespace tactum::inline v0_1::detail

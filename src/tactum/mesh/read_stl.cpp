@@ -9,7 +9,7 @@
 /// solid / facet normal / outer loop / vertex ... Stored normals are passed over: the corners' order says the
 /// same.
 
-namespace tactum::detail {
+namespace tactum::inline v0_1::detail {
 namespace {
 
 static_assert(std::endian::native == std::endian::little,
@@ -138,4 +138,4 @@ Result<void> read_stl(std::string_view bytes, MeshBuilder& builder) {
                        "a text STL, or a binary one of at least 84 bytes");
 }
 
-}  // namespace tactum::detail
+}  // namespace tactum::inline v0_1::detail

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 Aabb box_of(const TriangleMesh& mesh, int triangle) {
@@ -90,4 +90,4 @@ std::vector<std::pair<int, int>> SurfaceCrossings::windings(const Vec3& point) c
   return sums;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -13,7 +13,7 @@
 #include "tactum/geometry/bvh.h"
 #include "tactum/geometry/triangle_mesh.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 class SurfaceCrossings {
  public:
@@ -34,4 +34,4 @@ class SurfaceCrossings {
   Bvh tree_;                ///< over taken_
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -5,7 +5,7 @@
 #include <charconv>
 #include <string_view>
 
-namespace tactum::detail {
+namespace tactum::inline v0_1::detail {
 
 inline bool is_blank(char c) {
   return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\v' || c == '\f';
@@ -82,4 +82,4 @@ bool parse_number(std::string_view word, T& value) {
   return error == std::errc{} && end == word.data() + word.size() && !word.empty();
 }
 
-}  // namespace tactum::detail
+}  // namespace tactum::inline v0_1::detail

@@ -9,7 +9,7 @@
 
 #include "tactum/parts/thread_sheet.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using detail::ThreadColumn;
@@ -182,4 +182,4 @@ Result<TriangleMesh> nut_mesh(const ScrewShape& shape) {
   return mesh;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

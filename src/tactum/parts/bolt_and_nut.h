@@ -24,7 +24,7 @@
 #include "tactum/geometry/triangle_mesh.h"
 #include "tactum/parts/metric_thread.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// What bolt and nut are made from; a pair needs equal size and facets.
 struct ScrewShape {
@@ -44,4 +44,4 @@ Result<TriangleMesh> bolt_mesh(const ScrewShape& shape);
 /// leave through the faces at corners. `length_m` is not looked at.
 Result<TriangleMesh> nut_mesh(const ScrewShape& shape);
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

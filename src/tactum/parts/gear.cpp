@@ -7,7 +7,7 @@
 
 #include "tactum/parts/generated_parts.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 double involute(double angle) { return std::tan(angle) - angle; }
@@ -167,4 +167,4 @@ double centre_distance(const Gear& a, const Gear& b) {
 
 double meshing_angle(const Gear& b) { return kPi - kPi / b.teeth; }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -26,7 +26,7 @@
 #include "tactum/base/result.h"
 #include "tactum/geometry/polytope.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 struct Gear {
   int teeth = 18;                         ///< 8 to 400, and enough to need no undercut [-]
@@ -66,4 +66,4 @@ double centre_distance(const Gear& a, const Gear& b);
 /// Rotation of b at a + (centre_distance, 0, 0) that puts a gap of b before tooth 0 of an unturned a [rad].
 double meshing_angle(const Gear& b);
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -7,7 +7,7 @@
 
 #include "tactum/geometry/hull.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using Polygon = std::vector<Vec2>;
@@ -128,4 +128,4 @@ Result<std::vector<Polytope>> hole_block_pieces(const HoleBlock& block) {
   return pieces;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

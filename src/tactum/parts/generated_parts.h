@@ -13,7 +13,7 @@
 #include "tactum/base/result.h"
 #include "tactum/geometry/polytope.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// The prism over a convex polygon (counter-clockwise) between two heights [m].
 Result<Polytope> extruded(const std::vector<Vec2>& polygon, double z_low_m, double z_high_m);
@@ -45,4 +45,4 @@ struct HoleBlock {
 /// Four walls (or one per side), then the floor if there is one.
 Result<std::vector<Polytope>> hole_block_pieces(const HoleBlock& block);
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

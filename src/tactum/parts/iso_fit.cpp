@@ -9,7 +9,7 @@
 #include <optional>
 #include <string_view>
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 constexpr int kSteps = 13;
@@ -193,4 +193,4 @@ Result<Fit> iso_fit(const std::string& name, double nominal_m) {
   return Fit{*of_hole, *of_shaft};
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -17,7 +17,7 @@
 
 #include "tactum/base/result.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// Deviations from the nominal size.
 struct SizeLimits {
@@ -49,4 +49,4 @@ Result<SizeLimits> iso_limits(const std::string& name, double nominal_m);
 /// The zones of a fit, "H7/g6": the hole's class first.
 Result<Fit> iso_fit(const std::string& name, double nominal_m);
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 // Pitch, hexagon and heights in mm; tolerances of the pitch diameter and the allowance of class g in um.
@@ -81,4 +81,4 @@ Result<ThreadFit> thread_fit(const std::string& screw, const std::string& tolera
 
 ThreadFit thread_fit_with(double clearance_m) { return {-2.0 * clearance_m, 2.0 * clearance_m}; }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -17,7 +17,7 @@
 
 #include "tactum/base/result.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// Dimensions of one size.
 struct MetricScrew {
@@ -51,4 +51,4 @@ Result<ThreadFit> thread_fit(const std::string& screw, const std::string& tolera
 /// The fit that leaves `clearance_m` between the flanks, half of it from each part. 0 or more.
 ThreadFit thread_fit_with(double clearance_m);
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

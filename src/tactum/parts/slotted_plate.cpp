@@ -8,7 +8,7 @@
 
 #include "tactum/parts/generated_parts.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using Polygon = std::vector<Vec2>;
@@ -118,4 +118,4 @@ Result<std::vector<Polytope>> slotted_plate_pieces(const SlottedPlate& plate) {
   return pieces;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -13,7 +13,7 @@
 #include "tactum/base/result.h"
 #include "tactum/geometry/polytope.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 struct SlottedPlate {
   int slots = 3;                ///< 1 to 32 [-]
@@ -28,4 +28,4 @@ struct SlottedPlate {
 /// The slots + 1 bars, then for each slot the fan at +y and that at -y.
 Result<std::vector<Polytope>> slotted_plate_pieces(const SlottedPlate& plate);
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -8,7 +8,7 @@
 #include "tactum/geometry/hull.h"
 #include "tactum/parts/generated_parts.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 bool positive(double number) { return std::isfinite(number) && number > 0.0; }
@@ -92,4 +92,4 @@ Result<std::vector<Polytope>> hex_socket_pieces(const HexSocket& socket) {
   return pieces;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -14,7 +14,7 @@
 #include "tactum/base/result.h"
 #include "tactum/geometry/polytope.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// An L-shaped hexagon key [ISO 2014b, 2936].
 struct HexKey {
@@ -39,4 +39,4 @@ struct HexSocket {
 /// Six walls, then the floor if there is one.
 Result<std::vector<Polytope>> hex_socket_pieces(const HexSocket& socket);
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-namespace tactum::detail {
+namespace tactum::inline v0_1::detail {
 namespace {
 
 /// A column in the mesh: lines, and the first of its vertices.
@@ -90,4 +90,4 @@ ThreadRims add_thread_sheet(const std::vector<ThreadColumn>& columns, int lines_
   return rims;
 }
 
-}  // namespace tactum::detail
+}  // namespace tactum::inline v0_1::detail

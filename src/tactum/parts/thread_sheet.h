@@ -13,7 +13,7 @@
 
 #include "tactum/geometry/triangle_mesh.h"
 
-namespace tactum::detail {
+namespace tactum::inline v0_1::detail {
 
 struct ThreadCorner {
   int line = 0;
@@ -39,4 +39,4 @@ struct ThreadRims {
 ThreadRims add_thread_sheet(const std::vector<ThreadColumn>& columns, int lines_per_turn, bool inward,
                             TriangleMesh& mesh);
 
-}  // namespace tactum::detail
+}  // namespace tactum::inline v0_1::detail

@@ -13,7 +13,7 @@
 #include "tactum/response/momentum.h"
 #include "tactum/response/waiting.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using Index = std::size_t;
@@ -347,4 +347,4 @@ void respond_constrained(ConstraintStep& step) noexcept {
   report_rows(step);
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

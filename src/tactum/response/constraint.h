@@ -12,7 +12,7 @@
 
 #include "tactum/response/constraint_state.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// How far points may move in the frame: the trusted length for the held part and, on top of their own way,
 /// for what it may push. Fills own.motion_bound.
@@ -23,4 +23,4 @@ void bound_constrained_motion(const MotionInput& input, const WorldState& bodies
 /// the report's response fields.
 void respond_constrained(ConstraintStep& step) noexcept;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -3,7 +3,7 @@
 #include "tactum/response/constraint.h"
 #include "tactum/response/free_bodies.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 ConstraintResponse::ConstraintResponse(const World& world, const FrameSettings& settings, WorldState& bodies)
     : memory_(world, settings) {
@@ -33,4 +33,4 @@ Wrench ConstraintResponse::felt(const StepInput& input, const WorldState& /*bodi
   return input.grasped.body < 0 ? Wrench{} : memory_.constraint.felt + pulses;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

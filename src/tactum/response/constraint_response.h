@@ -5,7 +5,7 @@
 
 #include "tactum/response/constraint_state.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 class ConstraintResponse {
  public:
@@ -39,4 +39,4 @@ class ConstraintResponse {
   int grasped_last_ = -1;  // the body that was held in the last frame
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -6,7 +6,7 @@
 
 #include "tactum/contact/patch_corners.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using Index = std::size_t;
@@ -202,4 +202,4 @@ void correct_rows(double share, ConstraintStep& step) noexcept {
   }
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

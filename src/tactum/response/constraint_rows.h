@@ -10,7 +10,7 @@
 
 #include "tactum/response/constraint_state.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// Fills the contact rows, and in ConstraintState the rows' names and shaded normals. The rows of the
 /// island that holds the held part come first, `own_rows` of them: those are the constraint problem's.
@@ -43,4 +43,4 @@ double overstated_at_trial(std::span<const ContactRow> rows_of_patch, const Cons
 /// Second-order correction: what the trial's gaps differ from what the rows said is added to the rows.
 void correct_rows(double share, ConstraintStep& step) noexcept;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

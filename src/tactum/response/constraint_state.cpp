@@ -4,7 +4,7 @@
 
 #include "tactum/base/tolerances.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 using Index = std::size_t;
 
@@ -85,4 +85,4 @@ ConstraintMemory::ConstraintMemory(const World& world, const FrameSettings& sett
       impact_scratch(world.bodies.size()),
       motion_bound(world.bodies.size(), 0.0) {}
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

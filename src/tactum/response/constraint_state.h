@@ -18,7 +18,7 @@
 #include "tactum/response/impulse_display.h"
 #include "tactum/response/step_input.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// The names of rows that were active in the last frame's answers: the next frame's problems begin with them.
 struct WarmStart {
@@ -198,4 +198,4 @@ struct ConstraintStep : StepInput {
   FrameReport& report;
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -4,7 +4,7 @@
 
 #include "tactum/base/tolerances.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using Index = std::size_t;
@@ -40,4 +40,4 @@ bool open_at_trial(std::size_t patch, const ConstraintState& c) noexcept {
   return c.trial.gap_answer[patch] == GapAnswer::kProven;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -3,7 +3,7 @@
 
 #include "tactum/response/constraint_state.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// Asks for the gaps at the trial of the patches that FreeBodies::patch_asked names, as long as more than
 /// `keep_back` tests are left.
@@ -11,4 +11,4 @@ void look_at_trial(int keep_back, ConstraintStep& step) noexcept;
 /// Whether the gap of a patch that was asked for is open at the trial.
 bool open_at_trial(std::size_t patch, const ConstraintState& c) noexcept;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -7,7 +7,7 @@
 
 #include "tactum/base/tolerances.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using Index = std::size_t;
@@ -177,4 +177,4 @@ Wrench contact_wrench(std::span<const ContactRow> rows, int body, const Vec3& p_
   return sum;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -16,7 +16,7 @@
 #include "tactum/dynamics/friction_patch.h"
 #include "tactum/math/spatial.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// One point of a facet: a row in the making.
 struct FacetPoint {
@@ -57,4 +57,4 @@ void append_friction(const FrictionPatch& patch, int number, const Vec3& force_W
 /// rows.
 Wrench contact_wrench(std::span<const ContactRow> rows, int body, const Vec3& p_WB, double h) noexcept;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -2,7 +2,7 @@
 
 #include "tactum/math/screw.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 Wrench coupling_wrench(const Coupling& coupling, const Pose& X_WH, const Twist& V_WH, const Pose& X_WH_proxy,
                        const Twist& V_WH_proxy) noexcept {
@@ -30,4 +30,4 @@ Vec6 balanced_step(const Coupling& coupling, double dt_s, const Pose& X_WH_proxy
   return x;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

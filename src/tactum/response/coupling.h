@@ -6,7 +6,7 @@
 #include "tactum/dynamics/contact_problem.h"
 #include "tactum/response/settings.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// What the hand feels, at the handle, world axes: pulled and turned towards the proxy.
 Wrench coupling_wrench(const Coupling& coupling, const Pose& X_WH, const Twist& V_WH, const Pose& X_WH_proxy,
@@ -29,4 +29,4 @@ inline BodyMetric body_metric(const GraspMetric& metric) noexcept {
 Vec6 balanced_step(const Coupling& coupling, double dt_s, const Pose& X_WH_proxy, const Pose& X_WH,
                    const Twist& V_WH) noexcept;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

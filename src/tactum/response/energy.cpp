@@ -2,7 +2,7 @@
 
 #include "tactum/math/screw.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 double bodies_energy(const World& world, const WorldState& bodies, int grasped) noexcept {
   double energy_J = 0.0;
@@ -34,4 +34,4 @@ void add_stored_energy(const World& world, const Coupling& coupling, const World
   port.spring_turning_J = 0.5 * coupling.stiffness_Nm_per_rad * stretch.w.squaredNorm();
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

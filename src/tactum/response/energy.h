@@ -5,7 +5,7 @@
 #include "tactum/response/frame_report.h"
 #include "tactum/response/settings.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// Kinetic energy of the bodies that move, and their height against gravity from the world's origin [J]. The
 /// held part weighs nothing.
@@ -18,4 +18,4 @@ void add_stored_energy(const World& world, const Coupling& coupling, const World
                        const FrameReport& report, double field_work_J, double pending_J,
                        PortInput& port) noexcept;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -6,7 +6,7 @@
 
 #include "tactum/math/screw.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using Index = std::size_t;
@@ -84,4 +84,4 @@ std::string field_sentence(const World& world, const Coupling& coupling) {
                                     : "");
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -18,7 +18,7 @@
 #include "tactum/response/coupling.h"
 #include "tactum/response/step_input.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// The load of force fields on what is held, from frame to frame, and the work it did.
 struct FieldPull {
@@ -49,4 +49,4 @@ Pose equilibrium_pose(const Coupling& coupling, const GraspedPart& grasped, cons
 /// How steep the scene's fields are beside the coupling, in a sentence for people; empty without fields.
 std::string field_sentence(const World& world, const Coupling& coupling);
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -9,7 +9,7 @@
 #include "tactum/loop/passivity.h"
 #include "tactum/math/spatial.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// What the frame could not do in full, each with the setting to raise. A frame never stops for these.
 namespace frame_flag {
@@ -74,4 +74,4 @@ struct FrameReport {
   bool in_contact() const { return work.patches > 0; }
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

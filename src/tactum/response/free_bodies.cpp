@@ -10,7 +10,7 @@
 #include "tactum/response/free_islands.h"
 #include "tactum/response/momentum.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using Index = std::size_t;
@@ -328,4 +328,4 @@ void end_turning(ConstraintStep& step) noexcept {
   }
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

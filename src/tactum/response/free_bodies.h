@@ -14,7 +14,7 @@
 
 #include "tactum/response/constraint_state.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// Takes half a frame of gravity back from the velocities a world starts with.
 void begin_midway(const World& world, double dt_s, WorldState& state) noexcept;
@@ -38,4 +38,4 @@ void move_free_bodies(ConstraintStep& step) noexcept;
 /// The rates at the end of the frame of the bodies that turn freely, from their mean ones.
 void end_turning(ConstraintStep& step) noexcept;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -4,7 +4,7 @@
 
 #include "tactum/response/grasped_part.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using Index = std::size_t;
@@ -172,4 +172,4 @@ void solve_islands(ConstraintStep& step) noexcept {
   }
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

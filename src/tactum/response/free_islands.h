@@ -4,7 +4,7 @@
 
 #include "tactum/response/constraint_state.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// Whether move_free_bodies() moves a body: one that moves, in an island other than that of constraint.h.
 bool moves_here(const ConstraintStep& step, std::size_t body) noexcept;
@@ -17,4 +17,4 @@ void begin_islands(ConstraintStep& step) noexcept;
 /// asked for more.
 void solve_islands(ConstraintStep& step) noexcept;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

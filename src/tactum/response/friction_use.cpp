@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using Index = std::size_t;
@@ -63,4 +63,4 @@ FrictionReport sum_of(const FrictionUses& uses) noexcept {
   return sum;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

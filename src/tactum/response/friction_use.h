@@ -13,7 +13,7 @@
 #include "tactum/dynamics/friction.h"
 #include "tactum/response/frame_report.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 struct FrictionUse {
   bool sticks = true;        ///< false: it slips
@@ -34,4 +34,4 @@ void use_of_friction(const Friction& friction, const ContactProblem& problem, st
 /// Over all patches that push.
 FrictionReport sum_of(const FrictionUses& uses) noexcept;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

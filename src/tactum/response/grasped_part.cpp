@@ -1,7 +1,7 @@
 #include "tactum/response/grasped_part.h"
 #include "tactum/response/field_pull.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 using Index = std::size_t;
 
@@ -42,4 +42,4 @@ void feel(const Vec6& displacement, ConstraintStep& step) noexcept {
                               metric.stiffness_Nm_per_rad * off.tail<3>()};
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -4,7 +4,7 @@
 
 #include "tactum/response/constraint_state.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// The displacement of the handle that the coupling asks for, (m, rad).
 Vec6 wanted_by_hand(const ConstraintStep& step) noexcept;
@@ -16,4 +16,4 @@ void add_grasped(const Vec6& target, const ConstraintStep& step, ContactProblem&
 /// What the hand feels when the handle moves so: sets ConstraintState::felt.
 void feel(const Vec6& displacement, ConstraintStep& step) noexcept;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 void ImpulseDisplay::add(const Impacts& impacts, double dt_s, const Wrench& impulse,
                          double energy_J) noexcept {
@@ -30,4 +30,4 @@ Wrench ImpulseDisplay::next() noexcept {
   return felt;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

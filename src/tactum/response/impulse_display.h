@@ -11,7 +11,7 @@
 
 #include "tactum/response/settings.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 class ImpulseDisplay {
  public:
@@ -32,4 +32,4 @@ class ImpulseDisplay {
   std::size_t now_ = 0;
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

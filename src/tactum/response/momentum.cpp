@@ -2,7 +2,7 @@
 
 #include "tactum/response/constraint_rows.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using Index = std::size_t;
@@ -55,4 +55,4 @@ void end_balance(bool as_forced, ConstraintStep& step) noexcept {
   step.report.forced_short = step.report.cut_short > 0 || (near_grasped && !as_forced);
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -11,7 +11,7 @@
 
 #include "tactum/response/constraint_state.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// Once it is known who moves, and gravity has had half its say (free_bodies.h).
 void begin_balance(ConstraintStep& step) noexcept;
@@ -19,4 +19,4 @@ void begin_balance(ConstraintStep& step) noexcept;
 /// When all have moved. `as_forced`: the held part's island has gone where its contact forces would have it.
 void end_balance(bool as_forced, ConstraintStep& step) noexcept;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

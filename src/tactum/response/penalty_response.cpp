@@ -9,7 +9,7 @@
 #include "tactum/response/coupling.h"
 #include "tactum/response/field_pull.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using Index = std::size_t;
@@ -245,4 +245,4 @@ Wrench PenaltyResponse::felt(const StepInput& input, const WorldState& bodies) c
   return coupling_wrench(input.settings.coupling, grasped.X_WH, grasped.V_WH, X_WH_proxy, V_WH_proxy);
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

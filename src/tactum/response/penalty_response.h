@@ -20,7 +20,7 @@
 #include "tactum/response/frame_report.h"
 #include "tactum/response/step_input.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 class PenaltyResponse {
  public:
@@ -67,4 +67,4 @@ class PenaltyResponse {
   ReservedVector<double> depth_scale_;  // by patch
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -1,6 +1,6 @@
 #include "tactum/response/response.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using Model = std::variant<PenaltyResponse, ConstraintResponse>;
@@ -64,4 +64,4 @@ double Response::pending_J() const noexcept {
   return model != nullptr ? model->pending_J() : 0.0;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -8,7 +8,7 @@
 #include "tactum/response/constraint_response.h"
 #include "tactum/response/penalty_response.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 class Response {
  public:
@@ -40,4 +40,4 @@ class Response {
   std::variant<PenaltyResponse, ConstraintResponse> model_;
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -12,7 +12,7 @@
 #include "tactum/loop/smoothing.h"
 #include "tactum/math/spatial.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// How the device's handle H maps into the world.
 struct Workspace {
@@ -118,4 +118,4 @@ struct FrameSettings {
   WorkBudget budget;
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -5,7 +5,7 @@
 #include "tactum/base/frame_rate.h"
 #include "tactum/math/screw.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using Index = std::size_t;
@@ -68,4 +68,4 @@ void let_sleep(ConstraintStep& step) noexcept {
 
 void wake(Sleep& sleep) noexcept { std::fill(sleep.still.begin(), sleep.still.end(), 0); }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -8,7 +8,7 @@
 
 #include "tactum/response/constraint_state.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// Puts those to rest that may sleep (Waiting::waits), after the pairs have been tested.
 void let_sleep(ConstraintStep& step) noexcept;
@@ -16,4 +16,4 @@ void let_sleep(ConstraintStep& step) noexcept;
 /// Everything is awake.
 void wake(Sleep& sleep) noexcept;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -10,7 +10,7 @@
 #include "tactum/dynamics/world.h"
 #include "tactum/response/settings.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// The part that the hand holds, where the hand is, and what force fields do to the part.
 struct GraspedPart {
@@ -40,4 +40,4 @@ struct StepInput : MotionInput {
   std::span<const Pose> X_WB_start;            ///< poses at the start of the frame [m]
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -8,7 +8,7 @@
 #include "tactum/math/screw.h"
 #include "tactum/response/sleep.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using Index = std::size_t;
@@ -167,4 +167,4 @@ void go_on(ConstraintStep& step) noexcept {
     if (w.waits[i]) step.bodies.V_WB[i] = w.V_kept[i];
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

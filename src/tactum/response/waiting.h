@@ -20,7 +20,7 @@
 
 #include "tactum/response/constraint_state.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// Chooses who waits, and puts them at rest. After the pairs have been tested.
 void defer_bodies(ConstraintStep& step) noexcept;
@@ -28,4 +28,4 @@ void defer_bodies(ConstraintStep& step) noexcept;
 /// Gives those that waited their velocities back.
 void go_on(ConstraintStep& step) noexcept;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

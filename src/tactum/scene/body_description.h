@@ -10,7 +10,7 @@
 #include "tactum/math/spatial.h"
 #include "tactum/scene/part_description.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// From a least to a largest value.
 struct Interval {
@@ -85,4 +85,4 @@ struct BodyDescription {
   std::vector<SamplePoint> field_point = {};  ///< ... or these
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

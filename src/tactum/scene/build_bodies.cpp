@@ -2,7 +2,7 @@
 
 #include "tactum/scene/scene_builder.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 constexpr double kWaterDensity = 1000.0;  // of a part whose description says nothing [kg/m^3]
@@ -120,4 +120,4 @@ void build_bodies(SceneBuilder& builder, Scene& scene) {
     build_body(builder, item_path("", "body", index++), body, scene);
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -5,7 +5,7 @@
 #include "tactum/geometry/hull.h"
 #include "tactum/scene/scene_builder.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using Pieces = std::vector<Polytope>;
@@ -133,4 +133,4 @@ Shape build_components(SceneBuilder& builder, const std::string& path, const Bod
   return shape;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

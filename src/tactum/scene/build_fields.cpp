@@ -3,7 +3,7 @@
 #include "tactum/scene/field_file.h"
 #include "tactum/scene/scene_builder.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 /// Sample points of a body that has none, in a scene with fields.
@@ -92,4 +92,4 @@ void build_fields(SceneBuilder& builder, Scene& scene) {
       body.field_points = spread_over(body.part->surface, kFieldPoints);
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

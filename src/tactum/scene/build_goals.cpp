@@ -2,7 +2,7 @@
 
 #include "tactum/scene/scene_builder.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 /// Goals of bodies by index, from those by name; `path` is that of the goal.
@@ -80,4 +80,4 @@ void build_goals(SceneBuilder& builder, Scene& scene) {
   }
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

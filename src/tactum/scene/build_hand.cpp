@@ -5,7 +5,7 @@
 #include "tactum/devices/simulated_device.h"
 #include "tactum/scene/scene_builder.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 /// World and device frame, and back: X_WH.p = X_WD (scale p_DH).
@@ -113,4 +113,4 @@ void build_hand(SceneBuilder& builder, Scene& scene) {
   check_workspace(builder, *scene.hand, *device);
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

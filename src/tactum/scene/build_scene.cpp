@@ -8,7 +8,7 @@
 #include "tactum/scene/check_description.h"
 #include "tactum/scene/scene_builder.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 std::optional<std::string> SceneBuilder::find_file(const std::string& path, const char* kind,
                                                    const std::string& name) {
@@ -56,4 +56,4 @@ Result<Scene> build_scene(const SceneDescription& description) {
   return scene;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

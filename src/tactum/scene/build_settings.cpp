@@ -4,7 +4,7 @@
 
 #include "tactum/scene/scene_builder.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 void set_pairs(SceneBuilder& builder, const char* key, const std::vector<MaterialPair>& pairs,
@@ -92,4 +92,4 @@ void build_settings(SceneBuilder& builder, Scene& scene) {
   X_WD.p = description.workspace.pos_m.value_or(handle_W);
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -6,7 +6,7 @@
 #include "tactum/geometry/primitives.h"
 #include "tactum/scene/scene_builder.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using Made = Result<Shape>;
@@ -150,4 +150,4 @@ Shape build_shape(SceneBuilder& builder, const std::string& path, const PartDesc
       part);
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -7,7 +7,7 @@
 #include "tactum/scene/scene_file.h"
 #include "tactum/scene/toml_reader.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 std::vector<SceneEntry> list_scenes() {
   std::vector<SceneEntry> entries;
@@ -40,4 +40,4 @@ Result<Scene> open_scene(const std::string& name_or_path) {
   return scene ? build_scene(*scene) : scene.error();
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -10,7 +10,7 @@
 #include "tactum/scene/scene.h"
 #include "tactum/scene/scene_description.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 struct BuiltinScene {
   std::string_view name;  ///< "gears"
@@ -35,4 +35,4 @@ Result<SceneDescription> describe_scene(const std::string& name_or_path);
 /// The scene of that description, built.
 Result<Scene> open_scene(const std::string& name_or_path);
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -7,7 +7,7 @@
 #include "tactum/base/tolerances.h"
 #include "tactum/scene/item_visitor.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 class CheckVisitor final : public ItemVisitor {
@@ -107,4 +107,4 @@ Result<void> check_description(const SceneDescription& scene) {
   return {};
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

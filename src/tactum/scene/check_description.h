@@ -5,9 +5,9 @@
 #include "tactum/base/result.h"
 #include "tactum/scene/scene_description.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// The first item that is wrong. Cost: linear in the number of items.
 Result<void> check_description(const SceneDescription& scene);
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

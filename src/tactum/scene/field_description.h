@@ -8,7 +8,7 @@
 #include "tactum/dynamics/analytic_field.h"
 #include "tactum/math/spatial.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// The numbers of a grid are kept in this precision.
 enum class SampleType { kFloat32, kFloat64 };
@@ -52,4 +52,4 @@ struct FieldDescription {
   std::optional<double> edge_m = {};             ///< of a grid; one spacing when absent or 0 [m]
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -10,7 +10,7 @@
 #include "tactum/mesh/mapped_file.h"
 #include "tactum/scene/toml_reader.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 namespace fs = std::filesystem;
@@ -150,4 +150,4 @@ Result<void> write_field_file(const std::string& header_path, const GridShape& s
           std::holds_alternative<std::vector<float>>(samples) ? "float32" : "float64"));
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -19,7 +19,7 @@
 #include "tactum/base/result.h"
 #include "tactum/dynamics/field_grid.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// `edge_m` as FieldGrid::make has it.
 Result<FieldGrid> read_field_file(const std::string& header_path, double edge_m = 0.0);
@@ -29,4 +29,4 @@ Result<FieldGrid> read_field_file(const std::string& header_path, double edge_m 
 Result<void> write_field_file(const std::string& header_path, const GridShape& shape,
                               const FieldGrid::Samples& samples);
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using Index = std::size_t;
@@ -121,4 +121,4 @@ std::string GoalRecord::describe(const World& world, std::size_t goal) const {
   return {};
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -9,7 +9,7 @@
 #include "tactum/dynamics/contact_row.h"
 #include "tactum/dynamics/world.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 enum class GoalKind {
   kTurned,    ///< at some time the hinge's angle was `amount` or beyond it (on the side of its sign)
@@ -60,4 +60,4 @@ class GoalRecord {
   std::vector<double> best_;  // of each goal: best so far, or the present value for those told at the end
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -7,7 +7,7 @@
 
 #include "tactum/math/types.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// A hinge: either it was once at an angle or beyond, or it ends near one.
 struct TurnedGoal {
@@ -52,4 +52,4 @@ struct FollowedGoal {
 
 using GoalDescription = std::variant<TurnedGoal, MovedGoal, TouchedGoal, PickedGoal, FollowedGoal>;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

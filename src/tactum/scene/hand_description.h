@@ -9,7 +9,7 @@
 #include "tactum/devices/hand_motion.h"
 #include "tactum/response/settings.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// The handle is on the hinge's axis, or at the centre of mass of a body without a hinge.
 struct CentreGrasp {
@@ -90,4 +90,4 @@ struct HandDescription {
   std::vector<HandStep> steps = {};
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

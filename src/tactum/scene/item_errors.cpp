@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 /// Optimal string alignment distance: insertions, deletions, substitutions, swaps of neighbours.
@@ -80,4 +80,4 @@ std::string file_section(std::string_view path) {
   return title + "]";
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -10,7 +10,7 @@
 
 #include "tactum/base/result.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// Where a number may lie; the ends belong to it unless said.
 struct Range {
@@ -57,4 +57,4 @@ std::string item_path(const std::string& table, std::string_view key, std::size_
 /// How a table is called in a file, where tables are counted from 1: "[body 3.joint]" for "body[2].joint".
 std::string file_section(std::string_view path);
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <string_view>
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 void ItemVisitor::number(const char* key, std::optional<double>& value, Range range) {
   optional(key, value, [&](double& number_there) { number(key, number_there, range, Need::kOptional); });
@@ -67,4 +67,4 @@ std::size_t KeyVisitor::size(const char* key, std::size_t) {
   return 0;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -19,7 +19,7 @@
 #include "tactum/scene/item_errors.h"
 #include "tactum/scene/scene_description.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// Whether a file must have the key.
 enum class Need { kOptional, kRequired };
@@ -229,4 +229,4 @@ void visit_items(ItemVisitor& visitor, SceneDescription& scene);
 /// Degrees as a file has them, in radians.
 inline double radians(double degrees) { return degrees * (kPi / 180.0); }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -15,7 +15,7 @@
 #include "tactum/parts/slotted_plate.h"
 #include "tactum/parts/socket.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// A mesh, or a part that `tactum prepare` wrote: that one is in metres and cut, and takes no further member.
 struct MeshPart {
@@ -110,4 +110,4 @@ using PartDescription =
     std::variant<MeshPart, GearPart, PegPart, HoleBlockPart, BoltPart, NutPart, HexKeyPart, SocketPart,
                  SlottedPlatePart, BoxPart, SpherePart, EllipsoidPart, PrismPart>;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -7,7 +7,7 @@
 
 #include "tactum/scene/item_visitor.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 /// A value's own default, unless the file must have it.
@@ -160,4 +160,4 @@ void read_description(const toml::table& document, SceneDescription& scene, Firs
   visit_items(visitor, scene);
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

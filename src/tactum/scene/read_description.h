@@ -4,10 +4,10 @@
 #include "tactum/scene/scene_description.h"
 #include "tactum/scene/toml_reader.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// Reads a whole file into `scene`, whose source names it, and notes there where its items stand. Unknown
 /// keys, wrong types and numbers out of range go to `errors`.
 void read_description(const toml::table& document, SceneDescription& scene, FirstError& errors);
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -2,7 +2,7 @@
 
 #include "tactum/haptics/coupling_gains.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 FrameSettings settings_for(const Scene& scene, const DeviceInfo& info) {
   const double rate_Hz = 1.0 / scene.settings.dt_s;
@@ -13,4 +13,4 @@ FrameSettings settings_for(const Scene& scene, const DeviceInfo& info) {
   return settings;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

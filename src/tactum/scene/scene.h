@@ -13,7 +13,7 @@
 #include "tactum/response/settings.h"
 #include "tactum/scene/goal.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 struct Scene {
   std::string name;         ///< "gears"
@@ -47,4 +47,4 @@ inline long frames_of_motion(const Scene& scene) {
 /// it is done; a Simulation of the scene's world takes these.
 FrameSettings settings_for(const Scene& scene, const DeviceInfo& info);
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -10,7 +10,7 @@
 #include "tactum/scene/scene_description.h"
 #include "tactum/scene/shape.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// The description and the first of its errors.
 class SceneBuilder {
@@ -60,4 +60,4 @@ void build_hand(SceneBuilder& builder, Scene& scene);
 
 void build_goals(SceneBuilder& builder, Scene& scene);
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -4,7 +4,7 @@
 
 #include "tactum/scene/item_errors.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 Mat3 rotation_rpy_deg(const Vec3& rpy_deg) {
   const Vec3 rpy = rpy_deg * (kPi / 180.0);
@@ -30,4 +30,4 @@ std::string SceneSource::section(const std::string& path) const {
   return file.empty() ? path : file_section(path);
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

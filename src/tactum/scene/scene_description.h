@@ -22,7 +22,7 @@
 #include "tactum/scene/goal_description.h"
 #include "tactum/scene/hand_description.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// The rotation by roll, pitch and yaw about fixed x, then y, then z, as in URDF [deg].
 Mat3 rotation_rpy_deg(const Vec3& rpy_deg);
@@ -69,4 +69,4 @@ struct SceneDescription {
   SceneSource source = {};
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -9,7 +9,7 @@
 #include "tactum/scene/build_scene.h"
 #include "tactum/scene/read_description.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 constexpr std::uintmax_t kMaxBytes = 1 << 20;  // of a scene file; parts are in files of their own
@@ -75,4 +75,4 @@ std::vector<std::string> data_folders() {
   return folders;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

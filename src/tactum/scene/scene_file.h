@@ -16,7 +16,7 @@
 #include "tactum/scene/scene.h"
 #include "tactum/scene/scene_description.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// The description in a file. Meshes are looked for beside the file, then in data_folders().
 Result<SceneDescription> read_description_file(const std::string& path);
@@ -35,4 +35,4 @@ Result<Scene> parse_scene(std::string_view text, const std::string& name, const 
 /// The folders named by the environment's TACTUM_DATA, colons between.
 std::vector<std::string> data_folders();
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

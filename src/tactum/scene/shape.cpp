@@ -4,7 +4,7 @@
 
 #include "tactum/mesh/make_part.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 Result<Part> built(const Shape& shape, double density_kg_per_m3) {
@@ -36,4 +36,4 @@ Result<std::shared_ptr<const Part>> part_of(const Shape& shape, double density_k
   return std::shared_ptr<const Part>(std::make_shared<Part>(std::move(*part)));
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -14,7 +14,7 @@
 #include "tactum/mesh/mesh_import.h"
 #include "tactum/mesh/part_file.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 struct Shape {
   std::vector<Polytope> pieces;                   ///< made by rule; empty for a mesh
@@ -28,4 +28,4 @@ struct Shape {
 /// The part about its centre of mass; Part::origin says where that is in P.
 Result<std::shared_ptr<const Part>> part_of(const Shape& shape, double density_kg_per_m3);
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

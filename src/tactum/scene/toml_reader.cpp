@@ -8,7 +8,7 @@
 #include "tactum/base/tolerances.h"
 #include "tactum/scene/scene_description.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 const toml::table kEmptyTable;
@@ -194,4 +194,4 @@ TomlReader TomlReader::element(const char* key, std::size_t index, std::span<con
   return {inner ? *inner : kEmptyTable, file_, item_path(path_, key, index), keys, errors_};
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

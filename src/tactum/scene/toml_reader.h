@@ -23,7 +23,7 @@
 #include "tactum/math/pose.h"
 #include "tactum/scene/item_errors.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 class TomlReader {
  public:
@@ -86,4 +86,4 @@ class TomlReader {
 /// "FILE:LINE:COLUMN".
 std::string place(const std::string& file, const toml::source_position& position);
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -2,7 +2,7 @@
 
 #include "tactum/scene/item_visitor.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 constexpr int kMostFieldPoints = 10'000;  // of a body
@@ -95,4 +95,4 @@ void visit_items(ItemVisitor& visitor, BodyDescription& body) {
                  "field_points and field_point", "one of them");
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -1,6 +1,6 @@
 #include "tactum/scene/item_visitor.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 void visit_sampled(ItemVisitor& visitor, std::optional<SampledGrid>& sampled) {
@@ -60,4 +60,4 @@ void visit_items(ItemVisitor& visitor, FieldDescription& field) {
     visitor.fail("edge_m", "only a grid has an edge", "a formula", "kind = \"grid\", or sampled = {...}");
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -1,6 +1,6 @@
 #include "tactum/scene/item_visitor.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 /// Of a goal that is met by reaching an amount, or at a value within a tolerance: one of the two.
@@ -51,4 +51,4 @@ void visit_items(ItemVisitor& visitor, GoalDescription& goal) {
   visitor.kinds("kind", "goal", goal, Need::kRequired);
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

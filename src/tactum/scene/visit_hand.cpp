@@ -1,6 +1,6 @@
 #include "tactum/scene/item_visitor.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 void visit_items(ItemVisitor&, CentreGrasp&) {}
 
@@ -93,4 +93,4 @@ void visit_items(ItemVisitor& visitor, HandDescription& hand) {
   visitor.tables("step", hand.steps);
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -3,7 +3,7 @@
 
 #include "tactum/scene/item_visitor.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 void visit_fit(ItemVisitor& visitor, FitDescription& fit) {
@@ -157,4 +157,4 @@ void visit_shapes(ItemVisitor& visitor, std::variant<Kinds...>& part) {
 
 void visit_items(ItemVisitor& visitor, PartDescription& part) { visit_shapes(visitor, part); }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

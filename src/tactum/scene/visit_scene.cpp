@@ -3,7 +3,7 @@
 
 #include "tactum/scene/item_visitor.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 constexpr int kSchema = 1;
@@ -97,4 +97,4 @@ void visit_items(ItemVisitor& visitor, SceneDescription& scene) {
   visitor.tables("goal", scene.goals);
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -7,7 +7,7 @@
 
 #include "tactum/math/pose.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 struct SessionCommand {
   enum class Kind : std::uint8_t {
@@ -29,4 +29,4 @@ struct SessionCommand {
   }
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -7,7 +7,7 @@
 #include "tactum/haptics/simulation.h"
 #include "tactum/scene/build_scene.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 constexpr std::size_t kGlances = 4096;  // four seconds at 1 kHz between two polls
@@ -134,4 +134,4 @@ Wrench Session::run(const DeviceSample& sample, const FrameTick& tick) noexcept 
   return F_D;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -23,7 +23,7 @@
 #include "tactum/telemetry/run_record.h"
 #include "tactum/telemetry/statistics.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 struct SessionOptions {
   std::string device;    ///< as in devices/registry.h; empty: the scene's simulated preset
@@ -127,4 +127,4 @@ class Session final : private HapticFrame {
   bool threaded_ = false;  // the loop has been started, so its timings exist
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

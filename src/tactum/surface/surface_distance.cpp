@@ -6,7 +6,7 @@
 
 #include "tactum/base/tolerances.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 class DistanceQuery {
@@ -205,4 +205,4 @@ SurfaceDistance surface_distance(const Surface& a, const Surface& b, const Pose&
   return result;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

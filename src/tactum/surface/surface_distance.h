@@ -16,7 +16,7 @@
 #include "tactum/math/pose.h"
 #include "tactum/surface/triangle_pair.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// The triangles of a surface under a tree of boxes, as they stand in the mesh: no welding, none left out.
 class Surface {
@@ -61,4 +61,4 @@ SurfaceDistance surface_distance(const Surface& a, const Surface& b, const Pose&
                                  SurfacePairCache& cache,
                                  TouchingPairs touching = TouchingPairs::kCounted) noexcept;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

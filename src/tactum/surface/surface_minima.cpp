@@ -5,7 +5,7 @@
 #include "tactum/base/tolerances.h"
 #include "tactum/surface/surface_minima_walk.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 constexpr double kDiagonal = 1.42;  // a little more than the root of two
@@ -70,4 +70,4 @@ double surface_clearance(const SurfaceTree& a, const SurfaceTree& b, const Pose&
   return features.max_distance();
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

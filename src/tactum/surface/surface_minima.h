@@ -37,7 +37,7 @@
 #include "tactum/math/pose.h"
 #include "tactum/surface/surface_minimum.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// The minima of A and B with B at X_AB, sorted by the features of A, then of B. `minima` is cleared and
 /// filled up to its capacity, which is never raised: reserve it at load time. When more are found the nearest
@@ -59,4 +59,4 @@ MinimaWork surface_minima(const Kernels& kernels, const SurfaceTree& a, const Su
                           std::vector<SurfaceMinimum>& minima) noexcept;
 }  // namespace lanes
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -5,7 +5,7 @@
 
 #include "tactum/base/tolerances.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 Feature vertex_of(const SurfaceTree& tree, std::int32_t corner) noexcept {
@@ -275,4 +275,4 @@ void FeatureComparison::take(const Touch& touch, int triangle_a, int triangle_b)
 
 void FeatureComparison::finish() noexcept { std::sort(minima_.begin(), minima_.end(), in_order); }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -7,7 +7,7 @@
 #include "tactum/math/pose.h"
 #include "tactum/surface/surface_minimum.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// Where a direction lies to a normal cone.
 enum class InCone : std::uint8_t { kOutside, kInflated, kStrict };
@@ -92,4 +92,4 @@ class FeatureComparison {
   double parallel_sq_;  // square of the sine below which edges touch along an interval
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

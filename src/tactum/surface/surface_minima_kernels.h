@@ -15,7 +15,7 @@
 #include "tactum/base/tolerances.h"
 #include "tactum/surface/surface_minima_lanes.h"
 
-namespace tactum::lanes {
+namespace tactum::inline v0_1::lanes {
 
 /// Vectors of so many numbers, as g++ and clang++ share them; of doubles half as many.
 template <std::size_t Width>
@@ -485,4 +485,4 @@ class KernelsOf {
   }
 };
 
-}  // namespace tactum::lanes
+}  // namespace tactum::inline v0_1::lanes

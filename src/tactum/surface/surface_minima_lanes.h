@@ -18,7 +18,7 @@
 #include "tactum/geometry/surface_tree.h"
 #include "tactum/math/pose.h"
 
-namespace tactum::lanes {
+namespace tactum::inline v0_1::lanes {
 
 inline constexpr std::size_t kLanes = SurfaceTree::kLanes;
 using Lanes = SurfaceTree::Lanes;
@@ -112,4 +112,4 @@ struct Kernels {
 /// Four lanes at a time on any processor, eight with AVX2.
 CpuBuilds<Kernels> builds() noexcept;
 
-}  // namespace tactum::lanes
+}  // namespace tactum::inline v0_1::lanes

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace tactum::lanes {
+namespace tactum::inline v0_1::lanes {
 namespace {
 
 class Corner {
@@ -68,4 +68,4 @@ void gather_leaf(const SurfaceTree& tree, const Box& box, const Kernels& kernels
   kernels.lay_faces(points, grown, leaf);
 }
 
-}  // namespace tactum::lanes
+}  // namespace tactum::inline v0_1::lanes

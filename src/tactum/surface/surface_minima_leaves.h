@@ -5,7 +5,7 @@
 
 #include "tactum/surface/surface_minima_lanes.h"
 
-namespace tactum::lanes {
+namespace tactum::inline v0_1::lanes {
 
 /// Which leaf is under a box; `box.at` is not read.
 inline std::uint32_t leaf_under(const Box& box) noexcept {
@@ -19,4 +19,4 @@ void gather_leaf(const SurfaceTree& tree, const Box& box, const Kernels& kernels
 void gather_leaf(const SurfaceTree& tree, const Box& box, const Kernels& kernels, float grown,
                  FaceLeaf& leaf) noexcept;
 
-}  // namespace tactum::lanes
+}  // namespace tactum::inline v0_1::lanes

@@ -2,7 +2,7 @@
 
 #include "tactum/surface/surface_minima_kernels.h"
 
-namespace tactum::lanes {
+namespace tactum::inline v0_1::lanes {
 
 extern const Kernels* const kWide;  // surface_minima_wide.cpp
 
@@ -14,4 +14,4 @@ constexpr Kernels kNarrow = KernelsOf<4>::table();
 
 CpuBuilds<Kernels> builds() noexcept { return {&kNarrow, kWide}; }
 
-}  // namespace tactum::lanes
+}  // namespace tactum::inline v0_1::lanes

@@ -5,7 +5,7 @@
 
 #include "tactum/surface/surface_minima_leaves.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using lanes::kLanes;
@@ -152,4 +152,4 @@ template void SurfaceWalk::run<Tree::kVertices, Tree::kFaces>() noexcept;
 template void SurfaceWalk::run<Tree::kVertices, Tree::kEdges>() noexcept;
 template void SurfaceWalk::run<Tree::kVertices, Tree::kVertices>() noexcept;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

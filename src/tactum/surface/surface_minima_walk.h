@@ -7,7 +7,7 @@
 #include "tactum/surface/surface_minima_features.h"
 #include "tactum/surface/surface_minima_lanes.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// What was turned into the other's frame, kept for the pairs that follow, which mostly ask for the same
 /// again. The room is filled as far as it is used.
@@ -88,4 +88,4 @@ class SurfaceWalk {
   Some<lanes::FaceLeaf> faces_of_other_;
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

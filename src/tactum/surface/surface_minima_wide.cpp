@@ -3,7 +3,7 @@
 
 #include "tactum/surface/surface_minima_kernels.h"
 
-namespace tactum::lanes {
+namespace tactum::inline v0_1::lanes {
 
 extern const Kernels* const kWide;
 
@@ -19,4 +19,4 @@ constinit const Kernels* const kWide = &kTable;
 constinit const Kernels* const kWide = nullptr;
 #endif
 
-}  // namespace tactum::lanes
+}  // namespace tactum::inline v0_1::lanes

@@ -4,7 +4,7 @@
 #include "tactum/geometry/feature.h"
 #include "tactum/math/types.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// One local minimum, in A's frame: n points from B to A and distance = n . (p_a - p_b), as everywhere.
 struct SurfaceMinimum {
@@ -33,4 +33,4 @@ struct MinimaWork {
   bool full = false;      ///< more were found than had room: the nearest were kept
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -4,7 +4,7 @@
 
 #include "tactum/base/tolerances.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 void keep_nearer(PointPair& best, const Vec3& p_a, const Vec3& p_b) noexcept {
@@ -103,4 +103,4 @@ PointPair triangle_distance(const TrianglePoints& a, const TrianglePoints& b) no
   return best;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

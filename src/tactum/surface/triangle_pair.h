@@ -12,7 +12,7 @@
 
 #include "tactum/math/types.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 using TrianglePoints = std::array<Vec3, 3>;  ///< corners, in one frame [m]
 
@@ -33,4 +33,4 @@ bool triangles_cross(const TrianglePoints& a, const TrianglePoints& b) noexcept;
 /// Nearest points of two triangles that do not cross.
 PointPair triangle_distance(const TrianglePoints& a, const TrianglePoints& b) noexcept;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

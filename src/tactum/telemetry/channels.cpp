@@ -5,7 +5,7 @@
 #include "tactum/haptics/report_fields.h"
 #include "tactum/math/screw.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using Source = const FrameSource&;
@@ -94,4 +94,4 @@ std::span<const WrenchStage> wrench_stages() noexcept { return kStages; }
 std::span<const Channel> channels() noexcept { return kChannels; }
 std::span<const FlagName> frame_flag_table() noexcept { return kFrameFlags; }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -10,7 +10,7 @@
 #include "tactum/haptics/frame_state.h"
 #include "tactum/response/frame_report.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// A frame that is over.
 struct FrameSource {
@@ -46,4 +46,4 @@ struct FlagName {
 };
 std::span<const FlagName> frame_flag_table() noexcept;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

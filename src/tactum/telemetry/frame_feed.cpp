@@ -5,7 +5,7 @@
 
 #include "tactum/base/assert.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 using Index = std::size_t;
@@ -88,4 +88,4 @@ void FrameFeed::draw(const FrameSource& frame, FramePicture& picture) noexcept {
   }
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

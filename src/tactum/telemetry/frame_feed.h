@@ -17,7 +17,7 @@
 #include "tactum/telemetry/channels.h"
 #include "tactum/telemetry/run_record.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// The numbers of one frame: six a wrench stage (force, torque), then the channels, then the times of the
 /// frame's stages [s] (zero when nobody takes them).
@@ -84,4 +84,4 @@ class FrameFeed {
   std::uint64_t frames_a_picture_;
 };
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

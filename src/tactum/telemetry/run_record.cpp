@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 void RunRecord::add(const FrameReport& report, const WorldState& world) noexcept {
   ++frames;
@@ -78,4 +78,4 @@ const char* stage_name(Stage stage) noexcept {
   return "";
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -13,7 +13,7 @@
 #include "tactum/response/frame_report.h"
 #include "tactum/telemetry/statistics.h"
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 class RunRecord {
  public:
@@ -77,4 +77,4 @@ class StageClock final : public StageObserver {
 /// "hand", "velocities", ...
 const char* stage_name(Stage stage) noexcept;
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -6,7 +6,7 @@
 #include <bit>
 #include <cmath>
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 namespace {
 
 // Bins: durations below 2 * kParts have one each; above, every power of two has kParts of them.
@@ -125,4 +125,4 @@ std::string table_of(std::span<const StageSummary> stages) {
   return table;
 }
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace tactum {
+namespace tactum::inline v0_1 {
 
 /// What is told of many durations.
 struct Summary {
@@ -78,4 +78,4 @@ struct StageSummary {
 /// Aligned columns in microseconds, a heading first, one line a stage.
 std::string table_of(std::span<const StageSummary> stages);
 
-}  // namespace tactum
+}  // namespace tactum::inline v0_1
