@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <map>
 #include <set>
 
 #include "tactum/base/random.h"
@@ -52,6 +54,62 @@ TEST(SweepAndPrune, ListsWhatAScanFindsWhileBoxesMove) {
       ASSERT_EQ(listed(sweep), scan(boxes)) << "seed " << seed << " step " << step;
     }
   }
+}
+
+/// Pairs keep their slot while they overlap, and no two have the same.
+TEST(SweepAndPrune, SlotsAreOfOnePairEach) {
+  Random random(7);
+  std::vector<Aabb> boxes;
+  for (int i = 0; i < 60; ++i) boxes.push_back(random_box(random, 0.001));
+  SweepAndPrune sweep(boxes);
+  std::map<std::pair<int, int>, int> before;
+  for (int step = 0; step < 500; ++step) {
+    const int i = random.index(60);
+    sweep.move(i, random_box(random, 0.001));
+    sweep.update();
+    std::map<std::pair<int, int>, int> slots;
+    std::set<int> used;
+    for (const auto& pair : sweep.pairs()) {
+      ASSERT_LT(pair.slot, int(sweep.room()));
+      ASSERT_TRUE(used.insert(pair.slot).second) << "step " << step;
+      slots[{pair.a, pair.b}] = pair.slot;
+      const auto old = before.find({pair.a, pair.b});
+      if (old != before.end()) {
+        ASSERT_EQ(old->second, pair.slot) << "step " << step;
+      }
+    }
+    before = slots;
+  }
+}
+
+/// Where there is less room than there are pairs, the others are counted, and listed when there is room.
+TEST(SweepAndPrune, PairsWithoutRoomAreCountedAndListedLater) {
+  for (const std::size_t room : {std::size_t(0), std::size_t(1), std::size_t(20), std::size_t(200)}) {
+    Random random(11);
+    std::vector<Aabb> boxes;
+    for (int i = 0; i < 40; ++i) boxes.push_back(random_box(random, 1.0));
+    SweepAndPrune sweep(boxes, room);
+    for (int step = 0; step < 400; ++step) {
+      const auto all = scan(boxes);
+      const auto some = listed(sweep);
+      ASSERT_EQ(some.size() + std::size_t(sweep.missing()), all.size()) << "step " << step;
+      ASSERT_EQ(some.size(), std::min(room, all.size()));
+      ASSERT_TRUE(std::includes(all.begin(), all.end(), some.begin(), some.end()));
+      for (int k = 0; k < 5; ++k) {
+        const int i = random.index(40);
+        boxes[std::size_t(i)] = random_box(random, step % 50 < 25 ? 1.0 : 4.0);
+        sweep.move(i, boxes[std::size_t(i)]);
+      }
+      sweep.update();
+    }
+  }
+}
+
+TEST(SweepAndPrune, RoomGrowsWithTheBoxes) {
+  for (const std::size_t boxes : {0, 1, 2, 3, 128})
+    EXPECT_EQ(SweepAndPrune::room_for(boxes), boxes * (boxes + 1) / 2 - boxes);
+  EXPECT_EQ(SweepAndPrune::room_for(1000), 64000u);
+  EXPECT_EQ(SweepAndPrune::room_for(2000), 128000u);
 }
 
 TEST(SweepAndPrune, NothingMovedCostsNoSwap) {

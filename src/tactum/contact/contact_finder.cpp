@@ -6,7 +6,6 @@
 #include "tactum/collision/closest_features.h"
 #include "tactum/collision/manifold.h"
 #include "tactum/contact/motion_bound.h"
-#include "tactum/contact/patch_corners.h"
 #include "tactum/contact/seams.h"
 
 namespace tactum::inline v0_1 {
@@ -48,7 +47,6 @@ void ContactFinder::find_patches(std::span<const Pose> X_WB, int budget, PatchPo
   tests_left_ = budget;
   patches_.clear();
   candidates_.clear();
-  internal_contacts_.clear();
   emitted_.clear();
   std::fill(blocked_.begin(), blocked_.end(), 0);
   list_due_pairs();
@@ -84,48 +82,18 @@ void ContactFinder::find_patches(std::span<const Pose> X_WB, int budget, PatchPo
       emit_patch(pair, last, X_AB);
     }
   }
-  for (const int number : internal_contacts_) settle_internal_contact(patches_[Index(number)], X_WB);
-  candidate_order_.clear();
-  for (SeamCandidate& candidate : candidates_) candidate_order_.push_back(&candidate);
-  work_.capacity_reached |= !settle_seams(candidate_order_, X_WB, steady_, patches_);
+  if (points_ == PatchPoints::kClosest) {
+    settle_closest_points(candidates_, X_WB, patches_);
+  } else {
+    candidate_order_.clear();
+    for (SeamCandidate& candidate : candidates_) candidate_order_.push_back(&candidate);
+    work_.capacity_reached |= !settle_seams(candidate_order_, X_WB, steady_, patches_);
+  }
   for (const bool grasped : {true, false})
     for (const SweepAndPrune::Pair& near : sweep_.pairs())
       if (meet_by_surfaces(near.a, near.b) && of_grasped(near.a, near.b) == grasped)
-        test_surfaces(near.a, near.b, X_WB);
+        test_surfaces(near, X_WB);
   work_.patches = static_cast<int>(patches_.size());
-}
-
-void ContactFinder::settle_internal_contact(ContactPatch& patch, std::span<const Pose> X_WB) const noexcept {
-  const Part& part_a = *bodies_[Index(patch.body_a)].part;
-  const Part& part_b = *bodies_[Index(patch.body_b)].part;
-  const Pose X_AB = relative_pose(X_WB[Index(patch.body_a)], X_WB[Index(patch.body_b)]);
-  const PairView pair(part_a.pieces[Index(patch.piece_a)], part_b.pieces[Index(patch.piece_b)], X_AB);
-  const PairDistance found{.a = patch.manifold.a, .b = patch.manifold.b};
-  auto internal = internal_contacts_.begin();  // rising, as the patches
-  const auto representative = std::find_if(patches_.begin(), patches_.end(), [&](const ContactPatch& other) {
-    if (internal != internal_contacts_.end() && &other == &patches_[Index(*internal)]) {
-      ++internal;
-      return false;
-    }
-    return other.body_a == patch.body_a && other.body_b == patch.body_b &&
-           answered_by(pair, found, other.manifold.normal, other.distance);
-  });
-  if (representative == patches_.end()) return;
-  const Manifold& leading = representative->manifold;
-  patch.manifold.points.clear();
-  patch.manifold.normal = leading.normal;
-  const auto stretch = [](const Part& part, int of_piece, const Feature& feature, const Vec3& outward,
-                          int piece, bool& beside) {
-    const Feature same = same_feature(part, of_piece, feature, piece);
-    if (same.index >= 0 || feature.kind == FeatureKind::kFace) return same;
-    beside = true;
-    const int face = reference_face(part.pieces[Index(of_piece)], feature, outward);
-    return same_feature(part, of_piece, {FeatureKind::kFace, face}, piece);
-  };
-  patch.manifold.a = stretch(part_a, representative->piece_a, leading.a, -leading.normal, patch.piece_a,
-                             patch.neighbour_face_a);
-  patch.manifold.b = stretch(part_b, representative->piece_b, leading.b, rotated_back(X_AB.R, leading.normal),
-                             patch.piece_b, patch.neighbour_face_b);
 }
 
 std::uint8_t ContactFinder::priority_of(int a, int b) const noexcept {
@@ -218,35 +186,36 @@ void ContactFinder::test(Pair& pair, const Pose& X_AB) noexcept {
   emit_patch(pair, pair.last.found, X_AB);
 }
 
+/// Adds what was found to the contacts that are settled with those of the pieces beside (seam_settler.h).
+void ContactFinder::add_candidate(Pair& pair, const PairDistance& found, bool internal, int patch) noexcept {
+  SeamCandidate& candidate = candidates_.emplace_back();
+  candidate.a = {pair.body_a, pair.piece_a, bodies_[Index(pair.body_a)].part};
+  candidate.b = {pair.body_b, pair.piece_b, bodies_[Index(pair.body_b)].part};
+  candidate.pair = static_cast<int>(&pair - pairs_.data());
+  candidate.shown = &pair.shown;
+  candidate.margin = tolerance(pair.body_a, pair.body_b);
+  candidate.found = found;
+  candidate.internal = internal;
+  candidate.patch = patch;
+}
+
 /// Makes a patch of what was found, when it is within the tolerance.
 void ContactFinder::emit_patch(Pair& pair, const PairDistance& found, const Pose& X_AB) noexcept {
   const Part& part_a = *bodies_[Index(pair.body_a)].part;
   const Part& part_b = *bodies_[Index(pair.body_b)].part;
-  const Polytope& A = part_a.pieces[Index(pair.piece_a)];
-  const Polytope& B = part_b.pieces[Index(pair.piece_b)];
   const double margin = tolerance(pair.body_a, pair.body_b);
   pair.in_contact = found.distance < margin;
   if (!pair.in_contact) {
     pair.shown = {};
     return;
   }
-  if (patches_.size() + candidates_.size() >= patches_.capacity()) {
+  if (patches_.size() == patches_.capacity() || candidates_.size() == candidates_.capacity()) {
     work_.capacity_reached = true;
     return;
   }
   const bool seams = !part_a.true_surface.single_piece() || !part_b.true_surface.single_piece();
   const bool internal = seams && !is_true_contact(part_a, pair.piece_a, part_b, pair.piece_b, X_AB, found);
-  if (seams && points_ == PatchPoints::kQuadrature) {
-    SeamCandidate& candidate = candidates_.emplace_back();
-    candidate.a = {pair.body_a, pair.piece_a, &part_a};
-    candidate.b = {pair.body_b, pair.piece_b, &part_b};
-    candidate.pair = static_cast<int>(&pair - pairs_.data());
-    candidate.shown = &pair.shown;
-    candidate.margin = margin;
-    candidate.found = found;
-    candidate.internal = internal;
-    return;
-  }
+  if (seams && points_ == PatchPoints::kQuadrature) return add_candidate(pair, found, internal, -1);
   ContactPatch& patch = patches_.emplace_back();
   patch.body_a = pair.body_a;
   patch.body_b = pair.body_b;
@@ -262,9 +231,12 @@ void ContactFinder::emit_patch(Pair& pair, const PairDistance& found, const Pose
     patch.manifold.a = found.a;
     patch.manifold.b = found.b;
     patch.manifold.points.push_back({found.p_a, found.p_b, found.distance, 1.0, 0});
-    if (internal && found.distance > 0.0) internal_contacts_.push_back(static_cast<int>(patches_.size()) - 1);
+    if (internal && found.distance > 0.0)
+      add_candidate(pair, found, internal, static_cast<int>(patches_.size()) - 1);
     return;
   }
+  const Polytope& A = part_a.pieces[Index(pair.piece_a)];
+  const Polytope& B = part_b.pieces[Index(pair.piece_b)];
   const PairDistance shown = steady_depth(A, B, X_AB, found, steady_, pair.shown);
   patch.distance = shown.distance;
   contact_manifold(A, B, X_AB, shown, margin, patch.manifold);

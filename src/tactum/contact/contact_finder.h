@@ -111,6 +111,7 @@ class ContactFinder final : public GapOracle {
   };
   /// The pieces of two near bodies: pairs_[first, first + count), sorted by piece.
   struct BodyPair {
+    std::int32_t body_a = -1, body_b = -1;  ///< whose list it is; a slot is given to another pair when free
     std::int32_t first = 0, count = 0;
     double accumulated_motion = 0.0;  ///< S0
     double range = 0.0;               ///< R
@@ -121,7 +122,7 @@ class ContactFinder final : public GapOracle {
   };
 
   void move_boxes(std::span<const Pose> X_WB) noexcept;
-  bool list_holds(const BodyPair& list, int a, int b) const noexcept;
+  bool list_holds(const SweepAndPrune::Pair& near) noexcept;
   void renew_lists(std::span<const Pose> X_WB) noexcept;
   bool collect(int a, int b, const Pose& X_AB, double range) noexcept;
   void append_pairs(int a, int b, const BodyPair& old) noexcept;
@@ -134,20 +135,14 @@ class ContactFinder final : public GapOracle {
   bool of_grasped(int a, int b) const noexcept { return priority_of(a, b) == priority::kGrasped; }
   std::uint8_t priority_of(int a, int b) const noexcept;
   void test(Pair& pair, const Pose& X_AB) noexcept;
+  void add_candidate(Pair& pair, const PairDistance& found, bool internal, int patch) noexcept;
   void emit_patch(Pair& pair, const PairDistance& found, const Pose& X_AB) noexcept;
-  /// Settles an internal contact, `patch`. The representative is the neighbour across the seam that is nearer
-  /// and whose normal separates these two pieces as well. With a representative the patch loses its point and
-  /// takes the representative's normal; what counts of it is its stretch of the same true faces, or, where
-  /// the representative touches with an edge or corner, of the reference face there. Where there is no such
-  /// stretch the patch keeps no features, and only its distance is watched. Without a representative, as in
-  /// the corner of two walls, the patch is a contact of its own.
-  void settle_internal_contact(ContactPatch& patch, std::span<const Pose> X_WB) const noexcept;
   GapAnswer distance_at(const ContactPatch& patch, std::span<const Pose> X_WB, double enough, int keep_back,
                         double& distance) noexcept;
   bool meet_by_surfaces(int a, int b) const noexcept {
     return bodies_[std::size_t(a)].part->is_surface() || bodies_[std::size_t(b)].part->is_surface();
   }
-  void test_surfaces(int a, int b, std::span<const Pose> X_WB) noexcept;
+  void test_surfaces(const SweepAndPrune::Pair& near, std::span<const Pose> X_WB) noexcept;
   void add_surface_patch(int a, int b, const SurfaceMinimum& minimum, bool second_end,
                          double margin) noexcept;
   void surface_distances_at(std::span<const ContactPatch> patches, std::span<const Pose> X_WB,
@@ -156,8 +151,10 @@ class ContactFinder final : public GapOracle {
     return travel_[std::size_t(a)] + travel_[std::size_t(b)];
   }
   double tolerance(int a, int b) const noexcept;
-  BodyPair& list_of(int a, int b) noexcept {
-    return lists_[std::size_t(a) * bodies_.size() + std::size_t(b)];
+  BodyPair& list_of(const SweepAndPrune::Pair& near) noexcept {
+    BodyPair& list = lists_[std::size_t(near.slot)];
+    if (list.body_a != near.a || list.body_b != near.b) list = {near.a, near.b};
+    return list;
   }
 
   std::vector<CollisionBody> bodies_;
@@ -168,7 +165,7 @@ class ContactFinder final : public GapOracle {
   std::vector<double> travel_;
   std::vector<Pose> last_X_WB_;
   SweepAndPrune sweep_;
-  std::vector<BodyPair> lists_;
+  std::vector<BodyPair> lists_;  // by slot of a near pair
   ReservedVector<Pair> pairs_, renewed_;
   ReservedVector<std::pair<std::int32_t, std::int32_t>> near_pieces_;  // of the two bodies in work
   ReservedVector<DuePair> due_;
@@ -178,8 +175,6 @@ class ContactFinder final : public GapOracle {
   bool budget_limited_ = false;
   int tests_left_ = 0;
   ReservedVector<ContactPatch> patches_;
-  ReservedVector<int>
-      internal_contacts_;  // patches of pieces that are apart, of points that are no contact of the parts
   ReservedVector<SeamCandidate> candidates_;
   ReservedVector<SeamCandidate*> candidate_order_;
   ReservedVector<SurfaceMinimum> minima_;

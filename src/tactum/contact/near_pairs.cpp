@@ -52,7 +52,7 @@ ContactFinder::ContactFinder(std::vector<CollisionBody> bodies, std::span<const 
       steady_(dt_s),
       head_start_(frames_in(kHeadStart_s, dt_s)) {
   travel_.assign(bodies_.size(), 0.0);
-  lists_.resize(bodies_.size() * bodies_.size());
+  lists_.resize(sweep_.room());
   pairs_.reserve(capacity.pairs);
   renewed_.reserve(capacity.pairs);
   near_pieces_.reserve(capacity.pairs);
@@ -64,7 +64,6 @@ ContactFinder::ContactFinder(std::vector<CollisionBody> bodies, std::span<const 
   patches_.reserve(capacity.patches);
   candidates_.reserve(capacity.patches);
   candidate_order_.reserve(capacity.patches);
-  internal_contacts_.reserve(capacity.patches);
   minima_.reserve(capacity.minima);
   reduction_scratch_.reserve(capacity.minima);
   kept_minima_ = capacity.kept_minima;
@@ -78,12 +77,11 @@ void ContactFinder::find_near_pairs(std::span<const Pose> X_WB, std::span<const 
   min_tolerance_ = min_tolerance;
   ++frame_;
   move_boxes(X_WB);
-  const bool lists_hold = std::all_of(sweep_.pairs().begin(), sweep_.pairs().end(), [&](const auto& pair) {
-    return list_holds(list_of(pair.a, pair.b), pair.a, pair.b);
-  });
+  const bool lists_hold = std::all_of(sweep_.pairs().begin(), sweep_.pairs().end(),
+                                      [&](const auto& near) { return list_holds(near); });
   if (!lists_hold) renew_lists(X_WB);
-  for (const SweepAndPrune::Pair& near : sweep_.pairs())
-    work_.capacity_reached |= list_of(near.a, near.b).cut_short;
+  work_.capacity_reached |= sweep_.missing() > 0;
+  for (const SweepAndPrune::Pair& near : sweep_.pairs()) work_.capacity_reached |= list_of(near).cut_short;
   work_.near_pairs = static_cast<int>(pairs_.size());
 }
 
@@ -105,10 +103,11 @@ void ContactFinder::move_boxes(std::span<const Pose> X_WB) noexcept {
   work_.broad_phase_runs = 1;
 }
 
-bool ContactFinder::list_holds(const BodyPair& list, int a, int b) const noexcept {
-  if (!bodies_[Index(a)].moves && !bodies_[Index(b)].moves) return true;
-  return list.renewal == renewal_ &&
-         accumulated_motion(a, b) - list.accumulated_motion + tolerance(a, b) <= list.range;
+bool ContactFinder::list_holds(const SweepAndPrune::Pair& near) noexcept {
+  if (!bodies_[Index(near.a)].moves && !bodies_[Index(near.b)].moves) return true;
+  const BodyPair& list = list_of(near);
+  const double moved = accumulated_motion(near.a, near.b) - list.accumulated_motion;
+  return list.renewal == renewal_ && moved + tolerance(near.a, near.b) <= list.range;
 }
 
 void ContactFinder::renew_lists(std::span<const Pose> X_WB) noexcept {
@@ -116,9 +115,9 @@ void ContactFinder::renew_lists(std::span<const Pose> X_WB) noexcept {
   renewed_.clear();
   for (const SweepAndPrune::Pair& near : sweep_.pairs()) {
     if (!bodies_[Index(near.a)].moves && !bodies_[Index(near.b)].moves) continue;
-    BodyPair& list = list_of(near.a, near.b);
+    BodyPair& list = list_of(near);
     const Index first = renewed_.size();
-    if (list_holds(list, near.a, near.b)) {
+    if (list_holds(near)) {
       const Index room = renewed_.capacity() - renewed_.size();
       list.cut_short = list.cut_short || Index(list.count) > room;
       for (Index i = 0; i < std::min(Index(list.count), room); ++i)

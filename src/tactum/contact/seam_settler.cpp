@@ -5,6 +5,7 @@
 
 #include "tactum/base/tolerances.h"
 #include "tactum/collision/manifold.h"
+#include "tactum/contact/patch_corners.h"
 #include "tactum/contact/seams.h"
 
 namespace tactum::inline v0_1 {
@@ -292,6 +293,29 @@ class TwoBodies {
   bool full_ = false;
 };
 
+/// The stretch that a side has of the feature of `representative` on `of_piece`; where there is none, of the
+/// reference face beside it, and then `beside` becomes true.
+Feature stretch_of(const SeamCandidate::Side& side, int of_piece, const Feature& feature, const Vec3& outward,
+                   bool& beside) noexcept {
+  const Feature same = same_feature(*side.part, of_piece, feature, side.piece);
+  if (same.index >= 0 || feature.kind == FeatureKind::kFace) return same;
+  beside = true;
+  const int face = reference_face(side.part->pieces[Index(of_piece)], feature, outward);
+  return same_feature(*side.part, of_piece, {FeatureKind::kFace, face}, side.piece);
+}
+
+/// Gives the patch of an internal contact what its representative has there.
+void take_from(const ContactPatch& representative, const SeamCandidate& candidate, const Pose& X_AB,
+               ContactPatch& patch) noexcept {
+  const Manifold& leading = representative.manifold;
+  patch.manifold.points.clear();
+  patch.manifold.normal = leading.normal;
+  patch.manifold.a =
+      stretch_of(candidate.a, representative.piece_a, leading.a, -leading.normal, patch.neighbour_face_a);
+  patch.manifold.b = stretch_of(candidate.b, representative.piece_b, leading.b,
+                                rotated_back(X_AB.R, leading.normal), patch.neighbour_face_b);
+}
+
 }  // namespace
 
 bool settle_seams(std::span<SeamCandidate*> candidates, std::span<const Pose> X_WB,
@@ -313,6 +337,25 @@ bool settle_seams(std::span<SeamCandidate*> candidates, std::span<const Pose> X_
     first = last;
   }
   return complete;
+}
+
+void settle_closest_points(std::span<const SeamCandidate> candidates, std::span<const Pose> X_WB,
+                           std::span<ContactPatch> patches) noexcept {
+  for (const SeamCandidate& candidate : candidates) {
+    const Pose X_AB = relative_pose(X_WB[Index(candidate.a.body)], X_WB[Index(candidate.b.body)]);
+    const PairView pair(candidate.a.polytope(), candidate.b.polytope(), X_AB);
+    auto internal = candidates.begin();  // in the order of their patches
+    const auto representative = std::find_if(patches.begin(), patches.end(), [&](const ContactPatch& other) {
+      if (internal != candidates.end() && &other == &patches[Index(internal->patch)]) {
+        ++internal;
+        return false;
+      }
+      return other.body_a == candidate.a.body && other.body_b == candidate.b.body &&
+             answered_by(pair, candidate.found, other.manifold.normal, other.distance);
+    });
+    if (representative != patches.end())
+      take_from(*representative, candidate, X_AB, patches[Index(candidate.patch)]);
+  }
 }
 
 }  // namespace tactum::inline v0_1

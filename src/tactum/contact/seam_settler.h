@@ -1,6 +1,9 @@
 #pragma once
-/// From the answers of pairs of pieces, where parts have seams, to contact patches: who leads, who follows,
-/// and who is answered for (the rules are in seams.h).
+/// Which answers of pairs of pieces are contacts of the whole parts, where parts have seams? The rules are in
+/// seams.h; a response that takes forces over areas asks for settle_seams(), one that takes a closest point
+/// of each pair for settle_closest_points().
+///
+/// settle_seams() makes contact patches of the answers:
 ///
 ///   for each two bodies, nearest first:  a true contact leads. Every other pair with a stretch of the same
 ///                                        true faces (or edges) follows: its stretch goes into the
@@ -43,7 +46,7 @@ struct SeamCandidate {
   PairDistance on_pieces;  ///< of an internal contact that was found again: what was found before
   bool internal = false;
   bool settled = false;
-  int patch = -1;   ///< of a representative
+  int patch = -1;   ///< of a representative; of a closest point, its own
   int led_by = -1;  ///< a representative's patch
 };
 
@@ -51,5 +54,15 @@ struct SeamCandidate {
 /// full.
 bool settle_seams(std::span<SeamCandidate*> candidates, std::span<const Pose> X_WB,
                   const SteadyLimits& steady, std::vector<ContactPatch>& patches) noexcept;
+
+/// Settles the internal contacts among `patches` that have one closest point each; `candidates` are those
+/// contacts. The representative of one is the patch of the same two bodies that is nearer and whose normal
+/// parts these two pieces as well. With a representative the patch loses its point and takes the
+/// representative's normal; what counts of it is its stretch of the same true faces, or, where the
+/// representative touches with an edge or corner, of the reference face there. Where there is no such stretch
+/// the patch keeps no features, and only its distance is watched. Without a representative, as in the corner
+/// of two walls, the patch is a contact of its own. Cost: the candidates times the patches, 20 ns each.
+void settle_closest_points(std::span<const SeamCandidate> candidates, std::span<const Pose> X_WB,
+                           std::span<ContactPatch> patches) noexcept;
 
 }  // namespace tactum::inline v0_1

@@ -23,10 +23,12 @@ constexpr double kFarther = 8.0;
 
 }  // namespace
 
-void ContactFinder::test_surfaces(int a, int b, std::span<const Pose> X_WB) noexcept {
+void ContactFinder::test_surfaces(const SweepAndPrune::Pair& near, std::span<const Pose> X_WB) noexcept {
+  const int a = near.a;
+  const int b = near.b;
   if (!bodies_[Index(a)].moves && !bodies_[Index(b)].moves) return;
   const double margin = tolerance(a, b);
-  BodyPair& list = list_of(a, b);
+  BodyPair& list = list_of(near);
   if (list.free_until - accumulated_motion(a, b) > margin) return;
   if (tests_left_ <= 0) return skip(a, b, list.free_until - accumulated_motion(a, b), frame_);
   --tests_left_;

@@ -1,43 +1,46 @@
 #include "tactum/contact/sweep_and_prune.h"
 
 #include <algorithm>
-#include <utility>
+#include <bit>
 
 namespace tactum::inline v0_1 {
+namespace {
 
-SweepAndPrune::SweepAndPrune(const std::vector<Aabb>& boxes) : count_(static_cast<int>(boxes.size())) {
-  const std::size_t n = boxes.size();
-  const std::size_t pair_count = n < 2 ? 0 : n * (n - 1) / 2;
-  overlapping_axes_.assign(pair_count, 0);
-  listed_at_.assign(pair_count, -1);
-  pairs_.reserve(pair_count);
-  for (int axis = 0; axis < 3; ++axis) {
-    std::vector<End>& ends = axes_[static_cast<std::size_t>(axis)];
-    for (int i = 0; i < count_; ++i) {
-      ends.push_back({boxes[static_cast<std::size_t>(i)].min[axis], i, false});
-      ends.push_back({boxes[static_cast<std::size_t>(i)].max[axis], i, true});
+constexpr std::size_t kBoxesWithAllPairs = 128;
+constexpr std::size_t kPairsOfABox = 64;
+
+}  // namespace
+
+std::size_t SweepAndPrune::room_for(std::size_t boxes) noexcept {
+  const std::size_t all = boxes < 2 ? 0 : boxes * (boxes - 1) / 2;
+  return boxes <= kBoxesWithAllPairs ? all : std::min(all, kPairsOfABox * boxes);
+}
+
+SweepAndPrune::SweepAndPrune(const std::vector<Aabb>& boxes, std::size_t room) : boxes_(boxes), room_(room) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    std::vector<End>& ends = axes_[axis];
+    for (std::size_t i = 0; i < boxes_.size(); ++i) {
+      ends.push_back({boxes_[i].min[static_cast<int>(axis)], static_cast<std::int32_t>(i), false});
+      ends.push_back({boxes_[i].max[static_cast<int>(axis)], static_cast<std::int32_t>(i), true});
     }
     std::stable_sort(ends.begin(), ends.end(), [](const End& a, const End& b) { return a.before(b); });
-    auto& place = place_[static_cast<std::size_t>(axis)];
-    place.resize(n);
-    for (std::size_t k = 0; k < ends.size(); ++k)
-      place[static_cast<std::size_t>(ends[k].box)][ends[k].upper ? 1 : 0] = static_cast<std::int32_t>(k);
+    ends_of_[axis].resize(boxes_.size());
+    for (std::size_t k = 0; k < ends.size(); ++k) place_of(axis, ends[k]) = static_cast<std::int32_t>(k);
   }
-  for (int a = 0; a < count_; ++a)
-    for (int b = a + 1; b < count_; ++b)
-      for (int axis = 0; axis < 3; ++axis) {
-        const Aabb& A = boxes[static_cast<std::size_t>(a)];
-        const Aabb& B = boxes[static_cast<std::size_t>(b)];
-        if (A.min[axis] <= B.max[axis] && B.min[axis] <= A.max[axis]) begin_overlap(a, b);
-      }
+  pairs_.reserve(room_);
+  open_.reserve(boxes_.size());
+  free_slots_.reserve(room_);
+  for (std::size_t slot = room_; slot > 0; --slot) free_slots_.push_back(static_cast<std::int32_t>(slot - 1));
+  table_.assign(std::bit_ceil(2 * room_ + 1), -1);
+  list_all();
 }
 
 void SweepAndPrune::move(int i, const Aabb& box) noexcept {
-  for (int axis = 0; axis < 3; ++axis) {
-    auto& ends = axes_[static_cast<std::size_t>(axis)];
-    const auto& place = place_[static_cast<std::size_t>(axis)][static_cast<std::size_t>(i)];
-    ends[static_cast<std::size_t>(place[0])].value = box.min[axis];
-    ends[static_cast<std::size_t>(place[1])].value = box.max[axis];
+  boxes_[static_cast<std::size_t>(i)] = box;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const Ends& ends = ends_of_[axis][static_cast<std::size_t>(i)];
+    axes_[axis][static_cast<std::size_t>(ends.lower)].value = box.min[static_cast<int>(axis)];
+    axes_[axis][static_cast<std::size_t>(ends.upper)].value = box.max[static_cast<int>(axis)];
   }
 }
 
@@ -45,7 +48,6 @@ int SweepAndPrune::update() noexcept {
   int swaps = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     std::vector<End>& ends = axes_[axis];
-    auto& place = place_[axis];
     for (std::size_t k = 1; k < ends.size(); ++k) {
       const End moving = ends[k];
       std::size_t at = k;
@@ -54,42 +56,92 @@ int SweepAndPrune::update() noexcept {
         if (!moving.upper && passed.upper) begin_overlap(moving.box, passed.box);
         if (moving.upper && !passed.upper) end_overlap(moving.box, passed.box);
         ends[at] = passed;
-        place[static_cast<std::size_t>(passed.box)][passed.upper ? 1 : 0] = static_cast<std::int32_t>(at);
+        place_of(axis, passed) = static_cast<std::int32_t>(at);
         --at;
         ++swaps;
       }
       if (at == k) continue;
       ends[at] = moving;
-      place[static_cast<std::size_t>(moving.box)][moving.upper ? 1 : 0] = static_cast<std::int32_t>(at);
+      place_of(axis, moving) = static_cast<std::int32_t>(at);
     }
   }
+  if (missing_ > 0) list_all();
   return swaps;
 }
 
-std::size_t SweepAndPrune::row(int a, int b) const noexcept {
-  const auto [low, high] = std::minmax(a, b);
-  const std::size_t i = static_cast<std::size_t>(low);
-  const std::size_t n = static_cast<std::size_t>(count_);
-  return i * (2 * n - i - 1) / 2 + static_cast<std::size_t>(high) - i - 1;
+/// Lists every pair that overlaps and is not listed yet, by one sweep along the first axis.
+void SweepAndPrune::list_all() noexcept {
+  missing_ = 0;
+  open_.clear();
+  for (const End& end : axes_[0]) {
+    if (end.upper) {
+      *std::find(open_.begin(), open_.end(), end.box) = open_.back();
+      open_.pop_back();
+      continue;
+    }
+    for (const std::int32_t other : open_) begin_overlap(end.box, other);
+    open_.push_back(end.box);
+  }
 }
 
-void SweepAndPrune::begin_overlap(int a, int b) noexcept {
-  if (a == b) return;
-  const std::size_t pair = row(a, b);
-  if (++overlapping_axes_[pair] < 3) return;
-  listed_at_[pair] = static_cast<std::int32_t>(pairs_.size());
-  pairs_.push_back({std::min(a, b), std::max(a, b)});
+/// Lists a pair of boxes whose overlap has begun on one axis, if they overlap on all. Every box stands where
+/// it is at the end of the update, so the last axis on which an overlap begins finds it on all three.
+void SweepAndPrune::begin_overlap(std::int32_t box, std::int32_t other) noexcept {
+  if (box == other ||
+      !boxes_[static_cast<std::size_t>(box)].overlaps(boxes_[static_cast<std::size_t>(other)]))
+    return;
+  const auto [a, b] = std::minmax(box, other);
+  std::int32_t& entry = table_[entry_of(a, b)];
+  if (entry >= 0) return;
+  if (pairs_.size() == room_) {
+    ++missing_;
+    return;
+  }
+  entry = static_cast<std::int32_t>(pairs_.size());
+  pairs_.push_back({a, b, free_slots_.back()});
+  free_slots_.pop_back();
 }
 
-void SweepAndPrune::end_overlap(int a, int b) noexcept {
-  if (a == b) return;
-  const std::size_t pair = row(a, b);
-  if (overlapping_axes_[pair]-- < 3) return;
-  const std::size_t at = static_cast<std::size_t>(listed_at_[pair]);
-  pairs_[at] = pairs_.back();
-  listed_at_[row(pairs_[at].a, pairs_[at].b)] = static_cast<std::int32_t>(at);
+void SweepAndPrune::end_overlap(std::int32_t box, std::int32_t other) noexcept {
+  const auto [a, b] = std::minmax(box, other);
+  const std::size_t entry = entry_of(a, b);
+  if (table_[entry] < 0) return;
+  const std::size_t at = static_cast<std::size_t>(table_[entry]);
+  free_slots_.push_back(pairs_[at].slot);
+  if (at + 1 < pairs_.size()) {
+    table_[entry_of(pairs_.back().a, pairs_.back().b)] = static_cast<std::int32_t>(at);
+    pairs_[at] = pairs_.back();
+  }
   pairs_.pop_back();
-  listed_at_[pair] = -1;
+  erase(entry);
+}
+
+/// Where the pair stands in the table, or would stand: the first entry from its own on that is its or empty.
+std::size_t SweepAndPrune::entry_of(std::int32_t a, std::int32_t b) const noexcept {
+  for (std::size_t entry = home_of(a, b);; entry = next(entry)) {
+    if (table_[entry] < 0) return entry;
+    const Pair& pair = pairs_[static_cast<std::size_t>(table_[entry])];
+    if (pair.a == a && pair.b == b) return entry;
+  }
+}
+
+std::size_t SweepAndPrune::home_of(std::int32_t a, std::int32_t b) const noexcept {
+  const std::uint64_t key = (static_cast<std::uint64_t>(a) << 32) | static_cast<std::uint64_t>(b);
+  return (key * 0x9e3779b97f4a7c15ull >> 32) & (table_.size() - 1);  // Fibonacci hashing
+}
+
+/// Empties an entry, and moves those behind it that could no longer be found from their own.
+void SweepAndPrune::erase(std::size_t entry) noexcept {
+  std::size_t hole = entry;
+  for (std::size_t at = next(hole); table_[at] >= 0; at = next(at)) {
+    const Pair& pair = pairs_[static_cast<std::size_t>(table_[at])];
+    const std::size_t home = home_of(pair.a, pair.b);
+    const std::size_t mask = table_.size() - 1;
+    if (((at - home) & mask) < ((at - hole) & mask)) continue;  // its own entry lies behind the hole
+    table_[hole] = table_[at];
+    hole = at;
+  }
+  table_[hole] = -1;
 }
 
 }  // namespace tactum::inline v0_1
