@@ -63,8 +63,10 @@ std::uint32_t faults(const SafetyLimits& limits, SafetyState& state, const Safet
   if (!plausible(input.X_DH)) flags |= kImplausiblePose;
   // Written so that a NaN is stale; a sample from the future comes from a broken clock.
   if (!(std::abs(input.sample_age_s) <= limits.max_sample_age_s)) flags |= kStaleSample;
-  state.invalid_reads = input.sample_valid ? 0 : std::min(state.invalid_reads + 1, limits.max_invalid_reads);
-  if (!input.sample_valid && state.invalid_reads >= limits.max_invalid_reads) flags |= kReadsFailing;
+  state.invalid_s = input.sample_valid ? 0.0 : state.invalid_s + input.period_s;
+  // A quarter of a period less, since sums of periods are rounded.
+  if (state.invalid_s + 0.25 * input.period_s > limits.max_invalid_s && !input.sample_valid)
+    flags |= kReadsFailing;
   if (input.late) flags |= kMissedDeadline;
   if (input.refused) flags |= kWrenchRefused;
   if (!input.motors_on) flags |= kMotorsOff;

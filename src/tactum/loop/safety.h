@@ -38,7 +38,7 @@ struct SafetyLimits {
   double start_ramp_s = 0.5;              ///< from zero to full, after start and after a fault [s]
   double stop_ramp_s = 0.1;               ///< from full to zero when asked to stop [s]
   double max_sample_age_s = 0.020;        ///< an older sample is stale [s]
-  int max_invalid_reads = 5;              ///< so many reads in a row that fail are a fault
+  double max_invalid_s = 0.005;           ///< reads that fail for so long in a row are a fault [s]
   double max_speed_m_per_s = 5.0;         ///< a handle that moves faster has leapt, or is thrown [m/s]
   double max_turn_rad_per_s = 60.0;       ///< ... or turns faster [rad/s]
   double max_still_s =
@@ -105,7 +105,7 @@ SafetyInput safety_input(const DeviceSample& sample, const FrameTick& tick, cons
 struct SafetyState {
   Wrench sent;              ///< last frame's answer [N, N m]
   double gain = 0.0;        ///< of the ramps, 0 to 1
-  int invalid_reads = 0;    ///< in a row
+  double invalid_s = 0.0;   ///< for how long reads have failed in a row [s]
   Pose X_DH;                ///< the last that was measured, whatever it was worth [m]
   double measured_s = 0.0;  ///< when, on the loop's clock [s]
   double still_s = 0.0;     ///< for so long it has been the same to the bit [s]
