@@ -58,8 +58,7 @@ struct Pile {
                        inertial_metric(bodies[i], X_WB[i], kStep), to_vector(V[i] * kStep), kStep);
     problem.add_joint_rows(exact);
     const RowsInProblem contacts{rows, problem.rows()};
-    for (const ContactRow& row : rows)
-      problem.add_row(problem.row_of(row.body_a, row.body_b, {row.p_W, row.n_BA_W, Vec3::Zero()}), row.asked);
+    for (const ContactRow& row : rows) problem.add_row(row.body_a, row.body_b, push_of(row), row.asked);
     return contacts;
   }
   RowsInProblem begin() {

@@ -1,6 +1,5 @@
 #include "tactum/dynamics/contact_problem.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -36,6 +35,51 @@ Vec6 at_point(const Vec6& x, const Vec3& r) {
 double work(const Push& push, const Vec3& centre, const Vec6& x) {
   const Vec3 torque = push.torque + (push.p_W - centre).cross(push.force);
   return push.force.dot(x.head<3>()) + torque.dot(x.tail<3>());
+}
+
+/// U^-1 of A = U^T U, so that A^-1 = U^-1 U^-T, for a symmetric positive A.
+Mat3 inverse_factor(const Mat3& A) noexcept {
+  const double u00 = 1.0 / std::sqrt(A(0, 0));  // inverse, as u11 and u22
+  const double u01 = A(0, 1) * u00;
+  const double u02 = A(0, 2) * u00;
+  const double u11 = 1.0 / std::sqrt(A(1, 1) - u01 * u01);
+  const double u12 = (A(1, 2) - u01 * u02) * u11;
+  const double u22 = 1.0 / std::sqrt(A(2, 2) - u02 * u02 - u12 * u12);
+  Mat3 inverse;
+  inverse << u00, -u01 * u00 * u11, (u01 * u12 * u11 - u02) * u00 * u22,  //
+      0.0, u11, -u12 * u11 * u22,                                         //
+      0.0, 0.0, u22;
+  return inverse;
+}
+
+/// The one unknown of a body on a hinge or slider, whose column is its travel.
+void set_motion(ProblemBody& body, const Vec6& s, const BodyMetric& metric, const Vec6& target,
+                const JointForces& forces, double h) noexcept {
+  Vec6 Ms;
+  Ms << metric.linear * s.head<3>(), metric.angular * s.tail<3>();
+  double M = s.dot(Ms);
+  double pull = Ms.dot(target);
+  if (forces.drag > 0.0) {
+    M += forces.drag / h;
+    pull += forces.drag * forces.free_rate;
+  }
+  body.target = s * (pull / M);
+  body.motions.col(0) = s / std::sqrt(M);
+}
+
+/// The three unknowns of a body on a ball.
+void set_motions_about_ball(ProblemBody& body, const JointMotions& S, const BodyMetric& metric,
+                            const Vec6& target, const JointForces& forces, double h) noexcept {
+  const Eigen::Matrix<double, 6, 3> motions = S;
+  Eigen::Matrix<double, 6, 3> MS;
+  MS.topRows<3>() = metric.linear * motions.topRows<3>();
+  MS.bottomRows<3>() = metric.angular * motions.bottomRows<3>();
+  Mat3 M = motions.transpose() * MS;
+  if (forces.drag_about_ball > 0.0) M.diagonal().array() += forces.drag_about_ball / h;
+  const Mat3 factor = inverse_factor(M);
+  const Vec3 pull = MS.transpose() * target;
+  body.motions = motions * factor;
+  body.target = body.motions * Vec3(factor.transpose() * pull);
 }
 
 }  // namespace
@@ -81,7 +125,7 @@ void ContactProblem::clear() noexcept {
   limits_.clear();
   rows_.clear();
   cones_.clear();
-  load_.fill(0.0);
+  if (is_loaded_) load_.fill(0.0);
   is_loaded_ = false;
 }
 
@@ -102,27 +146,13 @@ ProblemBody& ContactProblem::next_body(int body, std::size_t rank, const Vec3& o
 /// spring and damping. All stated at the body's centre.
 void ContactProblem::set_motions(ProblemBody& body, const Body& what, const Pose& X_WB,
                                  const BodyMetric& metric, const Vec6& target, double h) noexcept {
-  using Reduced = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 3, 3>;
-  using Few = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 3, 1>;
   const JointForces forces = h > 0.0 ? joint_forces(what, X_WB, h) : JointForces{};
   JointMotions S = joint_motions(what.joint, X_WB);
   for (Eigen::Index i = 0; i < S.cols(); ++i) S.col(i) = at_point(S.col(i), body.centre - body.origin);
-  JointMotions MS = S;
-  MS.topRows<3>() *= metric.linear;
-  MS.bottomRows<3>() = metric.angular * S.bottomRows<3>();
-  Reduced M = S.transpose() * MS;
-  Few pull = MS.transpose() * target;
-  if (forces.drag_about_ball > 0.0)
-    for (Eigen::Index i = 0; i < S.cols(); ++i) M(i, i) += forces.drag_about_ball / h;
-  if (forces.drag > 0.0) {  // a hinge or slider: its unknown is its travel
-    M(0, 0) += forces.drag / h;
-    pull[0] += forces.drag * forces.free_rate;
-  }
-  const Eigen::LLT<Reduced> factor(M);
-  factor.solveInPlace(pull);
-  body.target = S * pull;
-  body.motions = factor.matrixL().solve(S.transpose()).transpose();  // M^-1 = L^-T L^-1
-
+  if (body.rank == 1)
+    set_motion(body, S.col(0), metric, target, forces, h);
+  else if (body.rank == 3)
+    set_motions_about_ball(body, S, metric, target, forces, h);
   if (!forces.acts) return;
   const Push along{body.centre, forces.rate.head<3>(), forces.rate.tail<3>()};
   if (forces.friction > 0.0 && body.rank == 1)
@@ -143,8 +173,7 @@ void ContactProblem::add_body(int body, const Body& what, const Pose& X_WB, cons
   }
   next.target = target;
   next.per_displacement = 1.0 / std::sqrt(metric.linear);
-  const Eigen::LLT<Mat3> angular(metric.angular);
-  next.turns = angular.matrixU().solve(Mat3::Identity());  // I^-1 = U^-1 U^-T
+  next.turns = inverse_factor(metric.angular);
 }
 
 void ContactProblem::add_given(int body, const Vec3& origin_W, const Vec6& displacement) noexcept {
@@ -183,38 +212,45 @@ void ContactProblem::add_friction_unknown(const JointFriction& friction) noexcep
 void ContactProblem::add_joint_rows(bool exact) noexcept {
   if (exact)
     for (const JointFriction& friction : joint_frictions_) add_friction_unknown(friction);
-  for (const Limit& limit : limits_) add_row(row_of(limit.body, -1, limit.push), -limit.travel);
+  for (const Limit& limit : limits_) add_row(limit.body, -1, limit.push, -limit.travel);
+}
+
+/// Sets what a push does to one body, on the side of its `sign`.
+void ContactProblem::project(int number, double sign, const Push& push, QpRow::Run& run,
+                             QpRow& row) const noexcept {
+  const ProblemBody* const body = number < 0 ? nullptr : find(number);
+  if (body == nullptr) return;
+  run.first = static_cast<std::uint32_t>(body->first);
+  run.count = static_cast<std::uint32_t>(body->rank);
+  const Vec3 force = sign * push.force;
+  const Vec3 torque = sign * (push.torque + (push.p_W - body->centre).cross(push.force));
+  const auto work = [&](const auto& x) {
+    return force.dot(x.template head<3>()) + torque.dot(x.template tail<3>());
+  };
+  row.offset -= work(body->target);
+  if (body->rank < 6) {
+    for (Index i = 0; i < body->rank; ++i) run.g[i] = work(body->motions.col(Eigen::Index(i)));
+    return;
+  }
+  for (int i = 0; i < 3; ++i) {
+    run.g[Index(i)] = body->per_displacement * force[i];
+    run.g[Index(3 + i)] = torque.dot(body->turns.col(i));
+  }
 }
 
 QpRow ContactProblem::row_of(int body_a, int body_b, const Push& push) const noexcept {
   QpRow row;
-  const auto project = [&](int number, double sign, QpRow::Run& run) {
-    const ProblemBody* const body = number < 0 ? nullptr : find(number);
-    if (body == nullptr) return;
-    run.first = static_cast<std::uint32_t>(body->first);
-    run.count = static_cast<std::uint32_t>(body->rank);
-    std::array<double, QpRow::kLongestRun>& g = run.g;
-    const Vec3 torque = push.torque + (push.p_W - body->centre).cross(push.force);
-    row.offset -= sign * (push.force.dot(body->target.head<3>()) + torque.dot(body->target.tail<3>()));
-    if (body->rank < 6) {
-      for (Index i = 0; i < body->rank; ++i)
-        g[i] = sign * work(push, body->centre, body->motions.col(Eigen::Index(i)));
-      return;
-    }
-    for (int i = 0; i < 3; ++i) {
-      g[Index(i)] = sign * body->per_displacement * push.force[i];
-      g[Index(3 + i)] = sign * torque.dot(body->turns.col(i));
-    }
-  };
-  project(body_a, 1.0, row.runs[0]);
-  project(body_b, -1.0, row.runs[1]);
+  project(body_a, 1.0, push, row.runs[0], row);
+  project(body_b, -1.0, push, row.runs[1], row);
   return row;
 }
 
-bool ContactProblem::add_row(const QpRow& row, double offset) noexcept {
+bool ContactProblem::add_row(int body_a, int body_b, const Push& push, double offset) noexcept {
   if (rows_.size() == rows_.capacity()) return false;
-  rows_.push_back(row);
-  rows_.back().offset += offset;
+  QpRow& row = rows_.emplace_back();
+  row.offset = offset;
+  project(body_a, 1.0, push, row.runs[0], row);
+  project(body_b, -1.0, push, row.runs[1], row);
   return true;
 }
 

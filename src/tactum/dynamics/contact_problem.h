@@ -45,7 +45,7 @@ struct ProblemBody {
   Vec6 target = Vec6::Zero();       ///< x* at the centre [m, rad]
   double per_displacement = 0.0;
   Mat3 turns = Mat3::Zero();
-  JointMotions motions;
+  Eigen::Matrix<double, 6, 3> motions;  ///< the first `rank` columns, of a jointed body
 };
 
 /// What a row pushes with, per unit of its multiplier: a force at a point, and a torque beside it.
@@ -106,8 +106,8 @@ class ContactProblem {
   QpRow row_of(int body_a, int body_b, const Push& push) const noexcept;
   /// The left side of that row in the last answer [m].
   double opening(const QpRow& row) const noexcept { return dot(row, z()) - row.offset; }
-  /// Adds a row that asks for `offset` more. False when full.
-  bool add_row(const QpRow& row, double offset) noexcept;
+  /// Adds the row  push . (x_a - x_b) >= offset. False when full.
+  bool add_row(int body_a, int body_b, const Push& push, double offset) noexcept;
   /// Those of cones not counted.
   std::size_t rows() const noexcept { return rows_.size(); }
   /// Makes a row ask for `by` more; of a cone's edges, see cone().
@@ -169,6 +169,7 @@ class ContactProblem {
     return at < 0 ? nullptr : &bodies_[static_cast<std::size_t>(at)];
   }
   ProblemBody& next_body(int body, std::size_t rank, const Vec3& origin, const Vec3& centre) noexcept;
+  void project(int number, double sign, const Push& push, QpRow::Run& run, QpRow& row) const noexcept;
   void set_motions(ProblemBody& body, const Body& what, const Pose& X_WB, const BodyMetric& metric,
                    const Vec6& target, double h) noexcept;
   void add_friction_unknown(const JointFriction& friction) noexcept;

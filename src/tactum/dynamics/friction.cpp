@@ -16,13 +16,13 @@ constexpr double kSamePlaneSkins = 20.0;
 /// How much less than the gap a row asks for, by the anchor's distance.
 double allowance(const FrictionPatch& patch, Index k) {
   if (k >= Friction::kDirections || patch.anchor.apart_W.isZero(0.0)) return 0.0;
-  return (cone_edge(patch, k).force - patch.n_BA_W).dot(patch.anchor.apart_W);
+  return (cone_edge(patch, k).force - patch.place.n_BA_W).dot(patch.anchor.apart_W);
 }
 
 /// How far the patch's anchor has come apart in the surface.
 Vec3 apart(const FrictionPatch& patch, const Pose& X_WA, const Pose& X_W_B) {
   const Vec3 difference = X_WA * patch.anchor.on_A - X_W_B * patch.anchor.on_B;
-  return difference - patch.n_BA_W * patch.n_BA_W.dot(difference);
+  return difference - patch.place.n_BA_W * patch.place.n_BA_W.dot(difference);
 }
 
 /// How far beyond the skin a distance is; too little to count is nothing.
@@ -38,12 +38,12 @@ const FrictionAnchor* take_anchor(const FrictionAnchors& anchors, std::span<cons
   const Pose& X_W_B = X_WB[Index(patch.surfaces.body_b)];
   const FrictionAnchor* const last = anchors.find(patch, X_WB, kSamePlaneSkins * scale.skin_m);
   if (last == nullptr) {
-    patch.anchor.on_A = X_WA.inverse() * patch.centre_W;
-    patch.anchor.on_B = X_W_B.inverse() * patch.centre_W;
+    patch.anchor.on_A = X_WA.inverse() * patch.place.centre_W;
+    patch.anchor.on_B = X_W_B.inverse() * patch.place.centre_W;
     return nullptr;
   }
   const Vec3 centre = X_WA * last->centre_A;
-  patch.centre_W = centre + patch.n_BA_W * patch.n_BA_W.dot(patch.centre_W - centre);
+  patch.place.centre_W = centre + patch.place.n_BA_W * patch.place.n_BA_W.dot(patch.place.centre_W - centre);
   if (last->slid) {
     patch.anchor.on_A = last->centre_A;
     patch.anchor.on_B = X_W_B.inverse() * centre;
@@ -64,11 +64,11 @@ FrictionAnchor next_anchor(const FrictionPatch& patch, const Vec3& centre_W, boo
   Vec3 on_A_W = centre_W;
   if (patch.anchor.used && !slid) on_A_W += apart(patch, X_WA, X_W_B);
   return {.surfaces = patch.surfaces,
-          .n_A = rotated_back(X_WA.R, patch.n_BA_W),
+          .n_A = rotated_back(X_WA.R, patch.place.n_BA_W),
           .on_A = X_WA.inverse() * on_A_W,
           .on_B = X_W_B.inverse() * centre_W,
           .centre_A = X_WA.inverse() * centre_W,
-          .radius_m = patch.radius_m,
+          .radius_m = patch.place.radius_m,
           .sticking = patch.rows.sticking,
           .pushed = pushed,
           .slid = slid};
@@ -101,19 +101,19 @@ void Friction::find_pushing(const RowsInProblem& contacts, const ContactProblem&
   std::array<double, kMostPatches> opening{};  // that the rows ask for
   for_pushing_rows([&](FrictionPatch& patch, const ContactRow& row, double force) {
     patch.load_N += force;
-    patch.centre_W += force * row.p_W;
-    patch.n_BA_W += force * row.n_BA_W;
-    patch.gap_m += force * row.distance;
+    patch.place.centre_W += force * row.p_W;
+    patch.place.n_BA_W += force * row.n_BA_W;
+    patch.place.gap_m += force * row.distance;
     opening[static_cast<Index>(&patch - patches_.begin())] += force * std::max(0.0, row.asked);
   });
   for (FrictionPatch& patch : patches_) {
-    patch.centre_W /= patch.load_N;
+    patch.place.centre_W /= patch.load_N;
     const double opens = opening[static_cast<Index>(&patch - patches_.begin())] / patch.load_N;
-    patch.gap_m = opens > 0.0 ? -opens : gap_beyond(patch.gap_m / patch.load_N, scale_);
-    patch.n_BA_W.normalize();
+    patch.place.gap_m = opens > 0.0 ? -opens : gap_beyond(patch.place.gap_m / patch.load_N, scale_);
+    patch.place.n_BA_W.normalize();
   }
   for_pushing_rows([](FrictionPatch& patch, const ContactRow& row, double force) {
-    patch.radius_m += force / patch.load_N * (row.p_W - patch.centre_W).norm();
+    patch.place.radius_m += force / patch.load_N * (row.p_W - patch.place.centre_W).norm();
   });
 }
 
@@ -130,17 +130,17 @@ void Friction::find_last_pushing(const RowsInProblem& contacts, const FrictionAn
       FrictionPatch patch;
       patch.surfaces = row.surfaces();
       patch.coefficient = row.friction;
-      patch.centre_W = X_WB[Index(row.body_a)] * last->centre_A;
-      patch.radius_m = last->radius_m;
+      patch.place.centre_W = X_WB[Index(row.body_a)] * last->centre_A;
+      patch.place.radius_m = last->radius_m;
       if (!patches_.push_back(patch)) break;
       found = &patches_.back();
     } else if (found < patches_.begin() + pushing) {
       continue;
     }
     found->source_patch = row.patch;
-    found->n_BA_W += row.n_BA_W;
+    found->place.n_BA_W += row.n_BA_W;
   }
-  for (Index i = pushing; i < patches_.size(); ++i) patches_[i].n_BA_W.normalize();
+  for (Index i = pushing; i < patches_.size(); ++i) patches_[i].place.n_BA_W.normalize();
 }
 
 /// How fast the turning that is the bodies' target takes the patch off, about the middle of all patches on
@@ -154,10 +154,10 @@ double Friction::taken_off(const FrictionPatch& patch, const ContactProblem& pro
     int count = 0;
     for (const FrictionPatch& other : patches_) {
       if (other.surfaces.body_a != body && other.surfaces.body_b != body) continue;
-      sum += other.centre_W;
+      sum += other.place.centre_W;
       ++count;
     }
-    const double rate = patch.n_BA_W.dot(turn.cross(patch.centre_W - sum / count));
+    const double rate = patch.place.n_BA_W.dot(turn.cross(patch.place.centre_W - sum / count));
     off += body == patch.surfaces.body_a ? rate : -rate;
   }
   return off;
@@ -184,7 +184,7 @@ bool Friction::begin(const RowsInProblem& contacts, std::span<const Pose> X_WB, 
   for (FrictionPatch& patch : patches_) {
     if (const FrictionAnchor* const last = take_anchor(anchors, X_WB, scale, patch))
       patch.rows.sticking = last->sticking;
-    patch.motion = motion_of(patch, any_orthogonal(patch.n_BA_W), problem);
+    patch.motion = motion_of(patch, any_orthogonal(patch.place.n_BA_W), problem);
     const Vec3 displacement = slide_of(patch, problem).displacement;
     if (const double length = displacement.norm(); length > 0.0)
       turn_directions(displacement / length, patch.motion);
@@ -197,9 +197,9 @@ bool Friction::begin(const RowsInProblem& contacts, std::span<const Pose> X_WB, 
 QpCone Friction::cone_now(const FrictionPatch& patch) noexcept {
   QpCone cone = cone_of(patch);
   const double slip = patch.coefficient * patch.slip.displacement_m;
-  const double turn = patch.coefficient * patch.radius_m * patch.slip.turn_rad;
+  const double turn = patch.coefficient * patch.place.radius_m * patch.slip.turn_rad;
   for (Index k = 0; k < kRowsAPatch; ++k)
-    cone.more[k] = -patch.gap_m - allowance(patch, k) - (k < kDirections ? slip : turn);
+    cone.more[k] = -patch.place.gap_m - allowance(patch, k) - (k < kDirections ? slip : turn);
   return cone;
 }
 
@@ -248,7 +248,7 @@ Friction::Loads Friction::loads_of(const FrictionPatch& patch, const RowsInProbl
     if (row >= patch.rows.first && row < patch.rows.first + kRowsAPatch) {
       const Push push = cone_edge(patch, row - patch.rows.first);
       loads.cone_N += active.multiplier;
-      loads.cone_force += active.multiplier * (push.force - patch.n_BA_W);
+      loads.cone_force += active.multiplier * (push.force - patch.place.n_BA_W);
       loads.cone_torque += active.multiplier * push.torque;
     } else if (contact != nullptr && *contact == patch.surfaces) {
       loads.corners_N += active.multiplier;
@@ -266,7 +266,7 @@ bool Friction::update_slip(ContactProblem& problem) noexcept {
   for (FrictionPatch& patch : patches_) {
     if (!patch.acts || patch.sliding.acts) continue;
     const Slide slide = slide_of(patch, problem);
-    const double arm = patch.coefficient * patch.radius_m;
+    const double arm = patch.coefficient * patch.place.radius_m;
     double further =
         std::min(slide.lift, patch.coefficient * (slide.displacement.norm() - patch.slip.displacement_m));
     double turned = std::min(slide.lift, arm * (std::abs(slide.turn) - patch.slip.turn_rad));
@@ -303,7 +303,7 @@ void Friction::refuse_load(FrictionPatch& patch, ContactProblem& problem) noexce
 /// whether along the surface or, at the patch's radius, about its normal [N/m].
 double Friction::give_of(const FrictionPatch& patch) noexcept {
   const double along = std::max(mobility(patch.motion.along), mobility(patch.motion.across));
-  const double about = patch.radius_m * patch.radius_m * mobility(patch.motion.about);
+  const double about = patch.place.radius_m * patch.place.radius_m * mobility(patch.motion.about);
   const double most = std::max(along, about);
   return most > 0.0 ? 1.0 / most : 0.0;
 }
@@ -314,7 +314,7 @@ double Friction::give_of(const FrictionPatch& patch) noexcept {
 SlidingForce Friction::next_force(const FrictionPatch& patch, const SlidingForce& last, double most_N,
                                   const ContactProblem& problem) const noexcept {
   const double give = give_of(patch);
-  const double r = patch.radius_m;
+  const double r = patch.place.radius_m;
   SlidingForce next{.acts = true};
   const Slide slide = slide_of(patch, problem);  // from the anchor: what sticks goes back to it
   next.force_W = last.force_W - give * slide.displacement;
@@ -339,10 +339,10 @@ bool Friction::update_sliding(const RowsInProblem& contacts, ContactProblem& pro
     SlidingForce last = patch.sliding;
     if (!last.acts) {  // the cone's force, which its edges and its diamond hold inside the ellipse
       last.force_W = loads.cone_force;
-      last.torque_Nm = loads.cone_torque.dot(patch.n_BA_W);
+      last.torque_Nm = loads.cone_torque.dot(patch.place.n_BA_W);
     }
     const SlidingForce next = next_force(patch, last, most_N, problem);
-    const double arm = patch.radius_m > 0.0 ? 1.0 / patch.radius_m : 0.0;
+    const double arm = patch.place.radius_m > 0.0 ? 1.0 / patch.place.radius_m : 0.0;
     const double difference =
         (next.force_W - last.force_W).norm() + arm * std::abs(next.torque_Nm - last.torque_Nm);
     if (patch.sliding.acts && difference <= tolerances::kSameFriction * most_N) continue;
@@ -374,8 +374,8 @@ void Friction::end(const RowsInProblem& contacts, const ContactProblem& problem,
     // The centre of all forces of the patch: its corners', and the cone's at the centre so far.
     const Loads loads = loads_of(patch, contacts, problem);
     const double load = loads.cone_N + loads.corners_N;
-    const Vec3 centre =
-        load > 0.0 ? Vec3((loads.corners_moment + loads.cone_N * patch.centre_W) / load) : patch.centre_W;
+    const Vec3 centre = load > 0.0 ? Vec3((loads.corners_moment + loads.cone_N * patch.place.centre_W) / load)
+                                   : patch.place.centre_W;
     const bool pushed = loads.cone_N > 0.0 || (patch.sliding.acts && load > 0.0);
     anchors.add(next_anchor(patch, centre, pushed, X_WB));
   }

@@ -19,9 +19,9 @@
 /// Turning about the normal has two rows of the same kind, with the torque mu N r of the patch's mean radius
 /// r; force and torque share the cone linearly, a diamond inside the ellipse that an area has.
 ///
-/// What slips has its friction as a load in the end, in place of its cone: mu N against the slide and the turn,
-/// on the ellipse, with N from whatever carries it (update_sliding). Cones alone say too little where corners,
-/// which have no friction of their own, carry a part of the load.
+/// What slips has its friction as a load in the end, in place of its cone: mu N against the slide and the
+/// turn, on the ellipse, with N from whatever carries it (update_sliding). Cones alone say too little where
+/// corners, which have no friction of their own, carry a part of the load.
 ///
 /// Patches have a cone that would push without friction, and those whose cone pushed in the last frame and
 /// that still touch: where the line between two of these lies inside both cones no motion is left, and the
@@ -77,7 +77,9 @@ class Friction {
       }
     for (std::size_t i = 0; i < patches_.size(); ++i)
       if (const SlidingForce& sliding = patches_[i].sliding; patches_[i].acts && sliding.acts)
-        visit(i, Push{patches_[i].centre_W, sliding.force_W, sliding.torque_Nm * patches_[i].n_BA_W}, 1.0);
+        visit(i,
+              Push{patches_[i].place.centre_W, sliding.force_W, sliding.torque_Nm * patches_[i].place.n_BA_W},
+              1.0);
   }
 
   bool acts() const noexcept { return !patches_.empty(); }

@@ -37,8 +37,8 @@ const FrictionAnchor* FrictionAnchors::find(const FrictionPatch& patch, std::spa
                                  });
   for (; anchor != last_.end() && anchor->surfaces.body_a == body_a && anchor->surfaces.body_b == body_b;
        ++anchor) {
-    const double alike = patch.n_BA_W.dot(X_WA.R * anchor->n_A);
-    const double off_plane = patch.n_BA_W.dot(X_WA * anchor->centre_A - patch.centre_W);
+    const double alike = patch.place.n_BA_W.dot(X_WA.R * anchor->n_A);
+    const double off_plane = patch.place.n_BA_W.dot(X_WA * anchor->centre_A - patch.place.centre_W);
     if (!(alike > most_alike) || std::abs(off_plane) > same_plane_m) continue;
     most_alike = alike;
     nearest = &*anchor;

@@ -22,11 +22,12 @@ QpRow combined(double x, const QpRow& row, double y, const QpRow& other) noexcep
 PatchMotion motion_of(const FrictionPatch& patch, const Vec3& along_W,
                       const ContactProblem& problem) noexcept {
   PatchMotion motion;
-  const Vec3& n = patch.n_BA_W;
+  const Vec3& n = patch.place.n_BA_W;
   motion.along_W = along_W;
   motion.across_W = n.cross(along_W);
   const auto row = [&](const Vec3& force, const Vec3& torque) {
-    return problem.row_of(patch.surfaces.body_a, patch.surfaces.body_b, {patch.centre_W, force, torque});
+    return problem.row_of(patch.surfaces.body_a, patch.surfaces.body_b,
+                          {patch.place.centre_W, force, torque});
   };
   motion.off = row(n, Vec3::Zero());
   motion.along = row(motion.along_W, Vec3::Zero());
@@ -52,14 +53,14 @@ QpCone cone_of(const FrictionPatch& patch) noexcept {
           .across = motion.across,
           .about = motion.about,
           .slope = patch.coefficient,
-          .twist = patch.coefficient * patch.radius_m};
+          .twist = patch.coefficient * patch.place.radius_m};
 }
 
 Push cone_edge(const FrictionPatch& patch, Index k) noexcept {
-  Push push{patch.centre_W, patch.n_BA_W, Vec3::Zero()};
+  Push push{patch.place.centre_W, patch.place.n_BA_W, Vec3::Zero()};
   if (k >= QpCone::kAround) {
     const double sense = k == QpCone::kAround ? 1.0 : -1.0;
-    push.torque = -sense * patch.coefficient * patch.radius_m * patch.n_BA_W;
+    push.torque = -sense * patch.coefficient * patch.place.radius_m * patch.place.n_BA_W;
     return push;
   }
   const QpCone::Direction d = QpCone::direction(k);
@@ -72,7 +73,7 @@ Slide slide_of(const FrictionPatch& patch, const ContactProblem& problem) noexce
   const PatchMotion& motion = patch.motion;
   slide.displacement = problem.opening(motion.along) * motion.along_W +
                        problem.opening(motion.across) * motion.across_W + patch.anchor.apart_W;
-  slide.lift = problem.opening(motion.off) + patch.gap_m;
+  slide.lift = problem.opening(motion.off) + patch.place.gap_m;
   slide.turn = problem.opening(motion.about);
   return slide;
 }

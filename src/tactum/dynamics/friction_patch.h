@@ -43,17 +43,22 @@ struct PatchRows {
   std::uint32_t sticking = 0;
 };
 
+/// Where a patch pushes.
+struct PatchPlace {
+  Vec3 n_BA_W = Vec3::Zero();    ///< [-]
+  Vec3 centre_W = Vec3::Zero();  ///< c, of the forces [m]
+  double radius_m = 0.0;         ///< r, of the forces about their centre [m]
+  double gap_m = 0.0;  ///< by how much its centre may close; none where it is too small to count [m]
+};
+
 /// A patch that pushes, in this frame.
 struct FrictionPatch {
   SurfacePair surfaces;
-  int source_patch = -1;       ///< ContactRow::patch of one of its rows
-  double coefficient = 0.0;    ///< mu [-]
-  double load_N = 0.0;         ///< N without friction; 0: it only pushed in the last frame [N]
-  bool acts = true;            ///< false: it was released in this frame
-  double radius_m = 0.0;       ///< r, of the forces about their centre [m]
-  double gap_m = 0.0;          ///< by how much its centre may close; none where it is too small to count [m]
-  Vec3 n_BA_W = Vec3::Zero();  ///< [-]
-  Vec3 centre_W = Vec3::Zero();  ///< c [m]
+  int source_patch = -1;     ///< ContactRow::patch of one of its rows
+  double coefficient = 0.0;  ///< mu [-]
+  double load_N = 0.0;       ///< N without friction; 0: it only pushed in the last frame [N]
+  bool acts = true;          ///< false: it was released in this frame
+  PatchPlace place;
   PatchAnchor anchor;
   PatchMotion motion;
   PatchSlip slip;

@@ -52,8 +52,7 @@ RowsInProblem set_problem(const Corners& corners, const ImpactBodies& bodies, Co
                      0.0);
   }
   const RowsInProblem contacts{{corners.begin(), corners.end()}, problem.rows()};
-  for (const ContactRow& row : corners)
-    problem.add_row(problem.row_of(row.body_a, row.body_b, {row.p_W, row.n_BA_W, Vec3::Zero()}), row.asked);
+  for (const ContactRow& row : corners) problem.add_row(row.body_a, row.body_b, push_of(row), row.asked);
   return contacts;
 }
 

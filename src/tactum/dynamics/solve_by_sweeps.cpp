@@ -61,15 +61,15 @@ void Sweeps::make_patches(const RowsInProblem& contacts, const ContactScale& sca
     patch.coefficient = row(*first).friction;
     const double share = 1.0 / static_cast<double>(last - first);
     std::for_each(first, last, [&](int i) {
-      patch.centre_W += share * row(i).p_W;
-      patch.n_BA_W += row(i).n_BA_W;
+      patch.place.centre_W += share * row(i).p_W;
+      patch.place.n_BA_W += row(i).n_BA_W;
       rows_[contacts.first + Index(i)].patch = static_cast<int>(patches_.size()) - 1;
     });
-    patch.n_BA_W.normalize();
+    patch.place.n_BA_W.normalize();
     const FrictionAnchor* const anchor = take_anchor(anchors, X_WB, scale, patch);
     std::for_each(first, last,
-                  [&](int i) { patch.radius_m += share * (row(i).p_W - patch.centre_W).norm(); });
-    patch.motion = motion_of(patch, any_orthogonal(patch.n_BA_W), problem);
+                  [&](int i) { patch.place.radius_m += share * (row(i).p_W - patch.place.centre_W).norm(); });
+    patch.motion = motion_of(patch, any_orthogonal(patch.place.n_BA_W), problem);
     Friction3& friction = frictions_.emplace_back();
     friction.most = kInfinity;
     if (anchor == nullptr) continue;
@@ -165,14 +165,14 @@ double Sweeps::relax_friction(std::size_t number, ContactProblem& problem) noexc
   }
   // Force and torque share the load as on an area whose points all slide, an ellipse.
   const double sideways = std::hypot(forces[0]->now, forces[1]->now);
-  const double twisting = patch.radius_m > 0.0 ? std::abs(forces[2]->now) / patch.radius_m : 0.0;
+  const double twisting = patch.place.radius_m > 0.0 ? std::abs(forces[2]->now) / patch.place.radius_m : 0.0;
   const double used = std::hypot(sideways, twisting);
   const double share = used > most ? most / used : 1.0;
   for (Index d = 0; d < 3; ++d) {
-    const double wanted = d == 2 && !(patch.radius_m > 0.0) ? 0.0 : share * forces[d]->now;
+    const double wanted = d == 2 && !(patch.place.radius_m > 0.0) ? 0.0 : share * forces[d]->now;
     push(*rows[d], wanted - forces[d]->now, z);
     forces[d]->now = wanted;
-    const double arm = d == 2 ? patch.radius_m : 1.0;
+    const double arm = d == 2 ? patch.place.radius_m : 1.0;
     change = std::max(change, std::abs(wanted - forces[d]->before) * mobility(*rows[d]) * arm);
   }
   return change;
@@ -288,18 +288,18 @@ void Sweeps::keep_anchors(const RowsInProblem& contacts, std::span<const Pose> X
   };
   for_pushing_rows([](FrictionPatch& patch, double force, const Vec3&) { patch.load_N += force; });
   for (FrictionPatch& patch : patches_)
-    if (patch.load_N > 0.0) patch.centre_W.setZero();
+    if (patch.load_N > 0.0) patch.place.centre_W.setZero();
   for_pushing_rows([](FrictionPatch& patch, double force, const Vec3& p_W) {
-    patch.centre_W += force / patch.load_N * p_W;
+    patch.place.centre_W += force / patch.load_N * p_W;
   });
   for (Index i = 0; i < patches_.size(); ++i) {
     FrictionPatch& patch = patches_[i];
     const Friction3& friction = frictions_[i];
-    const double twisting = patch.radius_m > 0.0 ? friction.about.now / patch.radius_m : 0.0;
+    const double twisting = patch.place.radius_m > 0.0 ? friction.about.now / patch.place.radius_m : 0.0;
     const double used = std::hypot(friction.along.now, friction.across.now, twisting);
     if (!(used < (1.0 - tolerances::kAtFrictionBound) * patch.coefficient * patch.load_N))
       patch.slip.displacement_m = kInfinity;
-    FrictionAnchor anchor = next_anchor(patch, patch.centre_W, used > 0.0, X_WB);
+    FrictionAnchor anchor = next_anchor(patch, patch.place.centre_W, used > 0.0, X_WB);
     anchor.force_W = friction_force(i);
     anchor.torque_Nm = friction.about.now;
     anchors.add(anchor);
@@ -312,7 +312,7 @@ Vec3 Sweeps::friction_force(std::size_t patch) const noexcept {
 }
 
 Vec3 Sweeps::friction_torque(std::size_t patch) const noexcept {
-  return frictions_[patch].about.now * patches_[patch].n_BA_W;
+  return frictions_[patch].about.now * patches_[patch].place.n_BA_W;
 }
 
 }  // namespace tactum::inline v0_1

@@ -17,9 +17,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// How much stiffer than its bodies a row is that does not yield.
 constexpr double kRigid = 1e9;
 
-/// A row of the problem with the law of its force:  stiffness (offset - g z), between two bounds.
-struct YieldingRow {
-  QpRow row;
+/// The law of a row's force:  stiffness (offset - g z), between two bounds.
+struct ForceLaw {
   double stiffness = 0.0;                // [N/m]
   double least = 0.0, most = kInfinity;  // [N]
 };
@@ -29,24 +28,22 @@ double rigid_stiffness(const QpRow& row) noexcept {
   return mobile > 0.0 ? kRigid / mobile : 0.0;
 }
 
-/// The rows of joints' limits, of contacts, and of joints' dry friction, in this order.
-YieldingRow yielding_row(Index number, std::span<const ContactRow> contacts, Index first,
-                         const ContactProblem& problem) noexcept {
+/// Calls visit(number, row, law) with the rows of joints' limits, of contacts, and of joints' dry friction.
+template <class Visit>
+void for_each_row(std::span<const double> stiffness, const ContactProblem& problem, Visit&& visit) {
   const std::span<const QpRow> rows = problem.row_list();
-  if (number < rows.size()) {
-    YieldingRow next{.row = rows[number]};
-    next.stiffness = number >= first ? contacts[number - first].stiffness : rigid_stiffness(next.row);
-    return next;
+  const Index first = rows.size() - stiffness.size();  // of the contacts
+  for (Index i = 0; i < first; ++i) visit(i, rows[i], ForceLaw{.stiffness = rigid_stiffness(rows[i])});
+  for (Index i = first; i < rows.size(); ++i) visit(i, rows[i], ForceLaw{.stiffness = stiffness[i - first]});
+  const std::span<const ContactProblem::JointFriction> frictions = problem.joint_frictions();
+  for (Index i = 0; i < frictions.size(); ++i) {
+    const ContactProblem::JointFriction& friction = frictions[i];
+    QpRow row;
+    row.runs[0] = {
+        static_cast<std::uint32_t>(problem.bodies()[friction.body].first), 1, {friction.per_unknown}};
+    row.offset = -friction.free_travel;
+    visit(rows.size() + i, row, ForceLaw{rigid_stiffness(row), -friction.friction, friction.friction});
   }
-  const ContactProblem::JointFriction& friction = problem.joint_frictions()[number - rows.size()];
-  YieldingRow next;
-  next.row.runs[0] = {
-      static_cast<std::uint32_t>(problem.bodies()[friction.body].first), 1, {friction.per_unknown}};
-  next.row.offset = -friction.free_travel;
-  next.stiffness = rigid_stiffness(next.row);
-  next.least = -friction.friction;
-  next.most = friction.friction;
-  return next;
 }
 
 /// Newton's method on the convex function. A step is a Cholesky factor of I + sum k g g^T over the rows that
@@ -64,34 +61,36 @@ class Newton {
     }
   }
 
-  void add(const YieldingRow& next) {
+  void add(const QpRow& next, const ForceLaw& law) {
     Row& row = rows_[n_++];
     row.size = 0;
     // In the order of the unknowns, for H is kept below its diagonal.
-    const bool swapped = next.row.runs[1].first < next.row.runs[0].first;
+    const bool swapped = next.runs[1].first < next.runs[0].first;
     for (const Index r : {Index(swapped ? 1 : 0), Index(swapped ? 0 : 1)}) {
-      const QpRow::Run& run = next.row.runs[r];
+      const QpRow::Run& run = next.runs[r];
       for (Index i = 0; i < run.count; ++i) {
         row.column[row.size] = static_cast<std::uint8_t>(run.first + i);
         row.g[row.size++] = run.g[i];
       }
     }
-    row.stiffness = next.stiffness;
-    row.wanted = next.row.offset;
-    row.least = next.least;
-    row.most = next.most;
-    row.state = next.least < 0.0 || row.wanted > 0.0 ? kYields : kIdle;
+    row.stiffness = law.stiffness;
+    row.wanted = next.offset;
+    row.least = law.least;
+    row.most = law.most;
+    row.state = law.least < 0.0 || row.wanted > 0.0 ? kYields : kIdle;
     add_state(row, row.state, 1.0);
     most_wanted_ = std::max(most_wanted_, std::abs(row.wanted));
   }
 
-  /// Begins with the rows that approach too fast; where the same number of rows stays wrong it changes one at
-  /// a time [Portugal 1994]. Returns the rounds, 0 when they ran out.
+  /// Begins with the rows that approach too fast, and changes all rows that are in a wrong state after a
+  /// step; where that makes no fewer wrong, goes on with steps that are no longer than the function falls
+  /// along them, which always ends. Returns the rounds, 0 when they ran out.
   int solve() {
     allowed_ = tolerances::kContactVelocity * most_wanted_;
     Index fewest = n_ + 1;
-    int tries = kTries;
+    bool guarded = false;
     for (int round = 1; round <= kMostRounds; ++round) {
+      if (guarded) keep_point();
       newton_step();
       Index wrong = 0;
       for (Index i = 0; i < n_; ++i) {
@@ -99,17 +98,11 @@ class Newton {
         wrong += is_wrong(rows_[i]) ? 1 : 0;
       }
       if (wrong == 0) return round;
-      if (wrong < fewest) {
-        fewest = wrong;
-        tries = kTries;
-      } else {
-        --tries;
-      }
-      for (Index i = n_; i-- > 0;) {
-        if (!is_wrong(rows_[i])) continue;
-        change(rows_[i], wanted_state(rows_[i]));
-        if (tries < 0) break;
-      }
+      if (guarded) shorten_step();
+      guarded |= wrong >= fewest;
+      fewest = wrong;
+      for (Index i = 0; i < n_; ++i)
+        if (guarded || is_wrong(rows_[i])) change(rows_[i], wanted_state(rows_[i]));
     }
     return 0;
   }
@@ -122,8 +115,9 @@ class Newton {
   double value(Index unknown) const { return z_[unknown]; }
 
  private:
-  static constexpr int kTries = 3;
   static constexpr int kMostRounds = 24;  // two are usual
+  static constexpr int kMostSlopes = 30;
+  static constexpr double kFlat = 0.1;  // of the slope at the start
 
   /// Its force is the least, follows the law, or is the most.
   enum State : std::uint8_t { kIdle, kYields, kSaturated };
@@ -134,7 +128,8 @@ class Newton {
     static_assert(kMostUnknowns <= 256);
     std::array<double, 12> g;
     double stiffness, wanted, least, most;
-    double missing;  // wanted - g z, since the last step
+    double missing;         // wanted - g z, since the last step
+    double missing_before;  // before it, where the step is guarded
     State state;
   };
 
@@ -155,6 +150,7 @@ class Newton {
     for (Index i = 0; i < row.size; ++i) right_[row.column[i]] += force * row.g[i];
   }
   void change(Row& row, State state) {
+    if (state == row.state) return;
     add_state(row, row.state, -1.0);
     row.state = state;
     add_state(row, state, 1.0);
@@ -180,6 +176,54 @@ class Newton {
       double sum = z_[i];
       for (Index k = i + 1; k < unknowns_; ++k) sum -= L_[k][i] * z_[k];
       z_[i] = sum * inverse_[i];
+    }
+  }
+
+  /// Keeps the point from which the next step goes.
+  void keep_point() {
+    std::copy_n(z_, unknowns_, z_before_);
+    for (Index i = 0; i < n_; ++i) rows_[i].missing_before = rows_[i].missing;
+  }
+
+  /// Ends the step where the function no longer falls along it, by the zero of its slope at a share t of the
+  /// step, which rises with t on a chain of lines.
+  void shorten_step() {
+    double at_start = 0.0;
+    double along = 0.0;
+    for (Index i = 0; i < unknowns_; ++i) {
+      const double d = z_[i] - z_before_[i];
+      at_start += z_before_[i] * d;
+      along += d * d;
+    }
+    double rate = 0.0;  // of the slope
+    const auto slope = [&](double t) {
+      double sum = at_start + t * along;
+      rate = along;
+      for (Index i = 0; i < n_; ++i) {
+        const Row& row = rows_[i];
+        const double closes = row.missing_before - row.missing;
+        const double force = row.stiffness * (row.missing_before - t * closes);
+        sum -= std::clamp(force, row.least, row.most) * closes;
+        if (force > row.least && force < row.most) rate += row.stiffness * closes * closes;
+      }
+      return sum;
+    };
+    if (slope(1.0) <= 0.0) return;
+    const double flat = kFlat * std::abs(slope(0.0));
+    double falls = 0.0;
+    double rises = 1.0;
+    double t = 0.0;
+    for (int i = 0; i < kMostSlopes; ++i) {
+      const double now = slope(t);
+      if (std::abs(now) <= flat) break;
+      (now < 0.0 ? falls : rises) = t;
+      t -= now / rate;
+      if (!(t > falls && t < rises)) t = 0.5 * (falls + rises);
+    }
+    for (Index i = 0; i < unknowns_; ++i) z_[i] = z_before_[i] + t * (z_[i] - z_before_[i]);
+    for (Index i = 0; i < n_; ++i) {
+      Row& row = rows_[i];
+      row.missing = row.missing_before + t * (row.missing - row.missing_before);
     }
   }
 
@@ -214,31 +258,30 @@ class Newton {
   double allowed_ = 0.0;  // so much may be missing [m]
   Row rows_[kMostRows];
   double H_[kMostUnknowns][kMostUnknowns], L_[kMostUnknowns][kMostUnknowns];
-  double right_[kMostUnknowns], z_[kMostUnknowns], inverse_[kMostUnknowns];
+  double right_[kMostUnknowns], z_[kMostUnknowns], z_before_[kMostUnknowns], inverse_[kMostUnknowns];
 };
 
 /// Projected Gauss-Seidel from first row to last, until a sweep changes next to nothing.
-SolverResult sweep(std::span<const ContactRow> contacts, Index first, int max_sweeps,
-                   ReservedVector<double>& forces, ContactProblem& problem) {
+SolverResult sweep(std::span<const double> stiffness, int max_sweeps, ReservedVector<double>& forces,
+                   ContactProblem& problem) {
   SolverResult result;
   double* const z = problem.values();
   for (; result.iterations < max_sweeps; ++result.iterations) {
     double largest_wanted = 0.0;
     double largest_change = 0.0;
-    for (Index r = 0; r < forces.size(); ++r) {
-      const YieldingRow next = yielding_row(r, contacts, first, problem);
-      if (!(next.stiffness > 0.0)) continue;
-      const double compliance = 1.0 / next.stiffness;
-      const double give = mobility(next.row) + compliance;
-      const double missing = next.row.offset - dot(next.row, z) - compliance * forces[r];
-      const double force = std::clamp(forces[r] + missing / give, next.least, next.most);
+    for_each_row(stiffness, problem, [&](Index r, const QpRow& row, const ForceLaw& law) {
+      if (!(law.stiffness > 0.0)) return;
+      const double compliance = 1.0 / law.stiffness;
+      const double give = mobility(row) + compliance;
+      const double missing = row.offset - dot(row, z) - compliance * forces[r];
+      const double force = std::clamp(forces[r] + missing / give, law.least, law.most);
       const double change = force - forces[r];
-      if (change == 0.0) continue;
+      if (change == 0.0) return;
       forces[r] = force;
-      push(next.row, change, z);
+      push(row, change, z);
       largest_change = std::max(largest_change, std::abs(change) * give);
-      largest_wanted = std::max(largest_wanted, std::abs(next.row.offset));
-    }
+      largest_wanted = std::max(largest_wanted, std::abs(row.offset));
+    });
     result.converged = largest_change <= tolerances::kContactVelocity * largest_wanted;
     if (result.converged) break;
   }
@@ -247,27 +290,25 @@ SolverResult sweep(std::span<const ContactRow> contacts, Index first, int max_sw
 
 }  // namespace
 
-SolverResult solve_penalty(std::span<ContactRow> rows, std::size_t first, double h, int max_sweeps,
-                           ReservedVector<double>& forces, ContactProblem& problem) noexcept {
+SolverResult solve_penalty(std::span<const double> stiffness, int max_sweeps, ReservedVector<double>& forces,
+                           ContactProblem& problem) noexcept {
   problem.begin_values();
   const Index number = problem.rows() + problem.joint_frictions().size();
-  SolverResult result{.iterations = 0, .converged = true};
-  if (number == 0) return result;
-  forces.assign(number, 0.0);
-  int rounds = 0;
+  forces.resize(number);
+  if (number == 0) return {.iterations = 0, .converged = true};
   if (number <= Newton::kMostRows && problem.unknowns() <= kMostUnknowns) {
     Newton newton(problem.unknowns());
-    for (Index i = 0; i < number; ++i) newton.add(yielding_row(i, rows, first, problem));
-    rounds = newton.solve();
+    for_each_row(stiffness, problem,
+                 [&](Index, const QpRow& row, const ForceLaw& law) { newton.add(row, law); });
+    const int rounds = newton.solve();
     if (rounds > 0) {
       for (Index i = 0; i < number; ++i) forces[i] = newton.force(i);
       for (Index i = 0; i < problem.unknowns(); ++i) problem.values()[i] = newton.value(i);
-      result.iterations = rounds;
+      return {.iterations = rounds, .converged = true};
     }
   }
-  if (rounds == 0) result = sweep(rows, first, max_sweeps, forces, problem);
-  for (Index i = 0; i < rows.size(); ++i) rows[i].impulse = forces[first + i] * h;
-  return result;
+  forces.assign(number, 0.0);
+  return sweep(stiffness, max_sweeps, forces, problem);
 }
 
 }  // namespace tactum::inline v0_1

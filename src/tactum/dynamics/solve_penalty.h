@@ -27,10 +27,9 @@
 
 namespace tactum::inline v0_1 {
 
-/// Solves the problem, whose contact rows are `rows` and begin at number `first` there, and sets the rows'
-/// impulses over the step of `h` seconds. `forces` is scratch, with room for as many as the problem has rows
-/// and joint frictions.
-SolverResult solve_penalty(std::span<ContactRow> rows, std::size_t first, double h, int max_sweeps,
-                           ReservedVector<double>& forces, ContactProblem& problem) noexcept;
+/// Solves the problem. `stiffness` is that of its contact rows, which are the last ones [N/m]. `forces`
+/// becomes the force of every row, and of every joint's dry friction behind them [N]; it has the room.
+SolverResult solve_penalty(std::span<const double> stiffness, int max_sweeps, ReservedVector<double>& forces,
+                           ContactProblem& problem) noexcept;
 
 }  // namespace tactum::inline v0_1

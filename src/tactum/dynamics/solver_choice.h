@@ -16,9 +16,9 @@ enum class ContactSolver : std::uint8_t {
 /// which begin with the last frame's forces, take less time for what rests.
 inline constexpr std::size_t kMostExactAlone = 12;
 
-/// For rows that do not yield. `coupled`: a coupling pulls one of the island's bodies, so its forces are felt;
-/// then the exact solver, as long as it has room for the unknowns, one for each joint's dry friction among
-/// them.
+/// For rows that do not yield. `coupled`: a coupling pulls one of the island's bodies, so its forces are
+/// felt; then the exact solver, as long as it has room for the unknowns, one for each joint's dry friction
+/// among them.
 inline ContactSolver choose_solver(std::size_t exact_unknowns, bool coupled) noexcept {
   const std::size_t most = coupled ? kMostUnknowns : kMostExactAlone;
   return exact_unknowns <= most ? ContactSolver::kExact : ContactSolver::kSweeps;

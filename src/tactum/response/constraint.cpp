@@ -243,8 +243,8 @@ void update_trust_length(ConstraintStep& step) {
   double travel = 0.0;
   for (Index i = 0; i < step.own.free.near_grasped.size(); ++i) {
     if (!step.own.free.near_grasped[i]) continue;
-    const Twist moved = twist_between(step.X_WB_start[i], step.bodies.X_WB[i], 1.0);
-    travel = std::max(travel, moved.v.norm() + moved.w.norm() * step.radius_m[i]);
+    const Twist& V_WB = step.bodies.V_WB[i];  // what it did, see move_grasped_island()
+    travel = std::max(travel, step.dt_s * (V_WB.v.norm() + V_WB.w.norm() * step.radius_m[i]));
   }
   const Constraint& limits = step.settings.constraint;
   const double most = step.work.minima > 0 ? limits.max_step_on_surfaces_m : limits.max_step_m;

@@ -148,7 +148,7 @@ std::size_t add_contact_rows(bool opening, ContactProblem& problem, ConstraintSt
   for (ContactRow& row : own_rows(step)) {
     const double offset = c.skin_m - row.distance;
     row.asked = opening ? offset : std::min(0.0, offset);
-    problem.add_row(problem.row_of(row.body_a, row.body_b, push_of(row)), row.asked);
+    problem.add_row(row.body_a, row.body_b, push_of(row), row.asked);
   }
   c.rows.feedback.assign(c.rows.own, 0.0);
   return first;

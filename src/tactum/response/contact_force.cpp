@@ -159,9 +159,9 @@ void append_friction(const FrictionPatch& patch, int number, const Vec3& force_W
   static_cast<SurfacePair&>(row) = patch.surfaces;
   row.patch = patch.source_patch;
   row.friction_patch = number;
-  row.p_W = patch.centre_W;
+  row.p_W = patch.place.centre_W;
   row.n_BA_W = force_W / size_N;
-  row.distance = patch.gap_m;
+  row.distance = patch.place.gap_m;
   row.impulse = size_N * h;
 }
 

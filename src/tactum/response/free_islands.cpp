@@ -44,7 +44,7 @@ void assemble(bool exact, bool opening, IslandProblem& p) {
   p.in_problem = {p.contacts, p.problem.rows()};
   for (ContactRow& row : p.contacts) {
     if (!opening) row.asked = std::min(0.0, row.asked);
-    p.problem.add_row(p.problem.row_of(row.body_a, row.body_b, push_of(row)), row.asked);
+    p.problem.add_row(row.body_a, row.body_b, push_of(row), row.asked);
   }
 }
 

@@ -21,7 +21,7 @@ FrictionUse use_of(const FrictionPatch& patch, const Forces& forces) {
   use.load_N = forces.load_N;
   use.sideways_N = forces.sideways.norm();
   use.twisting_Nm = forces.twisting.norm();
-  const double twisting_N = patch.radius_m > 0.0 ? use.twisting_Nm / patch.radius_m : 0.0;
+  const double twisting_N = patch.place.radius_m > 0.0 ? use.twisting_Nm / patch.place.radius_m : 0.0;
   if (use.load_N > 0.0)
     use.cone_used = std::min(1.0, std::hypot(use.sideways_N, twisting_N) / (patch.coefficient * use.load_N));
   return use;
@@ -45,9 +45,9 @@ void use_of_friction(const Friction& friction, const ContactProblem& problem, In
     }
   }
   friction.for_each_force(problem, [&](Index i, const Push& push, double multiplier) {
-    const double load = push.force.dot(patches[i].n_BA_W);
+    const double load = push.force.dot(patches[i].place.n_BA_W);
     forces[i].load_N += multiplier * load;
-    forces[i].sideways += multiplier * (push.force - load * patches[i].n_BA_W);
+    forces[i].sideways += multiplier * (push.force - load * patches[i].place.n_BA_W);
     forces[i].twisting += multiplier * push.torque;
   });
   for (Index i = 0; i < patches.size(); ++i) uses.push_back(use_of(patches[i], forces[i]));

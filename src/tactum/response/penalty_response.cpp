@@ -88,7 +88,7 @@ PenaltyResponse::PenaltyResponse(const World& world, const FrameSettings& settin
       all_move_(world.bodies.size(), 0),
       V_before_joints_(world.bodies.size()),
       motion_bound_(world.bodies.size(), 0.0) {
-  gathered_.reserve(Index(settings.budget.max_contact_points));
+  stiffness_.reserve(Index(settings.budget.max_contact_points));
   depth_scale_.reserve(settings.budget.capacity.patches);
   forces_.reserve(Index(settings.budget.max_contact_points) + 4 * world.bodies.size());
 }
@@ -127,8 +127,7 @@ std::span<const double> PenaltyResponse::bound_motion(const MotionInput& input, 
     problem_.clear();
     add_body(input, number, input.dt_s, bodies);
     problem_.add_joint_rows(false);
-    solve_penalty({}, problem_.rows(), input.dt_s, input.settings.budget.solver_iterations, forces_,
-                  problem_);
+    solve_penalty({}, input.settings.budget.solver_iterations, forces_, problem_);
     V_WB = to_twist(problem_.displacement(number) / input.dt_s);
   }
   limit_grasped(input, bodies);
@@ -167,16 +166,16 @@ void PenaltyResponse::solve_island(const StepInput& input, Index island, double 
   for (const int body : bodies_[island]) add_body(input, body, rest_s, bodies);
   problem_.add_joint_rows(false);
   const Index first = problem_.rows();
-  gathered_.clear();
-  for (const int row : rows_[island]) {
-    const ContactRow& contact = rows[Index(row)];
-    gathered_.push_back(contact);
-    problem_.add_row(problem_.row_of(contact.body_a, contact.body_b, push_of(contact)),
-                     contact.margin - contact.distance);
+  stiffness_.clear();
+  for (const int number : rows_[island]) {
+    const ContactRow& row = rows[Index(number)];
+    stiffness_.push_back(row.stiffness);
+    problem_.add_row(row.body_a, row.body_b, push_of(row), row.margin - row.distance);
   }
   const SolverResult solved =
-      solve_penalty(gathered_, first, rest_s, input.settings.budget.solver_iterations, forces_, problem_);
-  for (Index i = 0; i < gathered_.size(); ++i) rows[Index(rows_[island][i])].impulse = gathered_[i].impulse;
+      solve_penalty(stiffness_, input.settings.budget.solver_iterations, forces_, problem_);
+  for (Index i = 0; i < stiffness_.size(); ++i)
+    rows[Index(rows_[island][i])].impulse = forces_[first + i] * rest_s;
   for (const ProblemBody& body : problem_.bodies())
     bodies.V_WB[Index(body.body)] = to_twist(problem_.displacement(body.body) / rest_s);
   report.solver_iterations += solved.iterations;

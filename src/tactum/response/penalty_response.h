@@ -57,9 +57,9 @@ class PenaltyResponse {
   ContactRows contacts_;
   // Scratch of one frame.
   Islands islands_;
-  GroupedIndices bodies_, rows_;  // by island
-  ReservedVector<ContactRow> gathered_;
-  ReservedVector<double> forces_;
+  GroupedIndices bodies_, rows_;      // by island
+  ReservedVector<double> stiffness_;  // of the rows of the island in work
+  ReservedVector<double> forces_;     // of these and its joints
   ContactProblem problem_;
   std::vector<char> all_move_;          // no body is deferred
   std::vector<Twist> V_before_joints_;  // by body
