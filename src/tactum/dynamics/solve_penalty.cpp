@@ -14,7 +14,7 @@ namespace {
 using Index = std::size_t;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// How much stiffer than its bodies a row is that does not yield.
+/// How much stiffer than its bodies a row is that should not yield.
 constexpr double kRigid = 1e9;
 
 /// A row of the problem with the law of its force:  stiffness (offset - g z), between two bounds.
@@ -85,8 +85,8 @@ class Newton {
     most_wanted_ = std::max(most_wanted_, std::abs(row.wanted));
   }
 
-  /// Begins with the rows that approach too fast; where the same number of rows stays wrong it changes one at
-  /// a time [Portugal 1994]. Returns the rounds, 0 when they ran out.
+  /// Begins with the rows that approach too fast; where the number of wrong rows does not sink it changes one
+  /// at a time [Portugal 1994]. Returns the rounds, 0 when they ran out.
   int solve() {
     allowed_ = tolerances::kContactVelocity * most_wanted_;
     Index fewest = n_ + 1;
@@ -125,7 +125,7 @@ class Newton {
   static constexpr int kTries = 3;
   static constexpr int kMostRounds = 24;  // two are usual
 
-  /// Its force is the least, follows the law, or is the most.
+  /// The row's force is the least, follows the law, or is the most.
   enum State : std::uint8_t { kIdle, kYields, kSaturated };
 
   struct Row {
@@ -134,11 +134,11 @@ class Newton {
     static_assert(kMostUnknowns <= 256);
     std::array<double, 12> g;
     double stiffness, wanted, least, most;
-    double missing;  // wanted - g z, since the last step
+    double missing;  // offset - g z, since the last step
     State state;
   };
 
-  /// What a row in this state adds to H and to the right side, or takes off.
+  /// Adds the terms of a row in this state to H and to the right side, or removes them.
   void add_state(const Row& row, State state, double sign) {
     if (state == kYields) {
       const double weight = sign * row.stiffness;
@@ -195,12 +195,12 @@ class Newton {
   }
   bool is_wrong(const Row& row) const {
     const double force = row.missing * row.stiffness;
-    // Of a force with bounds a share of these; else what the law makes of the length that may be missing.
+    // For a force with bounds a fraction of these; else the force of the length that may be missing.
     const double tolerance =
         row.most < kInfinity ? tolerances::kContactVelocity * row.most : allowed_ * row.stiffness;
     switch (row.state) {
       case kIdle:
-        return !(force <= row.least + tolerance);  // NaN is wrong
+        return !(force <= row.least + tolerance);  // a NaN is wrong
       case kYields:
         return !(force >= row.least - tolerance && force <= row.most + tolerance);
       case kSaturated:
@@ -217,7 +217,7 @@ class Newton {
   double right_[kMostUnknowns], z_[kMostUnknowns], inverse_[kMostUnknowns];
 };
 
-/// Projected Gauss-Seidel from first row to last, until a sweep changes next to nothing.
+/// Projected Gauss-Seidel from first row to last, until a sweep changes almost nothing.
 SolverResult sweep(std::span<const ContactRow> contacts, Index first, int max_sweeps,
                    ReservedVector<double>& forces, ContactProblem& problem) {
   SolverResult result;
