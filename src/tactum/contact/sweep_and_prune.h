@@ -1,9 +1,9 @@
 #pragma once
-/// Which boxes overlap, kept from frame to frame: the ends of all boxes stand sorted on each axis, and a
-/// frame moves only the ends that changed their order, by insertion sort [Cohen 1995]. Where a lower end
-/// passes an upper end an overlap on that axis begins, the other way round it ends; a pair that overlaps on
-/// three axes is near. Cost of a frame: the boxes that moved plus the swaps; with coherent motion hardly more
-/// than looking.
+/// Finds which boxes overlap, from frame to frame: the ends of all boxes are sorted on each axis, and a frame
+/// moves only the ends that changed their order, by insertion sort [Cohen 1995]. Where a lower end passes an
+/// upper end an overlap on that axis begins, the other way round it ends; a pair that overlaps on three axes
+/// is near. Cost of a frame: the boxes that moved plus the swaps; with coherent motion hardly more than
+/// reading the ends.
 ///
 /// The pairs are kept in a triangular table, so memory grows with the square of the boxes: this is for
 /// bodies (tens to a thousand). Inside a part its hierarchy does the same work (geometry/bvh.h).
