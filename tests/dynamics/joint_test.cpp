@@ -35,8 +35,8 @@ Body random_body(Random& random, JointKind kind) {
   return body;
 }
 
-/// The change of a body's twist by an impulse at its origin, through the contact problem: a unit row along the
-/// impulse, loaded with its size.
+/// The change of a body's twist by an impulse at its origin, through the contact problem: a unit row along
+/// the impulse, loaded with its size.
 Twist twist_after(const Body& body, const Vec6& impulse) {
   ContactProblem problem(1, 1);
   problem.add_body(0, body, body.X_WB, body.X_WB.p, inertial_metric(body, body.X_WB, 1.0), Vec6::Zero(), 0.0);
