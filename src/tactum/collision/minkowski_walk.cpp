@@ -43,7 +43,7 @@ ArcEnd follow_arc(const Polytope& P, const Polytope& Q, const Mat3& R_QP, const 
     if (ray.edge == excluded) continue;
     const double below = std::max(0.0, -ray.direction.dot(o0));  // how much lower the far end is, per metre
     const double rising = ray.direction.dot(o_t);
-    if (rising <= tolerances::kSameArc && below <= tolerances::kSameArc) continue;  // rolls on the edge: no event
+    if (rising <= tolerances::kSameArc && below <= tolerances::kSameArc) continue;  // rolls on the edge
     if (comes_before(rising, below, end)) end = {ray.edge, rising, below};
   }
   if (end.edge >= 0) {

@@ -319,7 +319,7 @@ inline Step edge_edge(const PiecePair& pair, const Sides<false>& S, Feature fp, 
   if (!crossing) return edges_along(pair, S.crossing_tolerance, fp.index, fq.index, at, x);
 
   const double along = r.dot(c);
-  const double sign = std::copysign(1.0, along + 0.0);  // of the outward direction relative to c; -0 counts as +0
+  const double sign = std::copysign(1.0, along + 0.0);  // of the outward direction along c; -0 is +0
   const double per_square = 1.0 / sine_sq;
   const double per_sine = std::sqrt(sine_sq) * per_square;
   const double gap = std::abs(along) * per_sine;
