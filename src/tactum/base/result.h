@@ -29,7 +29,7 @@ struct Error {
   }
 };
 
-/// A T or an Error. Ask `if (!result)` before `*result`: held in every build.
+/// A T or an Error. Check `if (!result)` before `*result`: asserted in every build.
 template <class T>
 class [[nodiscard]] Result {
  public:

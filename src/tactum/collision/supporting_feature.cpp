@@ -10,7 +10,7 @@ namespace {
 
 using Kind = FeatureKind;
 
-/// The face most square to a direction, of those looked at.
+/// The face most square to a direction, of those tested.
 struct MostSquare {
   int face = -1;
   double lean = std::numeric_limits<double>::infinity();  ///< its angle's chord, squared

@@ -59,7 +59,7 @@ struct Body {
   bool moves() const { return joint.kind != JointKind::kFixed; }
 };
 
-/// What World::add makes a body from. Mass and inertia follow from the part.
+/// The input of World::add. Mass and inertia follow from the part.
 struct BodySpec {
   std::string name = {};                  ///< empty, or one that no other body of the world has
   std::shared_ptr<const Part> part = {};  ///< about its centre of mass: PartOptions::about_center_of_mass
@@ -85,7 +85,7 @@ struct World {
   std::vector<ForceField> fields;  ///< felt by the grasped part
 };
 
-/// What frames change. One entry per body of the World.
+/// The state that frames change. One entry per body of the World.
 struct WorldState {
   std::vector<Pose> X_WB;
   std::vector<Twist> V_WB;

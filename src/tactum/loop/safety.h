@@ -45,7 +45,7 @@ struct SafetyLimits {
       std::numeric_limits<double>::infinity();  ///< a pose the same to the bit for longer is frozen [s]
 };
 
-/// What a user may ask for. Each can only make the limit tighter than the device's; anything else is ignored.
+/// The wishes of a user. Each can only make the limit tighter than the device's; anything else is ignored.
 struct SafetySettings {
   double max_force_N = std::numeric_limits<double>::infinity();               ///< [N]
   double max_torque_Nm = std::numeric_limits<double>::infinity();             ///< [N m]

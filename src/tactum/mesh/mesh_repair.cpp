@@ -103,7 +103,7 @@ std::vector<int> pinched_at(const TriangleMesh& mesh, const std::vector<HalfEdge
   return triangles;
 }
 
-/// Holes, and what is wrong at edges and vertices; `filled` are the rims that were closed.
+/// Notes holes, and faults at edges and vertices; `filled` are the rims that were closed.
 void note_topology(const RepairedMesh& out, const std::vector<int>& filled, Notes& notes) {
   notes.add(true, "closed_holes", "holes were closed", filled);
   std::vector<int> open;

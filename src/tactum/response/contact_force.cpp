@@ -20,7 +20,7 @@ bool same_facet(const Facet& a, const Facet& b) {
          std::tie(b.body_a, b.body_b, b.group_a, b.group_b);
 }
 
-/// What the rows are made from.
+/// The input from which rows are made.
 struct Source {
   std::span<const ContactPatch> patches;
   const std::vector<ShadingNormals>& shading;

@@ -11,7 +11,7 @@
 
 namespace tactum {
 
-/// What the frame could not do in full, each with the setting to raise. A frame never stops for these.
+/// The limits that a frame ran into, each with the setting to raise. A frame never stops for these.
 namespace frame_flag {
 inline constexpr std::uint32_t kBudgetShort = 1u << 0;  ///< pairs left unchecked: WorkBudget::max_exact_tests
 inline constexpr std::uint32_t kCapacityReached = 1u << 1;  ///< pairs or patches dropped: WorkBudget

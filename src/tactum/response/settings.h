@@ -91,7 +91,7 @@ struct Shading {
   double crease_rad = 0.6;  ///< facets that meet at less than this are parts of one curved surface [rad]
 };
 
-/// What the frame may spend; part of the recorded input, never a clock reading.
+/// The budget of a frame; part of the recorded input, never a clock reading.
 struct WorkBudget {
   int max_exact_tests = 4096;      ///< exact tests a frame (paper 4.2: the array of fixed length) [-]
   int max_contact_points = 2048;   ///< contact points a frame [-]

@@ -25,7 +25,7 @@ void count_touches(ConstraintStep& step) {
   }
 }
 
-/// Whether the body is where it was, with what it touched.
+/// Whether the body is where it was, with as many contacts.
 bool is_still(const ConstraintStep& step, Index body) {
   const Sleep& s = step.own.sleep;
   if (s.touches[body] != s.touched[body] || static_cast<int>(body) == step.grasped.body) return false;
