@@ -27,7 +27,7 @@ class Engine {
   virtual bool reports_depths() const { return true; }     ///< of pieces that overlap
   /// May refuse pairs that it cannot represent, or would take minutes for.
   virtual bool hold(const Shape& a, const Shape& b) = 0;
-  virtual void forget() = 0;                                          ///< drops the results of earlier queries
+  virtual void forget() = 0;                                          ///< drops earlier results
   virtual void place(const Recording& recording, std::size_t i) = 0;  ///< at its i-th pose
   virtual void query() = 0;
   virtual Answer answer() const = 0;
