@@ -65,7 +65,7 @@ class WholeFrames final : public LoopObserver {
   double period_s_;
 };
 
-/// The stages' times, in a replay of their own because looking costs time.
+/// The stages' times, in a replay of their own because measuring costs time.
 class Stages final : public LoopObserver {
  public:
   explicit Stages(Session& session) : session_(session) { session.time_stages(&clock_); }

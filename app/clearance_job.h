@@ -1,5 +1,5 @@
 #pragma once
-/// What `tactum clearance` and `tactum-bench clearance` read: two surfaces and a motion of both.
+/// The input of `tactum clearance` and `tactum-bench clearance`: two surfaces and a motion of both.
 
 #include <CLI/CLI.hpp>
 #include <string>
@@ -24,7 +24,7 @@ struct ClearanceJob {
 /// Adds the files and the scale to the command's line.
 void add_clearance_files(CLI::App& command, ClearanceFiles& files);
 
-/// Reads them, telling on stderr what was repaired. Ends the command when they cannot be read.
+/// Reads them, reporting repairs on stderr. Ends the command when they cannot be read.
 ClearanceJob read_clearance_job(const ClearanceFiles& files);
 
 }  // namespace tactum

@@ -1,6 +1,6 @@
 #pragma once
-/// What the command lines of `tactum` and `tactum-bench` share.
-/// Exit codes: 0 done, 1 an error told on stderr, 2 the command line is wrong.
+/// Functions common to the command lines of `tactum` and `tactum-bench`.
+/// Exit codes: 0 done, 1 an error reported on stderr, 2 the command line is wrong.
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -13,7 +13,7 @@ namespace tactum {
 /// Reads the command line, and so runs the command that it names. Returns the exit code.
 int run_command_line(CLI::App& app, int argc, char** argv);
 
-/// Ends the command with exit code 1, after the program's name and the error were told on stderr. Works in
+/// Ends the command with exit code 1, after the program's name and the error were written to stderr. Works in
 /// commands that run_command_line() has called, in its thread.
 [[noreturn]] void fail(const Error& error);
 

@@ -26,7 +26,7 @@ using Json = nlohmann::ordered_json;
 /// Edge pairs up to which overlapping clouds are searched in full; at 10 ns each, the most costs 40 s.
 constexpr double kMostEdgePairs = 4e9;
 
-/// Where in the file we are, for errors: "cases.json: case 3 (\"lid\"), a.pose".
+/// The place in the file, for errors: "cases.json: case 3 (\"lid\"), a.pose".
 struct Place {
   std::string file, item, field;
   Place at(const std::string& next) const { return {file, item, field.empty() ? next : field + "." + next}; }
@@ -72,7 +72,7 @@ Polytope read_cloud(const Json& value, const Place& place) {
   return std::move(*hull);
 }
 
-/// Row-major 4 x 4; absent: identity. Rounded rotations are mended and told.
+/// Row-major 4 x 4; absent: identity. Rounded rotations are repaired and reported.
 Pose read_pose(const Json& object, const Place& place) {
   const auto found = object.find("pose");
   if (found == object.end()) return {};
@@ -111,7 +111,7 @@ PairDistance signed_distance(const Polytope& A, const Polytope& B, const Pose& X
 
 Json vector(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
-/// Convex pieces and where they are.
+/// Convex pieces and their pose.
 struct Solid {
   std::vector<Polytope> pieces;
   Pose X_WS;
@@ -133,7 +133,7 @@ Solid read_solid(const Json& object, const Place& place) {
   if (file->part.pieces.empty() || file->part.pieces.front().flat)
     here.refuse("the part has no solid pieces", "a surface", "a part of convex solids");
   solid.pieces = std::move(file->part.pieces);
-  solid.X_WS.p = solid.X_WS * file->origin;  // the pieces are told from the centre of mass
+  solid.X_WS.p = solid.X_WS * file->origin;  // the pieces are relative to the centre of mass
   return solid;
 }
 

@@ -1,5 +1,5 @@
-/// tactum feel SCENE: the main job. Opens the scene and a device, runs the loop, shows what is felt, sums it
-/// up.
+/// tactum feel SCENE: the main job. Opens the scene and a device, runs the loop, shows the forces, prints a
+/// summary.
 
 #include <fmt/format.h>
 
@@ -85,7 +85,7 @@ void run_virtually(Session& session, std::uint64_t frames, MinimumOfReplays& tim
   if (!run) fail(run.error());
 }
 
-/// Runs the session, and as many times anew as is asked for.
+/// Runs the session, and repeats it as many times as wanted.
 Summary feel_virtually(const FeelOptions& options, Session& session, std::uint64_t frames) {
   MinimumOfReplays times(frames);
   run_virtually(session, frames, times);

@@ -14,8 +14,7 @@
 #include "tactum/mesh/mesh_import.h"
 #include "view_part.h"
 
-/// `tactum inspect FILE...`: what is in a mesh file and what is wrong with it; what a prepared part is made
-/// of.
+/// `tactum inspect FILE...`: the contents of a mesh file and its faults; the construction of a prepared part.
 
 namespace tactum {
 namespace {
@@ -34,7 +33,7 @@ struct Inspection {
   MeshReport report;
   UnitGuess unit;
   int exact_boundary_edges = 0;  ///< when only equal coordinates are joined
-  Result<Part> part = Error{};   ///< what a scene would make of it
+  Result<Part> part = Error{};   ///< the part that a scene would make of it
   Deviation deviation;           ///< ... and how far that is from the file
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-/// What several subcommands print and write.
+/// Output functions common to several subcommands.
 
 #include <cstdio>
 #include <nlohmann/json.hpp>

@@ -20,7 +20,7 @@ class PartCache {
   explicit PartCache(const std::string& folder);
 
   const std::string& folder() const { return folder_; }
-  /// Empty when this cannot be told.
+  /// Empty when it cannot be computed.
   std::string key_of(const std::vector<std::string>& meshes, const PrepareOptions& options) const;
   Result<PartFile> find(const std::string& key) const;
   /// Quietly does nothing where it cannot write.

@@ -1,5 +1,5 @@
 #pragma once
-/// A part file for people and for machines: what `tactum prepare` and `tactum inspect` print of it.
+/// A part file for people and for machines, as `tactum prepare` and `tactum inspect` print it.
 
 #include <nlohmann/json.hpp>
 #include <string>

@@ -1,4 +1,4 @@
-/// tactum scenes: what there is to feel. tactum devices: what to feel it with.
+/// tactum scenes: the scenes there are. tactum devices: the devices there are.
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@
 namespace tactum {
 namespace {
 
-constexpr double kRate_Hz = 1000.0;  // for which the couplings are told
+constexpr double kRate_Hz = 1000.0;  // for which the couplings are listed
 
 }  // namespace
 

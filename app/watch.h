@@ -1,5 +1,6 @@
 #pragma once
-/// What the commands share that run until somebody stops them: interrupts, the status line, the page.
+/// Functions common to the commands that run until they are interrupted: interrupts, the status line, the
+/// page.
 
 #include <unistd.h>
 
@@ -15,7 +16,7 @@ namespace tactum {
 void watch_for_interrupts();
 bool interrupted();
 
-/// One line about what is felt, overwritten in place, only where a person watches.
+/// One line about the forces, overwritten in place, only on a terminal.
 class StatusLine {
  public:
   void show(const Session& session, const SessionStatus& status);
@@ -30,7 +31,7 @@ class StatusLine {
   std::uint64_t last_frame_ = 0;
 };
 
-/// Tells the page's address, and opens it where there is a screen.
+/// Prints the page's address, and opens it where there is a screen.
 void open_page(std::FILE* out, const std::string& address);
 
 /// Runs the loop on its own thread until it is interrupted; or, where an end was asked for, until that many

@@ -15,7 +15,7 @@ class FineClock {
   std::uint64_t start() const noexcept;
   std::uint64_t stop() const noexcept;
   double ns(std::uint64_t ticks) const noexcept { return static_cast<double>(ticks) * ns_per_tick_; }
-  /// The step it moves by: on some machines many ticks.
+  /// The step it advances by: on some machines many ticks.
   double step_ns() const noexcept { return ns(step_); }
   /// "the processor's counter (0.38 ns a tick, in steps of 10 ns)", or steady_clock and its steps.
   std::string describe() const;

@@ -16,7 +16,7 @@ void work() noexcept {
   double s = 1.0, t = 1.0, u = 1.0, v = 1.0, w = 1.0, x = 1.0;
   const auto add = [&] {
     a += 1, b += 1, c += 1, d += 1;
-    // Nothing of it is left out, put together or told beforehand.
+    // Keeps the compiler from leaving out, joining or precomputing the operations.
     asm volatile("" : "+r"(a), "+r"(b), "+r"(c), "+r"(d));
   };
   for (int i = 0; i < kRounds; ++i) {
@@ -49,7 +49,7 @@ double CoreWidth::probe_ns() const noexcept {
 
 bool CoreWidth::is_ours() noexcept {
   constexpr double kSame = 1.07;
-  constexpr double kHaste = 0.01;  // what is faster is believed when it is seen again and again
+  constexpr double kHaste = 0.01;  // a faster time is accepted when it is seen again and again
   const double ns = probe_ns();
   alone_ns_ += kHaste * std::min(0.0, ns - alone_ns_);
   return ns <= kSame * alone_ns_ + clock_.step_ns();

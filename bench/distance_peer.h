@@ -1,5 +1,5 @@
 #pragma once
-/// Another library's distance of two triangle surfaces, for `tactum-bench clearance` to stand beside.
+/// Another library's distance of two triangle surfaces, for comparison in `tactum-bench clearance`.
 
 #include <memory>
 

@@ -1,6 +1,6 @@
 #pragma once
 /// The contact queries that are compared, ours and the peers', behind one small interface. An engine holds
-/// one pair of shapes, is placed (not timed), asked (timed) and then tells its answer (not timed).
+/// one pair of shapes, is placed (not timed), queried (timed) and then gives its answer (not timed).
 
 #include <memory>
 #include <span>
@@ -11,7 +11,7 @@
 namespace tactum::bench {
 
 struct Answer {
-  bool answered = false;  ///< the engine gave a value, and stands by it
+  bool answered = false;  ///< the engine gave a value that it does not withdraw
   double distance = 0.0;  ///< signed [m]
   int steps = 0;          ///< of the search, where the engine counts them
 };
@@ -25,9 +25,9 @@ class Engine {
 
   virtual bool reports_distances() const { return true; }  ///< of pieces that are apart
   virtual bool reports_depths() const { return true; }     ///< of pieces that overlap
-  /// May refuse pairs that it cannot hold, or would take minutes for.
+  /// May refuse pairs that it cannot represent, or would take minutes for.
   virtual bool hold(const Shape& a, const Shape& b) = 0;
-  virtual void forget() = 0;                                          ///< what is known from earlier queries
+  virtual void forget() = 0;                                          ///< drops earlier results
   virtual void place(const Recording& recording, std::size_t i) = 0;  ///< at its i-th pose
   virtual void query() = 0;
   virtual Answer answer() const = 0;

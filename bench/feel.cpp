@@ -25,7 +25,7 @@ std::shared_ptr<const Part> part_of(const std::vector<FeelPiece>& pieces) {
 }
 
 /// The haptic frame on an ideal device, without smoothing; the coupling's damper is left out, so that at rest
-/// and in motion the spring is all there is.
+/// and in motion only the spring acts.
 class Ours final : public FeelEngine {
  public:
   explicit Ours(const FeelScene& scene) {
@@ -34,7 +34,7 @@ class Ours final : public FeelEngine {
     World world;
     world.bodies.resize(2);
     world.bodies[0].part = part_of(scene.grasped);
-    world.bodies[0].mass_kg = kFeltMass_kg;  // as every engine is given them, whatever the part
+    world.bodies[0].mass_kg = kFeltMass_kg;  // as every engine gets it, whatever the part
     world.bodies[0].inertia_B = kFeltInertia_kg_m2 * Mat3::Identity();
     world.bodies[0].X_WB = X_start_;
     world.bodies[1].part = part_of(scene.fixed);
@@ -66,7 +66,7 @@ std::unique_ptr<FeelEngine> make_ours(const FeelScene& scene, const FeelSetup&) 
   return std::make_unique<Ours>(scene);
 }
 
-/// Looks at the overlap of the scene's pieces at any pose of the held one.
+/// Measures the overlap of the scene's pieces at any pose of the grasped part.
 class Referee {
  public:
   explicit Referee(const FeelScene& scene) : depth_(scene.depth) {
@@ -90,7 +90,7 @@ class Referee {
   std::vector<OverlapPiece> grasped_, fixed_;
 };
 
-/// One run, frame by frame: what is asked of every engine and scene.
+/// One run, frame by frame: the queries of every engine and scene.
 struct Run {
   Pose X_WH, X_WB;
   Wrench felt, last;

@@ -1,6 +1,6 @@
 #pragma once
-/// What the hand feels, against what it should feel: a held part is led along a motion on an ideal device,
-/// and the wrench at the handle is compared with statics worked out by hand. The same motion goes to
+/// The wrench that the hand feels, against the correct one: a grasped part is led along a motion on an ideal
+/// device, and the wrench at the handle is compared with statics worked out by hand. The same motion goes to
 /// rigid-body engines that hold the part by a spring and damper, as haptic programs built on them do.
 ///
 ///   hand X_WH(t) --> engine, one step of 1 ms --> wrench on the hand  -- against truth(X_WH), in the judged
@@ -24,13 +24,13 @@
 
 namespace tactum::bench {
 
-/// A convex piece and where it is in its body's frame.
+/// A convex piece and its pose in its body's frame.
 struct FeelPiece {
   Shape shape;
   Pose X_BP;
 };
 
-/// The held part's origin is the handle; the other part stands still, its frame is the world's.
+/// The grasped part's origin is the handle; the other part stands still, its frame is the world's.
 struct FeelScene {
   std::vector<FeelPiece> grasped, fixed;
   std::shared_ptr<const HandMotion> hand;  ///< X_WH over time; the part starts at its beginning
@@ -44,7 +44,8 @@ struct FeelScene {
   std::function<double(const Pose& X_WB)> depth;
 };
 
-/// One of the engines, holding the scene's part. `step` is one millisecond, after which the rest is told.
+/// One of the engines, with the scene's part grasped. `step` is one millisecond, after which the rest is
+/// read.
 class FeelEngine {
  public:
   virtual ~FeelEngine() = default;
@@ -57,10 +58,10 @@ class FeelEngine {
   virtual double skin_m() const { return 0.0; }
 };
 
-/// What is tried of a rigid-body engine: the best of all setups is shown.
+/// The set-ups tried of a rigid-body engine: the best of all is shown.
 struct FeelSetup {
   int substeps = 1;  ///< of a millisecond
-  double erp = 0.2;  ///< share of an overlap that is put right in a step
+  double erp = 0.2;  ///< fraction of an overlap that is corrected in a step
 };
 
 struct FeelEngineEntry {

@@ -12,13 +12,13 @@ namespace tactum::bench {
 namespace {
 
 constexpr double kDegree = kPi / 180.0;
-const Vec3 kBlock(0.010, 0.007, 0.005);  // half the held block [m]
+const Vec3 kBlock(0.010, 0.007, 0.005);  // half the grasped block [m]
 
 FeelPiece box(const Vec3& half, const Pose& X = {}) { return {{"box", make_box(half), half}, X}; }
 
 FeelPiece hull(const std::vector<Vec3>& points) { return {{"hull", *convex_hull(points), std::nullopt}, {}}; }
 
-/// A part's piece; a box along the axes is told as one.
+/// A part's piece; a box along the axes is given as one.
 FeelPiece piece_of(const Polytope& P) {
   Vec3 low = P.vertices.front(), high = low;
   for (const Vec3& v : P.vertices) {
@@ -30,7 +30,7 @@ FeelPiece piece_of(const Polytope& P) {
         return (v.array() == low.array() || v.array() == high.array()).all();
       });
   if (is_box) return box(0.5 * (high - low), {Mat3::Identity(), 0.5 * (low + high)});
-  // Told about its own middle: some engines want the origin inside.
+  // About its own middle: some engines need the origin inside.
   std::vector<Vec3> corners;
   for (const Vec3& v : P.vertices) corners.push_back(v - P.extent.center);
   FeelPiece piece = hull(corners);
@@ -53,7 +53,7 @@ FeelPiece plate() { return box({0.06, 0.06, 0.01}, {Mat3::Identity(), {0, 0, -0.
 
 Pose at(const Vec3& p, const Vec3& turn = Vec3::Zero()) { return {exp_rotation(turn), p}; }
 
-/// To `pressed`, held there, which is judged, and back.
+/// Appends a motion to `pressed`, a rest there, which is judged, and the way back.
 void press_and_release(FeelScene& scene, const Pose& start, const Pose& pressed) {
   auto motion = std::make_shared<ScriptedMotion>(start);
   motion->move_to(0.5, pressed).hold(0.5).move_to(0.5, start).hold(0.1);
@@ -236,7 +236,7 @@ FeelScene sliding_with_friction() {
   return scene;
 }
 
-/// Held for a second at half the force at which it should slide, then led beyond it.
+/// A rest of a second at half the force at which it should slide, then a motion beyond it.
 FeelScene stick_slip() {
   FeelScene scene = rubbed_block();
   const Pose start = at({0, 0, kBlock.z() + 0.002});
@@ -251,7 +251,7 @@ FeelScene stick_slip() {
   scene.judged_from_s = 1.0;
   scene.judged_to_s = 2.0;
   scene.begins_to_slide = true;
-  // Its own friction as the truth of the resting time: all that the hand asks for, as it does not move.
+  // Its own friction as the truth of the resting time: all of the coupling's pull, as it does not move.
   scene.truth = [k = scene.coupling](const Pose& X_WH, double skin) {
     return stretch(k, {-X_WH.p.x(), 0, kBlock.z() + skin - X_WH.p.z()}, Vec3::Zero());
   };
@@ -278,7 +278,7 @@ FeelScene peg_scene(double clearance_m, int hand) {
   FeelScene scene;
   Polytope peg = peg_pieces({0, 0.025, 0.025, 0.06, 0.001})->front();
   std::vector<Vec3> corners;
-  for (const Vec3& v : peg.vertices) corners.push_back(v - Vec3(0, 0, 0.03));  // held in its middle
+  for (const Vec3& v : peg.vertices) corners.push_back(v - Vec3(0, 0, 0.03));  // grasped in its middle
   scene.grasped = {hull(corners)};
   scene.fixed = pieces_of(*hole_block_pieces({0, 0.025, 0.025, clearance_m, 0.025, 0.03, 0.005}));
   scene.coupling.stiffness_Nm_per_rad = 0.6;

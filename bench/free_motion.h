@@ -1,6 +1,6 @@
 #pragma once
-/// Convex bodies that fall, hit and slide by themselves, moved by another engine in small steps: what the
-/// tests compare our own motion with.
+/// Convex bodies that fall, hit and slide by themselves, moved by another engine in small steps: a reference
+/// for our own motion in tests.
 
 #include <vector>
 
@@ -13,13 +13,13 @@ struct FreeMotion {
   World world;                ///< of convex parts of one piece, free or fixed
   std::vector<Shape> shapes;  ///< of its bodies, in their order
   double friction = 0.0;      ///< between all [-]
-  double restitution = 0.0;   ///< ... of the speed [-]
+  double restitution = 0.0;   ///< ... fraction of the speed that is left [-]
 };
 
 /// Whether the engine was there when the program was built.
 bool has_ode() noexcept;
 
-/// Where the world's bodies are after `seconds`, in so many steps. Only where has_ode().
+/// The poses of the world's bodies after `seconds`, in so many steps. Only where has_ode().
 WorldState moved_by_ode(const FreeMotion& motion, double seconds, int steps);
 
 }  // namespace tactum::bench

@@ -15,12 +15,12 @@ namespace {
 
 constexpr double kWidth_m = 0.005;  // of a jack's arms
 constexpr double kArm_m = 0.015;
-constexpr double kTip = 0.6;         // width of an arm's end, as a share of the arm's
+constexpr double kTip = 0.6;         // width of an arm's end, as a fraction of the arm's
 constexpr double kPitch_m = 0.0375;  // between the jacks before they fall: no two can touch, however turned
 constexpr double kWall_m = 0.02;
 constexpr double kDensity_kg_per_m3 = 1200.0;
 constexpr double kFriction = 0.3;
-constexpr double kSettled = 0.4;  // the heap's height, as a share of what the jacks stood in before they fell
+constexpr double kSettled = 0.4;  // the heap's height, as a fraction of the jacks' lattice before they fell
 
 using Cloud = std::vector<Vec3>;
 

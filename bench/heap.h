@@ -24,7 +24,7 @@ struct HeapOptions {
 /// The jack, about its centre of mass.
 Result<Part> make_jack(double width_m, double arm_m);
 
-/// Body 0 is held; then come the bin's floor and four walls, then the jacks.
+/// Body 0 is grasped; then come the bin's floor and four walls, then the jacks.
 Result<Scene> heap_scene(const HeapOptions& options = {});
 
 /// How many of a heap's bodies come before its jacks.

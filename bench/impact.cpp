@@ -59,7 +59,7 @@ void add_twists(Recording& recording) {
   }
 }
 
-/// The gap during a frame, and when it first falls to the target: looked for at many instants, then bisected.
+/// The gap during a frame, and when it first falls to the target: sampled at many instants, then bisected.
 class Watch {
  public:
   Watch(const Shape& a, const Shape& b, const Pose& X_AB, const Twist& V_AB)
@@ -103,7 +103,7 @@ void judge(const TimeOfImpact& found, Watch watch, ImpactRow& row) {
   ++row.hits;
   const double gap_m = watch.gap(found.time);
   row.row.max_error_m = std::max(row.row.max_error_m, std::abs(gap_m - kTarget_m));
-  if (!contact) return;  // a graze between the instants: the gap has said whether it is one
+  if (!contact) return;  // a graze between the instants: the gap has decided whether it is one
   row.late_s = std::max(row.late_s, found.time - *contact);
   row.early_s = std::max(row.early_s, *contact - found.time);
 }

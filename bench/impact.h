@@ -1,5 +1,5 @@
 #pragma once
-/// What the time of impact of two pieces costs that fly at each other, spinning, and how tight it is against
+/// The cost of the time of impact of two pieces that fly at each other, spinning, and how tight it is against
 /// a dense search of the frame.
 
 #include "bench/pairs.h"

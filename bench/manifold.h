@@ -1,6 +1,6 @@
 #pragma once
-/// What the contact patch of two pieces costs, and how steady it is: the way of its centroid in a frame of a
-/// slow hand.
+/// The cost of the contact patch of two pieces, and its steadiness: the displacement of its centroid in a
+/// frame of a slow hand.
 
 #include "bench/pairs.h"
 #include "bench/report.h"
@@ -8,7 +8,7 @@
 namespace tactum::bench {
 
 struct ManifoldRow {
-  Row row;  ///< regime "sliding" or "rocking"; error: of the gap the patch is laid out over
+  Row row;                       ///< regime "sliding" or "rocking"; error: of the gap the patch is made for
   double centroid_p999_m = 0.0;  ///< step of the centroid by the points' weights, in a frame [m]
   double centroid_max_m = 0.0;   ///< [m]
   double pressure_max_m = 0.0;   ///< ... by weight times how far the gap is below the tolerance [m]

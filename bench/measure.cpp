@@ -12,7 +12,7 @@
 namespace tactum::bench {
 namespace {
 
-/// Costs what the call of an engine costs.
+/// An engine that does nothing, to measure the cost of a call.
 class Nothing final : public Engine {
  public:
   bool hold(const Shape&, const Shape&) override { return true; }
@@ -25,7 +25,7 @@ class Nothing final : public Engine {
   int calls_ = 0;
 };
 
-/// The smallest value that at least a share q of all do not exceed; `sorted` is not empty.
+/// The smallest value that at least a fraction q of all do not exceed; `sorted` is not empty.
 double quantile(const std::vector<double>& sorted, double q) {
   const auto rank = static_cast<std::size_t>(std::ceil(q * static_cast<double>(sorted.size())));
   return sorted[std::min(sorted.size(), std::max<std::size_t>(rank, 1)) - 1];
@@ -103,7 +103,7 @@ std::string Meter::describe() const {
 }
 
 Meter::Times Meter::undisturbed(Engine& engine, const Recording& recording, std::size_t count, bool cold) {
-  // A look at the core every so many poses, or so much time, whichever is less.
+  // The core is tested every so many poses, or so much time, whichever is less.
   constexpr std::size_t kMostPoses = 32;
   constexpr double kMost_ns = 20e3;
   std::vector<Readings> ours(count, Readings(clock_.step_ns()));
@@ -118,9 +118,9 @@ Meter::Times Meter::undisturbed(Engine& engine, const Recording& recording, std:
   for (int replay = 0; replay < replays_ || (has_patience(replay) && !seen_enough()); ++replay) {
     engine.forget();
     engine.place(recording, 0);
-    engine.query();  // the start from nothing is not one of the tracked queries
+    engine.query();  // the cold start is not one of the tracked queries
     bool was_ours = core_is_ours_();
-    // A look disturbs the query after it a little: in every replay others come after one.
+    // A test of the core disturbs the query after it a little: in every replay others come after one.
     std::size_t most = 1 + static_cast<std::size_t>(replay) * 7 % kMostPoses;
     for (std::size_t first = 0; first < count; most = kMostPoses) {
       double ns[kMostPoses];
@@ -138,7 +138,7 @@ Meter::Times Meter::undisturbed(Engine& engine, const Recording& recording, std:
       const bool is_ours = core_is_ours_();
       for (std::size_t k = first; k < i; ++k) {
         all[k].add(ns[k - first]);
-        // The least of more would be less: no pose has more than the others, and no engine's.
+        // More readings would give a smaller least: no pose has more than the others, and no engine's.
         if (was_ours && is_ours && ours[k].count() < replays_) ours[k].add(ns[k - first]);
       }
       was_ours = is_ours;

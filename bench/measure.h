@@ -1,8 +1,8 @@
 #pragma once
-/// One engine on one recording: what a query costs and how far off it is. Every pose is replayed several
-/// times while the core is ours alone and counts with its fastest (`Readings`), so that what the machine did
-/// meanwhile is left out; the cost of reading the clock, measured the same way on an engine that does
-/// nothing, is taken off.
+/// One engine on one recording: the cost of a query and its error. Every pose is replayed several times while
+/// the core is ours alone and counts with its fastest (`Readings`), so that disturbances by the rest of the
+/// machine are left out; the cost of reading the clock, measured in the same way on an engine that does
+/// nothing, is subtracted.
 
 #include <functional>
 #include <limits>
@@ -18,12 +18,12 @@ namespace tactum::bench {
 
 struct Row {
   std::string shape_a, shape_b;
-  int vertices = 0;  ///< of the piece that has more
+  int vertices = 0;  ///< of the larger piece
   std::string regime, engine;
-  int frames = 0;  ///< queries; slow engines are asked fewer
+  int frames = 0;                                                     ///< queries; slow engines get fewer
   double median_ns = 0.0, p99_ns = 0.0, p999_ns = 0.0, max_ns = 0.0;  ///< [ns]
   double shared_core = 0.0;  ///< of the queries, those that had too few replays on a core of our own [0..1]
-  double batched_ns = 0.0;   ///< mean over the whole recording between two looks at the clock [ns]
+  double batched_ns = 0.0;   ///< mean over the whole recording between two readings of the clock [ns]
   double max_error_m = 0.0;  ///< against the referee, of the queries answered [m]
   int missed = 0;            ///< not answered, not certified (ours), or contact and no contact mistaken
   int depths_checked = 0;    ///< overlapping poses of which the referee proved the depth
@@ -38,7 +38,7 @@ struct Row {
 /// The keys are the members' names.
 nlohmann::ordered_json to_json(const Row& row);
 
-/// What one thing costs when nothing disturbs it, by a clock that moves in steps. What ends between two of
+/// The cost of one thing when nothing disturbs it, by a clock that moves in steps. A duration between two of
 /// them reads now as the one, now as the other, with the right mean: so the mean of the readings within a
 /// step of the fastest.
 class Readings {
@@ -59,14 +59,14 @@ class Readings {
 class Meter {
  public:
   explicit Meter(int replays);
-  /// With another's word for whether the core is ours alone, which is asked before and after some queries.
+  /// With a function for whether the core is ours alone, which is called before and after some queries.
   Meter(int replays, std::function<bool()> core_is_ours);
-  /// The engine has been given the pair. `cold`: it forgets before each query. Engines are asked as many of
-  /// the poses as fit into `budget_s`; on a core that others use it takes up to kPatience_ns longer.
+  /// The engine has been given the pair. `cold`: it is reset before each query. Engines get as many of the
+  /// poses as fit into `budget_s`; on a core that others use it takes up to kPatience_ns longer.
   Row measure(Engine& engine, const Recording& recording, const std::vector<Truth>& truth, bool cold,
               double budget_s);
-  /// What the numbers are: "each the fastest of 5 replays ...", and how many of the queries measured up to
-  /// now did not have as many on a core that was ours alone.
+  /// The method behind the numbers: "each the fastest of 5 replays ...", and how many of the queries measured
+  /// up to now did not have as many on a core that was ours alone.
   std::string describe() const;
 
   /// Replays go on until each pose has had its number on a core of ours: up to so many times that number in

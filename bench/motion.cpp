@@ -29,7 +29,7 @@ Pose anywhere(const Shape& a, const Shape& b, Random& random) {
   return X;
 }
 
-/// 0.1-0.5 mm and 1-3 mrad a frame, another way every 100 frames.
+/// 0.1-0.5 mm and 1-3 mrad a frame, in another direction every 100 frames.
 struct HandMotion {
   Vec3 step = Vec3::Zero();  ///< [m]
   Vec3 turn = Vec3::Zero();  ///< [rad]
@@ -137,7 +137,7 @@ Recording record_rest(const Shape& a, const Shape& b, Rest rest, int frames, std
       shift = kShift_m * (slides ? Vec3(direction.x(), direction.y(), 0.0).normalized() : direction);
       turn = kTurn_rad * (slides ? Vec3(0.0, 0.0, axis.z() < 0.0 ? -1.0 : 1.0) : axis);
     }
-    const Vec3 tilt = X.R.col(2).cross(Vec3::UnitZ());  // what turns B back to flat
+    const Vec3 tilt = X.R.col(2).cross(Vec3::UnitZ());  // the turn of B back to flat
     if (tilt.norm() > kMostTilt_rad && turn.dot(tilt) < 0.0) turn = kTurn_rad * tilt.normalized();
     if (X.p.head<2>().norm() > kMostOffset_m && shift.head<2>().dot(X.p.head<2>()) > 0.0) shift = -shift;
     X = renormalized(advanced(X, {shift, turn}, 1.0));

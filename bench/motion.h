@@ -1,7 +1,7 @@
 #pragma once
-/// What a hand does to a pair of pieces at 1 kHz: B moves 0.1-0.5 mm and turns 1-3 mrad a frame beside A, the
-/// way changing every 100 frames; each frame is then moved along the normal until the gap is the one wanted,
-/// which wanders within the regime. Recorded once; every engine is asked about the same poses.
+/// The motion of a pair of pieces by a hand at 1 kHz: B moves 0.1-0.5 mm and turns 1-3 mrad a frame beside A,
+/// in another direction every 100 frames; each frame is then moved along the normal until the gap is the
+/// wanted one, which varies within the regime. Recorded once; every engine gets the same poses.
 
 #include <cstdint>
 #include <string>
@@ -16,7 +16,7 @@ namespace tactum::bench {
 struct Regime {
   std::string name;
   double least_m, most_m;  ///< the gap; negative: overlap [m]
-  bool cold = false;       ///< unrelated poses, nothing remembered between queries
+  bool cold = false;       ///< unrelated poses, no state kept between queries
   bool overlapping() const { return most_m <= 0.0; }
 };
 
@@ -25,16 +25,16 @@ const std::vector<Regime>& regimes();
 
 struct Recording {
   std::vector<Pose> poses;            ///< X_AB
-  std::vector<PairDistance> answers;  ///< what the gap was steered by; the referee judges it
+  std::vector<PairDistance> answers;  ///< the distances by which the gap was steered; the referee judges them
   std::vector<Twist> twists;          ///< of B in A, where the bench is about motions
 };
 
-/// The same hand with B deep in A, left alone while the overlap is 2 to 40 % of what the thinner piece is
-/// thick and pushed back into that range where it leaves it.
+/// The same hand with B deep in A, left alone while the overlap is 2 to 40 % of the thickness of the thinner
+/// piece and pushed back into that range where it leaves it.
 Recording record_deep(const Shape& a, const Shape& b, int frames, std::uint64_t seed);
 
 /// B, on which A rests face on face, with a gap of 5-60 um, shifts by 0.03 mm and turns by 1 mrad a frame:
-/// sliding, in the plane of contact; rocking, any way, to and fro through flat by up to 10 mrad.
+/// sliding, in the plane of contact; rocking, in any direction, to and fro through flat by up to 10 mrad.
 enum class Rest { kSliding, kRocking };
 Recording record_rest(const Shape& a, const Shape& b, Rest rest, int frames, std::uint64_t seed);
 

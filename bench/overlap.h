@@ -1,5 +1,5 @@
 #pragma once
-/// How deep convex pieces overlap, by every separating axis there is: the directions are gathered once,
+/// The overlap of convex pieces, by every separating axis there is: the directions are gathered once,
 /// parallel ones count once. Shares no code with the contact queries.
 
 #include <vector>
@@ -16,7 +16,7 @@ struct OverlapPiece {
 
 OverlapPiece overlap_piece(const Polytope& P, const Pose& X);
 
-/// The least depth over all axes; 0 when some axis separates them. Both told in one frame [m].
+/// The least depth over all axes; 0 when some axis separates them. Both are given in one frame [m].
 double overlap(const OverlapPiece& a, const OverlapPiece& b);
 
 /// The piece carried to X.

@@ -8,14 +8,14 @@ namespace {
 
 using Progress = std::function<void(const std::string&)>;
 
-/// Our engine is asked about every pose; this only bounds a run where it has gone wrong.
+/// Our engine gets every pose; this only bounds a run in which it fails.
 constexpr double kOurBudget_s = 20.0;
 constexpr double kEdgePairs_per_s = 1e8;
 constexpr int kQuickFrames = 200;
 constexpr const char* kDeep = "deep";
 constexpr std::uint64_t kSeed = 7;
 
-/// What the runs of both commands share: the meter and the report that grows.
+/// The state common to the runs of both commands: the meter and the report that grows.
 class Run {
  public:
   explicit Run(const PairsOptions& options) : options_(options), meter_(options.replays) {}
@@ -27,7 +27,7 @@ class Run {
 
   int frames() const { return options_.quick ? kQuickFrames : options_.frames; }
 
-  /// Everyone on one recording.
+  /// Measures all engines on one recording.
   void measure_all(const Pair& pair, const Regime& regime, const Recording& recording,
                    std::unique_ptr<Engine> (*make_ours)()) {
     const Shape& a = shape(pair.a);

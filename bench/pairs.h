@@ -1,5 +1,5 @@
 #pragma once
-/// What the distance of a pair of convex pieces costs, ours and the peers', over shapes and regimes.
+/// The cost of the distance of a pair of convex pieces, ours and the peers', over shapes and regimes.
 
 #include <functional>
 #include <span>
@@ -35,10 +35,10 @@ std::span<const Pair> depth_pairs();
 const std::vector<Regime>& depth_regimes();
 std::vector<std::string> engine_names();  ///< ours first
 
-/// `progress` is told each pair before it starts.
+/// `progress` is called with each pair before it starts.
 PairsReport bench_pairs(const PairsOptions& options, const std::function<void(const std::string&)>& progress);
 
-/// The same for overlaps, with penetration_depth in place of closest_features; the referee looks for the
+/// The same for overlaps, with penetration_depth in place of closest_features; the referee searches for the
 /// global minimum on as many frames as it can.
 PairsReport bench_penetration(const PairsOptions& options,
                               const std::function<void(const std::string&)>& progress);

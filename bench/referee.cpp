@@ -12,7 +12,7 @@ namespace {
 
 /// Rounding in sums over parts of 0.1 m, with a wide margin; a proof holds to this.
 constexpr double kRounding_m = 1e-13;
-/// Pairs of edges up to which the long-double referee looks at every frame.
+/// Pairs of edges up to which the long-double referee checks every frame.
 constexpr std::size_t kSmallPair = 400;
 
 std::vector<Vec3> corners_of(const Polytope& P, const Feature& feature) {
@@ -32,7 +32,7 @@ double off_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
   return (p - a - t * u).norm();
 }
 
-/// How far `p` is from the triangle: zero inside, by barycentric coordinates.
+/// The distance of `p` from the triangle: zero inside, by barycentric coordinates.
 double off_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 n = (b - a).cross(c - a);
   const double nn = n.squaredNorm();
@@ -45,7 +45,7 @@ double off_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) 
   return std::min({off_segment(p, a, b), off_segment(p, b, c), off_segment(p, c, a)});
 }
 
-/// How far a point is from the feature it is said to lie on, at most.
+/// The largest distance of a point from the feature on which it should lie.
 double off_feature(const Polytope& P, const Feature& feature, const Vec3& p) {
   const std::vector<Vec3> c = corners_of(P, feature);
   if (c.size() == 1) return (p - c[0]).norm();

@@ -1,8 +1,8 @@
 #pragma once
-/// The true distances that answers are judged by. For pieces that are apart, a proof that needs nothing of
+/// The true distances that answers are judged by. For pieces that are apart, a proof that does not depend on
 /// how the answer was found: two points that lie on the pieces (in the convex hull of the named feature's
 /// corners, by plain arithmetic) bound the distance from above, the gap between support planes over *all*
-/// vertices, by a plain scan, bounds it from below. Where they meet, that is the distance.
+/// vertices, by a plain scan, bounds it from below. Where the two bounds meet, that is the distance.
 ///
 /// For overlapping pieces the gap over all vertices across any normal bounds the signed distance from below;
 /// the truth is the greatest of them. Small pairs: all separating axes in long double (tests/oracles). Larger
@@ -23,7 +23,7 @@ struct Truth {
   double error_of(double distance) const;
 };
 
-/// `edge_pairs`: how many the exhaustive search may look at in all, at 10 ns each.
+/// `edge_pairs`: how many the exhaustive search may try in all, at 10 ns each.
 std::vector<Truth> truths(const Shape& a, const Shape& b, const Recording& recording,
                           double edge_pairs = 1e8);
 

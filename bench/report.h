@@ -1,5 +1,5 @@
 #pragma once
-/// Tables of what was measured: aligned for the terminal, and as Markdown for docs/benchmarks.md.
+/// Tables of measurements: aligned for the terminal, and as Markdown for docs/benchmarks.md.
 
 #include <string>
 #include <vector>

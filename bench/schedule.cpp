@@ -20,7 +20,7 @@ using Index = std::size_t;
 
 /// No pair of a heap is ever left with this many tests.
 constexpr int kNoLimit = 100'000'000;
-/// Heaps whose frames the model is fitted to, as shares of the bodies.
+/// Heaps whose frames the model is fitted to, as fractions of the bodies.
 constexpr double kModelHeaps[] = {0.1, 0.25, 0.5, 1.0};
 constexpr double kModelShare = 0.1;  // of the pairs
 constexpr double kModelSeconds = 0.6;
@@ -66,7 +66,7 @@ class HeapRun {
   double frame_ns_ = 0.0;
 };
 
-/// Looks at the overlap of all pieces of all bodies.
+/// Measures the overlap of all pieces of all bodies.
 class HeapReferee {
  public:
   explicit HeapReferee(const World& world) : world_(world) {
@@ -190,7 +190,7 @@ ScheduleRow run_with(const Scene& scene, double share, int pairs, int frames, in
   return row;
 }
 
-/// What a frame did, and the fastest it did it in.
+/// The work of a frame, and its fastest time.
 struct Frame {
   std::array<double, 4> work;
   double ns;

@@ -1,6 +1,6 @@
 #pragma once
-/// Scheduling: what a work budget costs. A heap of jacks (heap.h) is stirred by a hand that is led,
-/// once for each budget, told as a share of the most pairs that are near at once.
+/// Scheduling: the effect of a work budget. A heap of jacks (heap.h) is stirred by a hand that is led, once
+/// for each budget, given as a fraction of the most pairs that are near at once.
 ///
 ///   force error     the same frame computed again from a copy of the state, with all the budget it wants
 ///   overlap         by all separating axes of every pair of pieces, in frames picked evenly
@@ -8,8 +8,8 @@
 ///
 /// And the paper's bound of a frame's time, T_h = N t_s + K t_c + M t_f [Gregory 2000, 4.2]: constants by
 /// least squares of relative errors over frames of heaps of several sizes, each frame with its fastest of
-/// identical replays. Beside it, the same with a fourth term for what this response adds: contact points
-/// times sweeps.
+/// identical replays. Beside it, the same with a fourth term for the additional work of this response:
+/// contact points times sweeps.
 
 #include <array>
 #include <cstdint>
@@ -28,16 +28,16 @@ struct ScheduleOptions {
   double seconds = 0.0;                                     ///< of the motion; 0: all of it [s]
   std::vector<double> shares = {1.0, 0.5, 0.2, 0.1, 0.05};  ///< of the pairs [-]
   int replays = 3;                                          ///< for the model [-]
-  int looks = 40;  ///< frames of each run that the referee looks at [-]
+  int looks = 40;  ///< frames of each run that the referee checks [-]
 };
 
 /// One run with one budget.
 struct ScheduleRow {
   double share = 0.0;
   int budget = 0, most_near = 0, most_tests = 0, left_of_grasped = 0;
-  int frames = 0, grasped_frames = 0;  ///< ... with contact of the held part
+  int frames = 0, grasped_frames = 0;  ///< ... with contact of the grasped part
   double force_error_mean_N = 0.0,
-         force_error_max_N = 0.0;  ///< over frames with contact of the held part [N]
+         force_error_max_N = 0.0;  ///< over frames with contact of the grasped part [N]
   double unchecked_mean = 0.0, unproven_mean = 0.0, waiting_mean = 0.0;
   int unchecked_max = 0, unproven_max = 0, longest_unchecked = 0, longest_wait = 0;
   int unchecked_at_end = 0;           ///< in the last frame

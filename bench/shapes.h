@@ -33,7 +33,7 @@ struct Pair {
 /// "a/b" of each.
 std::vector<std::string> names_of(std::span<const Pair> pairs);
 
-/// Is the name among those asked for? Asked for none means all.
+/// Whether the name is among those wanted. An empty list means all.
 bool wanted(const std::vector<std::string>& asked_for, const std::string& name);
 
 }  // namespace tactum::bench

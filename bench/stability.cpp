@@ -19,7 +19,7 @@ constexpr double kLever_m = 0.05;       // the same on the rim of a turning hand
 constexpr double kMade_J = 1e-5;        // [J] energy beyond what the spring holds: a tenth of a light tap
 constexpr double kFelt_m_per_s = 1e-3;  // a vibration of 1 um at 160 Hz
 
-/// The hand's way through the wall at the origin, along x or about z.
+/// The hand's motion through the wall at the origin, along x or about z.
 std::shared_ptr<const HandMotion> tapping_hand(bool turning) {
   const auto at = [&](double x) {
     return turning ? Pose{exp_rotation({0, 0, x / kLever_m}), Vec3::Zero()}
@@ -46,8 +46,8 @@ Wrench wall(const WallSetup& setup, double stiffness, const Pose& X_DH) {
   return F;
 }
 
-/// What the wall gives back on the way out [J]: that of a spring, and beyond the motors' limit that of a
-/// constant force.
+/// The energy that the wall gives back during retreat [J]: that of a spring, and beyond the motors' limit
+/// that of a constant force.
 double stored(const WallSetup& setup, double stiffness, const Pose& X_DH, const Wrench& F) {
   const double load = setup.turning ? -F.t.z() : -F.f.x();
   const double depth = setup.turning ? log_rotation(X_DH.R).z() : X_DH.p.x();
@@ -100,7 +100,7 @@ WallTrial try_wall(const WallSetup& setup, double stiffness, double seconds) {
     DeviceSample sample;
     const double now_s = static_cast<double>(i) / setup.rate_Hz;
     device.read(now_s, sample);
-    // The wrench that acted over the last step, after the delay: what the hand was given is what counts.
+    // The wrench that acted over the last step, after the delay: the hand received this one.
     input.sent = device.motor_wrench();
     input.wanted = wall(setup, stiffness, sample.X_DH);
     (setup.turning ? input.spring_turning_J : input.spring_J) =
@@ -132,7 +132,7 @@ WallRow stiffest_wall(const WallSetup& setup) {
   row.delay_s = setup.device.command_delay_s;
   row.alone = wall_bound_alone(setup);
   row.bound = wall_bound(setup);
-  constexpr double kHighest = 4.0;  // times the bound: nobody looks farther
+  constexpr double kHighest = 4.0;  // times the bound: the end of the search
   row.at_rest = largest(kHighest * row.bound, [&](double k) { return try_wall(setup, k).at_rest; });
   row.passive = largest(kHighest * row.bound, [&](double k) { return try_wall(setup, k).passive; });
   return row;

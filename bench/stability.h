@@ -1,6 +1,6 @@
 #pragma once
-/// How stiff a wall does a device hold in a hand? Found by simulation, beside the passivity bound of
-/// [Colgate and Schenkel 1994] (haptics/coupling_gains.h).
+/// The stiffest wall that a device displays stably in a hand. Found by simulation, beside the passivity bound
+/// of [Colgate and Schenkel 1994] (haptics/coupling_gains.h).
 ///
 ///   wall: a plane with a spring (or a stop with a torsion spring) right at the device, F = - K depth,
 ///         on the encoder's readings, nothing else in the loop: no proxy, smoothing, ramp
@@ -8,9 +8,8 @@
 ///
 /// The handle is *at rest* when, in the last third of the pressing, it moves by less than it did in the third
 /// before, or by less than a hand can feel. The wall is *passive* when the balance of the port
-/// (loop/passivity.h), with the damping of device and hand and no credit but what the spring has stored,
-/// never falls 0.01 mJ below zero: no energy was made. The stiffest of each kind
-/// is found by bisection.
+/// (loop/passivity.h), with the damping of device and hand and no credit but the energy stored in the spring,
+/// never falls 0.01 mJ below zero: no energy was generated. The stiffest of each kind is found by bisection.
 
 #include <array>
 #include <functional>
@@ -54,7 +53,7 @@ struct WallRow {
   double delay_s = 0.0;
   double alone = 0.0;    ///< bound, nobody holds it [N/m or N m/rad]
   double bound = 0.0;    ///< bound, with the hand's damping
-  double passive = 0.0;  ///< stiffest that made no energy
+  double passive = 0.0;  ///< stiffest that generated no energy
   double at_rest = 0.0;  ///< stiffest that came to rest
 };
 
@@ -67,7 +66,7 @@ struct StabilityOptions {
   std::vector<std::string> devices;  ///< empty: all presets
 };
 
-/// Every preset, hand, rate and delay; turning where there is torque. `progress` is told each device.
+/// Every preset, hand, rate and delay; turning where there is torque. `progress` is called with each device.
 Result<std::vector<WallRow>> bench_stability(const StabilityOptions& options,
                                              const std::function<void(const std::string&)>& progress);
 

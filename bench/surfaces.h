@@ -1,5 +1,5 @@
 #pragma once
-/// What all minima of two surfaces cost, beside FCL's distance and Bullet's GImpact on the same poses: real
+/// The cost of all minima of two surfaces, beside FCL's distance and Bullet's GImpact on the same poses: real
 /// parts where the folder with them is given, and pairs made here.
 
 #include <functional>
@@ -32,7 +32,7 @@ std::unique_ptr<SurfacePeer> make_gimpact_surfaces(const TriangleMesh& a, const 
                                                    double tolerance_m);
 
 struct SurfacesOptions {
-  std::string data;                ///< folder of real meshes and motions; empty: only what is made here
+  std::string data;                ///< folder of real meshes and motions; empty: only pairs made here
   std::vector<std::string> pairs;  ///< by name; empty: all
   int frames = 200;                ///< poses of each motion made here
   int replays = 5;                 ///< each pose counts with its fastest
@@ -62,7 +62,7 @@ struct SurfacesReport {
   std::string how;
 };
 
-/// The names that can be asked for; `real` ones need the data.
+/// The names of all pairs; `real` ones need the data.
 std::vector<std::string> surface_pair_names();
 SurfacesReport bench_surfaces(const SurfacesOptions& options,
                               const std::function<void(const std::string&)>& progress);

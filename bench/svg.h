@@ -20,7 +20,7 @@ class Svg {
   void path(const std::vector<SheetPoint>& points, const std::string& style);
   void dot(SheetPoint at, double radius, const std::string& style);
   void text(SheetPoint at, const std::string& words, const std::string& style);
-  /// What is drawn until end_group lies so far lower.
+  /// Everything drawn until end_group is lower by this.
   void group(double lower);
   void end_group() { body_ += "</g>\n"; }
   std::string finished() const { return body_ + "</svg>\n"; }

@@ -11,7 +11,7 @@
 namespace tactum {
 namespace {
 
-// The compiler may remove a pair of new and delete whose object nobody sees.
+// The compiler may remove a pair of new and delete whose object is not used.
 void look_at(void* p) { asm volatile("" : : "g"(p) : "memory"); }
 
 TEST(AllocationGuard, CountsNewMallocAndEigen) {

@@ -15,7 +15,7 @@ struct Table {
 constexpr Table kTwo{2};
 constexpr Table kFour{4};
 
-/// What the kernel of the operating system says of the processor.
+/// The processor's features as the kernel of the operating system reports them.
 bool listed_in_cpuinfo(const std::string& wanted) {
   std::ifstream file("/proc/cpuinfo");
   for (std::string line; std::getline(file, line);) {

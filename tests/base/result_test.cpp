@@ -27,7 +27,7 @@ TEST(Result, HoldsTheValueOrTheError) {
   EXPECT_FALSE(Result<void>(Error{"no", "", "", ""}));
 }
 
-/// In every build: who takes a value that is not there has not asked.
+/// In every build: access without a value means that the caller did not check.
 TEST(Result, WhatIsNotThereCannotBeTaken) {
   const Result<int> bad(Error{"no", "", "", ""});
   const Result<int> good(5);

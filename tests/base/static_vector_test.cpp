@@ -26,7 +26,7 @@ TEST(StaticVector, FillsRefusesAndEmpties) {
   EXPECT_EQ(items.begin(), items.end());
 }
 
-/// Counts what is made of it.
+/// Counts its constructions and copies.
 struct Counted {
   static inline int made = 0;
   int value;

@@ -34,7 +34,7 @@ TEST(Feel, FacetsFeelRound) {
   const FeelRow row = ours("sliding over facets");  // 64 of them, with 5 N
   EXPECT_LT(row.force_step_N, 0.02);
   EXPECT_LT(row.direction_error_rad, 0.1 * 2.0 * kPi / 64) << "a tenth of the angle between two facets";
-  // What is left is the depth of a facet below the circle, 24 um.
+  // The rest is the depth of a facet below the circle, 24 um.
   EXPECT_LT(row.force_error_N, 600.0 * 0.02 * (1.0 - std::cos(kPi / 64)) + 0.01);
   EXPECT_EQ(row.penetration_m, 0.0);
   const FeelRow hole = ours("cylinder in a hole");
@@ -54,7 +54,7 @@ TEST(Feel, FrictionIsThatOfCoulomb) {
 }
 
 TEST(Feel, AJudgeThatIsToldAnotherTruthSeesIt) {
-  // The scene's own numbers must be able to fail: a spring that is a thousandth stiffer than was told.
+  // The scene's own numbers must be able to fail: a spring that is a thousandth stiffer than stated.
   static const FeelSceneEntry stiffer = {"stiffer", [] {
                                            FeelScene scene = feel_scenes().front().make();
                                            scene.coupling.stiffness_N_per_m *= 1.001;

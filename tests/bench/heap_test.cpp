@@ -1,6 +1,6 @@
-/// A heap of jacks of twenty pieces each, stirred by the held one, with a tenth of the exact tests that its
-/// pairs would take (an eighth in a small heap). Two hundred bodies with TACTUM_FULL=1, else some, and a few
-/// in a sanitized build.
+/// A heap of jacks of twenty pieces each, stirred by the grasped one, with a tenth of the exact tests that
+/// its pairs would take (an eighth in a small heap). Two hundred bodies with TACTUM_FULL=1, else some, and a
+/// few in a sanitized build.
 
 #include "bench/heap.h"
 
@@ -61,7 +61,7 @@ struct HeapRig {
   }
 };
 
-/// What must hold in every frame, and what a run amounted to.
+/// The conditions of every frame, and the sums of a run.
 struct HeapWatch {
   int budget = 0, most_near = 0, short_frames = 0, unproven = 0, longest = 0, met = 0, asleep = 0;
 

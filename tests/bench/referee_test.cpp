@@ -70,7 +70,7 @@ TEST(Referee, IsNotTakenInByAWrongAnswer) {
 
 TEST(Referee, DepthsOfSmallPairsAreTheSmallestOverAllAxes) {
   Recording recording = two_boxes(-0.002);
-  recording.answers[0].normal = Vec3::UnitY();  // a way out, but 80 mm long
+  recording.answers[0].normal = Vec3::UnitY();  // separates them, but 80 mm long
   const Truth truth = truths(shape("box"), shape("box"), recording)[0];
   EXPECT_TRUE(truth.proved);
   EXPECT_NEAR(truth.low, -0.002, 1e-15);
@@ -97,7 +97,7 @@ TEST(Motion, StaysInItsRegimeAtHandSpeed) {
       const double turned = Eigen::AngleAxisd(before.R.transpose() * now.R).angle();
       EXPECT_GT(turned, 0.9e-3);
       EXPECT_LT(turned, 3.1e-3);
-      // What is not along the surface is taken back to keep the gap.
+      // Motion off the surface is undone to keep the gap.
       EXPECT_LT((now.p - before.p).norm(), 2e-3) << regime.name << ", frame " << i;
     }
   }
@@ -112,7 +112,7 @@ TEST(Motion, IsTheSameWheneverItIsRecorded) {
   }
 }
 
-/// Tells what it is told to.
+/// Gives the answer that it was given.
 class Parrot final : public Engine {
  public:
   explicit Parrot(Answer answer) : answer_(answer) {}
@@ -161,7 +161,7 @@ TEST(Meter, CountsWhatIsMissedAndHowFarOffTheRestIs) {
   EXPECT_EQ(row({true, std::nan(""), 0}).missed, 1);
 }
 
-/// Counts how often each pose is asked about.
+/// Counts how often each pose is queried.
 class Counter final : public Engine {
  public:
   bool hold(const Shape&, const Shape&) override { return true; }

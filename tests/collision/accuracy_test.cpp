@@ -1,6 +1,6 @@
 /// docs/accuracy.md: how far off the answers of the contact core are at worst, and how many feature pairs
 /// they take, for one pair of shapes after the other. With TACTUM_WRITE_ACCURACY set the page is written;
-/// else each figure is held against it, and one that has become worse fails.
+/// else each figure is compared with it, and one that has become worse fails.
 
 #include <gtest/gtest.h>
 
@@ -24,14 +24,13 @@ using cases::Making;
 
 constexpr const char* kPage = TACTUM_SOURCE_DIR "/docs/accuracy.md";
 
-/// The worst of one pair of shapes. Lengths are shares of the larger shape's size.
+/// The worst of one pair of shapes. Lengths are fractions of the larger shape's size.
 struct Worst {
   double distance =
       0.0;  // of pieces apart: the points' distance less the support planes' gap, over all corners
   double normal = 0.0;  // bound on its angle that this leaves [rad], for gaps above 1e-3 of the size
-  double depth =
-      0.0;  // of pieces that overlap: the depth told less that of the support planes along its normal
-  int cold_steps = 0;     // without a last frame
+  double depth = 0.0;   // of pieces that overlap: the depth less that of the support planes along its normal
+  int cold_steps = 0;   // without a last frame
   int tracked_steps = 0;  // in the frames of a hand's motion
   int uncertified = 0;
 
@@ -110,7 +109,7 @@ std::vector<Named> shapes() {
           {"triangle", *flat_polygon({{0, 0, 0.01}, {0.05, 0, 0.01}, {0.01, 0.03, 0.01}})}};
 }
 
-/// Two digits, rounded up: what is written is never less than what was seen.
+/// Two digits, rounded up: the written figure is never less than the measured one.
 std::string rounded_up(double value) {
   if (value == 0.0) return "0";
   if (value == std::floor(value) && value < 1e6) return std::to_string(int(value));

@@ -84,7 +84,7 @@ inline std::vector<Shape> shapes(Random& random, bool large) {
   return list;
 }
 
-/// What a pose of the list is made to show.
+/// The purpose of a pose of the list.
 enum class Making {
   kRandom,
   kFaceToFace,
@@ -109,7 +109,7 @@ inline double random_gap(Random& random) {
   return kind < 6 ? magnitude : -magnitude;
 }
 
-/// What is drawn for a pose, whatever its making: features of A and of B, and numbers.
+/// Random choices for a pose of any kind: features of A and of B, and numbers.
 struct PoseDraw {
   const Polytope::Face& face_a;
   const Polytope::Face& face_b;

@@ -137,7 +137,7 @@ TEST(ClosestFeatures, LargeShapesProveThemselves) {
   report(tally, seed);
 }
 
-/// A pose, its two pieces and what must hold for every answer about them.
+/// A pose, its two pieces and the conditions of every answer about them.
 struct Case {
   const cases::Shape& a;
   const cases::Shape& b;
@@ -275,8 +275,8 @@ TEST(ClosestFeatures, TrackedMotionIsCertifiedInFewSteps) {
   EXPECT_LT(double(steps), 1.5 * double(frames));
 }
 
-/// Two long edges at the angle where the walk changes from one way of telling them to the other, over each
-/// other's ends and between, from touching to apart: both ways say the same, and neither sends it in circles.
+/// Two long edges at the angle where the walk changes from one formula for them to the other, over each
+/// other's ends and between, from touching to apart: both formulas agree, and neither makes the walk cycle.
 TEST(ClosestFeatures, EdgesAreTheSameEitherWayTheyAreTold) {
   const Polytope A = make_prism(3, 0.01, 0.1);
   const Polytope B = make_prism(3, 0.01, 0.1);
@@ -312,8 +312,8 @@ double off_line(const Polytope& P, int edge, const Pose& X, const Vec3& point) {
   return (X.R * e.direction).cross(point - X * P.vertices[std::size_t(e.tail)]).norm();
 }
 
-/// Between edges that cross nothing is measured of what rounding leaves: the bound told must hold, of the
-/// support planes in long double and of the points on their edges, at any angle and from any place.
+/// Between edges that cross no rounding error is measured: the stated bound must hold, of the support planes
+/// in long double and of the points on their edges, at any angle and from any place.
 TEST(ClosestFeatures, TheErrorBoundOfCrossingEdgesHolds) {
   Random random(20268);
   const auto shapes = cases::shapes(random, false);
@@ -363,7 +363,7 @@ TEST(ClosestFeatures, RoundingAtASharpEdgeLeadsNobodyInCircles) {
       piece = convex_hull(corners);
     }
     ASSERT_TRUE(piece) << piece.error().message();
-    // Over the border from corner 0 to 1, whose outside is -y, as far out as is still held for the column.
+    // Over the border from corner 0 to 1, whose outside is -y, as far out as still counts for the column.
     Vec3 over(random.uniform(0.2, 0.8) * flat[1].x(), 0.0, random.uniform(1e-5, 1e-3));
     over.y() = -random.uniform(0.9, 1.2) * tolerances::kVoronoiTolerance *
                (over.lpNorm<1>() + tip.extent.magnitude + piece->extent.magnitude);
@@ -433,7 +433,7 @@ TEST(ClosestFeatures, OfAPoseThatIsNotFiniteNothingIsCertified) {
   }
 }
 
-/// So far away that squares of lengths are infinite: what is told may be poor, but not that they overlap.
+/// So far away that squares of lengths are infinite: the answer may be poor, but must not be an overlap.
 TEST(ClosestFeatures, OfPiecesUnthinkablyFarApartNoContactIsTold) {
   Random random(20272);
   const auto shapes = cases::shapes(random, true);

@@ -1,5 +1,5 @@
 #pragma once
-/// A contact with its manifold, and what the tests of manifolds ask of one.
+/// A contact with its manifold, and the conditions that the tests of manifolds check.
 
 #include <gtest/gtest.h>
 
@@ -71,7 +71,7 @@ inline void expect_kinds(const Manifold& patch, Kind a, Kind b, std::size_t poin
   EXPECT_EQ(patch.points.size(), points);
 }
 
-/// What holds for every patch.
+/// The conditions of every patch.
 inline void expect_sound(const Contact& c, double tolerance, double allowed) {
   ASSERT_FALSE(c.patch.points.empty());
   double weight = 0.0;

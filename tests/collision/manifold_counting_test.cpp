@@ -17,7 +17,7 @@ namespace {
 
 using namespace manifold_tests;
 
-/// A face of P over or under an edge of Q, looked at along `n`, all in P's frame.
+/// A face of P over or under an edge of Q, in the projection along `n`, all in P's frame.
 struct EdgeAndFace {
   const Polytope& P;
   const Polytope::Face& face;
@@ -83,7 +83,7 @@ struct EdgeOverFace {
   }
 };
 
-/// What the cases were, so that the test can say that it saw enough of each.
+/// Counts of the kinds of cases, so that the test can check that there were enough of each.
 struct Tally {
   int level = 0;
   int leaning = 0;
@@ -157,7 +157,7 @@ TEST(Manifold, EdgeOverAFaceAgreesWithCounting) {
   EXPECT_GT(tally.cut, 200);
 }
 
-/// Whether a point is within the borders of a face, looked at along a direction.
+/// Whether a point is within the borders of a face, in the projection along a direction.
 bool over(const Polytope& P, const Polytope::Face& face, const Vec3& p, const Vec3& along) {
   for (int s = face.first; s < face.first + face.count; ++s) {  // the border's plane holds the direction
     const Vec3& u = P.edges[std::size_t(P.sides[std::size_t(s)].edge)].direction;

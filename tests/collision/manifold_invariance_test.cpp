@@ -1,4 +1,5 @@
-/// What manifolds of random contacts keep to: swapped, renamed, moved, scaled, turned a little, never empty.
+/// Invariants of the manifolds of random contacts: swapped, renamed, moved, scaled, turned a little, never
+/// empty.
 
 #include <gtest/gtest.h>
 
@@ -70,7 +71,7 @@ TEST(Manifold, SwappingAAndBTurnsTheNormalAndKeepsThePatch) {
   }
 }
 
-/// Where the patch is, how large and how it spreads: told the same whatever the vertices are called, a
+/// Where the patch is, how large and how it spreads: the same for any numbering of vertices, a
 /// kilometre away (1e-12 m of the poses' own rounding), and for parts of 1 mm to 10 m.
 TEST(Manifold, NamesPlaceAndScaleDoNotMatter) {
   const std::uint64_t seed = 33;

@@ -162,7 +162,7 @@ TEST(Penetration, NothingIsProvedAlongAPlaneThatHoldsBothPieces) {
     EXPECT_FALSE(depth_along(square, square, X, Vec3::UnitX()).certified()) << cases::describe(X);
 }
 
-/// Warm and cold must agree on where a piece pushed slowly into another is held.
+/// Warm and cold must agree on the depth of a piece that is pushed slowly into another.
 TEST(Penetration, WarmTrackingStaysCertified) {
   const std::uint64_t seed = 46;
   Random random(seed);
@@ -188,7 +188,7 @@ TEST(Penetration, WarmTrackingStaysCertified) {
   EXPECT_EQ(frames, 200 * std::max(2, cases::some_of(60)));
 }
 
-/// What a pair remembers may come from other pieces, or be anything: the answer is a certified depth all the
+/// The cache of a pair may come from other pieces, or be anything: the answer is a certified depth all the
 /// same.
 TEST(Penetration, AnyMemoryGivesADepth) {
   const std::uint64_t seed = 47;
@@ -222,8 +222,8 @@ TEST(Penetration, AnyMemoryGivesADepth) {
   EXPECT_GT(compared, cases::some_of(2500));
 }
 
-/// Boxes face to face, where feet lie between the facets: pushed sideways the way out through a side becomes
-/// the shorter one, and is found within a few frames.
+/// Boxes face to face, where feet lie between the facets: pushed sideways the translation out through a side
+/// becomes the shortest one, and is found within a few frames.
 TEST(Penetration, AlignedBoxesFindTheirSides) {
   const Polytope box = make_box({0.02, 0.03, 0.04});  // half extents
   PairCache cache;

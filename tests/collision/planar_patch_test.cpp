@@ -47,7 +47,7 @@ TEST(PlanarPatch, ClippingByAWindowAgreesWithClippingSideBySide) {
   }
 }
 
-/// Windows of one and two corners, which enclose nothing, and corners told twice, which bound nothing.
+/// Windows of one and two corners, which enclose nothing, and repeated corners, which bound nothing.
 TEST(PlanarPatch, ClippingByAWindowWithoutSidesKeepsWhatIsInside) {
   const auto clipped = [](std::initializer_list<Vec2> window_corners) {
     PatchPolygon polygon;

@@ -39,7 +39,8 @@ TEST(TimeOfImpact, SaysMissAndStartedInside) {
   EXPECT_EQ(inside.time, 0.0);
 }
 
-/// Spinning pieces: never past the contact (sampled finely before it), and near the target when it says hit.
+/// Spinning pieces: never past the contact (sampled finely before it), and near the target when the answer is
+/// a hit.
 TEST(TimeOfImpact, NeverOvershoots) {
   const std::uint64_t seed = 51;
   Random random(seed);

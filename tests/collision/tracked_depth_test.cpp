@@ -16,7 +16,7 @@ struct Count {
   double worst = 0.0;  ///< [m]
 };
 
-/// A hand at 1 kHz: 0.1-0.5 mm and 1-3 mrad a frame, another way every 60 frames.
+/// A hand at 1 kHz: 0.1-0.5 mm and 1-3 mrad a frame, in another direction every 60 frames.
 struct Hand {
   Random& random;
   Vec3 v = Vec3::Zero();  ///< of the piece's center [m a frame]
@@ -43,8 +43,8 @@ Pose touch(const Polytope& A, const Polytope& B, Random& random, double depth) {
   return X;
 }
 
-/// From first touch; the depth is kept within `most` [m]. Every `stride`-th frame is held against every facet
-/// of the Minkowski difference.
+/// From first touch; the depth is kept within `most` [m]. Every `stride`-th frame is compared with every
+/// facet of the Minkowski difference.
 Count track(const Polytope& A, const Polytope& B, std::uint64_t seed, int frames, int stride, double most) {
   Random random(seed);
   Count count;
@@ -124,8 +124,8 @@ TEST(TrackedDepth, MissesFewGlobalMinimaUnderAHandsMotion) {
   EXPECT_LE(compact.missed, 0.003 * compact.frames) << "seed " << seed;
 }
 
-/// Held 1 um deep for 300 frames, as a stiff contact is, then pushed on by 0.1 mm a frame up to `most` [m]:
-/// the search beside the tracked minimum must have looked far beyond a depth that was nearly nothing.
+/// Kept 1 um deep for 300 frames, as a stiff contact is, then pushed on by 0.1 mm a frame up to `most` [m]:
+/// the search beside the tracked minimum must have covered far more than a depth of almost nothing.
 Count push_on(const Polytope& A, const Polytope& B, std::uint64_t seed, int rounds, double most) {
   constexpr double kGraze = 1e-6;
   constexpr double kPush = 1e-4;

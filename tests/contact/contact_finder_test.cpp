@@ -41,8 +41,7 @@ Part cluttered_part(Random& random) {
   }
   Result<Part> part = part_from_clouds(clouds);
   EXPECT_TRUE(part);
-  part->true_surface =
-      {};  // every pair by itself: what pieces settle between them is tested in seams_test.cpp
+  part->true_surface = {};  // every pair by itself: settling between pieces is tested in seams_test.cpp
   return std::move(*part);
 }
 
@@ -147,8 +146,8 @@ TEST(ContactFinder, FindsEveryPatchThatTestingAllPairsFinds) {
   }
 }
 
-/// Two rings that come near, part and come near again: what is felt is what a query of its own finds, and far
-/// away hardly anything is asked.
+/// Two rings that come near, part and come near again: the patches are those that a query of its own finds,
+/// and far away there are hardly any queries.
 TEST(ContactFinder, AsksSurfacesThatAreApartSeldom) {
   const Result<Part> ring =
       part_from_mesh(testing::torus(40, 20, 0.02, 0.006), {.pieces = PieceSource::kSurface});
@@ -249,7 +248,7 @@ TEST(ContactFinder, PairsOfTheHeldPartAreTestedBeforeAllOthers) {
   EXPECT_EQ(finder.work().left_of_grasped, 0);
   EXPECT_FALSE(finder.blocked(3) && finder.work().left_unproven == 0);
   EXPECT_GT(finder.work().left_unproven, 0);
-  // With less than its own pairs need, it is told that it must not move.
+  // With less than its own pairs need, it is blocked.
   ContactFinder poor(bodies, X);
   poor.find_near_pairs(X, motion_bound, 1e-4);
   poor.find_patches(X, 3, PatchPoints::kQuadrature, priority);
@@ -258,7 +257,7 @@ TEST(ContactFinder, PairsOfTheHeldPartAreTestedBeforeAllOthers) {
   EXPECT_TRUE(poor.blocked(3));
 }
 
-/// With too little room for near pairs it is told; once the room suffices, nothing that was left out is
+/// With too little room for near pairs the flag is set; once the room suffices, no pair that was left out is
 /// missed.
 TEST(ContactFinder, WhatFoundNoRoomIsLookedForAgain) {
   Random random(9);
@@ -329,7 +328,7 @@ TEST(ContactFinder, WhatABudgetLeavesIsNotEntered) {
         for (const int body : {patch.body_a, patch.body_b})
           room[std::size_t(body)] = std::min(room[std::size_t(body)], 0.45 * patch.distance);
       for (std::size_t i = 0; i < kBodies; ++i) {
-        // Who goes nearly half of each gap is soon so near that rounding decides the sign.
+        // A body that goes nearly half of each gap is soon so near that rounding decides the sign.
         ASSERT_GE(room[i], -1e-13 * part.size) << "budget " << budget << " frame " << frame;
         const double share = std::clamp(room[i] / motion_bound[i], 0.0, 1.0);
         if (!finder.blocked(static_cast<int>(i))) X[i] = renormalized(advanced(X[i], V[i], 1e-3 * share));

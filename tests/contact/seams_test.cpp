@@ -1,4 +1,4 @@
-/// What pieces of one part settle between them.
+/// Contacts that are settled between the pieces of one part.
 
 #include "tactum/contact/seams.h"
 
@@ -45,7 +45,7 @@ Part tiles() {
 TEST(Seams, AFlatContactOverASeamIsOne) {
   const Part part = tiles();
   for (double gap : {2e-4, 0.0, -3e-4}) {
-    // The block reaches only 50 um over the seam: the shortest way out of the right tile is sideways.
+    // The block extends only 50 um over the seam: the penetration depth of the right tile is sideways.
     for (double x : {0.0, -0.00995, 0.004}) {
       const std::vector<ContactPatch> patches =
           patches_on(part, {Mat3::Identity(), {x, 0, 0.005 + gap}}, 1e-3);
@@ -54,7 +54,7 @@ TEST(Seams, AFlatContactOverASeamIsOne) {
       EXPECT_LT((patch.normal - Vec3::UnitZ()).norm(), 1e-12);
       EXPECT_NEAR(patches[0].distance, gap, 1e-12);
       EXPECT_NEAR(patch.area, 4e-4, 1e-12);
-      // The moments of the block's whole face, 20 x 20 mm: told by the block, which is A.
+      // The moments of the block's whole face, 20 x 20 mm, which is A's.
       Vec3 centroid = Vec3::Zero();
       double xx = 0.0;
       for (const ContactPoint& point : patch.points) centroid += point.weight * point.p_a;

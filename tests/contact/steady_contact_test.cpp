@@ -21,7 +21,8 @@ Vec3 centroid(const Manifold& patch) {
   return sum;
 }
 
-/// A box's edge pushed into another's: the way out switches between the sides. Every shown depth separates,
+/// A box's edge pushed into another's: the direction of least depth switches between the sides. Every shown
+/// depth separates,
 /// the normal never turns faster than it may, and it arrives.
 TEST(SteadyContact, ASwitchingNormalTurnsSlowlyAndAlwaysSeparates) {
   const std::uint64_t seed = 71;

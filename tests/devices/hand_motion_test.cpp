@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kStep = 1e-6;  // of the finite differences [s]
 
-/// The velocity told equals the change of the pose, at many times.
+/// The reported velocity equals the change of the pose, at many times.
 void expect_velocity_is_the_derivative(const HandMotion& motion, double tolerance) {
   Random random(21);
   for (int i = 0; i < 500; ++i) {
@@ -42,7 +42,7 @@ TEST(ScriptedMotion, GoesThroughItsKeyframesAtRest) {
   EXPECT_EQ(motion->at(1.5).buttons, 1u);
   EXPECT_EQ(motion->at(-3.0).X_DH.p, keys[0].X_DH.p);
   EXPECT_EQ(motion->at(99.0).X_DH.p, keys[2].X_DH.p);
-  // Half the time is half the way, by symmetry, at 15/8 of the mean speed.
+  // Half the time is half the path, by symmetry, at 15/8 of the mean speed.
   EXPECT_LT((motion->at(0.75).X_DH.p - Vec3(0.01, 0.01, 0)).norm(), 1e-15);
   EXPECT_NEAR(motion->at(0.75).V_DH.v.y(), 0.02 / 0.5 * 15.0 / 8.0, 1e-12);
   expect_velocity_is_the_derivative(*motion, 1e-6);

@@ -11,7 +11,7 @@
 namespace tactum {
 namespace {
 
-/// A device without friction, steps, delay or velocity estimate; each test adds what it asks about.
+/// A device without friction, steps, delay or velocity estimate; each test adds the property it tests.
 SimulatedDeviceModel plain_model() {
   SimulatedDeviceModel model;
   model.name = "plain";
@@ -236,7 +236,7 @@ TEST(SimulatedDevice, WorkOfTheWrenchIsTheEnergyGained) {
   Wrench F;
   for (int i = 0; i <= 1000; ++i) {
     ASSERT_TRUE(device.read(i * 0.001, sample));
-    work += F.f.dot(device.true_pose().p - p);  // the force was constant on the way
+    work += F.f.dot(device.true_pose().p - p);  // the force was constant meanwhile
     p = device.true_pose().p;
     EXPECT_NEAR(device.energy_J(), work, 1e-12) << "seed 8, frame " << i;
     F.f = Vec3(random.uniform(-1, 1), 0.5, 0);

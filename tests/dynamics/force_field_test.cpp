@@ -34,7 +34,7 @@ Vec3 downhill(const std::function<double(const Vec3&)>& potential, const Vec3& p
   Vec3 force;
   for (int i = 0; i < 3; ++i) {
     const Vec3 step = h * Vec3::Unit(i);
-    // Fourth order: what is left is rounding, 1e-11 N.
+    // Fourth order: the rest is rounding, 1e-11 N.
     force[i] = -(8.0 * (potential(p + step) - potential(p - step)) -
                  (potential(p + 2.0 * step) - potential(p - 2.0 * step))) /
                (12.0 * h);
@@ -148,7 +148,7 @@ TEST(FieldGrid, AtNodesItIsTheField) {
 }
 
 TEST(FieldGrid, BetweenNodesItIsLinearInEachDirection) {
-  // What is linear in each direction is met exactly, mixed terms too, and so is its gradient.
+  // Functions that are linear in each direction are met exactly, mixed terms too, and so is their gradient.
   const auto force = [](const Vec3& p) {
     const double x = p.x(), y = p.y(), z = p.z();
     return Vec3(1.0 + 2.0 * x - 3.0 * y * z, x * y * z * 400.0 - z, 0.5 - x * z * 30.0 + y);

@@ -89,7 +89,7 @@ TEST(Joint, ConstrainedVelocityKeepsTheAnchorStillAndItsOwnResults) {
     EXPECT_LT((V.w - body.joint.axis_W * body.joint.axis_W.dot(V.w)).norm(), 1e-12);
     const Twist again = constrained_velocity(body.joint, body.X_WB, M, V);
     EXPECT_LT((again.v - V.v).norm() + (again.w - V.w).norm(), 1e-9);
-    // Nearest in the metric: what was taken away is M-orthogonal to the free motion.
+    // Nearest in the metric: the difference is M-orthogonal to the free motion.
     EXPECT_NEAR(joint_motions(body.joint, body.X_WB).col(0).dot(M * (to_vector(wanted) - to_vector(V))), 0.0,
                 1e-12);
   }
@@ -122,14 +122,14 @@ TEST(Joint, AnyTurnOfAHingeBecomesItsTurnAboutTheAxis) {
     EXPECT_LT((back.R - turn * body.X_WB.R).norm(), 1e-13);
     EXPECT_LT((back.R * back.R.transpose() - Mat3::Identity()).norm(), 1e-14);
   }
-  // Half a turn about an axis square to the hinge's says nothing of the angle.
+  // Half a turn about an axis square to the hinge's does not determine the angle.
   Body body = random_body(random, JointKind::kHinge);
   body.X_WB.R = Mat3::Identity();
   body.joint.axis_W = Vec3::UnitZ();
   EXPECT_EQ(constrained_pose(body, {Vec3(1, -1, -1).asDiagonal(), Vec3::Zero()}).R, Mat3::Identity());
 }
 
-/// What is no number must stay none, for the frame to see it.
+/// A value that is not a number must stay so, for the frame to detect it.
 TEST(Joint, APoseThatIsNoNumberStaysNone) {
   Random random(7);
   for (JointKind kind : {JointKind::kFree, JointKind::kHinge, JointKind::kBall}) {

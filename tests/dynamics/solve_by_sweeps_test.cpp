@@ -14,7 +14,7 @@ constexpr double kStep = 1e-3;
 constexpr double kSkin = 1e-7;
 const ContactScale kScale{.skin_m = kSkin, .settled_m = 0.25 * kSkin, .opening_share = opening_share(kStep)};
 
-/// Bodies of 10 g, or of a mass each; the last one does not move. What is kept from frame to frame.
+/// Bodies of 10 g, or of a mass each; the last one does not move. With the memory from frame to frame.
 struct Pile {
   std::vector<Body> bodies;
   std::vector<Pose> X_WB;
@@ -152,7 +152,7 @@ TEST(SolveBySweeps, WhatDigsInIsPressedNoHarderForEver) {
   EXPECT_LT(pile.sweeps.friction_force(0).norm(), 1.0 / kStep * pile.rows[0].impulse * 1.01 * (1.0 + 1e-12));
 }
 
-/// The load of the sweeps' friction and what joints do: a slider with dry friction that two bodies push.
+/// Sweeps with the friction of joints: a slider with dry friction that two bodies push.
 TEST(SolveBySweeps, AJointWithDryFrictionHoldsBelowItsLimit) {
   for (const double pushed_N : {0.5, 0.9, 1.1, 2.0}) {
     Pile pile(1);

@@ -53,7 +53,7 @@ int true_groups(const Part& part) {
   return static_cast<int>(groups.size());
 }
 
-/// The lists of members say what the groups of the features say.
+/// The lists of members agree with the groups of the features.
 void expect_listed(const Part& part) {
   const TrueSurface& surface = part.true_surface;
   std::map<int, std::vector<std::pair<int, int>>> groups;

@@ -65,7 +65,7 @@ TEST(Constraint, ContactForcesAddUpToWhatIsFelt) {
       const Pose to = at(x, -0.5 * x, z, turn);
       for (int i = 1; i <= 40; ++i) {
         bench.step(interpolated(from, to, i / 40.0));
-        const double force = 1.0 + bench.report.coupling.f.norm();  // [N]: to 1e-9 of what is felt
+        const double force = 1.0 + bench.report.coupling.f.norm();  // [N]: to 1e-9 of the felt force
         EXPECT_LT(bench.unaccounted().f.norm(), 1e-9 * force);
         EXPECT_LT(bench.unaccounted().t.norm(), 1e-9 * force);
         EXPECT_FALSE(bench.report.penetrating);
@@ -115,7 +115,7 @@ TEST(Constraint, TurningOnTheSpotIsHeldBackByThePatchsRadius) {
   bench.step({});
   bench.go(at(0, 0, -0.008), 100);
   const double load = bench.report.coupling.f.z();
-  const double limit = mu * load * kBlockHalf.head<2>().norm();  // held at its corners
+  const double limit = mu * load * kBlockHalf.head<2>().norm();  // carried by its corners
   bench.go(at(0, 0, -0.008, {0, 0, 0.5 * limit / 0.3}), 100);
   EXPECT_LT(std::abs(log_rotation(bench.X_WB().R).z()), 1e-4) << "half the limit does not turn it";
   bench.go(at(0, 0, -0.008, {0, 0, 3.0 * limit / 0.3}), 300);
@@ -140,7 +140,7 @@ TEST(Constraint, AStepIsNeverLongerThanSet) {
   bench.step({});
   bench.go(at(0, 0, -0.010), 100);
   Vec3 last = bench.X_WB().p;
-  for (int i = 0; i < 60; ++i) {  // let go of the plate at once, and fast
+  for (int i = 0; i < 60; ++i) {  // leave the plate at once, and fast
     bench.step(at(0.03, 0, 0.03));
     EXPECT_LE((bench.X_WB().p - last).norm(), bench.settings.constraint.max_step_m + 1e-12);
     last = bench.X_WB().p;

@@ -14,7 +14,7 @@ DeviceInfo info_of(const std::string& preset) {
   return SimulatedDevice(*simulated_device_preset(preset), no_hand(), nullptr).info();
 }
 
-/// The damping that [Colgate and Schenkel 1994] ask for, frequency by frequency:
+/// The damping that [Colgate and Schenkel 1994] require, frequency by frequency:
 ///   b > T/2 / (1 - cos wT)  Re{ (1 - z^-1) H(z) },   z = exp(j w T),   H = (K + B (1 - z^-1) / T) z^-d
 double damping_by_frequencies(double K, double B, double T, int delay_periods) {
   double most = 0.0;
@@ -77,7 +77,7 @@ TEST(CouplingGains, EveryPresetGetsWhatALooseHandAllows) {
 
 TEST(CouplingGains, DelayCostsStiffness) {
   DeviceInfo info = info_of("virtuose-6d");
-  info.max_stiffness_N_per_m = info.max_stiffness_Nm_per_rad = 0.0;  // nobody has said
+  info.max_stiffness_N_per_m = info.max_stiffness_Nm_per_rad = 0.0;  // not given
   const CouplingGains prompt = coupling_gains(info, 1000.0);
   info.handle.delay_s = 0.5e-3;
   const CouplingGains delayed = coupling_gains(info, 1000.0);

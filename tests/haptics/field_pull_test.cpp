@@ -1,5 +1,5 @@
-/// Force fields as the hand feels them: the load on the held part, carried by the coupling, beside contact,
-/// and its energy.
+/// Force fields as the hand feels them: the load on the grasped part, carried by the coupling, beside
+/// contact, and its energy.
 
 #include "tactum/response/field_pull.h"
 
@@ -15,7 +15,7 @@ const DipoleField kDipole{.moment_Nm3 = 2e-6, .core_m = 0.01};
 const WellField kWell{.depth_J = 0.02, .width_m = 0.02};
 const VortexField kVortex{.circulation_J = 0.1, .core_m = 0.015};
 
-/// The held block in fields, far above the plate unless it is lowered.
+/// The grasped block in fields, far above the plate unless it is lowered.
 struct FieldRig : BlockRig {
   explicit FieldRig(const ForceField& field, ResponseModel response = ResponseModel::kConstraint) {
     world.fields.push_back(field);
@@ -32,7 +32,7 @@ struct FieldRig : BlockRig {
     settings.port.max_injected_Ns_per_m = 10.0;
     settings.port.max_injected_Nms_per_rad = 0.01;
   }
-  /// What the fields do at the pose the held part has now, at the handle.
+  /// The load of the fields at the present pose of the grasped part, at the handle.
   Wrench truth() {
     const Wrench load =
         field_load(world.fields, world.bodies[0].field_points, X_WB(), settings.tool.X_BH.p).at_centre;

@@ -21,7 +21,7 @@ struct Case {
   double dt_s = 1e-3;
   double turn_rad = 0.03;    ///< in a frame
   double before_rad = 0.05;  ///< where the first frame starts, before the corner is lowest
-  double gap_m = -2e-4;      ///< under the corner at its lowest, for a bar of 1 m; negative: it strikes
+  double gap_m = -2e-4;      ///< under the corner at its lowest, for a bar of 1 m; negative: it hits
   double falling_m = 0.0;    ///< by which a bar that is free falls in a frame
   double rising_m = 0.0;     ///< by which the plate rises in a frame
   int bar_pieces = 1, plate_pieces = 1;

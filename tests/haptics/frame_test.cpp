@@ -32,7 +32,7 @@ std::shared_ptr<const Part> grid_part(int n) {
   return std::make_shared<const Part>(std::move(*part));
 }
 
-/// A held box of 20 x 14 x 10 mm over a fixed plate, both moved by X.
+/// A grasped box of 20 x 14 x 10 mm over a fixed plate, both moved by X.
 struct Bench {
   World world;
   FrameSettings settings;
@@ -101,7 +101,7 @@ TEST(Frame, PressedFlatTheForceIsThePublishedLaw) {
   EXPECT_EQ(report.grasped_contact_points, 4);
   EXPECT_TRUE(report.penetrating);
   EXPECT_LT((report.restoring.f - report.coupling.f).norm(),
-            1e-3);  // what pushes the part is what the hand feels
+            1e-3);  // the hand feels the forces on the part
 }
 
 TEST(Frame, PressedOffCentreTheTorqueIsLeverTimesForce) {
@@ -129,7 +129,7 @@ TEST(Frame, AWallFeelsTheSameHoweverFinelyItIsMeshed) {
   const auto pressed = [](std::shared_ptr<const Part> plate, double depth) {
     Bench bench({}, std::move(plate));
     bench.settings.penalty.stiffness_N_per_m =
-        1200.0;  // twice the coupling's: held off while the hand is near
+        1200.0;  // twice the coupling's: kept off while the hand is near
     return bench.press({Mat3::Identity(), {0.0012, 0.0007, -0.003 - depth}});
   };
   const std::shared_ptr<const Part> solid = solid_box({0.05, 0.05, 0.01});
@@ -214,7 +214,7 @@ TEST(Frame, GraspingPullsNothing) {
   EXPECT_LT(report.coupling.t.norm(), 1e-9);
 }
 
-/// What was near at load time is known: the first frame has nothing to walk to from afar.
+/// Pairs that are near at load time are known: the first frame has no walk from afar.
 TEST(Frame, TheFirstBeginsWithWhatIsNear) {
   Rig rig(2);
   const Polytope ball = make_icosphere(3, 0.02);

@@ -1,4 +1,4 @@
-/// Bodies that move by themselves, against what mechanics says in closed form.
+/// Bodies that move by themselves, against mechanics in closed form.
 
 #include "tactum/response/free_bodies.h"
 
@@ -29,7 +29,7 @@ TEST(FreeBodies, FallOnTheParabola) {
   EXPECT_LT((box.V(b).v - Vec3(0.3, 0.0, 2.0 - 9.81)).norm(), 1e-12);
 }
 
-/// How far the axis of a free top is from where Euler has it after two seconds, in shares of its tilt.
+/// How far the axis of a free top is from Euler's solution after two seconds, as a fraction of its tilt.
 double lag_of_top(double dt_s) {
   Sandbox box;
   box.settings.dt_s = dt_s;
@@ -109,7 +109,7 @@ TEST(FreeBodies, ASkewImpactKeepsMomentumBothWays) {
   }
   EXPECT_GT(hits, 0);
   EXPECT_LT((box.momentum() - p).norm(), 1e-9 * p.norm());
-  // The points where the two act are apart by the gap at which the blow is struck.
+  // The two points of the impact are apart by the gap at which it occurs.
   EXPECT_LT((box.angular_momentum() - L).norm(), 1e-9 * L.norm());
   EXPECT_LT(box.energy(), energy);
   EXPECT_EQ(box.penetrating_frames, 0);

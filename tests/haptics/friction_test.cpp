@@ -65,8 +65,8 @@ TEST(Friction, APartThatCirclesOnItsCornerDoesNotWalk) {
     });
 }
 
-/// How fast a block creeps that is pulled with `share` of what it holds while the hand turns to and fro every
-/// frame [m/s].
+/// The creep of a block that is pulled with the fraction `share` of its friction limit while the hand turns
+/// to and fro every frame [m/s].
 double creep(double share, const Vec3& turn) {
   const double mu = 0.3;
   BlockRig block(mu);
@@ -90,7 +90,7 @@ TEST(Friction, APatchDoesNotCreepUnderAHandThatShakes) {
   }
 }
 
-/// A held block of 20 x 20 x 20 mm on a fixed one of 60 x 60 x 20 mm whose top is at z = 0; each has the
+/// A grasped block of 20 x 20 x 20 mm on a fixed one of 60 x 60 x 20 mm whose top is at z = 0; each has the
 /// shape of a box, either as one convex piece or as a surface of triangles.
 struct BoxOnBox : Rig {
   BoxOnBox(bool surface_above, bool surface_below, double size, double mu) : Rig(2) {

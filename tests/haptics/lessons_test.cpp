@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kPressed_m = 0.004;  // so far the hand is below where the block can be
 
-/// The pose that a target clipped to one step would be: of the way that is left to X, no more than `most`.
+/// The pose that a target clipped to one step would be: of the displacement left to X, no more than `most`.
 Pose clipped(const BlockRig& bench, const Pose& X, double most) {
   const Vec3 p_WD = bench.report.X_WH.p - bench.X_DH.p;
   const Vec3 proxy = bench.report.X_WH_proxy.p - p_WD;
@@ -31,8 +31,8 @@ TEST(Lessons, AClippedTargetNeverPushesHarderThanOneStepsSpring) {
 }
 
 TEST(Lessons, APartThatTurnsOverARimFollowsTheHandEitherWay) {
-  // Linear rows let the face sink by its turn times its way along the rim, many skins a frame, when the two
-  // go against each other; without the exact gaps fed back it would go on by halved steps, and lag.
+  // Linear rows let the face sink by its turn times its displacement along the rim, many skins a frame, when
+  // the two are opposed; without the correction by exact gaps it would go on by halved steps, and lag.
   for (const double sense : {1.0, -1.0}) {
     BlockRig bench;
     bench.settings.coupling.stiffness_Nm_per_rad = 3.0;

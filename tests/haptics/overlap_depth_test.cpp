@@ -124,8 +124,8 @@ double expected_scale(double cosine) {
   return ratio <= 2.0 ? ratio : ratio >= 4.0 ? 1.0 : 1.0 + 0.5 * (4.0 - ratio);
 }
 
-/// The seam lies so that the block reaches over it by 1.1 times its depth at rest: the way back along the
-/// motion leads out of the pieces there through the wall that they share with the others.
+/// The seam lies so that the block extends over it by 1.1 times its depth at rest: the motion back leads out
+/// of the pieces there through the wall that they share with the others.
 Case over_a_seam() {
   Case at{.name = "over a seam of the plate", .angle_rad = 0.9};
   const double c = std::cos(at.angle_rad);
@@ -165,7 +165,7 @@ TEST(OverlapDepth, AtRestTheForceIsThatOfTheDepthAlongTheMotion) {
   }
 }
 
-/// Two simulations in the same state: what the setting makes of the next frame.
+/// Two simulations in the same state, to compare the effect of the setting on the next frame.
 void expect_scaled(const Case& at) {
   SCOPED_TRACE(at.name);
   Oblique shortest(at);
@@ -208,7 +208,7 @@ TEST(OverlapDepth, OfAPartThatTurnsTheMotionIsThatOfTheMiddleOfThePatch) {
       expect_scaled({.name = "on a hinge", .size_m = size, .angle_rad = angle, .on_hinge = true});
 }
 
-/// At 2 times the shortest depth the way along the motion begins to count less, at 4 it does not count.
+/// At 2 times the shortest depth the depth along the motion begins to count less, at 4 it does not count.
 TEST(OverlapDepth, AMotionAlongTheSurfaceSaysNothing) {
   for (const double ratio : {1.9, 2.1, 3.0, 3.9, 4.1, 8.0, 30.0})
     expect_scaled({.name = "along the surface", .angle_rad = std::acos(1.0 / ratio)});

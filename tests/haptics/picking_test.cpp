@@ -62,14 +62,14 @@ TEST(Picking, LiftsWithoutAStepFeelsTheWeightAndThrows) {
   hand.go({0, 0, 0.025}, 200, false);
   EXPECT_EQ(hand.report.grasped_body, -1);
   EXPECT_EQ(hand.report.coupling.f.norm(), 0.0);
-  EXPECT_LT(hand.go({0, 0, 0.025}, 1, true), 0.2);  // at most what it weighs: 78 mN
+  EXPECT_LT(hand.go({0, 0, 0.025}, 1, true), 0.2);  // at most its weight: 78 mN
   EXPECT_EQ(hand.report.grasped_body, hand.near_block);
   hand.go({0, 0, 0.08}, 300, true);
   hand.go({0, 0, 0.08}, 300, true);
   const Body& block = hand.world.bodies[std::size_t(hand.near_block)];
   EXPECT_NEAR(hand.report.coupling.f.z(), -9.81 * block.mass_kg, 1e-6);
   EXPECT_LT(hand.report.coupling.f.head<2>().norm(), 1e-9);
-  // Thrown sideways at 0.5 m/s: it flies on, and the hand feels nothing from the frame it let go.
+  // Thrown sideways at 0.5 m/s: it flies on, and the hand feels nothing from the frame of release.
   hand.go({0, 0.1, 0.08}, 200, true);
   const Vec3 start = hand.X(hand.near_block).p;
   EXPECT_NEAR(hand.V(hand.near_block).v.y(), 0.5, 0.01);

@@ -1,4 +1,4 @@
-/// The same scenes at 1, 2, 4 and 10 kHz: what is told in seconds takes as long, and what is felt is the
+/// The same scenes at 1, 2, 4 and 10 kHz: durations stated in seconds stay as long, and the wrench is the
 /// same.
 #include <gtest/gtest.h>
 
@@ -21,7 +21,8 @@ TEST(Rates, AFrameHasItsShareOfATime) {
   EXPECT_EQ(frames_in(0.002, 0.01), 1);
 }
 
-/// The way out of a corner is along x, and was along y: the shown normal turns by 90 degrees at 50 rad/s.
+/// The direction of least depth in a corner is along x, and was along y: the shown normal turns by 90 degrees
+/// at 50 rad/s.
 TEST(Rates, AShownNormalTurnsAsFast) {
   const Polytope box = make_box({0.04, 0.04, 0.04});
   const Pose X_AB{Mat3::Identity(), {0.0795, 0.0795, 0.0}};
@@ -87,7 +88,7 @@ TEST(Rates, BlocksRestWhereTheyDidAndFallAsleepAsSoon) {
   }
 }
 
-/// A held block is led down onto a plate, pressed by 2 mm, and slid along it: the force at every 10 ms.
+/// A grasped block is led down onto a plate, pressed by 2 mm, and slid along it: the force at every 10 ms.
 TEST(Rates, APressedAndSlidBlockFeelsTheSame) {
   std::vector<Vec3> first;
   double largest = 0.0;

@@ -88,7 +88,7 @@ struct Felt {
   int frames_in_contact = 0;
 };
 
-/// Moves `probe` over `part`, both as given, and tells what is felt in every frame. The hand may tremble.
+/// Moves `probe` over `part`, both as given, and returns the wrench of every frame. The hand may tremble.
 Felt slide(const SharedPart& part, const SharedPart& probe, Motion motion, ResponseModel response,
            double tremor_m = 0.0) {
   const int frames = 900;
@@ -121,7 +121,7 @@ Felt slide(const SharedPart& part, const SharedPart& probe, Motion motion, Respo
   return felt;
 }
 
-/// The largest difference of force and of torque (over a lever of 10 mm), as a share of the largest force.
+/// The largest difference of force and of torque (over a lever of 10 mm), as a fraction of the largest force.
 double ripple(const Felt& cut, const Felt& whole) {
   double worst = 0.0;
   for (std::size_t i = 0; i < whole.wrench.size(); ++i) {
@@ -176,8 +176,7 @@ const Probe kOnTheFace[] = {{"block, flat", block, block_flat},
                             {"block, corner down", block, block_corner_down},
                             {"ball", ball, ball_down}};
 /// In `penalty` a leaning patch that shrinks as it turns can shake the response of the uncut part, which then
-/// makes much of the last bit. So the ripple may be some times what the uncut part makes of a tremor of that
-/// size.
+/// amplifies the last bit. So the ripple may be some times that of the uncut part with a tremor of that size.
 constexpr double kTremor_m = 1e-16;
 constexpr double kOwnRipples = 10.0;
 
@@ -271,7 +270,7 @@ TEST(Seams, ABarOfCellsIsRound) {
   const SharedPart cut = bar_in_cells(5, 5);
   ASSERT_GT(cut->pieces.size(), 10u);
   expect_same(cut, whole, {"block round the bar", block, block_round_the_bar});
-  // In `penalty` a normal that turns over to the next is that of one piece, whose supports tell the depth.
+  // In `penalty` a normal that turns over to the next is that of one piece, whose supports give the depth.
   expect_same(cut, whole, {"ball round the bar", ball, ball_round_the_bar}, 0.05);
 }
 
@@ -336,7 +335,7 @@ TEST(Seams, AThinSheetOfTilesIsTouchedFromBothSides) {
     expect_same(cut, whole, probe);
 }
 
-/// The patches of a block over a plate, told anew.
+/// The patches of a block over a plate, found anew.
 std::vector<ContactPatch> patches_of(const SharedPart& plate, const SharedPart& probe, const Pose& X_WA) {
   const std::vector<Pose> X_WB = {X_WA, Pose()};
   ContactFinder finder({{probe.get(), true}, {plate.get(), false}}, X_WB);

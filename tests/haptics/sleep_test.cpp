@@ -1,4 +1,5 @@
-/// What sleeps must not be told from what is awake: the same worlds with and without sleep.
+/// Bodies that sleep must show no difference from bodies that are awake: the same worlds with and without
+/// sleep.
 
 #include "tactum/response/sleep.h"
 
@@ -118,7 +119,7 @@ TEST(Sleep, WhatIsPushedWakesWithWhatStandsOnIt) {
   EXPECT_EQ(asleep_before, 2);
   EXPECT_EQ(asleep_after, 0);
   EXPECT_GT(twins.awake.X(1).p.x(), 0.01);
-  EXPECT_LT(twins.apart(), 1e-4);  // of 0.1 m: what is awake rests to rounding only
+  EXPECT_LT(twins.apart(), 1e-4);  // of 0.1 m: awake bodies rest to rounding only
   EXPECT_EQ(twins.sleeping.penetrating_frames, 0);
 }
 

@@ -43,7 +43,7 @@ double tilt_at(double depth) {
   double low = 0.0, high = 0.3;
   for (int i = 0; i < 60; ++i) {
     const double tilt = 0.5 * (low + high);
-    // Across the slot: width times cosine, and the sine of what is below the rim along the side.
+    // Across the slot: width times cosine, and the sine of the part below the rim along the side.
     const double span = kWidth * std::cos(tilt) + depth * std::tan(tilt);
     (span > kWidth + kClearance ? high : low) = tilt;
   }
@@ -63,8 +63,8 @@ double wedging_limit(const Pose& X_WB, double tilt) {
   return std::tan(std::max(at_rim, at_wall));
 }
 
-/// Jams a peg `depth` deep without friction, so that both contacts are there, then lets it rub and pulls with
-/// ten times what friction holds by the squeeze alone.
+/// Jams a peg `depth` deep without friction, so that both contacts are there, then adds friction and pulls
+/// with ten times the force that friction resists by the squeeze alone.
 struct Pull {
   Slot slot;
   double angle, limit;  // of the hand; analytic friction
@@ -109,7 +109,7 @@ TEST(Wedging, AJammedPegIsFreedByTurningItStraight) {
   pull.slot.go(turned(pull.angle, 2.0 * pull.slot.X_DH.p), 500);
   pull.slot.go(pull.slot.X_DH, 3000);
   EXPECT_LT(pull.displacement(), kStuck_m);
-  // The hand lets go of the pull, turns the peg to the other side and back, and pulls a little.
+  // The hand ends the pull, turns the peg to the other side and back, and pulls a little.
   pull.slot.go(turned(pull.angle), 300);
   pull.slot.go(turned(-pull.angle), 300);
   pull.slot.go(turned(0.0), 300);
@@ -119,8 +119,8 @@ TEST(Wedging, AJammedPegIsFreedByTurningItStraight) {
 }
 
 TEST(Wedging, AWedgeThatNoTurningSqueezesHoldsNothing) {
-  // Pulled so hard that the way along the walls hides how it comes off them: only that the hand no longer
-  // turns the peg against its walls tells that nothing presses them.
+  // Pulled so hard that the displacement along the walls hides how it comes off them: only the hand, which no
+  // longer turns the peg against its walls, shows that nothing presses them.
   for (const double mu_of_limit : {1.1, 1.3, 2.0}) {
     const double depth = 0.006;
     Pull pull(depth, mu_of_limit * 0.5 * depth / (0.5 * kWidth), 1.0);

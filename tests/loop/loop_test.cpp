@@ -14,7 +14,7 @@
 namespace tactum {
 namespace {
 
-/// A device that remembers what was done to it. Used by the loop's thread, read after it has ended.
+/// A device that records its calls. Used by the loop's thread, read after it has ended.
 class FakeDevice final : public Device {
  public:
   Result<void> open() override {

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kPeriod_s = 0.001;
 
-/// A spring of stiffness K about the origin, and the stage around it, led along a given way.
+/// A spring of stiffness K about the origin, and the stage around it, led along a given path.
 struct Spring {
   double K = 1000.0;        // [N/m]
   double K_turning = 10.0;  // [N m/rad]
@@ -42,7 +42,7 @@ struct Spring {
 
 TEST(Passivity, TheBalanceOfASampledSpringIsKnownExactly) {
   // - f_(n-1) (x_n - x_(n-1)), summed over a spring f = - K x, is  K x_N^2 / 2 - K / 2 sum (x_n - x_(n-1))^2:
-  // what is stored, less what sampling has made.
+  // the stored energy, less the energy that sampling has generated.
   Random random(11);
   Spring spring, turned;  // one that is moved and one that is turned: neither pays for the other
   Vec3 x = Vec3::Zero(), turn = Vec3::Zero();
@@ -73,7 +73,7 @@ TEST(Passivity, TheTotalsAreTheWorkEitherWayAndWhatTheControllerTookOut) {
     double from_hand = 0.0, to_hand = 0.0, damped = 0.0, turned = 0.0, turned_damped = 0.0;
     Vec3 x = Vec3::Zero(), turn = Vec3::Zero();
     spring.go({});
-    Wrench damper;  // what the controller added to the spring
+    Wrench damper;  // the controller's part of the wrench
     for (int i = 0; i < 5000; ++i) {
       const Vec3 before = x;
       const double turn_before = turn.z();
@@ -96,7 +96,7 @@ TEST(Passivity, TheTotalsAreTheWorkEitherWayAndWhatTheControllerTookOut) {
     EXPECT_NEAR(turning.to_hand_J - turning.from_hand_J, turned, 1e-9);
     EXPECT_NEAR(turning.damped_J, turned_damped, 1e-9);
     EXPECT_EQ(total.damped_J != 0.0, most > 0.0);
-    // Without bounds the two balances together are what came less what went.
+    // Without bounds the two balances together are the energy that came less the energy that went.
     const double kept = total.from_hand_J - total.to_hand_J + turning.from_hand_J - turning.to_hand_J;
     EXPECT_NEAR(spring.report.energy_balance_J + spring.report.energy_balance_turning_J, kept, 1e-9);
     EXPECT_GT(total.to_hand_J, 0.1);
@@ -104,7 +104,7 @@ TEST(Passivity, TheTotalsAreTheWorkEitherWayAndWhatTheControllerTookOut) {
 }
 
 TEST(Passivity, DampingOfHalfThePeriodTimesStiffnessIsEnoughAndNecessary) {
-  // [Colgate and Schenkel 1994]: b > K T / 2, here as an identity of the balance, for any way whatever.
+  // [Colgate and Schenkel 1994]: b > K T / 2, here as an identity of the balance, for any path whatever.
   for (const double share : {1.0, 0.9}) {
     Random random(12);
     Spring spring;
@@ -161,9 +161,10 @@ TEST(Passivity, MadeEnergyIsTakenOutByDamping) {
   }
 }
 
-/// A spring that holds a simulated device to a plane from both sides, as a part in a slot is held, knocked at
-/// in a loose hand: how fast the handle still moves in the last half second, and what the spring made
-/// meanwhile, counted at the true handle. Without friction and hard limits, which would calm it as well.
+/// A spring that keeps a simulated device on a plane from both sides, like a part in a slot, knocked at in a
+/// loose hand: how fast the handle still moves in the last half second, and the energy that the spring
+/// generated meanwhile, computed at the true handle. Without friction and hard limits, which would calm it as
+/// well.
 struct Buzz {
   double speed_m_per_s = 0.0;
   double made_J = 0.0;
@@ -252,8 +253,8 @@ TEST(Passivity, EnergyThatBodiesGiveUpIsNoneThatWasMade) {
 }
 
 TEST(Passivity, AScrewMayPassWorkFromTurningToPushing) {
-  // A frictionless thread of 2 mm pitch, turned steadily against 1 N along its axis: what the hand puts in by
-  // turning it gets back by being pushed. With half the torque half of it is made from nothing.
+  // A frictionless thread of 2 mm pitch, turned steadily against 1 N along its axis: the work that the hand
+  // does by turning it gets back by being pushed. With half the torque half of it is generated.
   constexpr double kLead = 0.002 / (2.0 * kPi);  // [m/rad]
   for (const double share : {1.0, 0.5}) {
     PortSettings settings;
@@ -268,7 +269,7 @@ TEST(Passivity, AScrewMayPassWorkFromTurningToPushing) {
       sample.valid = true;
       const double angle = -1e-3 * i;
       sample.X_DH = {exp_rotation({0, 0, angle}), {0, 0, kLead * angle}};
-      // An encoder tells the way along the axis now and then only.
+      // An encoder gives the displacement along the axis now and then only.
       sample.X_DH.p.z() = 1e-5 * std::ceil(sample.X_DH.p.z() / 1e-5);
       input.sent = passive_wrench(settings, state, sample, input, report);
       injected = std::max(injected, report.injected_Ns_per_m);

@@ -1,5 +1,5 @@
-/// Faults played into a running loop with real contact force: what leaves the safety stage and what the
-/// motors do is judged sample by sample. The table of docs/safety.md, row by row.
+/// Faults played into a running loop with real contact force: the output of the safety stage and the motors'
+/// wrench are judged sample by sample. The table of docs/safety.md, row by row.
 
 #include <gtest/gtest.h>
 
@@ -34,7 +34,7 @@ struct Moment {
   double now_s = 0.0;
   bool framed = false;  // false: the loop's thread was stalled
   Wrench sent;          // by the frame
-  Wrench motors;        // what the hand has felt up to now
+  Wrench motors;        // the wrench that the hand has felt so far
   std::uint32_t safety = 0;
 };
 
@@ -80,7 +80,7 @@ struct Experiment {
       Moment moment;
       moment.now_s = tick.now_s = i * kPeriod_s;
       if (tick.now_s >= stall_from_s && tick.now_s < stall_to_s) {
-        DeviceSample unseen;  // the hand and the device go on; nobody looks
+        DeviceSample unseen;  // the hand and the device go on without reads
         handle.read(tick.now_s, unseen);
         moment.motors = handle.motor_wrench();
         moments.push_back(moment);
@@ -103,8 +103,8 @@ struct Experiment {
   }
 };
 
-/// What must hold in every frame whatever happens: limits; no step above the slew but to zero; and after a
-/// fault never more than the start ramp lets through.
+/// The conditions of every frame in any case: limits; no step above the slew but to zero; and after a fault
+/// never more than the start ramp allows.
 void expect_safe(const std::vector<Moment>& moments, const SafetyLimits& limits,
                  bool motors_reported = true) {
   Moment last;
@@ -161,7 +161,7 @@ std::uint32_t faults_between(const std::vector<Moment>& moments, double from_s, 
 
 struct Row {
   Fault fault;
-  std::uint32_t flag;  // what is told
+  std::uint32_t flag;  // that is reported
   int pushed_ms;       // frames until the wrench is zero
 };
 
@@ -207,7 +207,7 @@ TEST(SafetyFaults, AFewLostReadsAreNotFelt) {
 }
 
 TEST(SafetyFaults, ALeapIsNotAnsweredWithABlow) {
-  // Out of the plate, into it, and a turn: told at once, both ways.
+  // Out of the plate, into it, and a turn: reported at once, in both directions.
   for (const Pose& leap : {Pose{Mat3::Identity(), {0, 0, 0.04}}, Pose{Mat3::Identity(), {0, 0, -0.008}},
                            Pose{exp_rotation({0, 0, 1.57}), Vec3::Zero()}}) {
     Experiment experiment;
@@ -251,7 +251,7 @@ TEST(SafetyFaults, AFastHandIsNoLeap) {
 }
 
 TEST(SafetyFaults, AThrownHandleIsNotDrivenOn) {
-  // Nobody holds the handle, and something asks for the full force without end.
+  // A handle that is not held, and a request for the full force without end.
   SimulatedDevice device(*simulated_device_preset("premium-1.5-6dof"), no_hand(), nullptr);
   ASSERT_TRUE(device.open());
   device.place({Mat3::Identity(), {-0.119, 0, 0}}, {});
@@ -374,10 +374,10 @@ TEST(SafetyFaults, ALateFrameSendsZeroOnce) {
 struct AbsurdEdit {
   const char* name;
   std::function<void(World&, FrameSettings&, FrameState&)> make, undo;
-  bool heals = true;  // undone, the world is what it was; else a block may lie under the plate
+  bool heals = true;  // undone, the world is as before; else a block may lie under the plate
 };
 
-/// `make` sets a number to something absurd, `undo` to what it was.
+/// `make` sets a number to something absurd, `undo` to its old value.
 template <class Pick>
 AbsurdEdit number(const char* name, Pick pick, double absurd, double sane, bool heals = true) {
   return {name, [=](World& w, FrameSettings& s, FrameState&) { pick(w, s) = absurd; },
@@ -423,7 +423,7 @@ TEST(SafetyFaults, AbsurdEditsOfTheSceneStayWithinLimitsAndSlew) {
   for (const AbsurdEdit& edit : absurd_edits()) {
     SCOPED_TRACE(edit.name);
     Experiment experiment;
-    // A free cube stands beside the block's way, so that gravity and its mass matter to somebody.
+    // A free cube stands beside the block's path, so that gravity and its mass matter.
     add_body(experiment.world, {.part = experiment.world.bodies[0].part,
                                 .mass_kg = 0.02,
                                 .X_WP = {Mat3::Identity(), {0.0235, 0, 0.005}}});

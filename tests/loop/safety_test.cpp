@@ -30,7 +30,7 @@ SafetyInput good_input(const Wrench& wanted) {
   return input;
 }
 
-/// The stage with its state, and what every frame must keep checked on each call.
+/// The stage with its state, and the conditions of every frame checked on each call.
 struct Stage {
   SafetyLimits limits = safety_limits(plain_info());
   SafetyState state;

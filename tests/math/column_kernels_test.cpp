@@ -22,7 +22,7 @@ std::vector<double> random_numbers(Random& random, std::size_t n) {
   return numbers;
 }
 
-/// What each kernel makes of the same numbers, one behind the other.
+/// The results of all kernels from the same numbers, one behind the other.
 std::vector<double> all_of(const Kernels& kernels, std::uint64_t seed, std::size_t n) {
   Random random(seed);
   std::vector<double> columns = random_numbers(random, kCount * kColumn);

@@ -25,7 +25,7 @@ long double signed_distance(const Polytope& A, const Polytope& B, const Pose& X_
 /// signed distance [m].
 long double support_gap(const Polytope& A, const Polytope& B, const Pose& X_AB, const Vec3& n);
 
-/// Do the solids share a point: a corner of one inside the other, or a side of one through a face of the
+/// Whether the solids share a point: a corner of one inside the other, or a side of one through a face of the
 /// other? `margin` [m] is how deep it must be, so that the answer is sure.
 bool surely_overlap(const Polytope& A, const Polytope& B, const Pose& X_AB, long double margin);
 

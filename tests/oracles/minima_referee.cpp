@@ -23,11 +23,11 @@ constexpr double kThin = 1e-5;  // [rad]
 
 struct Corner {
   int v = 0;
-  std::vector<Vec3> edges;  ///< unit; what must fall away
+  std::vector<Vec3> edges;  ///< unit; they must fall away
   std::vector<Vec3> rays;   ///< unit; the extreme directions from which all edges fall away
   Vec3 outward;             ///< unit
-  /// So thin a cone is that of a vertex in the middle of an edge that is straight but for rounding: whether
-  /// it is one may be told either way.
+  /// So thin a cone is that of a vertex in the middle of an edge that is straight but for rounding: either
+  /// answer about it is right.
   bool thin = false;
 };
 

@@ -1,7 +1,7 @@
 #pragma once
 /// All local minima of distance of two triangle meshes by trying every pair of features: the referee of
-/// surface_minima.h. It shares no code with it: cones are told by angles between face normals and by
-/// exhaustion, not by polar cones of what is stored.
+/// surface_minima.h. It shares no code with it: cones are determined by angles between face normals and by
+/// exhaustion, not by stored polar cones.
 
 #include <vector>
 
@@ -14,8 +14,8 @@ struct RefereeMinimum {
   std::vector<int> a, b;
   double distance = 0.0;
   Vec3 p_a = Vec3::Zero(), p_b = Vec3::Zero(), normal = Vec3::Zero();
-  /// By how much the weakest of the conditions holds: angles [rad], shares of a feature, distances in shares
-  /// of the largest distance. Negative: it fails by so little that rounding may decide.
+  /// By how much the weakest of the conditions holds: angles [rad], fractions of a feature, distances as
+  /// fractions of the largest distance. Negative: it fails by so little that rounding may decide.
   double margin = 0.0;
 };
 

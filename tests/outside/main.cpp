@@ -1,4 +1,4 @@
-/// A program that knows the library by its public header alone: a held block is led down on a plate and
+/// A program that knows the library by its public header alone: a grasped block is led down on a plate and
 /// pressed. Prints the hash of all frames. check.py builds it outside the tree and compares.
 
 #include <tactum/tactum.h>
@@ -32,7 +32,7 @@ std::shared_ptr<const Part> box(const Vec3& half_m) {
   return std::make_shared<const Part>(or_exit(part_from_clouds({corners}, {.about_center_of_mass = true})));
 }
 
-/// The block held a little above the plate, whose top is at z = 0.
+/// The block grasped a little above the plate, whose top is at z = 0.
 std::unique_ptr<Simulation> block_over_plate() {
   World world;
   FrameSettings settings;

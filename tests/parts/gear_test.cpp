@@ -273,7 +273,7 @@ TEST(Gear, SurfacePairIsAsFarApartAsItsPieces) {
   const Surface second(*gear_surface(b));
   SurfacePairCache cache;
   for (const double angle : {0.0, 0.05, 0.11}) {
-    for (const double play : {0.0, 0.4}) {  // shares of half the play
+    for (const double play : {0.0, 0.4}) {  // fractions of half the play
       const double angle_b = pair.middle_b(angle) + play * 0.5 * b.backlash_m / b.pitch_radius_m();
       const Mat3 R_a = exp_rotation(Vec3(0, 0, angle));
       const Pose X_AB{R_a.transpose() * exp_rotation(Vec3(0, 0, angle_b)),

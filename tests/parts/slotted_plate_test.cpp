@@ -92,7 +92,7 @@ TEST(SlottedPlate, RoundEndsTouchTheirCircle) {
   int walls = 0;
   for (const Polytope& piece : pieces) {
     for (const auto& face : piece.faces) {
-      if (std::abs(face.normal.z()) > 0.5 || face.offset >= 0.0) continue;  // walls look at the axis
+      if (std::abs(face.normal.z()) > 0.5 || face.offset >= 0.0) continue;  // walls face the axis
       if (std::abs(face.offset + 0.5 * plate.slot_width_m) < 1e-12) ++walls;
     }
   }

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Folders with the mesh files of the shipped scenes; empty, and told so, when they are not there.
+/// Folders with the mesh files of the shipped scenes; empty, with a message, when they are not there.
 std::vector<std::string> meshes() {
   std::vector<std::string> folders = data_folders();
   const fs::path beside = fs::path(TACTUM_SOURCE_DIR) / "../shared/data";

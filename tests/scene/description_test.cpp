@@ -48,7 +48,7 @@ std::string error_of(const std::function<void(SceneDescription&)>& change) {
   return built ? "no error" : built.error().message();
 }
 
-/// The error begins with the item's path and says this.
+/// The error begins with the item's path and contains this.
 void expect_error(const std::function<void(SceneDescription&)>& change, const std::string& path,
                   const std::string& said) {
   const std::string error = error_of(change);
@@ -167,7 +167,7 @@ TEST(DescriptionErrors, NameSettingsHandAndGoalsByPath) {
                "missing key \"direction\"");
 }
 
-/// The sound scene's kin as a file; what is changed after reading is named by the place it had there.
+/// The same scene as a file; an item that is changed after reading is named by the place it had there.
 TEST(DescriptionErrors, OfAFileNameLineAndColumn) {
   const std::string text = R"(schema = 1
 [[body]]
@@ -192,7 +192,7 @@ joint = { kind = "hinge", axis = [0, 0, 1] }
   EXPECT_EQ(build_scene(*scene).error().where, "top.toml:7:9");
 }
 
-/// What belongs to another kind of a thing is refused in a file; in code it cannot be said.
+/// A key of another alternative is refused in a file; in code it does not exist.
 TEST(DescriptionErrors, KeysOfAnotherKind) {
   const auto error = [](const std::string& more) {
     const Result<SceneDescription> scene = parse_description(

@@ -1,4 +1,4 @@
-/// Field files and the fields of scene files: what is read is what was written, and what is wrong is told.
+/// Field files and the fields of scene files: the values read are those written, and faults are reported.
 
 #include "tactum/scene/field_file.h"
 

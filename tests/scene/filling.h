@@ -1,5 +1,5 @@
 #pragma once
-/// Judges convex pieces by points: which pieces hold a point, and what they weigh together.
+/// Judges convex pieces by points: which pieces contain a point, and their mass together.
 
 #include <vector>
 

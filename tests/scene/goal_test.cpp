@@ -39,7 +39,7 @@ TEST(Goals, AnglesAreCountedOverManyTurns) {
   EXPECT_NEAR(record.angle(0), 12.3, 1e-9);
   EXPECT_NEAR(record.angle(1), -6.15, 1e-9);
   EXPECT_TRUE(record.met(0));
-  EXPECT_FALSE(record.met(1));  // never turned the other way
+  EXPECT_FALSE(record.met(1));  // never turned in the other direction
   EXPECT_FALSE(record.met(2));
   EXPECT_TRUE(record.met(3));
   for (; angle > 3.0; angle -= 0.3) record.watch(world, turned(world, angle, -0.5 * angle));
@@ -47,7 +47,7 @@ TEST(Goals, AnglesAreCountedOverManyTurns) {
   EXPECT_TRUE(record.met(2));
   EXPECT_FALSE(record.all_met());
   record.watch(world, turned(world, 3.0, -1.4));
-  EXPECT_FALSE(record.met(3));  // told at the end
+  EXPECT_FALSE(record.met(3));  // judged at the end
   EXPECT_NE(record.describe(world, 3).find("not met"), std::string::npos);
 }
 

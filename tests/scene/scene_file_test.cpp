@@ -10,7 +10,7 @@
 namespace tactum {
 namespace {
 
-// Two bodies, one held; every line of it is used by the tests of errors below.
+// Two bodies, one grasped; every line of it is used by the tests of errors below.
 const char* const kSound = R"(schema = 1
 description = "a box over a plate"
 gravity_m_per_s2 = [0, 0, -9.81]
@@ -104,7 +104,7 @@ rpy_deg = [0, 90, 0]
   const Body& peg = scene->world.bodies[0];
   EXPECT_TRUE(peg.X_WB.p.isApprox(Vec3(0.13, 0.2, 0.3), 1e-12)) << peg.X_WB.p.transpose();
   EXPECT_TRUE(part_pose(peg, peg.X_WB).p.isApprox(Vec3(0.1, 0.2, 0.3), 1e-12));
-  Aabb box;  // of the pieces, in the world: what is felt stands where the file says
+  Aabb box;  // of the pieces, in the world: they are at the place given in the file
   for (const Polytope& piece : peg.part->pieces)
     for (const Vec3& vertex : piece.vertices) box.extend(peg.X_WB * vertex);
   EXPECT_TRUE(box.min.isApprox(Vec3(0.1, 0.193, 0.29), 1e-12)) << box.min.transpose();

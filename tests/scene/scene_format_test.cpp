@@ -1,4 +1,4 @@
-/// docs/scene-format.md is written by hand; here it is held against the keys that the reader knows.
+/// docs/scene-format.md is written by hand; here it is compared with the keys that the reader knows.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-/// The table of settings lies in haptics; scene files are the referee of what it writes.
+/// The table of settings is part of haptics; scene files are the referee of its output.
 
 #include "tactum/haptics/setting_table.h"
 

@@ -45,7 +45,7 @@ std::shared_ptr<const HandMotion> clumsy_hand(const Pose& X_start, const Vec3& t
     const double depth = random.uniform(-0.047, -0.004);
     go({0, 0, depth}, 1.0, random.uniform(0.1, 0.8));
   }
-  // What is wedged by now comes free as a person would free it: pulled and wiggled.
+  // A peg that is wedged by now comes free as a person would free it: pulled and wiggled.
   for (int i = 0; i < 6; ++i) go({0, 0, 0.006}, 1.0, 0.2);
   go({0, 0, -0.004}, 0.0, 0.8);
   go({0, 0, -0.037}, 0.0, 1.5);
@@ -105,7 +105,7 @@ bool separated(const Placed& a, const Placed& b, std::size_t& hint) {
   return false;
 }
 
-/// Looks at every frame: whether any two pieces overlap, how far the peg has come, what the sum of forces is.
+/// Checks every frame: whether any two pieces overlap, how far the peg has come, and the sum of forces.
 class Referee final : public LoopObserver {
  public:
   explicit Referee(Session& session) : session_(session) {
@@ -175,7 +175,7 @@ TEST(PegReferee, SeesAnOverlapOfAHairAndNoneInTheHole) {
   }
 }
 
-/// What a hand came to.
+/// The outcome of a hand.
 struct Outcome {
   int penetrating = 0, retries = 0;
   std::uint64_t frames = 0;

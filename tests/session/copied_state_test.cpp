@@ -35,7 +35,7 @@ TEST_P(CopiedState, GoesOnAsItsOriginal) {
     scene->settings.response = response;
     FrameState state(scene->world, scene->settings);
     hash_of(*scene, state, 0, 400);
-    // The first copy is made before most contacts, so that what it has room for is more than it holds.
+    // The first copy is made before most contacts, so that its room is larger than its contents.
     FrameState early(state);
     hash_of(*scene, state, 400, 1600);
     FrameState late(state);

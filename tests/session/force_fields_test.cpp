@@ -1,4 +1,4 @@
-/// The scenes with force fields: what their goals rest on, and that safety holds whatever a field asks for.
+/// The scenes with force fields: the basis of their goals, and that safety holds for any field.
 
 #include <gtest/gtest.h>
 

@@ -30,7 +30,7 @@ class Referee final : public LoopObserver {
 
   int crossing = 0;           ///< frames and pairs whose surfaces share a point
   double least_m = 1e9;       ///< smallest distance [m]
-  double turned_rad = 0.0;    ///< of the held part about z, since it was first pushed [rad]
+  double turned_rad = 0.0;    ///< of the grasped part about z, since it was first pushed [rad]
   double off_thread_m = 0.0;  ///< farthest that it was off a right-hand thread of 2 mm meanwhile [m]
 
  private:

@@ -1,4 +1,4 @@
-/// What a scene file can say, a program can say: the same frames, to the bit.
+/// A program can contain everything that a scene file can: the same frames, to the bit.
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 namespace tactum {
 namespace {
 
-/// The hash of the scene's first frames, and what became of its goals; 0 frames: as long as the hand moves.
+/// The hash of the scene's first frames, and the state of its goals; 0 frames: as long as the hand moves.
 std::uint64_t hash_of(const SceneDescription& scene, std::uint64_t frames, bool& all_met) {
   Result<std::unique_ptr<Session>> session = Session::open(scene, {});
   EXPECT_TRUE(session) << session.error().message();

@@ -1,4 +1,4 @@
-/// The scenes that tell a story, held against what physics says of it: a scale's reading, a lock that waits
+/// The scenes that tell a story, compared with physics: a scale's reading, a lock that waits
 /// for its key, an order of assembly that cannot be another.
 
 #include <gtest/gtest.h>
@@ -69,7 +69,7 @@ TEST(SceneStory, TheScaleShowsWhatIsOnItAndTheHandFeelsWhatItLifts) {
 }
 
 /// The published springs let a peg into its walls by 1 to 2.5 mm at any clearance, and no deeper: at the
-/// corners of walls and floor, where seams are, no contact is the way through a whole piece.
+/// corners of walls and floor, where seams are, no depth goes through a whole piece.
 TEST(SceneStory, APegGoesInByThePublishedSpringsAsWell) {
   for (const char* name : {"peg-in-hole", "peg-100um", "peg-7um"}) {
     SCOPED_TRACE(name);
@@ -107,8 +107,8 @@ TEST(SceneStory, TheLockTurnsOnlyWhenTheKeyIsAllTheWayIn) {
   EXPECT_TRUE(session->goals().met(0)) << session->goals().describe(session->scene().world, 0);
 }
 
-/// Whatever strikes, rubs and pushes whatever: what moves freely has in every frame the momentum it was
-/// given.
+/// Whatever hits, rubs and pushes whatever: bodies that move freely have in every frame the momentum they
+/// were given.
 TEST(SceneStory, MovingObjectsKeepTheirMomentum) {
   const std::unique_ptr<Session> session = opened(text_of("moving-objects"));
   ASSERT_TRUE(session);
@@ -144,7 +144,7 @@ TEST(SceneStory, TheSmallBearingDoesNotPassTheLargeOne) {
   EXPECT_FALSE(session->goals().met(2)) << session->goals().describe(session->scene().world, 2);
 }
 
-/// It touches both walls exactly. What is known of such gaps is rounding, which must not hold it.
+/// It touches both walls exactly. Such gaps are known only up to rounding, which must not stop it.
 TEST(SceneStory, ABlockWithoutPlayBetweenTwoWallsSlides) {
   const std::unique_ptr<Session> session = opened(R"(schema = 1
 [[body]]

@@ -1,5 +1,5 @@
 #pragma once
-/// Shipped scenes written in code, one of each kind: each says what its file in scenes/ says.
+/// Shipped scenes written in code, one of each kind, equal to their files in scenes/.
 
 #include "tactum/scene/scene_description.h"
 

@@ -19,7 +19,7 @@
 namespace tactum {
 namespace {
 
-/// Counts what frames (and everything else the loop does) allocate.
+/// Counts the allocations of frames (and of everything else in the loop).
 class AllocationWatch final : public LoopObserver {
  public:
   bool after_frame(const FrameRecord&) noexcept override {
@@ -36,12 +36,12 @@ class AllocationWatch final : public LoopObserver {
   std::optional<AllocationGuard> guard_;
 };
 
-/// Scenes look for meshes where TACTUM_DATA says.
+/// Scenes search for meshes in TACTUM_DATA.
 void use_real_data_for_scenes() {
   if (!testing::real_data().empty()) setenv("TACTUM_DATA", testing::real_data().c_str(), 0);
 }
 
-/// Opens a built-in scene, or says why its data is not there.
+/// Opens a built-in scene, or reports why its data is not there.
 std::unique_ptr<Session> open_session(const std::string& name) {
   Result<Scene> scene = open_scene(name);
   if (!scene) {
@@ -118,7 +118,7 @@ TEST(Session, TheDrivenGearPushesBackOnlyWhileTouching) {
   EXPECT_LT(record.max_penetration_m, 5e-4);
 }
 
-/// A block held in the hand pushes on a lever, less than the friction of its hinge.
+/// A block in the hand pushes on a lever, less than the friction of its hinge.
 const char* const kLever = R"(
 schema = 1
 description = "lever with friction pushed below its friction"

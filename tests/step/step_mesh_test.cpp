@@ -26,7 +26,7 @@ using testing::ScratchFolder;
 
 /// Writes shapes whose numbers are in `unit` ("MM", "INCH").
 void write_step(const std::string& path, const std::vector<TopoDS_Shape>& shapes, const char* unit) {
-  Message::DefaultMessenger()->ChangePrinters().Clear();  // it tells everything it does
+  Message::DefaultMessenger()->ChangePrinters().Clear();  // it prints everything it does
   STEPControl_Controller::Init();
   Interface_Static::SetCVal("xstep.cascade.unit", unit);
   Interface_Static::SetCVal("write.step.unit", unit);

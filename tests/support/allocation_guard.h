@@ -1,5 +1,5 @@
 #pragma once
-/// Counts what this thread allocates and frees while the guard lives, whoever asks: new, malloc, a library.
+/// Counts the allocations of this thread while the guard lives, whoever makes them: new, malloc, a library.
 ///
 ///   AllocationGuard guard;
 ///   for (int i = 0; i < 10000; ++i) run_frame(...);

@@ -1,14 +1,14 @@
 #pragma once
-/// A held block over a fixed plate in the constraint response, led by an ideal device.
+/// A grasped block over a fixed plate in the constraint response, led by an ideal device.
 
 #include "support/pressed_block.h"
 #include "support/rig.h"
 
 namespace tactum {
 
-inline const Vec3 kBlockHalf(0.010, 0.007, 0.005);  // of the held block [m]
+inline const Vec3 kBlockHalf(0.010, 0.007, 0.005);  // of the grasped block [m]
 
-/// A held block of 20 x 14 x 10 mm, 3 mm over a fixed plate whose top is at z = 0, and an ideal device.
+/// A grasped block of 20 x 14 x 10 mm, 3 mm over a fixed plate whose top is at z = 0, and an ideal device.
 struct BlockRig : Rig {
   explicit BlockRig(double mu = 0.0) : Rig(2) {
     world.bodies[0].part = solid_box(kBlockHalf);

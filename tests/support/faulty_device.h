@@ -1,6 +1,6 @@
 #pragma once
 /// A device that breaks on a schedule: another device, and the faults that real ones have, each from a time
-/// to a time on the loop's clock. What reaches the hand is that device's affair, so it can be asked there.
+/// to a time on the loop's clock. The other device knows which wrench reaches the hand, and can be queried.
 
 #include <memory>
 #include <utility>
@@ -13,7 +13,7 @@ namespace tactum {
 
 enum class Fault {
   kNone,
-  kReadsFail,  ///< the read says so; the sample is the last one, marked invalid
+  kReadsFail,  ///< the read reports it; the sample is the last one, marked invalid
   kRepeated,   ///< reads succeed with the last sample, its time included: a driver's stale buffer
   kFrozen,     ///< reads succeed, the time goes on, the pose does not: an encoder's lost cable
   kLeapt,      ///< the pose is off by FaultSpan::leap
@@ -21,8 +21,8 @@ enum class Fault {
   kZeros,      ///< a buffer of zeros for a pose
   kWildTime,   ///< the sample's time is that of another clock
   kRefuses,    ///< writes are refused, the motors are off: unplugged
-  kMotorsOff,  ///< writes are taken, the motors are off, and the sample says so: dead-man switch, no power
-  kMotorsOffMute,  ///< ... and nobody says so
+  kMotorsOff,  ///< writes are taken, the motors are off, and the sample reports it: dead-man switch, no power
+  kMotorsOffMute,  ///< ... without a report
 };
 
 struct FaultSpan {

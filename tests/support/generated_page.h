@@ -10,7 +10,7 @@
 
 namespace tactum::testing {
 
-/// The page is what the code makes of it. With TACTUM_WRITE_PAGES=1 in the environment it is written anew.
+/// The page is made by the code. With TACTUM_WRITE_PAGES=1 in the environment it is written anew.
 inline void expect_page(const std::string& path, const std::string& text) {
   const std::string place = std::string(TACTUM_SOURCE_DIR) + "/" + path;
   if (std::getenv("TACTUM_WRITE_PAGES") != nullptr) {

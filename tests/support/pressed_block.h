@@ -1,6 +1,6 @@
 #pragma once
-/// A held block of 20 x 14 x 10 mm over a fixed plate, and a hand that brings it down and presses: a running
-/// loop with real contact force, for tests of what happens to it.
+/// A grasped block of 20 x 14 x 10 mm over a fixed plate, and a hand that brings it down and presses: a
+/// running loop with real contact force, for tests of its behaviour.
 
 #include <memory>
 

@@ -1,6 +1,6 @@
 #pragma once
 /// Real meshes and motions for the tests: the folder named by TACTUM_DATA, or shared/data beside the source
-/// tree. They are not part of the project; a test that misses them says so and is skipped.
+/// tree. They are not part of the project; a test that misses them reports so and is skipped.
 
 #include <cstdio>
 #include <cstdlib>

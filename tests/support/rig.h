@@ -8,7 +8,7 @@
 
 namespace tactum {
 
-/// No damping, no smoothing: what is felt is the stretch of the coupling alone.
+/// No damping, no smoothing: only the stretch of the coupling is felt.
 struct Rig {
   World world;             ///< may be changed before the first step
   FrameSettings settings;  ///< may be changed between steps
@@ -20,7 +20,7 @@ struct Rig {
   explicit Rig(std::size_t bodies) {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     world.bodies.resize(bodies);
-    // The tests give the bodies parts of several sizes; what is felt must not depend on their inertia.
+    // The tests give the bodies parts of several sizes; the wrench must not depend on their inertia.
     world.bodies[0].mass_kg = 0.05;
     world.bodies[0].inertia_B = 1e-5 /* kg m^2 */ * Mat3::Identity();
     settings.tool.body = 0;

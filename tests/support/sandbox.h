@@ -1,5 +1,5 @@
 #pragma once
-/// A world that nobody holds, frame by frame in the constraint response.
+/// A world without a grasped part, frame by frame in the constraint response.
 
 #include <gtest/gtest.h>
 

@@ -105,7 +105,7 @@ inline TriangleMesh bumpy_sheet(Random& random, int cells, double side, double h
   return mesh;
 }
 
-/// Every corner moved along its direction from the origin by up to `share` of its distance.
+/// Every corner moved along its direction from the origin by up to the fraction `share` of its distance.
 inline TriangleMesh roughened(TriangleMesh mesh, Random& random, double share) {
   for (Vec3& v : mesh.vertices) v *= 1.0 + random.uniform(-share, share);
   return mesh;

@@ -1,4 +1,4 @@
-/// The quick tests of the query surface against surface tell the same, bit by bit, four lanes at a time and
+/// The quick tests of the query surface against surface give the same, bit by bit, four lanes at a time and
 /// eight.
 
 #include <gtest/gtest.h>
@@ -198,7 +198,7 @@ TEST(SurfaceMinimaKernels, TurnAndLayOutTheSameInFourLanesAndInEight) {
   }
 }
 
-/// What leaves show in lanes is what the mesh says of their features.
+/// The leaves' lanes agree with the mesh's features.
 TEST(SurfaceMinimaKernels, LayLeavesOutAsTheMeshSays) {
   Random random(2);
   const SurfaceTree tree(testing::bumpy_sheet(random, 9, 0.03, 1e-3));

@@ -191,8 +191,8 @@ TEST(SurfaceMinima, OfANutOnABoltAreThoseOfEveryPairOfFeatures) {
   }
 }
 
-/// What surface_clearance() tells is no more than the distance, and no less than nine tenths of it. Of
-/// surfaces that cross it tells nothing: then this is false.
+/// Checks that surface_clearance() is no more than the distance, and no less than nine tenths of it. For
+/// surfaces that cross there is no such bound: then this is false.
 bool expect_clearance(const Surface& of_a, const Surface& of_b, const SurfaceTree& a, const SurfaceTree& b,
                       const Pose& X, double max_distance) {
   SurfacePairCache cache;
@@ -351,7 +351,8 @@ TEST(SurfaceMinima, OfParallelEdgesAreTheEndsOfWhatTheyShare) {
 }
 
 TEST(SurfaceMinima, OfAThinWallKeepItsSidesApart) {
-  // A wall 20 um thick between two blocks 10 um from either side, closer to the far side than the reach.
+  // A wall 20 um thick between two blocks 10 um from either side, closer to the far side than the largest
+  // distance.
   const SurfaceTree wall(box_mesh({0.01, 0.01, 1e-5}));
   const TriangleMesh block = box_mesh({0.005, 0.005, 0.005});
   const SurfaceTree blocks(

@@ -1,4 +1,4 @@
-/// The list of the report's fields, and what is made from it.
+/// The list of the report's fields, and everything made from it.
 #include "tactum/haptics/report_fields.h"
 #include "tactum/haptics/frame_hash.h"
 

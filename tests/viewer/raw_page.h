@@ -38,7 +38,7 @@ class RawConnection {
       at += static_cast<std::size_t>(sent);
     }
   }
-  /// What has come within `wait_ms`, appended to what was left; false when the other end has closed.
+  /// The bytes that came within `wait_ms`, appended to those left; false when the other end has closed.
   bool receive(int wait_ms) {
     pollfd waiting{socket_, POLLIN, 0};
     if (::poll(&waiting, 1, wait_ms) <= 0) return true;

@@ -19,7 +19,7 @@ using testing::status_of;
 using testing::word_at;
 using Json = nlohmann::json;
 
-/// Waits for what another thread brings about, by events and not by a clock that is judged.
+/// Waits for the effect of another thread, by events and not by a clock that is judged.
 bool comes_true(const std::function<bool()>& condition) {
   for (int i = 0; i < 2000; ++i) {
     if (condition()) return true;
@@ -134,13 +134,13 @@ TEST_F(ServerThread, OneSteersAndAnyoneStops) {
   second->say("{\"do\":\"stop\"}");
   ASSERT_TRUE(comes_true([&] { return server->take(request); }));
   EXPECT_EQ(request.what, Request::What::kStop);
-  second->say("{\"do\":\"steer\"}");  // takes over: the first hand lets go
+  second->say("{\"do\":\"steer\"}");  // takes over: the first hand is released
   ASSERT_TRUE(comes_true([&] { return server->take(request); }));
   EXPECT_EQ(request.what, Request::What::kRest);
   second->say("{\"do\":\"reset\"}");
   ASSERT_TRUE(comes_true([&] { return server->take(request); }));
   EXPECT_EQ(request.what, Request::What::kReset);
-  second.reset();  // gone: nobody leads the hand
+  second.reset();  // gone: no page leads the hand
   ASSERT_TRUE(comes_true([&] { return server->take(request); }));
   EXPECT_EQ(request.what, Request::What::kRest);
 }
@@ -152,7 +152,7 @@ ChartSample sample_of(std::uint64_t index) {
   return sample;
 }
 
-/// Reads frames until sample `last` has come; acknowledges them only when told to. The indices, in order.
+/// Reads frames until sample `last` has come; acknowledges them only if wanted. The indices, in order.
 std::vector<std::uint32_t> samples_until(RawPage& page, std::uint32_t last, bool acknowledges, int wait_ms,
                                          std::string* newest_picture = nullptr) {
   std::vector<std::uint32_t> indices;
@@ -184,7 +184,7 @@ TEST_F(ServerThread, ASlowPageGetsTheNewestPictureAndEverySample) {
     std::memcpy(picture.data(), &i, sizeof i);
     server->show(samples, picture);
   }
-  // Two messages are on their way and no more, however long the page sleeps.
+  // Two messages are on their way and no more, however long the page waits.
   EXPECT_TRUE(comes_true([&] { return server->status().frames_sent == 2; }));
   std::string picture;
   std::vector<std::uint32_t> seen = samples_until(*page, 2999, true, 2000, &picture);

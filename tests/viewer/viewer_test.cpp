@@ -109,7 +109,7 @@ TEST(ViewerRun, TheFramesAreTheSameWithAndWithoutPages) {
   const std::uint64_t alone = hash_with_pages(0, kFrames, seen);
   EXPECT_EQ(hash_with_pages(4, kFrames, seen), alone);
   EXPECT_GT(seen, 0u);
-  // ... and as in a session that nobody could look at.
+  // ... and as in a session without a viewer.
   Result<Scene> scene = open_scene("gears");
   ASSERT_TRUE(scene);
   Result<std::unique_ptr<Session>> bare =

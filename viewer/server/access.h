@@ -1,6 +1,7 @@
 #pragma once
-/// Who may talk to the viewer, and how much. The server listens on the loopback interface only; still, any
-/// program of any user of this machine and any page in the user's browser can reach a loopback port. So:
+/// The clients that may talk to the viewer, and their limits. The server listens on the loopback interface
+/// only; still, any program of any user of this machine and any page in the user's browser can reach a
+/// loopback port. So:
 ///
 ///   a token of 128 random bits in the address       other users and programs do not know it
 ///   Host must name this loopback port               a foreign name that resolves to 127.0.0.1 is refused
@@ -39,14 +40,14 @@ using RefusalCounts = std::array<std::uint64_t, kRefusalCount>;
 /// 32 hexadecimal digits from the operating system's random source.
 std::string new_token();
 
-/// Compares in a time that does not tell how much of a guess was right.
+/// Compares in a time that does not reveal how much of a guess was right.
 bool same_secret(std::string_view a, std::string_view b) noexcept;
 
 /// Whether a Host header names this server: 127.0.0.1 or localhost with its port.
 bool own_host(std::string_view host, int port);
 /// Whether an Origin header is that of this server's page.
 bool own_origin(std::string_view origin, int port);
-/// Whether what a browser says of a request's source lets it pass: "" (no such browser), "same-origin", or
+/// Whether a browser's statement of a request's source lets it pass: "" (no such browser), "same-origin", or
 /// "none" (typed in).
 bool own_fetch_site(std::string_view site);
 

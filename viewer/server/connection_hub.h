@@ -1,6 +1,6 @@
 #pragma once
-/// What all connections of the viewer's server share: the messages that every page is sent, the pages that
-/// are open, which of them steers, and what they have asked.
+/// The state common to all connections of the viewer's server: the messages for every page, the open pages,
+/// the page that steers, and the requests of pages.
 
 #include <boost/asio/io_context.hpp>
 #include <chrono>
@@ -29,7 +29,7 @@ inline SharedText shared_text(std::string text) {
   return std::make_shared<const std::string>(std::move(text));
 }
 
-/// How long a client may say or take nothing.
+/// The longest time that a client may neither send nor take anything.
 inline constexpr std::chrono::seconds kClientTimeout{20};
 
 /// A message of which a page needs only the newest.
@@ -50,8 +50,8 @@ struct ShownRun {
   SharedText geometry = shared_text("");
 };
 
-/// What pages have asked and the owner has not yet taken, and the counts of what has happened. The server's
-/// thread and its owner's thread both use it, under one lock.
+/// The requests of pages that the owner has not yet taken, and counts of events. The server's thread and its
+/// owner's thread both use it, under one lock.
 class RequestInbox {
  public:
   void refuse(Refusal reason) {

@@ -1,5 +1,6 @@
 #pragma once
-/// Force fields as arrows on a coarse lattice, for the page to draw: what a point of unit weight feels there.
+/// Force fields as arrows on a coarse lattice, for the page to draw: the force on a point of unit weight
+/// there.
 
 #include <vector>
 

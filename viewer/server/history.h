@@ -1,6 +1,6 @@
 #pragma once
 /// The samples of the last half minute, kept once for all pages. A page has a place in it; a page that was
-/// slow gets everything since then, in order, and is told how many it is too late for.
+/// slow gets everything since then, in order, with the number of those it is too late for.
 
 #include <cstdint>
 #include <vector>
@@ -9,10 +9,10 @@
 
 namespace tactum {
 
-/// A frame as charts see it: FrameSample with what the loop's clock has to say.
+/// A frame as charts see it: FrameSample with the times on the loop's clock.
 struct ChartSample {
   FrameSample frame;
-  float frame_time_s = 0.0F;      ///< of the whole frame; not a number when nobody took it [s]
+  float frame_time_s = 0.0F;      ///< of the whole frame; not a number when it was not measured [s]
   float wakeup_latency_s = 0.0F;  ///< begun after its deadline by; not a number on a virtual clock [s]
 };
 
@@ -32,11 +32,11 @@ class History {
   std::uint64_t end() const noexcept { return end_; }
   std::uint64_t oldest() const noexcept { return end_ > kRoom ? end_ - kRoom : 0; }
   std::uint64_t newcomers_place() const noexcept;
-  /// A new run begins: what was before is of no use to those who come later.
+  /// A new run begins: later pages do not get the samples before.
   void cut() noexcept { first_ = end_; }
 
   /// Appends the samples from `place` on, at most kAtOnce, as rows: frame index (u32), then the numbers
-  /// (f32). Moves `place` behind them and adds to `dropped` what it was too late for. Returns the rows.
+  /// (f32). Moves `place` behind them and adds to `dropped` the number it was too late for. Returns the rows.
   std::size_t write_rows(std::uint64_t& place, std::uint64_t& dropped, std::string& out) const;
 
  private:

@@ -8,7 +8,7 @@
 
 namespace tactum {
 
-/// Answers what comes over the socket, until one side ends it.
+/// Answers the requests on the socket, until one side ends it.
 void serve_http(ConnectionHub& hub, boost::asio::ip::tcp::socket&& socket);
 
 }  // namespace tactum

@@ -94,7 +94,7 @@ class PageConnection : public std::enable_shared_from_this<PageConnection> {
     ++hub_.program_status.version;
   }
 
-  /// Nobody leads the hand now: it stays where it is.
+  /// No page leads the hand now: it stays where it is.
   void stop_steering() {
     hub_.steering = 0;
     Request rest;

@@ -1,6 +1,5 @@
 #pragma once
-/// The WebSocket of one page: sends it what is new (docs/viewer.md draws the messages), and takes in what it
-/// asks.
+/// The WebSocket of one page: sends it new messages (docs/viewer.md draws them), and takes in its requests.
 
 #include <boost/beast/core/tcp_stream.hpp>
 #include <boost/beast/http/empty_body.hpp>

@@ -12,7 +12,7 @@ using What = Request::What;
 constexpr double kFarthest_m = 1000.0;
 constexpr std::size_t kLongestName = 200;
 
-/// What each may hold beside `do`, separated by blanks.
+/// The keys of each request beside `do`, separated by blanks.
 struct Form {
   const char* name;
   What what;

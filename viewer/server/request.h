@@ -1,6 +1,6 @@
 #pragma once
-/// What a page may say: one JSON object a message, `do` names what, and every other key is known, of the
-/// right type and in range; anything else is refused. docs/viewer.md lists them.
+/// The requests of a page: one JSON object a message, `do` names the request, and every other key is known,
+/// of the right type and in range; anything else is refused. docs/viewer.md lists them.
 
 #include <array>
 #include <cstdint>
@@ -35,7 +35,7 @@ struct Request {
   std::string name;  ///< of kScene, kDevice, kGrip
   double value = 0.0;
 
-  /// Whether only the page that steers may ask this.
+  /// Whether only the page that steers may request this.
   bool steers() const { return what >= What::kResume; }
 };
 

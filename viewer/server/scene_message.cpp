@@ -192,8 +192,8 @@ void write_shape(const Part& part, std::string& out) {
   for (const Vec3& vertex : part.surface.vertices) wire::put(out, vertex);
   for (const Triangle& triangle : part.surface.triangles)
     for (int corner : triangle) wire::put(out, static_cast<std::uint32_t>(corner));
-  // Whose triangles: the surface of solid pieces is their faces in order, each a fan (geometry/part.h).
-  // Of a surface: its flat faces stand for pieces.
+  // The owner of a triangle: the surface of solid pieces is their faces in order, each a fan
+  // (geometry/part.h). Of a surface, the flat faces are listed in place of pieces.
   if (part.is_surface())
     for (std::uint32_t i = 0; i < part.surface.triangles.size(); ++i) {
       wire::put(out, static_cast<std::uint32_t>(part.tree.group_of(static_cast<int>(i))));
@@ -242,7 +242,7 @@ bool same_triangles(const TriangleMesh& surface, const TriangleMesh& faces) {
   return true;
 }
 
-/// How much of the device's stability bounds the coupling uses, as it is set now.
+/// Which fraction of the device's stability bounds the coupling uses, as it is set now.
 std::string margin_of(const Session& session, const UserSettings& settings) {
   return margin_sentence(settings.frame.coupling, session.device(), session.rate_Hz());
 }

@@ -1,6 +1,6 @@
 #pragma once
-/// What a page is told of a run: once, when the run begins, everything that stays (as JSON and as geometry),
-/// then pictures of what moves. docs/viewer.md draws the layouts.
+/// The messages to a page about a run: once, when the run begins, everything that stays (as JSON and as
+/// geometry), then pictures of everything that moves. docs/viewer.md draws the layouts.
 
 #include <string>
 #include <vector>
@@ -10,7 +10,7 @@
 
 namespace tactum {
 
-/// What the page is told beside the session itself.
+/// Facts for the page beside the session itself.
 struct RunFacts {
   std::uint32_t run = 0;  ///< counts the runs: pictures and samples carry it
   std::string device;     ///< as in the registry
@@ -21,14 +21,14 @@ struct RunFacts {
 /// Scene, bodies, device, tables of stages, channels and settings with their values, choices.
 std::string run_message(const Session& session, const UserSettings& settings, const RunFacts& facts);
 
-/// The settings alone, after one was changed, and what of the stability bounds they use.
+/// The settings alone, after one was changed, and which fraction of the stability bounds they use.
 std::string settings_message(const Session& session, const UserSettings& settings);
 
 /// The surfaces of the parts, each once: vertices, triangles with piece and face, and the edges worth
 /// drawing.
 std::string geometry_of(const World& world);
 
-/// Where everything is, with the contacts.
+/// The poses of all bodies, with the contacts.
 void write_picture(const FramePicture& picture, std::string& out);
 
 }  // namespace tactum

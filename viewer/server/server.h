@@ -1,6 +1,7 @@
 #pragma once
-/// HTTP and WebSocket on the loopback interface, on one thread of its own: serves the page, shows it what the
-/// loop has done, and takes in what it asks (access.h says who may; docs/viewer.md draws the messages).
+/// HTTP and WebSocket on the loopback interface, on one thread of its own: serves the page, shows it the
+/// frames of the loop, and takes in its requests (access.h decides who may; docs/viewer.md draws the
+/// messages).
 ///
 ///   owner's thread: begin_run, show, send_status ---posted--->  server's thread  <---> pages
 ///                   take, wait                   <---inbox----
@@ -35,7 +36,7 @@ class Server {
   static constexpr int kMostPages = 16;
   static constexpr double kMessages_Hz = 400.0;  ///< from a page, in the long run; faster is cut off
 
-  /// Listens on 127.0.0.1. Port 0 takes one that is free. Errors say why it cannot.
+  /// Listens on 127.0.0.1. Port 0 takes one that is free. An error gives the reason.
   static Result<std::unique_ptr<Server>> start(int port);
   ~Server();
   Server(const Server&) = delete;
@@ -43,21 +44,21 @@ class Server {
 
   int port() const noexcept;
   const std::string& token() const noexcept;
-  /// What to open in a browser, token included.
+  /// The address to open in a browser, token included.
   std::string address() const;
 
   /// A run begins: its message and its geometry, for pages that are here and for those to come.
   void begin_run(std::uint32_t run, std::string message, std::string geometry);
   /// The settings as they are now, as a message; and the run's message with them, for those to come.
   void send_settings(std::string message, std::string run_message);
-  /// Frames that are over, and where everything is; an empty picture means no newer one.
+  /// Frames that are over, and the picture of the newest; an empty picture means no newer one.
   void show(std::span<const ChartSample> samples, std::string picture);
-  /// A JSON object that every page is told, beside what the server itself knows.
+  /// A JSON object for every page, beside the server's own status.
   void send_status(std::string json);
   /// A sentence for all pages, such as why a scene could not be opened.
   void send_notice(const std::string& sentence);
 
-  /// The next thing a page has asked; false when there is none.
+  /// The next request of a page; false when there is none.
   bool take(Request& request);
   /// Waits for one, at most so long.
   void wait(std::chrono::microseconds longest);

@@ -8,7 +8,7 @@
 namespace tactum {
 namespace {
 
-constexpr double kAside = 0.001;     // of the part's size: how far beyond a face is looked
+constexpr double kAside = 0.001;     // of the part's size: how far beyond a face points are tested
 constexpr double kSamePlace = 1e-9;  // of the part's size
 
 bool contains(const Polytope& piece, const Vec3& point) {
@@ -44,8 +44,8 @@ std::vector<const Polytope*> pieces_near(const Part& part, const std::vector<Aab
   return near;
 }
 
-/// How much of the turn about an edge the pieces fill, `aside` from it [rad]: of a box's edge a right angle.
-/// `u` and `w` span the plane square to the edge.
+/// Which part of the turn about an edge the pieces fill, `aside` from it [rad]: for a box's edge a right
+/// angle. `u` and `w` span the plane square to the edge.
 double filled_turn(const std::vector<const Polytope*>& pieces, const Vec3& middle, const Vec3& u,
                    const Vec3& w, double aside) {
   constexpr int kDirections = 64;

@@ -1,6 +1,6 @@
 #pragma once
-/// What of a part a drawing shows: the edges where its surface bends, and the triangles that lie on its
-/// surface. Of the edges of solid pieces each counts as what the whole part is about its middle:
+/// The drawn features of a part: the edges where its surface bends, and the triangles that lie on its
+/// surface. Each edge of solid pieces is judged by the shape of the whole part about its middle:
 ///
 ///               |
 ///        wall   |          at s a quarter of the turn about the edge is filled: sharp;

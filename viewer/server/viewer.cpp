@@ -188,7 +188,7 @@ void Viewer::send_settings() {
                          run_message(*session_, {scene_.settings, scene_.safety}, facts));
 }
 
-/// Only scenes that come with the program, and the one it was started with: a page names no files.
+/// Only scenes that come with the program, and the one it was started with: a page cannot name files.
 void Viewer::change_scene(const std::string& name) {
   if (name == scene_.name) return restart();
   const std::vector<SceneEntry> known = list_scenes();
@@ -203,7 +203,7 @@ void Viewer::change_scene(const std::string& name) {
   restart();
 }
 
-/// Simulated devices and hands only: a page must not wake a motor that nobody has chosen at the keyboard.
+/// Simulated devices and hands only: a page must not start a motor that was not chosen at the keyboard.
 void Viewer::change_device(const std::string& name, std::string SessionOptions::*choice) {
   const bool simulated = choice == &SessionOptions::grip || name.rfind("pointer:", 0) == 0;
   DeviceOptions device_options;

@@ -1,5 +1,6 @@
 #pragma once
-/// A session that can be seen and steered from a page: runs it, shows it, and does what the page asks.
+/// A session that can be seen and steered from a page: runs it, shows it, and carries out the page's
+/// requests.
 ///
 ///   loop thread  --- FrameFeed --->  poll() on the owner's thread  --- Server --->  pages
 ///                <-- commands ---                                  <-- inbox ---

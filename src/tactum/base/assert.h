@@ -1,6 +1,6 @@
 #pragma once
-/// Assertions for our own mistakes. A failed assertion first calls the zero-wrench hook, so that a device
-/// held in a hand goes limp before the program stops.
+/// Assertions for our own mistakes. A failed assertion first calls the zero-wrench hook, so that a device in
+/// a hand goes limp before the program stops.
 ///
 ///   TACTUM_DEMAND(cond)   checked in every build: cheap, and wrong forces would follow if it failed
 ///   TACTUM_ASSERT(cond)   checked in debug builds only: on the frame's path

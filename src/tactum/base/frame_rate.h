@@ -1,12 +1,12 @@
 #pragma once
-/// Behaviour is told in seconds; a frame needs it in steps of its own length.
+/// Behaviour is stated in seconds; a frame needs it in steps of its own length.
 
 #include <algorithm>
 #include <cmath>
 
 namespace tactum::inline v0_1 {
 
-/// The step at which limits that are told for one frame hold as they stand [s].
+/// The step for which limits per frame are stated [s].
 inline constexpr double kReferenceStep_s = 0.001;
 
 /// How many frames of `dt_s` make up a time, rounded; at least one.

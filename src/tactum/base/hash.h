@@ -51,8 +51,8 @@ class Hash {
   HashChain chain_;
 };
 
-/// Names a frame's outputs, so that two runs can be compared bit for bit. The numbers go around four chains:
-/// none waits for the one before it.
+/// The hash of a frame's outputs, so that two runs can be compared bit for bit. The numbers go around four
+/// chains: none waits for the one before it.
 class FrameHash {
  public:
   template <class T>

@@ -1,8 +1,8 @@
 #pragma once
-/// Arrays that are read here and there, a few numbers at a time, at a place nobody can foretell. Each begins
-/// on a cache line, and takes up no more of them than it must. From 2 MB on the system is asked for large
-/// pages: a piece of 40 000 vertices lies in 30 MB, and with pages of 4 KB the processor looks half of its
-/// reads up twice, first where they are. Where they are not to be had the memory is as good.
+/// Arrays that are read a few numbers at a time at places that cannot be predicted. Each begins on a cache
+/// line, and occupies no more of them than it must. From 2 MB on large pages are requested of the system: a
+/// piece of 40 000 vertices lies in 30 MB, and with pages of 4 KB the processor would need two look-ups for
+/// half of its reads, one of them for the page. Without large pages the memory is as good.
 
 #include <cstddef>
 #include <limits>
@@ -42,7 +42,7 @@ struct LargeArrayAllocator {
 
   template <class U>
   bool operator==(const LargeArrayAllocator<U>&) const noexcept {
-    return true;  // any of them gives back what any took
+    return true;  // memory of any allocator can be freed by any other
   }
 
  private:

@@ -1,7 +1,7 @@
 #pragma once
 /// The newest value of something, from one thread to one other: three copies, of which the writer fills one,
-/// the reader reads one, and the third holds what was finished last. Neither waits; what the reader was too
-/// slow for is overwritten.
+/// the reader reads one, and the third holds the last finished one. Neither waits; a value that the reader
+/// was too slow for is overwritten.
 ///
 ///   writer:  fill writable(), publish()          reader:  if (take()) ... readable()
 
@@ -19,7 +19,7 @@ class Newest {
     for (T& copy : copies_) prepare(copy);
   }
 
-  /// Writer only: what the next publish() will show. It holds some older value.
+  /// Writer only: the value of the next publish(). It holds some older value.
   T& writable() noexcept { return copies_[writing_]; }
   void publish() noexcept {
     writing_ =

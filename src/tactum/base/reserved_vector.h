@@ -1,7 +1,7 @@
 #pragma once
-/// A vector whose copy keeps its capacity. What is reserved at load time is room that frames fill without
-/// allocating; a copied std::vector has room for what it holds alone, so that a copied state would drop what
-/// comes next.
+/// A vector whose copy keeps its capacity. Frames fill the room that was reserved at load time without
+/// allocating; a copied std::vector has room for its present items only, so that a copied state would drop
+/// later ones.
 
 #include <vector>
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Errors of set-up work (files, devices, settings): a value or a sentence that says what is wrong.
+/// Errors of set-up work (files, devices, settings): a value or a sentence that states the error.
 /// The haptic frame never uses these; it degrades with flags (response/frame_report.h).
 
 #include <optional>
@@ -11,11 +11,11 @@
 
 namespace tactum::inline v0_1 {
 
-/// What went wrong, told so that the reader can mend it.
+/// An error, stated so that the reader can correct it.
 struct Error {
   std::string what;      ///< one clause: "cannot read the mesh"
-  std::string found;     ///< what was there; may be empty
-  std::string expected;  ///< what should have been there; may be empty
+  std::string found;     ///< the value that was found; may be empty
+  std::string expected;  ///< the value that was expected; may be empty
   std::string where;     ///< file, line and column, field, or device; may be empty
 
   /// "WHERE: WHAT: found FOUND, expected EXPECTED".
@@ -29,7 +29,7 @@ struct Error {
   }
 };
 
-/// A T or an Error. Ask `if (!result)` before `*result`: held in every build.
+/// A T or an Error. Check `if (!result)` before `*result`: asserted in every build.
 template <class T>
 class [[nodiscard]] Result {
  public:

@@ -1,6 +1,6 @@
 #pragma once
-/// A vector with its room inside, for the frame: it never allocates, and a push that does not fit says so.
-/// Room that is not in use costs nothing: neither made nor copied.
+/// A vector with its room inside, for the frame: it never allocates, and a push that does not fit returns
+/// false. Room that is not in use costs nothing: neither made nor copied.
 
 #include <algorithm>
 #include <cstddef>
@@ -50,7 +50,8 @@ class StaticVector {
     size_ = count < N ? count : N;
     for (std::size_t i = 0; i < size_; ++i) ::new (static_cast<void*>(room_ + i * sizeof(T))) T(item(i));
   }
-  /// What `write(begin)` writes there, up to the end it returns; that there is room is the writer's to know.
+  /// Takes what `write(begin)` writes there, up to the end it returns; the writer must know that there is
+  /// room.
   template <class Write>
   void overwrite(const Write& write) noexcept {
     size_ = static_cast<std::size_t>(write(begin()) - begin());

@@ -1,6 +1,7 @@
 #pragma once
-/// Every epsilon of the library, with its story. Lengths are relative: multiply by the size of the part (the
-/// diagonal of its bounding box), unless the name ends in a unit. No other file may hold a literal epsilon.
+/// Every epsilon of the library, with the reason for its value. Lengths are relative: multiply by the size of
+/// the part (the diagonal of its bounding box), unless the name ends in a unit. No other file may hold a
+/// literal epsilon.
 
 namespace tactum::inline v0_1::tolerances {
 
@@ -23,7 +24,7 @@ inline constexpr double kCertificate = 1e-9;
 /// where a point 1e-13 off its region means a normal 1e-5 off.
 inline constexpr double kVoronoiTolerance = 1e-15;
 
-/// Below this share of the size a vector between witness points no longer has a direction of its own.
+/// Below this fraction of the size a vector between witness points no longer has a direction of its own.
 inline constexpr double kTouching = 1e-12;
 
 /// Two directions are parallel when the sine of their angle is below this: the cross product of unit vectors
@@ -34,12 +35,12 @@ inline constexpr double kParallelSine = 1e-8;
 /// then right to kCrossingRounding of the lengths over the sine squared, a thousandth of the certificate.
 /// Lower, and the error bound grows beyond what careful means would leave.
 inline constexpr double kCrossingSine = 0.1;
-/// ... as a cross product of unit vectors has an error of some 4 roundings (1.1e-16), the places along the
-/// edges one of some 16 of what they are made of.
+/// ... as a cross product of unit vectors has an error of some 4 roundings (1.1e-16), and the places along
+/// the edges one of some 16 of their terms.
 inline constexpr double kCrossingRounding = 1e-14;
 
-/// Arcs of two edges on the Gauss map are one arc when their planes differ by less than this angle: what is
-/// left of a crossing is then smaller than the certificate can see.
+/// Arcs of two edges on the Gauss map are one arc when their planes differ by less than this angle: the
+/// remainder of a crossing is then smaller than the certificate can detect.
 inline constexpr double kSameArc = 1e-12;
 
 /// A face (edge) takes part in a contact patch when its plane (line) is within this angle [rad] of square to
@@ -48,100 +49,101 @@ inline constexpr double kSameArc = 1e-12;
 /// sharp edge feels blunt.
 inline constexpr double kPatchAngle = 0.035;
 
-/// Planes of one supporting plane of a Minkowski facet, by rounding this angle [rad] apart.
+/// Planes are those of one supporting plane of a Minkowski facet when they differ by less than this angle
+/// [rad].
 inline constexpr double kSamePlane = 1e-8;
 
-/// A patch with less area than this share of the squared size is a line.
+/// A patch with less area than this fraction of the squared size is a line.
 inline constexpr double kPatchArea = 1e-14;
 
-/// A time of impact is found when the distance is above its target by less than this share of the size. Lower
-/// costs steps: each halves what is left, at worst.
+/// A time of impact is found when the distance is above its target by less than this fraction of the size. A
+/// lower value costs steps: each halves the rest, at worst.
 inline constexpr double kImpactGap = 1e-7;
 
-/// Vertices nearer than this share of the mesh's size are one vertex. STL stores single precision (6e-8).
+/// Vertices nearer than this fraction of the mesh's size are one vertex. STL stores single precision (6e-8).
 inline constexpr double kWeld = 1e-9;
 
 /// A triangle thinner than this (height over its longest edge) has no usable normal.
 inline constexpr double kDegenerateTriangle = 1e-10;
 
-/// A closed surface encloses nothing when its volume is below this share of its diagonal cubed: the rounding
-/// of a million tetrahedra that cancel is 1e-13; a sheet of paper, 0.1 mm in a metre square, has 3e-5.
+/// A closed surface encloses nothing when its volume is below this fraction of its diagonal cubed: the
+/// rounding of a million tetrahedra that cancel is 1e-13; a sheet of paper, 0.1 mm in a metre square, has
+/// 3e-5.
 inline constexpr double kNoVolume = 1e-12;
 
-/// The pieces of a part lie on its mesh, and the mesh on the pieces, to this much of the size: what
-/// preparation is checked against. Above the dropping of zero areas (kDegenerateTriangle) and the planarity
-/// of merged faces, far below what a micrometre is to a metre.
+/// The pieces of a part lie on its mesh, and the mesh on the pieces, to this fraction of the size:
+/// preparation is checked against it. Above the dropping of zero areas (kDegenerateTriangle) and the
+/// planarity of merged faces, and far below a micrometre in a metre.
 inline constexpr double kSurfaceDeviation = 1e-9;
 
-/// Edges of a mesh count as convex when the far vertex stays below the neighbour's plane by this share of the
-/// size.
+/// Edges of a mesh count as convex when the far vertex stays below the neighbour's plane by this fraction of
+/// the size.
 inline constexpr double kConvexMesh = 1e-9;
 
-/// The contact solver has converged when a sweep changes no normal velocity by more than this share of the
-/// largest one asked for: a force error far below what a hand or a device resolves (1e-3).
+/// The contact solver has converged when a sweep changes no normal velocity by more than this fraction of the
+/// largest one wanted: a force error far below what a hand or a device resolves (1e-3).
 inline constexpr double kContactVelocity = 1e-6;
 
-/// Resting contacts are settled when a sweep changes no velocity by more than this [m/s]. What is left is not
-/// lost: the next frame goes on from there, so a heap at rest comes to the rounding in the end.
+/// Resting contacts are settled when a sweep changes no velocity by more than this [m/s]. The rest is not
+/// lost: the next frame continues from there, so a heap at rest converges to rounding in the end.
 inline constexpr double kRestingVelocity = 1e-8;
 
-/// ... and this share of the fastest body's velocity beside it. Where something slides, sweeps may never come
+/// ... plus this fraction of the fastest body's velocity. Where something slides, sweeps may never come
 /// nearer: impulses then grow against each other while velocities stay.
 inline constexpr double kSlidingVelocity = 3e-5;
 
-/// The friction of a sliding patch has settled when it changes by less than this share of mu N from one
+/// The friction of a sliding patch has settled when it changes by less than this fraction of mu N from one
 /// answer to the next.
 inline constexpr double kSameFriction = 1e-6;
 
-/// Friction at so little less than mu N, as a share, slides: what sweeps bring to the bound is off by
-/// rounding.
+/// Friction at so little less than mu N, as a fraction, slides: sweeps reach the bound only up to rounding.
 inline constexpr double kAtFrictionBound = 1e-9;
 
-/// In an impact, velocities of less than this share of the approach are none, and energies are the same when
-/// they differ by less.
+/// In an impact, velocities of less than this fraction of the approach count as zero, and energies are the
+/// same when they differ by less.
 inline constexpr double kImpactSettled = 1e-10;
 
-/// A direction in which less than this share of a body's mobility is left, once the directions found before
-/// are taken away, is none: a hinge's mobility is of rank one, but for rounding.
+/// A direction in which less than this fraction of a body's mobility is left, once the directions found
+/// before are subtracted, has none: a hinge's mobility is of rank one, but for rounding.
 inline constexpr double kNoMobility = 1e-12;
 
-/// A row of a quadratic program depends on those that hold when less than this share of it is left beside
-/// them: the corners of one face say the same thing up to rounding, and a row that differed from them by less
-/// could only be kept by forces that are as many times too large.
+/// A row of a quadratic program depends on the active ones when less than this fraction of it is linearly
+/// independent of them: the corners of one face have the same row up to rounding, and a row that differed
+/// from them by less could only be kept by forces that are as many times too large.
 inline constexpr double kDependentRow = 1e-7;
 
 /// A row of the contact problem is kept when it is missed by no more than this [m]: the forces are then right
-/// to 1e-9 N, and no gap is moved by what could be measured.
+/// to 1e-9 N, and no gap changes by a measurable amount.
 inline constexpr double kRowKept_m = 1e-12;
 
-/// The gap at which the constraint response holds contacts apart, a share of the largest moving part's size.
+/// The gap at which the constraint response keeps contacts, as a fraction of the largest moving part's size.
 /// Some thousand times the certificate, so that a validated pose is open beyond any error bound; a tenth of
 /// the tightest fit of engineering.
 inline constexpr double kSkin = 5e-6;
 
-/// A pair overlaps when its depth exceeds this share of the pieces' size: what is less
-/// the certificate leaves open.
+/// A pair overlaps when its depth exceeds this fraction of the pieces' size: a smaller depth is within the
+/// error of the certificate.
 inline constexpr double kPenetrating = 1e-9;
 
-/// The normal cones of features are widened by this angle [rad] when contacts are looked for, the most a part
-/// turns in a step: with the true cones only the lowest corner of a flat contact counts, and sliding over a
-/// plane of many pieces sticks.
+/// The normal cones of features are widened by this angle [rad] in the search for contacts, the largest turn
+/// of a part in a step: with the true cones only the lowest corner of a flat contact counts, and sliding over
+/// a plane of many pieces sticks.
 inline constexpr double kConeInflation = 0.004;
 
 /// Unit normals that differ by less than this are one: a corner's mean normal is then the face's own, to the
 /// bit.
 inline constexpr double kSameNormal = 1e-9;
 
-/// The area that a contact point counts for when it shares a facet's stiffness with patches: small against
-/// any patch a hand can feel (a tenth of a millimetre squared is 1e-8), so it counts only where it is alone
-/// [m^2].
+/// The area by which a contact point is weighted when it has one facet's stiffness together with patches:
+/// small against any patch a hand can feel (a tenth of a millimetre squared is 1e-8), so it counts only where
+/// it is alone [m^2].
 inline constexpr double kPointArea_m2 = 1e-14;
 
-/// ... and the width of a segment, so that its stretches share by length: a millimetre counts as ten points
-/// [m].
+/// ... and the width of a segment, so that its stretches are weighted by length: a millimetre counts as ten
+/// points [m].
 inline constexpr double kLineWidth_m = 1e-10;
 
-/// ... and what a segment without length counts for, so that shares can always be told [m^2].
+/// ... and the weight of a segment without length, so that fractions are always defined [m^2].
 inline constexpr double kLeastWeight_m2 = 1e-24;
 
 /// A corner of a polygon face turns the wrong way only beyond this (cross product over the square of the
@@ -162,12 +164,12 @@ inline constexpr double kCoplanarMeshOffset = 1e-6;
 /// slivers within a flat face are allowed that much more than kCoplanarMeshSine.
 inline constexpr double kStoredNoise = 1.2e-7;
 
-/// Box tests grow the boxes by this share of their size, so that rounding of the rotated axes never parts
-/// boxes that touch.
+/// Box tests grow the boxes by this fraction of their size, so that rounding of the rotated axes never
+/// separates boxes that touch.
 inline constexpr double kBoxMargin = 1e-14;
 
-/// What rounding to single precision may do to bounds kept in it (6e-8 a number, a few in a row), as a share
-/// of the size for lengths and in radians for angles: such bounds are grown by this, so that no pair is lost.
+/// The error of bounds that are kept in single precision (6e-8 a number, a few in a row), as a fraction of
+/// the size for lengths and in radians for angles: such bounds are grown by this, so that no pair is lost.
 inline constexpr double kSingle = 1e-6;
 
 /// Squared angle [rad^2] below which sin(a)/a and its kin are taken from their series: exact to the last bit
@@ -181,7 +183,8 @@ inline constexpr double kSmallHalfAngleSineSquared = 1e-3;
 /// A matrix read from a file is a rotation when every entry of R R^T - I is below this: sixteen decimals.
 inline constexpr double kRotationExact = 1e-9;
 
-/// ... and is made orthonormal, and the reader told, when below this: six decimals, as many programs write.
+/// ... and is made orthonormal, with a report to the reader, when below this: six decimals, as many programs
+/// write.
 inline constexpr double kRotationNear = 1e-4;
 
 /// The iteration to the nearest rotation stops when no entry changes by more than this. It converges
@@ -193,7 +196,7 @@ inline constexpr double kRotationConverged = 1e-9;
 inline constexpr double kQuaternionNear = 1e-3;
 
 /// A part is about its centre of mass when its origin is this near to it: a micrometre in a metre, far below
-/// what the hand can tell of a weight, far above what the volume integrals of a mesh leave.
+/// the weight difference that a hand can feel, far above the error of a mesh's volume integrals.
 inline constexpr double kCentered = 1e-6;
 
 }  // namespace tactum::inline v0_1::tolerances

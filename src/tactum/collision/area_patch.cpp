@@ -10,9 +10,9 @@
 namespace tactum::inline v0_1::detail {
 namespace {
 
-/// B's face as the plane a patch of two faces is told on: x along its first side, y from there inward, from
-/// the corner where that side ends. A is looked at along the contact normal. So B's points are the part's
-/// own, and where the face is a rectangle its sides are values of a coordinate.
+/// B's face as the plane of a patch of two faces: x along its first side, y from there inward, with the
+/// origin in the corner where that side ends. A is projected along the contact normal. So B's points are the
+/// part's own, and where the face is a rectangle its sides are values of a coordinate.
 class ReferenceFace {
  public:
   explicit ReferenceFace(const PatchWork& w) noexcept
@@ -33,9 +33,9 @@ class ReferenceFace {
   }
 
   bool rectangle() const noexcept { return face_.rectangle; }
-  /// All of the face, if it is a rectangle.
+  /// The whole face, if it is a rectangle.
   const PatchBox& box() const noexcept { return box_; }
-  /// No gap over it is larger, if it is a rectangle: a bound of the overlap's that costs next to nothing.
+  /// A bound on the gap over it, if it is a rectangle: one of the overlap's that costs almost nothing.
   double largest(const Height& gap) const noexcept {
     return gap.at_origin + std::max(gap.slope.x() * box_.low.x(), 0.0) +
            std::max(gap.slope.y() * box_.high.y(), 0.0);
@@ -45,8 +45,8 @@ class ReferenceFace {
     const Vec3& out = sides_[0].normal;
     return {corner(1), Two{along_.x(), -out.x()}, Two{along_.y(), -out.y()}, Two{along_.z(), -out.z()}};
   }
-  /// Those of points in A's frame, the same for all on a line along the normal: by the axes' cross products
-  /// with it.
+  /// The coordinates of points in A's frame, the same for all on a line along the normal: by the axes' cross
+  /// products with it.
   Projection along_normal() const noexcept {
     const Vec3& n = w_.closest.normal;
     const Two u = {x_[1], -x_[0]};
@@ -60,7 +60,7 @@ class ReferenceFace {
   /// How the face rises along the normal.
   Vec2 slope() const noexcept { return vec2(dots(w_.closest.normal)); }
   /// The direction of B's own x, or y where that is steep, in the face: the same for all faces in one plane,
-  /// so that the points are those of a part in one piece. [-]
+  /// so that the points are those of an uncut part. [-]
   Vec2 axis() const noexcept {
     constexpr double kSteep = 0.55;  // no normal of a simple ratio
     const int own = std::abs(face_.normal.x()) < kSteep ? 0 : 1;
@@ -78,7 +78,7 @@ class ReferenceFace {
 
  private:
   const Vec3& corner(int i) const noexcept { return w_.B.vertices[w_.B.face_vertices[face_.first + i]]; }
-  /// Of a vector with both axes.
+  /// The dot products of a vector with both axes.
   Two dots(const Vec3& v) const noexcept { return x_ * both(v.x()) + y_ * both(v.y()) + z_ * both(v.z()); }
 
   const PatchWork& w_;
@@ -104,7 +104,7 @@ Rise rise_from_edge(const Projection& plane, const Polytope& P, int edge, const 
   return {across, across.dot(on_line)};
 }
 
-/// A place on B with the gap over it, as it is linear in the face's coordinates.
+/// A place on B with the gap over it, as a linear function of the face's coordinates.
 struct OnB {
   Two xy, z_gap;
 
@@ -112,7 +112,7 @@ struct OnB {
   OnB operator*(double by) const noexcept { return {xy * both(by), z_gap * both(by)}; }
 };
 
-/// ... and with the place on A over it: what a contact point is told by.
+/// ... and with the place on A over it: the data of a contact point.
 struct OnBoth {
   Two a_xy;
   double a_z;
@@ -149,8 +149,8 @@ struct GapRange {
   }
 };
 
-/// Where both faces are, one over the other: the polygon of the contact's own pieces, and those of the other
-/// stretches, which are made anew whenever they are asked for.
+/// The area where both faces are, one over the other: the polygon of the contact's own pieces, and those of
+/// the other stretches, which are computed anew for every visit.
 class Overlap {
  public:
   Overlap(const PatchWork& w, const ReferenceFace& reference) noexcept
@@ -167,7 +167,7 @@ class Overlap {
     face_outline(reference_.of_b(), w_.B, w_.b.feature.index, false, window);
     clip_polygon(own_, window);
   }
-  /// Keeps where slope . x <= offset.
+  /// Keeps the part where slope . x <= offset.
   void cut(const Vec2& slope, double offset) noexcept {
     clip_polygon(own_, slope, offset);
     if (!w_.others.empty()) cuts_.push_back({slope, offset});
@@ -199,7 +199,7 @@ class Overlap {
   StaticVector<Cut, 3> cuts_;  // one by the gap, one for each face that leans
 };
 
-/// The moments of all polygons as those of one figure.
+/// The moments of all polygons together.
 PatchMoments moments_of_all(const Overlap& overlap) noexcept {
   PatchMoments sum;
   overlap.visit([&](const PatchPolygon& polygon) { sum = together(sum, moments_of(polygon)); });

@@ -6,8 +6,8 @@
 
 namespace tactum::inline v0_1 {
 
-/// In `x` the points and features of the nearest of all vertex-face and edge-edge pairs (which hold all
-/// others), at the vertex or edge the points are on.
+/// Sets in `x` the points and features of the nearest of all vertex-face and edge-edge pairs (which include
+/// all others), at the vertex or edge the points are on.
 void brute_force_distance(const PairView& pair, PairDistance& x) noexcept;
 
 }  // namespace tactum::inline v0_1

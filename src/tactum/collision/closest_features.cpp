@@ -8,8 +8,8 @@
 namespace tactum::inline v0_1 {
 namespace {
 
-/// The vertices farthest along the line of centres: near the closest features of pieces met for the first
-/// time. A climb goes there faster than a walk, whose every step is a pair.
+/// The vertices farthest along the line of centres: near the closest features of pieces that were not tracked
+/// before. A climb reaches them faster than a walk, whose every step is a pair.
 [[gnu::noinline]] FeaturePair first_seed(const PiecePair& pair) noexcept {
   Vec3 toward_b = pair.X_AB * pair.B.extent.center - pair.A.extent.center;
   if (toward_b.isZero()) toward_b = Vec3::UnitX();
@@ -19,8 +19,8 @@ namespace {
 
 }  // namespace
 
-/// Flattened: the walk's first step is most of the query, and its numbers stay where they are made. `x` is
-/// what every way returns: an answer copied right after it was written waits for its parts.
+/// Flattened: the walk's first step is most of the query, and its numbers stay in registers. Every path
+/// returns `x`: an answer copied right after it was written waits for its parts.
 [[gnu::flatten]] PairDistance closest_features(const Polytope& A, const Polytope& B, const Pose& X_AB,
                                                PairCache& cache) noexcept {
   const PiecePair pair(A, B, X_AB);

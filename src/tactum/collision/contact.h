@@ -1,6 +1,6 @@
 #pragma once
-/// The one convention of contact, and the numbers that name it. Everything is in A's frame; A and B are
-/// convex pieces, X_AB is B's pose in A.
+/// The one convention of contact, and its numbers. Everything is in A's frame; A and B are convex pieces,
+/// X_AB is B's pose in A.
 ///
 ///            A   /                     n (= n_BA_A): unit, from B to A
 ///          -----*  p_a                 distance = n . (p_a - p_b), negative when they overlap
@@ -26,25 +26,25 @@ struct FeaturePair {
   bool empty() const noexcept { return a.index < 0 || b.index < 0; }
 };
 
-/// Four pairs of vertices of A and B. While their differences hold the origin between them the pieces share a
-/// point; all zero when none were needed. Pieces have at most 65 535 vertices.
+/// Four pairs of vertices of A and B. While the tetrahedron of their differences holds the origin the pieces
+/// share a point; all zero when none were needed. Pieces have at most 65 535 vertices.
 struct OverlapProof {
   std::array<std::uint16_t, 4> a{}, b{};
   bool known = false;
 };
 
-/// The closest features of a pair in the last frame: the coherence the tracker lives on. Value-initialised
-/// means none.
+/// The closest features of a pair in the last frame, from which the tracker begins. Value-initialised means
+/// none.
 struct PairCache {
   Feature a, b;
   Vec3 normal_A = Vec3::Zero();  ///< last normal from B to A, unit, or zero when there was none [-]
   OverlapProof overlap;          ///< known when they overlapped in the last frame
-  // Of an overlapping pair: the next best ways out, and the walk that looks for others (penetration.h).
+  // Of an overlapping pair: the next smaller minima of depth, and the explorer (penetration.h).
   std::array<FeaturePair, 2> candidate_minima{};
   FeaturePair explorer;
   std::uint32_t turn = 0;             ///< frames tracked inside
-  std::uint32_t explorer_starts = 0;  ///< starts looked at for an explorer
-  std::uint32_t explorer_turns = 0;   ///< that the explorer has walked
+  std::uint32_t explorer_starts = 0;  ///< directions tried as starts of an explorer
+  std::uint32_t explorer_turns = 0;   ///< frames in which the explorer has walked
 };
 
 /// Why a query stopped.
@@ -69,13 +69,13 @@ struct PairDistance {
   bool certified() const { return stop != Stop::kBounded; }
 };
 
-/// One point of a contact patch. The points of a patch stand for an integral over its area: their weights add
+/// One point of a contact patch. The points of a patch represent an integral over its area: their weights add
 /// up to one.
 struct ContactPoint {
   Vec3 p_a = Vec3::Zero();  ///< on A, A's frame [m]
   Vec3 p_b = Vec3::Zero();  ///< on B, A's frame [m]
   double distance = 0.0;    ///< normal . (p_a - p_b) [m]
-  double weight = 0.0;      ///< share of the patch's stiffness [-]
+  double weight = 0.0;      ///< fraction of the patch's stiffness [-]
   std::uint64_t id = 0;  ///< the same from frame to frame while the features of the patch and its kind stay
 };
 

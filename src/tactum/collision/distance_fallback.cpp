@@ -14,7 +14,7 @@ namespace {
 
 using Kind = FeatureKind;
 
-/// Distance and normal as the features give them, with the error bound that the support planes leave.
+/// Distance and normal from the features, with the error bound from the support planes.
 struct Judged {
   PairDistance answer = {};
   int support_a = 0, support_b = 0;
@@ -37,7 +37,7 @@ Vec3 edges_normal(const PairView& pair, const PairDistance& at, const Vec3& d, d
   return side < 0.0 ? Vec3(-c / sine) : Vec3(c / sine);
 }
 
-/// The normal of the closest features; zero when only the penetration walk can tell it.
+/// The normal of the closest features; zero when only the walk on the Minkowski difference can determine it.
 Vec3 features_normal(const PairView& pair, const PairDistance& at) noexcept {
   if (at.a.kind == Kind::kFace) return -pair.A.faces[at.a.index].normal;
   if (at.b.kind == Kind::kFace) return pair.X_AB.R * pair.B.faces[at.b.index].normal;
@@ -47,7 +47,7 @@ Vec3 features_normal(const PairView& pair, const PairDistance& at) noexcept {
   return gap > tolerances::kTouching * pair.size ? Vec3(d / gap) : Vec3::Zero();
 }
 
-/// Of the two faces of a flat piece, the one that looks along `outward`.
+/// The one of the two faces of a flat piece that looks along `outward`.
 Feature facing_side(const Polytope& P, Feature f, const Vec3& outward) noexcept {
   if (P.flat && f.kind == Kind::kFace && P.faces[f.index].normal.dot(outward) < 0.0) f.index = 1 - f.index;
   return f;
@@ -67,16 +67,16 @@ Judged judge(const PairView& pair, const PairDistance& at, const Vec3& normal) n
   x.error_bound = std::numeric_limits<double>::infinity();
   if (normal.isZero()) return judged;
   const double gap = pair.separation(normal, judged.support_a, judged.support_b);
-  // The points' whole distance counts, and that they lie on one normal.
+  // The error includes the points' whole distance, and how far they are off one normal.
   const Vec3 d = at.p_a - at.p_b;
   const double over = d.norm() - gap;
-  // Below the lower bound no points lie: these are not known, or the planes are lost in rounding.
+  // No points lie below the lower bound: these are not known, or the planes are lost in rounding.
   if (over >= -certificate(pair)) x.error_bound = std::max(over, (d - normal * x.distance).norm());
   return judged;
 }
 
 /// The nearest normal inside the normal cones of both features, by projecting on their half-spaces in turn.
-/// Heals a normal that is off by rounding over a very small gap.
+/// It corrects a normal whose direction is lost in rounding over a very small gap.
 Vec3 inside_cones(const PairView& pair, const Feature& fa, const Feature& fb, Vec3 n) noexcept {
   const auto project = [](const Polytope& P, const Feature& f, Vec3& outward) {
     if (f.kind == Kind::kVertex) {
@@ -100,7 +100,7 @@ Vec3 inside_cones(const PairView& pair, const Feature& fa, const Feature& fb, Ve
   return n;
 }
 
-/// The query while it climbs down its ladder.
+/// The query while it tries its slower methods.
 class Query {
  public:
   Query(const PairView& pair, PairCache& cache) noexcept : pair_(pair), cache_(cache) {}
@@ -129,7 +129,7 @@ class Query {
     return false;
   }
 
-  /// Judges the points `at`, with their features' normal or that normal healed.
+  /// Judges the points `at`, with their features' normal or that normal corrected.
   bool certified(const PairDistance& at, Stop stop) noexcept {
     last_ = judge(pair_, at, features_normal(pair_, at));
     if (last_.answer.error_bound > certificate(pair_) && std::isfinite(last_.answer.error_bound)) {
@@ -146,7 +146,7 @@ class Query {
     return true;
   }
 
-  /// A point of both was found.
+  /// A common point was found.
   bool overlapping() noexcept {
     result_ = penetration_depth(pair_.A, pair_.B, pair_.X_AB, cache_);
     result_.steps += steps_;
@@ -154,7 +154,7 @@ class Query {
     return true;
   }
 
-  /// What no walk can lead astray, and then a walk from there for the last digits.
+  /// The method that cannot cycle, and then a walk from its answer for the last digits.
   bool by_supports() noexcept {
     PairDistance at;
     const FeatureWalk supports = closest_by_supports(pair_, cache_.overlap, at);
@@ -176,9 +176,9 @@ class Query {
     return certified(at, Stop::kFallback) || on_planes();
   }
 
-  /// A facet of the Minkowski difference tells the normal where the points' difference cannot. Its witness
-  /// points lie on the pieces, so a certified answer that is not below zero proves itself; below zero it
-  /// takes points of both that coincide.
+  /// A facet of the Minkowski difference gives the normal where the points' difference cannot. Its witness
+  /// points lie on the pieces, so a certified answer that is not below zero proves itself; below zero the
+  /// proof needs points of both that coincide.
   bool on_planes() noexcept {
     PairCache cache = cache_;
     const PairDistance planes = penetration_depth(pair_.A, pair_.B, pair_.X_AB, cache);
@@ -202,7 +202,7 @@ class Query {
 
   static constexpr int kAttempts = 4;
   static constexpr double kWiderTolerance = 32.0;
-  static constexpr std::size_t kSmallEdgePairs = 4096;  ///< every feature is tried up to here: 40 us
+  static constexpr std::size_t kSmallEdgePairs = 4096;  ///< brute force is used up to here: 40 us
 
   const PairView& pair_;
   PairCache& cache_;

@@ -9,7 +9,7 @@
 namespace tactum::inline v0_1 {
 
 /// Two coordinates of the points of a piece's frame: (r1, r2) . (p - origin) scale, side by side. The scale
-/// by itself: what it follows from can be waited for meanwhile. All its numbers apart: in a copy of a vector
+/// is kept by itself, so that its latency overlaps the rest. All numbers are separate: in a copy of a vector
 /// just written the processor would wait for them.
 struct Projection {
   double origin_x, origin_y, origin_z;
@@ -43,7 +43,7 @@ inline void face_outline(const Projection& plane, const Polytope& P, int face_in
   const int first = face.first + (on_a ? face.count - 1 : 0);
   const int* const corners = P.face_vertices.data();
   const Vec3* const vertices = P.vertices.data();
-  const Projection flat = plane;  // of its own: stays in registers while corners are stored
+  const Projection flat = plane;  // a local copy, which stays in registers while corners are stored
   const int count = all ? face.count : (face.count + stride - 1) / stride;
   loop.fill(static_cast<std::size_t>(count),
             [&](std::size_t i) { return flat.flat(vertices[corners[first + step * static_cast<int>(i)]]); });

@@ -1,5 +1,5 @@
 #pragma once
-/// How a walk to the closest features of two pieces ended (vclip.h, support_distance.h).
+/// The outcome of a walk to the closest features of two pieces (vclip.h, support_distance.h).
 
 #include <cstdint>
 #include <limits>
@@ -10,7 +10,7 @@ enum class FeatureWalkEnd : std::uint8_t {
   kClosest,  ///< no Voronoi plane is violated
   kOverlap,  ///< an edge goes through a face
   kBehind,   ///< a vertex is behind the face in whose column it is: overlapping, or far beyond the piece
-  kCircle,   ///< came back to a state: the nearest of the circle is returned
+  kCircle,   ///< came back to a state: the nearest of the cycle is returned
   kBounded,  ///< out of steps
 };
 

@@ -9,14 +9,14 @@
 namespace tactum::inline v0_1::detail {
 namespace {
 
-/// Intervals of a line, apart from each other: one, but where the stretches of an edge leave a part of it
-/// out.
+/// Intervals of a line, apart from each other: one, except where the stretches of an edge leave a gap.
 class Intervals {
  public:
   Intervals() noexcept = default;
   explicit Intervals(const PatchInterval& only) noexcept { add(only); }
 
-  /// One that touches or overlaps others is one with them. Beyond the room the last takes in what is between.
+  /// An interval that touches or overlaps others is merged with them. Beyond the room the last one is
+  /// extended.
   void add(PatchInterval next) noexcept {
     if (next.empty()) return;
     std::size_t kept = 0;
@@ -49,7 +49,7 @@ class Intervals {
   StaticVector<PatchInterval, 8> intervals_;
 };
 
-/// The cut that a leaning face makes: only this share of its rise is kept. Told by the rise at a strip's
+/// The cut that a leaning face makes: only this fraction of its rise is kept. Stated by the rise at a strip's
 /// ends.
 struct StripCut {
   double at0 = 0.0, at1 = 0.0, share = 1.0;
@@ -58,7 +58,7 @@ struct StripCut {
 /// The part of `v` square to unit `n`.
 Vec3 across(const Vec3& v, const Vec3& n) noexcept { return v - n * n.dot(v); }
 
-/// Of a linear function over `kept` the least value, or with a negative sign the largest.
+/// The least value of a linear function over `kept`, or with a negative sign the largest.
 double least_of(const Intervals& kept, double at0, double at1, double sign = 1.0) noexcept {
   double least = std::numeric_limits<double>::infinity();
   for (const PatchInterval& interval : kept)
@@ -109,7 +109,7 @@ void interval_contact(const PatchWork& w, const Strip& strip, Intervals kept,
                             gap0 + (gap1 - gap0) * s, 0.5, name++});
 }
 
-/// An edge looked at along the normal `n`: where points are along it and beside it, in parts of its length.
+/// An edge in the projection along the normal `n`: points along it and beside it, in fractions of its length.
 class EdgeView {
  public:
   EdgeView(const Vec3& tail, const Vec3& head, const Vec3& n) noexcept
@@ -147,7 +147,7 @@ PatchInterval on_line(const EdgeView& line, const EdgeEnds& stretch, const Patch
   return {std::min(low, high), std::max(low, high)};
 }
 
-/// A face of piece F, of A or of B, looked at along the normal `n`, in F's frame.
+/// A face of piece F, of A or of B, in the projection along the normal `n`, in F's frame.
 struct FaceView {
   const Polytope& F;
   const Polytope::Face& face;
@@ -158,14 +158,14 @@ struct FaceView {
       : F(piece), face(piece.faces[index]), n(normal), per_up(1.0 / face.normal.dot(normal)) {}
   /// From a point along the normal to the face's plane [m].
   double up(const Vec3& p) const noexcept { return (face.offset - face.normal.dot(p)) * per_up; }
-  /// Of a segment in the face's plane the part that is inside the face.
+  /// The part of a segment in the face's plane that is inside the face.
   PatchInterval inside(const Vec3& q0, const Vec3& q1) const noexcept {
     PatchInterval kept;
     for (int slot = face.first; slot < face.first + face.count; ++slot) {
       const Polytope::Side& side = F.sides[slot];
       const double at0 = side.normal.dot(q0) - side.offset;
       const double at1 = side.normal.dot(q1) - side.offset;
-      if (at0 <= 0.0 && at1 <= 0.0) continue;  // most are: no quotient
+      if (at0 <= 0.0 && at1 <= 0.0) continue;  // as for most: no quotient is needed
       kept.keep_below(at0, at1, 0.0);
     }
     return kept;
@@ -178,7 +178,7 @@ struct FaceView {
   }
 };
 
-/// An edge and the face over or under it: the two points of the edge's ends, on the face and on the edge.
+/// An edge and the face over or under it: the two points at the edge's ends, on the face and on the edge.
 struct EdgeAndFace {
   EdgeEnds edge, face;  // A's frame
   Vec3 face_0, face_1;  // on the face, in its piece's frame
@@ -240,15 +240,15 @@ void edge_over_face(const PatchWork& w) noexcept {
 void edge_a_face_b(const PatchWork& w) noexcept { edge_over_face<false>(w); }
 void face_a_edge_b(const PatchWork& w) noexcept { edge_over_face<true>(w); }
 
-/// Parallel edges share an interval. Edges that cross at a small angle share the part about the crossing
-/// where they are no farther apart sideways than the tolerance; the larger the angle, the less, down to the
-/// crossing.
+/// Parallel edges have an interval in common. Of edges that cross at a small angle it is the part about the
+/// crossing where they are no farther apart sideways than the tolerance; the larger the angle, the less, down
+/// to the crossing.
 void edge_edge_contact(const PatchWork& w) noexcept {
   const Vec3& n = w.closest.normal;
   const EdgeEnds a = ends_of_a(w.A, w.a.feature.index);
   const EdgeEnds b = ends_of_b(w, w.B, w.b.feature.index);
   const EdgeView line(a.tail, a.head, n);
-  // B's ends, in parts of A's length along A and across it.
+  // B's ends, in fractions of A's length along A and across it.
   const double s0 = line.along(b.tail);
   const double s1 = line.along(b.head);
   const double side0 = line.beside(b.tail, n);

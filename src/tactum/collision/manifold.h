@@ -18,8 +18,9 @@
 ///      Gauss points. Any force that is linear in the gap, and its torque, is then the exact integral over
 ///      the patch. Points keep their identities while the features stay.
 ///
-/// The figures are cut along the contact normal, by the borders of the face they are cut with. Departs from
-/// [Gregory 2000, 4.1] in 3 and 4: the bare corners of the clipped polygon come and go, and their mean with
+/// The figures are cut along the contact normal, by the borders of the face they are cut with. Steps 3 and 4
+/// differ from [Gregory 2000, 4.1]: the bare corners of the clipped polygon appear and vanish, and their mean
+/// jumps with them. Cost: see docs/algorithms/manifold.md.
 /// them. Cost: see docs/algorithms/manifold.md.
 
 #include <span>

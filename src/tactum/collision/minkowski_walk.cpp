@@ -20,14 +20,14 @@ struct Arc {
   Vec3 t0 = Vec3::Zero();
 };
 
-/// What the arc meets first: P's outward direction there is  cosine m0 + sine t0.
+/// The first event on the arc: P's outward direction there is cosine m0 + sine t0.
 struct ArcEnd {
   int edge = -1;  // of Q; -1: the end face
   double cosine = 1.0, sine = 0.0;
 };
 
-/// Does (cosine, sine) come before the end along an arc? Angles are from 0 to a half circle (a flat piece's),
-/// so the earlier one has the larger cotangent; told without dividing.
+/// Whether (cosine, sine) comes before the end along an arc. Angles are from 0 to a half circle (a flat
+/// piece's), so the earlier one has the larger cotangent; compared without dividing.
 bool comes_before(double cosine, double sine, const ArcEnd& end) noexcept {
   return cosine * end.sine > end.cosine * sine;
 }
@@ -35,7 +35,7 @@ bool comes_before(double cosine, double sine, const ArcEnd& end) noexcept {
 ArcEnd follow_arc(const Polytope& P, const Polytope& Q, const Mat3& R_QP, const Arc& arc,
                   int excluded) noexcept {
   const Vec3& m1 = P.faces[arc.end].normal;
-  // Never quite zero: the end of a half circle comes after what is met at once.
+  // Never quite zero: the end of a half circle comes after an event at the start.
   ArcEnd end{-1, arc.m0.dot(m1), std::max(arc.t0.dot(m1), tolerances::kSameArc * tolerances::kSameArc)};
   const Vec3 o0 = -rotated(R_QP, arc.m0);  // Q's outward direction
   const Vec3 o_t = -rotated(R_QP, arc.t0);
@@ -54,8 +54,8 @@ ArcEnd follow_arc(const Polytope& P, const Polytope& Q, const Mat3& R_QP, const 
   return end;
 }
 
-/// Outward direction of N on two crossing arcs, by the edges; `near` decides the sign, and stands in for the
-/// cross product where the edges are so nearly parallel that it has no digits.
+/// Outward direction of N on two crossing arcs, by the edges; `near` decides the sign, and replaces the cross
+/// product where the edges are so nearly parallel that it has no digits.
 Vec3 crossing_normal(const Vec3& u_a, const Vec3& u_b, const Vec3& near) noexcept {
   const Vec3 c = u_a.cross(u_b);
   const double sine = c.norm();
@@ -100,7 +100,7 @@ MinkowskiFacet facet_behind(const PairView& pair, const Passage& passage) noexce
   return facet_at(pair, passage, end_of(pair, passage));
 }
 
-/// A border of a facet that the target point lies beyond, and by how much.
+/// A border of a facet that the target point lies beyond, and how far.
 struct Crossing {
   double outside = 0.0;
   int slot = -1;        // face facets: the side plane
@@ -128,7 +128,7 @@ struct Worst {
 Worst worst_side(const Polytope& P, int face_index, const Vec3& point, double cap) noexcept {
   const Polytope::Face& face = P.faces[face_index];
   Worst worst{cap};
-  // Numbers of their own, chosen without branches: which sides are worst is hard to foretell.
+  // Local numbers, chosen without branches: which sides are worst is hard to predict.
   double first = worst.first.outside;
   double second = first;
   int first_slot = -1;
@@ -148,8 +148,8 @@ Worst worst_side(const Polytope& P, int face_index, const Vec3& point, double ca
   return worst;
 }
 
-/// Puts the witness points (p_b - p_a = target) on the features and tells the worst borders they are beyond,
-/// of those with less than `cap` outside.
+/// Puts the witness points (p_b - p_a = target) on the features and returns the worst borders they are
+/// beyond, of those with less than `cap` outside.
 Worst place(const PairView& pair, const MinkowskiFacet& facet, const Vec3& target, double cap,
             MinkowskiWalk& walk) noexcept {
   if (facet.a.kind == Kind::kFace) {
@@ -233,8 +233,8 @@ Passage across(const PairView& pair, const MinkowskiFacet& facet, const Crossing
   return edges ? across_edge_border(pair, facet, crossing) : across_face_border(pair, facet, crossing.slot);
 }
 
-/// Square to the border, of the foot that is `inside` of it as told by place(): for two edges along one of
-/// them, not square to the other.
+/// The distance square to the border, of the foot that is `inside` of it as measured by place(): for two
+/// edges that is along one of them, not square to the other.
 double square_to_border(const PairView& pair, const MinkowskiFacet& facet, double inside) noexcept {
   if (facet.a.kind != Kind::kEdge || facet.b.kind != Kind::kEdge) return inside;
   const double along =
@@ -242,7 +242,7 @@ double square_to_border(const PairView& pair, const MinkowskiFacet& facet, doubl
   return inside * std::sqrt(std::max(0.0, 1.0 - along * along));
 }
 
-/// What the walk goes down on: the height of a facet's plane, or the length of the ray to it.
+/// The quantity that the walk reduces: the height of a facet's plane, or the length of the ray to it.
 struct Measure {
   const Vec3* ray;  // null: the foot
 
@@ -254,7 +254,8 @@ struct Measure {
   Vec3 target(const MinkowskiFacet& f) const noexcept { return (ray ? *ray : f.n) * (*this)(f); }
 };
 
-/// Across the worst border, or where rounding has bent the facets the next worst, whose plane is not farther.
+/// Whether to go across the worst border, or where rounding has bent the facets the next worst, whose plane
+/// is not farther.
 bool leads_outward(const PairView& pair, const Measure& measure, Crossing crossing, double limit,
                    double crossing_tolerance, const MinkowskiFacet& from, MinkowskiFacet& next) noexcept {
   const Vec3 target = measure.target(from);
@@ -267,9 +268,10 @@ bool leads_outward(const PairView& pair, const Measure& measure, Crossing crossi
   return false;
 }
 
-/// The foot is inside; the nearest borders may still have a lower facet behind them: two local minima side by
-/// side, of which the walk takes the better. Seen along the common ridge, a foot at depth d and `inside` from
-/// a ridge where the planes turn by alpha is at depth  d cos alpha + inside sin alpha  under the other.
+/// Whether to go on although the foot is inside: the nearest borders may still have a lower facet behind
+/// them: two local minima side by side, of which the walk takes the better. Seen along the common ridge, a
+/// foot at depth d and `inside` from a ridge where the planes turn by alpha is at depth d cos alpha + inside
+/// sin alpha under the other.
 bool leads_past_ridge(const PairView& pair, const Worst& nearest, double level, const MinkowskiFacet& from,
                       MinkowskiFacet& next) noexcept {
   const double d = from.height;
@@ -289,14 +291,14 @@ bool leads_past_ridge(const PairView& pair, const Worst& nearest, double level, 
   return false;
 }
 
-/// No bound but the walk's own.
+/// No bound on the moves but the walk's own.
 constexpr int kAllMoves = std::numeric_limits<int>::max();
 
-/// `ray`: where it leaves N; null: to a foot. `past_ridges`: goes on from a foot to one that is lower behind
-/// a border. Most walks end where they begin, and have copied no feet.
+/// `ray`: to where it leaves N; null: to a foot. `past_ridges`: goes on from a foot to one that is lower
+/// behind a border. Most walks end where they begin, and have copied no feet.
 MinkowskiWalk walk(const PairView& pair, const MinkowskiFacet& start, const Vec3* ray, bool past_ridges,
                    int most_moves) noexcept {
-  constexpr int kLevelSteps = 16;  // between facets of one plane, while nothing gets better
+  constexpr int kLevelSteps = 16;  // between facets of one plane, without improvement
   const Measure measure{ray};
   const double crossing_tolerance = tolerances::kVoronoiTolerance * pair.scale;
   const double level = tolerances::kCoplanar * pair.scale;  // facets of one plane, by rounding this far apart
@@ -312,7 +314,7 @@ MinkowskiWalk walk(const PairView& pair, const MinkowskiFacet& start, const Vec3
   best.facet = start;
   Worst worst = place_feet(best);
   MinkowskiWalk here;               // from the first move on
-  const MinkowskiWalk* on = &best;  // where the walk stands: the start, then `here`
+  const MinkowskiWalk* on = &best;  // the walk's present facet: the start, then `here`
   MinkowskiFacet next;
   int improved = 1;
   for (int step = 1; step <= bound && step - improved <= kLevelSteps; ++step) {
@@ -327,7 +329,7 @@ MinkowskiWalk walk(const PairView& pair, const MinkowskiFacet& start, const Vec3
       }
     }
     best.steps = step;
-    if (step > most_moves) {  // the next walk goes on from there, not above the best
+    if (step > most_moves) {  // the next walk goes on from there; it is not above the best
       best = *on;
       best.steps = step;
       break;
@@ -344,8 +346,8 @@ MinkowskiWalk walk(const PairView& pair, const MinkowskiFacet& start, const Vec3
   return best;
 }
 
-/// The face at `vertex` whose normal is most along `d`, and how much. One of them even where `d` is no
-/// number.
+/// The face at `vertex` whose normal is most along `d`, and the projection. It is a face at the vertex even
+/// where `d` is not a number.
 int aligned_face(const Polytope& P, int vertex, const Vec3& d, double& along) noexcept {
   int best = -1;
   along = -std::numeric_limits<double>::infinity();
@@ -360,7 +362,7 @@ int aligned_face(const Polytope& P, int vertex, const Vec3& d, double& along) no
   return best;
 }
 
-/// Of the best aligned faces at vertices `a` and `b`, the better; `n_B`: the direction in B's frame.
+/// The better of the best aligned faces at vertices `a` and `b`; `n_B`: the direction in B's frame.
 MinkowskiFacet aligned_facet(const PairView& pair, const Vec3& n, const Vec3& n_B, int a, int b) noexcept {
   double along_a = 0.0;
   double along_b = 0.0;

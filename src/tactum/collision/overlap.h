@@ -1,7 +1,6 @@
 #pragma once
-/// Two quick proofs that pieces share a point, from what the last frame left. D is the set of all b - a,
-/// points of B less points of A: the pieces overlap where D holds the origin, and what lies between points of
-/// D is in D.
+/// Two quick proofs that pieces share a point, from the answers of the last frame. D is the set of all b - a,
+/// points of B less points of A: the pieces overlap where D holds the origin, and D is convex.
 ///
 ///     by four vertices              by a facet and the centres
 ///
@@ -14,17 +13,17 @@
 ///
 ///     o between the corners         x on the facet, so o between c and x
 ///
-/// The first lasts while the pieces are deep inside each other, the second while they barely are. Either may
-/// fail for pieces that do overlap: then it says nothing. Cost: 15-25 ns each.
+/// The first lasts while the pieces are deep inside each other, the second while they barely overlap. Either
+/// may fail for pieces that do overlap: failure proves nothing. Cost: 15-25 ns each.
 
 #include "tactum/collision/pair_view.h"
 
 namespace tactum::inline v0_1 {
 
-/// Do the corners of `proof` hold the origin between them? `proof` may be any pair's.
+/// Whether the corners of `proof` have the origin between them. `proof` may be any pair's.
 bool overlap_by_vertices(const PairView& pair, const OverlapProof& proof) noexcept;
 
-/// Is the origin behind the facet of D that `depth`, an answer of penetration_depth for this pose, stands on?
+/// Whether the origin is behind the facet of D of `depth`, an answer of penetration_depth for this pose.
 bool overlap_by_facet(const PairView& pair, const PairDistance& depth) noexcept;
 
 }  // namespace tactum::inline v0_1

@@ -1,6 +1,6 @@
 #pragma once
-/// Two convex pieces and where they are, as every query of this folder looks at them: B's pose in A, its
-/// inverse, and the lengths that tolerances are measured by. Both live for one query.
+/// Two convex pieces and their relative pose, as the input of every query of this folder: B's pose in A, its
+/// inverse, and the lengths that tolerances are relative to. Both live for one query.
 ///
 ///   separation(n) = min_A n.a - max_B n.b     the gap between the two support planes across n (unit, from
 ///                                             B to A): a rigorous lower bound on the signed distance,
@@ -16,13 +16,13 @@
 
 namespace tactum::inline v0_1 {
 
-/// What a walk needs.
+/// The input of a walk.
 struct PiecePair {
   const Polytope& A;
   const Polytope& B;
   const Pose& X_AB;
-  double size;   ///< of the larger piece: what certificates are relative to [m]
-  double scale;  ///< size of the numbers that are added up: what rounding is relative to [m]
+  double size;   ///< size of the larger piece, to which certificates are relative [m]
+  double scale;  ///< size of the numbers that are added up, to which rounding is relative [m]
 
   PiecePair(const Polytope& a, const Polytope& b, const Pose& x) noexcept
       : A(a),
@@ -32,7 +32,7 @@ struct PiecePair {
         scale(x.p.lpNorm<1>() + a.extent.magnitude + b.extent.magnitude) {}
 };
 
-/// What the longer queries need: the inverse as well.
+/// The input of the longer queries: the inverse as well.
 struct PairView : PiecePair {
   Pose X_BA;
 
@@ -43,7 +43,7 @@ struct PairView : PiecePair {
   /// Vertex of B, in A.
   Vec3 vertex_b(int v) const noexcept { return X_AB * B.vertices[v]; }
 
-  /// The gap across `n`; `a` and `b` are vertices to climb from and come back as the supports.
+  /// The gap across `n`; `a` and `b` are vertices to climb from, and become the supports.
   double separation(const Vec3& n, int& a, int& b) const noexcept {
     a = support_vertex(A, -n, a);
     b = support_vertex(B, X_BA.R * n, b);
@@ -91,12 +91,12 @@ inline int face_of(const Polytope& P, const Feature& f) noexcept {
   return 0;
 }
 
-/// Does the feature exist on `P`? A cache may come from another pair of pieces.
+/// Whether the feature exists on `P`. A cache may come from another pair of pieces.
 inline bool valid_feature(const Polytope& P, const Feature& f) noexcept {
   return f.index >= 0 && f.index < P.counts[static_cast<std::size_t>(f.kind)];
 }
 
-/// Is `point` (P's frame) over the face, above or below it?
+/// Whether `point` (P's frame) is over the face, above or below it.
 inline bool in_column(const Polytope& P, int face_index, const Vec3& point) noexcept {
   const Polytope::Face& face = P.faces[face_index];
   for (int slot = face.first; slot < face.first + face.count; ++slot)

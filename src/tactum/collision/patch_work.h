@@ -1,6 +1,6 @@
 #pragma once
-/// What the makers of contact patches share: line_patch.cpp for intervals, area_patch.cpp for polygons,
-/// manifold.cpp chooses between them.
+/// Functions common to the makers of contact patches: line_patch.cpp for intervals, area_patch.cpp for
+/// polygons; manifold.cpp chooses between them.
 
 #include <algorithm>
 #include <span>
@@ -12,8 +12,8 @@
 
 namespace tactum::inline v0_1::detail {
 
-/// What a maker works on. Built in place: copying vectors that have just been written makes the processor
-/// wait for them.
+/// The input of a maker. Built in place: copying vectors that have just been written makes the processor wait
+/// for them.
 struct PatchWork {
   const Polytope& A;
   const Polytope& B;
@@ -40,8 +40,8 @@ struct PatchWork {
         others(stretches),
         out(patch) {}
 
-  /// Of a point by its place: 0 to 3 of an area, 4 and 5 of a line, 6 of a point. Arms and ends go with the
-  /// features, so the places do.
+  /// The identity of a point by its place: 0 to 3 of an area, 4 and 5 of a line, 6 of a point. Arms and ends
+  /// stay with the features, so the places do.
   std::uint64_t name(std::uint64_t place) const noexcept { return point_id(a.feature, b.feature, place); }
 };
 
@@ -50,7 +50,7 @@ struct Strip {
   Vec3 a0, a1, b0, b1;
 };
 
-/// How much of the gap's range is kept as the features lean.
+/// The fraction of the gap's range that is kept as the features lean.
 inline double gap_share(const PatchWork& w) noexcept {
   const auto share_of = [](const SupportingFeature& f) {
     return f.feature.kind == FeatureKind::kFace ? std::max(f.face_share, f.along_share) : f.along_share;
@@ -58,8 +58,8 @@ inline double gap_share(const PatchWork& w) noexcept {
   return std::min(share_of(w.a), share_of(w.b));
 }
 
-/// The gap above which the patch ends: the tolerance, or nearer the least gap when the features lean. That of
-/// a stretch (seam_settler.h) is the whole contact's, `closest` is where the least is.
+/// The gap above which the patch ends: the tolerance, or nearer the least gap when the features lean. For a
+/// stretch (seam_settler.h) the level is that of the whole contact, whose least gap is at `closest`.
 inline double cut_level(const PatchWork& w, double least_gap) noexcept {
   const double share = gap_share(w);
   least_gap = std::min(least_gap, w.closest.distance);
@@ -80,7 +80,7 @@ void face_a_edge_b(const PatchWork& w) noexcept;
 /// The patch of two faces: four points; fewer where they have no common area.
 void face_face_contact(const PatchWork& w) noexcept;
 
-/// Two points on a strip: what is left of two faces without a common area.
+/// Two points on a strip: the patch of two faces without a common area.
 void strip_contact(const PatchWork& w, const Strip& strip) noexcept;
 
 }  // namespace tactum::inline v0_1::detail

@@ -14,7 +14,7 @@ namespace {
 
 using Kind = FeatureKind;
 
-/// Pairs of edges up to which a cold start looks at every separating axis: 10 ns each.
+/// Pairs of edges up to which a cold start tries every separating axis: 10 ns each.
 constexpr std::size_t kSmallEdgePairs = 4096;
 
 bool small_pair(const PairView& pair) noexcept {
@@ -42,7 +42,7 @@ void for_every_facet(const PairView& pair, const Visit& visit) noexcept {
       if (facet_of_edges(pair, static_cast<int>(i), static_cast<int>(j), facet)) visit(facet);
 }
 
-/// Where faces or edges of both pieces lie in the support planes, several facets of the difference make one,
+/// Where faces or edges of both pieces lie in the support planes, several facets of the difference are one,
 /// and the walk may end beside the foot. Then the features of the support vertices `a`, `b` are clipped
 /// against each other. False when they do not meet.
 bool witness_on_plane(const PairView& pair, int a, int b, PairDistance& result) noexcept {
@@ -69,7 +69,7 @@ bool witness_on_plane(const PairView& pair, int a, int b, PairDistance& result) 
   return true;
 }
 
-/// The answer a walk stands for, its depth by true supports.
+/// The answer of a walk, its depth by true supports.
 PairDistance answer(const PairView& pair, const MinkowskiWalk& walk, int steps) noexcept {
   PairDistance result;
   result.normal = walk.facet.n;
@@ -168,8 +168,8 @@ void from_many_directions(const PairView& pair, Shallowest& shallowest) noexcept
     if (walked++ < kWalked || !shallowest.best().certified()) shallowest.from(seed);
 }
 
-/// Every facet: the walk from the shallowest finds witness points inside its features, or they are inside
-/// those of another facet as shallow.
+/// Tries every facet: the walk from the shallowest finds witness points inside its features, or they are
+/// inside those of another facet as shallow.
 void from_every_facet(const PairView& pair, Shallowest& shallowest) noexcept {
   MinkowskiFacet best;
   best.height = std::numeric_limits<double>::infinity();
@@ -192,9 +192,9 @@ void remember(const PairDistance& result, PairCache& cache) noexcept {
   cache.normal_A = result.normal;
 }
 
-/// The warm query: the last frame's minimum followed, and beside it a search for a better one that costs a
-/// few facets a frame. Walks are kept in the cache from frame to frame: the candidate minima, which are the
-/// best other minima known, and the explorer, a walk that began in one of many directions.
+/// The warm query: the last frame's minimum is followed, and beside it a search for a better one costs a few
+/// facets a frame. Walks are kept in the cache from frame to frame: the candidate minima, which are the best
+/// other minima known, and the explorer, a walk that began in one of many directions.
 class Tracker {
  public:
   Tracker(const PairView& pair, PairCache& cache) noexcept
@@ -210,7 +210,7 @@ class Tracker {
     const std::uint32_t frame = cache_.turn++;
     const bool looks = frame % kLook == 0;
     const bool candidates_are_due = looks && frame / kLook % kDue == kDue - 1;
-    if (moved_on) {  // a long frame already: it remembers what it left and does not send out the explorer
+    if (moved_on) {  // a long frame already: it stores the minimum it left and does not start the explorer
       keep_last();
     } else if (looks && !candidates_are_due) {
       explore();
@@ -224,10 +224,10 @@ class Tracker {
   }
 
  private:
-  // These divide the work of the search among its calls; they are no times, and so are not told in seconds.
-  static constexpr std::uint32_t kLook = 3;  ///< of so many frames one looks around
-  static constexpr std::uint32_t kDue = 4;   ///< of so many of those, one is for the candidates
-  static constexpr int kMoves = 2;           ///< from facet to facet, of a walk whose turn it is
+  // These divide the work of the search among its calls; they are no times, and so are not in seconds.
+  static constexpr std::uint32_t kLook = 3;  ///< one frame in so many searches
+  static constexpr std::uint32_t kDue = 4;   ///< one of so many of those is for the candidates
+  static constexpr int kMoves = 2;           ///< facets that a walk goes on in its frame
 
   static bool same(const FeaturePair& f, const FeaturePair& g) noexcept { return f.a == g.a && f.b == g.b; }
   static FeaturePair features(const MinkowskiFacet& f) noexcept { return {f.a, f.b}; }
@@ -239,28 +239,28 @@ class Tracker {
     return facet.height < current_.facet.height - tolerances::kCoplanar * pair_.scale;
   }
 
-  /// What was tracked in the last frame; of features that make no facet any more, one near its normal.
+  /// The facet tracked in the last frame; where its features form no facet any more, one near its normal.
   MinkowskiFacet last_facet() const noexcept {
     MinkowskiFacet facet;
     if (!facet_again(pair_, {cache_.a, cache_.b}, facet)) facet = facet_near(pair_, cache_.normal_A);
     return facet;
   }
 
-  /// The last frame's minimum, where it is one still: left for a lower one behind its border, it may soon be
-  /// the lower one again.
+  /// Stores the last frame's minimum as a candidate, where it is still one: left for a lower one behind its
+  /// border, it may soon be the lower one again.
   void keep_last() noexcept {
     if (current_.facet.height < last_.height && stand_on(pair_, last_).arrived(pair_))
       keep(features(last_), last_.height);
   }
 
-  /// So far from the origin that a walk from there to a lower minimum would be long.
+  /// Whether it is so far from the origin that a walk from there to a lower minimum would be long.
   bool far(const MinkowskiFacet& facet) const noexcept {
     constexpr double kFar = 8.0;  // depths
     return facet.height > kFar * current_.facet.height;
   }
 
-  /// The explorer sets out, or walks on and arrives, or waits for its next turn. While it is far it holds up
-  /// those that might set out from nearer, so not for long.
+  /// Starts the explorer, or lets it walk on, end, or wait for its next turn. While it is far it delays
+  /// starts from nearer, so its time is bounded.
   void explore() noexcept {
     constexpr std::uint32_t kPatience = 4;  // turns
     if (cache_.explorer.empty() && !start_explorer()) return;
@@ -275,10 +275,10 @@ class Tracker {
     }
   }
 
-  /// A start for the explorer, in turn from all around, from near, and, every other time, from a face beside
-  /// what touches. Of needles and plates nearly all starts are far away, and some of those lead to the lowest
-  /// minimum: only starts from near and beside must not be far. Returns true when the start is lower than the
-  /// tracked minimum, and so to be followed at once.
+  /// Chooses a start for the explorer, in turn from all around, from near, and, every other time, from a face
+  /// beside the features that touch. Of needles and plates nearly all starts are far away, and some of those
+  /// lead to the lowest minimum: only starts from near and beside must not be far. Returns true when the
+  /// start is lower than the tracked minimum, and so is to be followed at once.
   bool start_explorer() noexcept {
     const std::uint32_t turn = cache_.explorer_starts++;
     const bool around = turn % 4 == 0;
@@ -304,7 +304,7 @@ class Tracker {
       if (same(candidate, minimum)) candidate = {};
   }
 
-  /// Another minimum becomes a candidate, if it is lower than one.
+  /// Makes another minimum a candidate, if it is lower than one of them.
   void keep(const FeaturePair& minimum, double at) noexcept {
     if (known(minimum)) return;
     if (height(upper_candidate()) < height(lower_candidate()))
@@ -317,7 +317,7 @@ class Tracker {
     }
   }
 
-  /// A lower minimum, if it can be proved, becomes the tracked one, and that a candidate.
+  /// Makes a lower minimum, if it can be proved, the tracked one, and that one a candidate.
   void take(const MinkowskiWalk& walk) noexcept {
     if (!answer(pair_, walk, 0).certified()) return;
     const MinkowskiFacet last = current_.facet;
@@ -326,7 +326,7 @@ class Tracker {
     keep(features(last), last.height);
   }
 
-  /// A candidate walks on when it is due, or found to be lower than the tracked minimum.
+  /// Lets a candidate walk on when it is due, or found to be lower than the tracked minimum.
   void watch(FeaturePair& candidate, bool due) noexcept {
     if (candidate.empty() || (!due && !(height(candidate) < current_.facet.height))) return;
     const MinkowskiWalk walk = go_on(candidate);
@@ -338,7 +338,7 @@ class Tracker {
     }
   }
 
-  /// A few moves toward the nearest foot; below the tracked minimum all the way to a better one.
+  /// Makes a few moves toward the nearest foot; below the tracked minimum the whole walk to a better one.
   MinkowskiWalk go_on(const FeaturePair& from) noexcept {
     MinkowskiWalk walk = walk_to_any_foot(pair_, beside(from), kMoves);
     steps_ += walk.steps;
@@ -353,14 +353,14 @@ class Tracker {
     MinkowskiFacet facet;
     if (facet_again(pair_, of, facet)) return facet;
     if (!valid_feature(pair_.A, of.a) || !valid_feature(pair_.B, of.b)) return current_.facet;
-    // Edges that no longer cross: a face beside.
+    // Edges that no longer cross: a face beside them.
     return facet_of_face(pair_, true, face_of(pair_.A, of.a), vertex_of(pair_.B, of.b));
   }
 
   /// The lower of two of the directions all around.
   MinkowskiFacet lowest_around(std::uint32_t turn) const noexcept {
     constexpr std::uint32_t kLookedAt = 2;
-    constexpr std::uint32_t kStride = 7;  // the next is another way
+    constexpr std::uint32_t kStride = 7;  // the next is another direction
     const std::uint32_t first =
         turn * kLookedAt + turn * kLookedAt / kDirections;  // other pairs in every round
     MinkowskiFacet lowest;
@@ -373,7 +373,8 @@ class Tracker {
     return lowest;
   }
 
-  /// In a direction about the current normal, by the corners of an icosahedron, near, farther and far.
+  /// A start in a direction about the current normal, by the corners of an icosahedron, near, farther and
+  /// far.
   MinkowskiFacet one_near(std::uint32_t turn) const noexcept {
     constexpr double kShort = 0.5257311121191336;  // corners (0, +-short, +-long) and their rotations
     constexpr double kLong = 0.85065080835204;
@@ -389,8 +390,8 @@ class Tracker {
                       vertex_of(pair_.B, current_.facet.b));
   }
 
-  /// Of a face at a vertex that touches or at an end of an edge that does: of two edges, of one piece and the
-  /// other; where a face touches, the other piece's.
+  /// A start at a face at a vertex that touches or at an end of an edge that does: of two edges, of one piece
+  /// and the other in turn; where a face touches, of the other piece.
   MinkowskiFacet one_beside(std::uint32_t turn) const noexcept {
     const Feature& a = current_.facet.a;
     const Feature& b = current_.facet.b;
@@ -424,7 +425,7 @@ PairDistance tracked_depth(const PairView& pair, PairCache& cache) noexcept {
 PairDistance penetration_depth(const Polytope& A, const Polytope& B, const Pose& X_AB,
                                PairCache& cache) noexcept {
   const PairView pair(A, B, X_AB);
-  PairDistance x;  // what every way returns: an answer copied right after it was written waits for its parts
+  PairDistance x;  // every path returns it: an answer copied right after it was written waits for its parts
   if (!cache.normal_A.isZero()) {
     x = tracked_depth(pair, cache);
     if (x.certified()) return x;

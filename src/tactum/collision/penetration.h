@@ -1,25 +1,27 @@
 #pragma once
-/// How far two overlapping convex pieces are inside each other: the shortest translation of A that clears it,
+/// The penetration depth of two overlapping convex pieces: the shortest translation of A that separates them,
 /// given as a negative distance along the contact normal (contact.h). Found by the walk of minkowski_walk.h.
 ///
-/// Every depth is that of true support planes along the unit normal, so moving A by it always separates.
-/// `certified` says that the facet of the Minkowski difference is real and holds its own foot: a local
-/// minimum. That it is the global one is sure after penetration_exhaustive, and in a cold start when both
+/// Every depth is that of true support planes along the unit normal, so moving A by it always separates the
+/// pieces. `certified` means that the facet of the Minkowski difference is real and holds its own foot: a
+/// local minimum. It is surely the global one after penetration_exhaustive, and in a cold start when both
+/// pieces are small.
 /// pieces are small.
 
 #include "tactum/collision/pair_view.h"
 
 namespace tactum::inline v0_1 {
 
-/// From the last frame's features or normal when `cache` has them, with a search for a better minimum spread
-/// over the frames beside; else from many directions, or over all separating axes of small pieces. Cost: 0.1
-/// us warm, 2-20 us cold. For pieces that do not overlap: a separating axis, and a lower bound on their
+/// Begins with the last frame's features or normal when `cache` has them, with a search for a better minimum
+/// spread over the frames beside; else with many directions, or all separating axes of small pieces. Cost:
+/// 0.1 us warm, 2-20 us cold. For pieces that do not overlap: a separating axis, and a lower bound on their
 /// distance.
 PairDistance penetration_depth(const Polytope& A, const Polytope& B, const Pose& X_AB,
                                PairCache& cache) noexcept;
 
-/// From the last frame's features alone (`cache.normal_A` must not be zero): what penetration_depth tries
-/// first. Not certified when the pieces have come apart, or when the walk has lost its way. Cost: 0.1-0.2 us.
+/// Begins with the last frame's features alone (`cache.normal_A` must not be zero): the first step of
+/// penetration_depth. Not certified when the pieces have separated, or when the walk found no proof. Cost:
+/// 0.1-0.2 us.
 PairDistance tracked_depth(const PairView& pair, PairCache& cache) noexcept;
 
 /// The global minimum, over every facet of the Minkowski difference. Not for the frame: E_A E_B x 10 ns (two

@@ -16,7 +16,7 @@ namespace {
 double cross(const Vec2& a, const Vec2& b) noexcept { return a.x() * b.y() - a.y() * b.x(); }
 
 /// A side of the window as a cut: heights over it are in metres times the side's length, `scale` to within a
-/// factor of 1.5, so that no root is drawn.
+/// factor of 1.5, so that no root is computed.
 struct Cut {
   Vec2 outward;
   double offset;
@@ -30,8 +30,8 @@ struct Cut {
   double height(const Vec2& x) const noexcept { return outward.x() * x.x() + outward.y() * x.y() - offset; }
 };
 
-/// A corner within this share of the polygon's extent of a cut lies on it: so no two corners get so near each
-/// other that rounding turns the side between them.
+/// A corner within this fraction of the polygon's extent of a cut lies on it: so no two corners get so near
+/// each other that rounding reverses the side between them.
 constexpr double kSnap = tolerances::kCoplanar;
 
 double extent(double most, const Vec2& x) noexcept {
@@ -41,7 +41,7 @@ double extent(double most, const Vec2& x) noexcept {
 /// A polygon as a ring of corners, for cutting pieces off without moving the rest.
 class Ring {
  public:
-  /// `first` is the first side that will cut: the farthest corner for it is found on the way.
+  /// `first` is the first side that will cut: the farthest corner for it is found at once.
   Ring(const PatchPolygon& polygon, const Cut& first) noexcept : count_(static_cast<int>(polygon.size())) {
     double most = 0.0;
     double top_height = -std::numeric_limits<double>::infinity();
@@ -61,10 +61,10 @@ class Ring {
     snap_ = kSnap * most;
   }
 
-  /// Cuts off what is beyond; false when nothing is left. The farthest corner is looked for from the last one
-  /// on, counter-clockwise, and every height is taken once.
+  /// Cuts off the part beyond; false when nothing is left. The farthest corner is searched from the last one
+  /// on, counter-clockwise, and every height is computed once.
   bool cut(const Cut& side) noexcept {
-    if (!(side.scale > 0.0)) return true;  // a corner told twice: no side
+    if (!(side.scale > 0.0)) return true;  // two corners in one place: no side
     const double snap = snap_ * side.scale;
     double top_height = side.height(at(top_));
     int ahead = next(top_);
@@ -138,10 +138,10 @@ class Ring {
   double snap_ = 0.0;  // [m]
 };
 
-/// Corners of what a cut leaves of a convex polygon of `n` [Sutherland and Hodgman 1974], in one pass. Room
-/// for n + 2 corners is the caller's.
+/// The corners that a cut leaves of a convex polygon of `n` [Sutherland and Hodgman 1974], in one pass. The
+/// caller provides room for n + 2 corners.
 inline std::size_t cut_off(const Vec2* from, std::size_t n, const Cut& cut, double snap, Vec2* to) noexcept {
-  // Numbers of its own, which stay in registers while corners are stored.
+  // Local numbers, which stay in registers while corners are stored.
   const double out_x = cut.outward.x();
   const double out_y = cut.outward.y();
   const double offset = cut.offset;
@@ -174,8 +174,8 @@ Vec2 point_at(const Vec2& a, const Vec2& b, double value) noexcept {
   return vec2(kAxis == 0 ? Two{value, other} : Two{other, value});
 }
 
-/// Corners of what is left of a convex polygon of `n` between `low` and `high` of coordinate kAxis: their
-/// end. Room for n + 2 is the caller's; of what is not convex, for 2 n.
+/// Writes the corners that are left of a convex polygon of `n` between `low` and `high` of coordinate kAxis;
+/// returns their end. The caller provides room for n + 2; for a polygon that is not convex, for 2 n.
 template <int kAxis>
 Vec2* cut_between(const Vec2* from, std::size_t n, double low, double high, double snap, Vec2* to) noexcept {
   const double below = low - snap;
@@ -211,9 +211,9 @@ Cut side_of(const PatchPolygon& window, std::size_t i) noexcept {
 }
 
 /// A polygon of few corners and the up to four sides of its window. Every corner carries its heights over all
-/// sides: each is taken once, and a side that no corner is beyond costs nothing more. Two sides are next to
-/// each other in memory that are opposite in a window of four and cut one after the other: what the first
-/// leaves of its edges, the second need not wait for.
+/// sides: each is computed once, and a side that no corner is beyond costs nothing more. Opposite sides of a
+/// window of four are next to each other in memory and cut one after the other: the second does not wait for
+/// the corners that the first makes.
 class FewSides {
  public:
   static constexpr std::size_t kMost = 4;
@@ -245,12 +245,12 @@ class FewSides {
   FewSides(const FewSides&) = delete;  // points into itself
   FewSides& operator=(const FewSides&) = delete;
 
-  /// Cuts off what is beyond a side [Sutherland and Hodgman 1974]; after its predecessors.
+  /// Cuts off the part beyond a side [Sutherland and Hodgman 1974]; after its predecessors.
   template <std::size_t kPair, std::size_t kLane>
   void cut() noexcept {
     const double snap = snap_[kPair][kLane];
     if (!(most_[kPair][kLane] > snap) || count_ == 0) return;
-    // What is not convex may cross a side more than twice. Where there is no room for that it is given up.
+    // A polygon that is not convex may cross a side more than twice. Without room for that it is given up.
     if (static_cast<std::size_t>(corners_.data() + kRoom - fresh_) < count_) {
       count_ = 0;
       return;
@@ -265,7 +265,7 @@ class FewSides {
       if (inside ? last_height > snap && height < -snap : last_height < -snap) {
         const Two s = both(last_height / (last_height - height));
         fresh_->x = last->x + (corner->x - last->x) * s;
-        // Of sides that are yet to cut.
+        // The heights over sides that are yet to cut.
         for (std::size_t k = kPair + kLane; k < 2; ++k)
           fresh_->heights[k] = last->heights[k] + (corner->heights[k] - last->heights[k]) * s;
         *end++ = fresh_++;
@@ -356,8 +356,8 @@ void clip_polygon(PatchPolygon& polygon, const PatchBox& box, double size) noexc
   const Vec2* end =
       cut_between<0>(polygon.begin(), polygon.size(), box.low.x(), box.high.x(), snap, between.data());
   const std::size_t n = static_cast<std::size_t>(end - between.data());
-  // What is not convex may have twice as many corners then. Where there is no room for that it is given up;
-  // of a face no side of a box makes more than two corners more.
+  // A polygon that is not convex may have twice as many corners then. Without room for that it is given up;
+  // for a face no side of a box makes more than two corners more.
   static_assert(2 * (kPatchCorners + 2) <= PatchPolygon::capacity());
   if (n == 0 || 2 * n > PatchPolygon::capacity()) return polygon.clear();
   polygon.overwrite(
@@ -411,7 +411,7 @@ PatchMoments together(const PatchMoments& a, const PatchMoments& b) noexcept {
   PatchMoments m;
   m.area = a.area + b.area;
   m.centroid = (a.area * a.centroid + b.area * b.centroid) / m.area;
-  // Steiner: the distance of the two centroids adds what it weighs.
+  // Steiner: the distance of the two centroids adds its part.
   const Vec2 apart = b.centroid - a.centroid;
   const double of_a = m.area / a.area;
   const double of_b = m.area / b.area;

@@ -10,14 +10,14 @@
 
 namespace tactum::inline v0_1 {
 
-/// Corners taken of one face; of a face with more, every k-th: an inner polygon, so that no contact is
-/// invented.
+/// The most corners that are taken from one face; of a face with more, every k-th: an inner polygon, so that
+/// no contact is invented.
 inline constexpr int kPatchCorners = 64;
 
 /// Counter-clockwise. Room for one face clipped by another, and by the gap and the lean of both.
 using PatchPolygon = StaticVector<Vec2, 2 * kPatchCorners + 4>;
 
-/// What is left of convex `polygon` where normal . x <= offset [Sutherland and Hodgman 1974].
+/// Reduces convex `polygon` to the part where normal . x <= offset [Sutherland and Hodgman 1974].
 void clip_polygon(PatchPolygon& polygon, const Vec2& normal, double offset) noexcept;
 
 /// `polygon` clipped by every side of `window`, both convex and counter-clockwise. Few corners are cut side
@@ -30,9 +30,9 @@ struct PatchBox {
   Vec2 low = Vec2::Zero(), high = Vec2::Zero();
 };
 
-/// `polygon` clipped by a box, both sides across an axis in one pass; `size`: of the pieces [m]. Nothing is
-/// left of what has more than kPatchCorners + 2 corners between the first two sides: no convex face's
-/// outline.
+/// `polygon` clipped by a box, both sides across an axis in one pass; `size`: of the pieces [m]. A polygon
+/// that has more than kPatchCorners + 2 corners between the first two sides is emptied: it is no convex
+/// face's outline.
 void clip_polygon(PatchPolygon& polygon, const PatchBox& box, double size) noexcept;
 
 /// Twice the signed area: positive when counter-clockwise.

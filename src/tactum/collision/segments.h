@@ -1,5 +1,5 @@
 #pragma once
-/// Where two lines, and two segments, come nearest.
+/// The nearest points of two lines, and of two segments.
 
 #include <algorithm>
 
@@ -8,9 +8,9 @@
 
 namespace tactum::inline v0_1 {
 
-/// Where two lines come nearest: p0 + s u and q0 + t w, u and w unit, r = q0 - p0, c = u x w. Solved by cross
-/// products, whose error grows with 1/sine where that of the normal equations grows with its square. False
-/// when the sine is below `least_sine`.
+/// The nearest points of two lines: p0 + s u and q0 + t w, u and w unit, r = q0 - p0, c = u x w. Solved by
+/// cross products, whose error grows with 1/sine where that of the normal equations grows with its square.
+/// False when the sine is below `least_sine`.
 inline bool nearest_on_lines(const Vec3& u, const Vec3& w, const Vec3& r, const Vec3& c, double least_sine,
                              double& s, double& t) noexcept {
   const double sine_sq = c.squaredNorm();
@@ -29,7 +29,7 @@ inline SegmentPair nearest_on_segments(const Vec3& u, double lp, const Vec3& w, 
                                        const Vec3& c) noexcept {
   SegmentPair x;
   if (!nearest_on_lines(u, w, r, c, tolerances::kSameArc, x.s, x.t)) {
-    // Parallel: the middle of what they share.
+    // Parallel: the middle of the part they have in common.
     const double a = u.dot(r);
     const double b = u.dot(r + w * lq);
     x.s = 0.5 * (std::clamp(std::min(a, b), 0.0, lp) + std::clamp(std::max(a, b), 0.0, lp));

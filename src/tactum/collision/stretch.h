@@ -1,5 +1,5 @@
 #pragma once
-/// What else belongs to a contact whose true face or edge was cut.
+/// Other features of a contact whose true face or edge was cut.
 
 #include "tactum/geometry/feature.h"
 #include "tactum/geometry/polytope.h"

@@ -16,12 +16,12 @@ struct Corner {
 
 struct Simplex {
   std::array<Corner, 4> corners;
-  std::array<double, 4> share{};  // of the nearest point
+  std::array<double, 4> share{};  // weights in the nearest point
   int count = 0;
 };
 
-/// Shares of the corners in the point of their affine hull nearest to the origin; false when it is outside
-/// them.
+/// The weights of the corners in the point of their affine hull nearest to the origin; false when it is
+/// outside them.
 bool interior_shares(const std::array<const Corner*, 4>& c, int count,
                      std::array<double, 4>& share) noexcept {
   if (count == 1) return share[0] = 1.0, true;
@@ -50,7 +50,7 @@ bool interior_shares(const std::array<const Corner*, 4>& c, int count,
   return s > 0.0 && t > 0.0 && r > 0.0 && s + t + r < 1.0;
 }
 
-/// Keeps the corners that carry the nearest point and returns it.
+/// Keeps the corners that the nearest point depends on, and returns that point.
 Vec3 reduce(Simplex& simplex) noexcept {
   double least = std::numeric_limits<double>::infinity();
   int best = 1;  // where no square is finite, the first corner
@@ -173,7 +173,7 @@ FeatureWalk closest_by_supports(const PairView& pair, OverlapProof& proof, PairD
     const Simplex before = simplex;
     simplex.corners[simplex.count++] = next;
     const Vec3 nearer = reduce(simplex);
-    if (simplex.count < 4 && nearer.squaredNorm() >= d.squaredNorm()) {  // rounding: no progress left
+    if (simplex.count < 4 && nearer.squaredNorm() >= d.squaredNorm()) {  // rounding: no more progress
       simplex = before;
       break;
     }

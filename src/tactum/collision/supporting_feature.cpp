@@ -10,7 +10,7 @@ namespace {
 
 using Kind = FeatureKind;
 
-/// The face most square to a direction, of those looked at.
+/// The face most square to a direction, of those tested.
 struct MostSquare {
   int face = -1;
   double lean = std::numeric_limits<double>::infinity();  ///< its angle's chord, squared
@@ -51,7 +51,8 @@ MostSquare most_square(const Polytope& P, const Feature& f, const Vec3& outward)
   return found;
 }
 
-/// Of the edges at feature `f`, that bound `face`, the one most square to `outward`; its slope in `slope`.
+/// The edge at feature `f` and on the border of `face` that is most square to `outward`; its slope in
+/// `slope`.
 int level_edge(const Polytope& P, const Feature& f, int face, const Vec3& outward, double& slope) noexcept {
   if (f.kind == Kind::kEdge) {
     slope = std::abs(P.edges[f.index].direction.dot(outward));
@@ -69,15 +70,15 @@ int level_edge(const Polytope& P, const Feature& f, int face, const Vec3& outwar
   return best;
 }
 
-/// Of a face that leans by `lean` from square, or has a neighbour that leans by little more, `next`.
+/// For a face that leans by `lean` from square, or has a neighbour that leans by little more, `next`.
 [[gnu::noinline]] SupportingFeature shrunk(const Polytope& P, const Feature& f, int face, double lean,
                                            double next, const Vec3& outward, double angle) noexcept {
   SupportingFeature supporting;
   supporting.feature = {Kind::kFace, face};
   double slope = 0.0;
   supporting.edge = level_edge(P, f, face, outward, slope);
-  // An edge shrinks at a quarter of the angle: where two edges of a leaning face slope alike, both are points
-  // by then.
+  // An edge shrinks at a quarter of the angle: where two edges of a leaning face slope equally, both are
+  // points by then.
   supporting.along_share = lean_falloff(slope, 0.25 * angle);
   const double lead = next > lean ? 2.0 * (next - lean) / (next + lean) : 0.0;
   supporting.face_share = lean_falloff(lean, angle) * std::min(1.0, lead);
@@ -92,11 +93,11 @@ SupportingFeature supporting_feature(const Polytope& P, const Feature& f, const 
                                      double angle) noexcept {
   const auto [face, lean, next] = most_square(P, f, outward);
   if (f.kind == Kind::kFace) {
-    // Square to the normal; where it is not (an answer that is none of the queries'), a point.
+    // Square to the normal; where it is not (for an answer of none of the queries), a point.
     const bool square = lean < angle * angle;
     return {square ? f : Feature{Kind::kVertex, vertex_of(P, f)}};
   }
-  // Nearly level and alone: both shares of the face are one, whatever its edges do.
+  // Nearly square and alone: both fractions of the face are one, whatever its edges are.
   if (lean <= 0.25 * angle * angle && next >= 9.0 * lean) return {{Kind::kFace, face}};
   return shrunk(P, f, face, std::sqrt(lean), std::sqrt(next), outward, angle);
 }

@@ -1,7 +1,7 @@
 #pragma once
-/// Which feature of a piece takes part in a contact patch, and how much of it: the largest one at the closest
-/// point that is square to the normal within an angle, and as it leans toward that angle, less and less of
-/// it.
+/// The feature of a piece that takes part in a contact patch, and to which degree: the largest one at the
+/// closest point that is square to the normal within an angle; as it leans toward that angle, a smaller part
+/// of it is kept.
 
 #include <algorithm>
 
@@ -10,8 +10,8 @@
 
 namespace tactum::inline v0_1 {
 
-/// How much of the patch is kept when a feature leans by `lean` out of `most`: all up to half, then less, to
-/// none.
+/// The fraction of the patch that is kept when a feature leans by `lean` out of `most`: all up to half, then
+/// less, to none.
 inline double lean_falloff(double lean, double most) noexcept {
   return std::clamp(2.0 * (most - lean) / most, 0.0, 1.0);
 }
@@ -21,8 +21,8 @@ inline double lean_falloff(double lean, double most) noexcept {
 struct SupportingFeature {
   Feature feature;
   int edge = -1;             ///< the edge a leaning face shrinks to; -1: none, the face does not lean
-  double face_share = 1.0;   ///< how much of its rise from that edge is kept
-  double along_share = 1.0;  ///< how much of the rise along it
+  double face_share = 1.0;   ///< fraction of its rise from that edge that is kept
+  double along_share = 1.0;  ///< fraction of the rise along that edge that is kept
 };
 
 /// The largest feature at `f` square to `outward` (unit, P's frame) within `angle` [rad]. Beside a face that

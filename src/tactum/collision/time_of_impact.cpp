@@ -49,7 +49,7 @@ struct GapBound {
 };
 
 /// A time in [0, rest] up to which the bound stays above `target`; it starts above by `room`. Halving brings
-/// the far end near, and the chord, which lies below a concave function, the near end.
+/// the far end closer, and the chord, which lies below a concave function, the near end.
 double free_time(GapBound& bound, double room, double target, double rest) noexcept {
   constexpr int kRounds = 6;
   double beyond = rest;

@@ -8,12 +8,12 @@
 ///        n . (r + v t + w x r t) - w^2 rho t^2 / 2  =  (n + t n x w) . r + t n . v - w^2 rho t^2 / 2
 ///
 ///   (rho: its distance from the axis), so one support query in the direction n + t n x w gives a rigorous
-///   bound L(t) on the gap. L is concave in t: wherever it is above the target, the gap is so all the way
-///   there, and a chord from a time that is free cuts the target before L does. Go there and ask again.
+///   bound L(t) on the gap. L is concave in t: where it is above the target at some time, the gap is so until
+///   then, and a chord from a free time cuts the target before L does. The step ends there.
 ///
-/// Departs from Mirtich's bound (closing speed of the fastest point), which needs 30 steps and more where
-/// pieces spin: this one is exact to first order. A time it returns is never beyond the first contact. Cost:
-/// a warm distance query and four pairs of supports a step, 0.6 us; 2-4 steps in a frame.
+/// Mirtich's bound (closing speed of the fastest point) needs 30 steps and more where pieces spin; this one
+/// is exact to first order. A time it returns is never beyond the first contact. Cost: a warm distance query
+/// and four pairs of supports a step, 0.6 us; 2-4 steps in a frame.
 
 #include "tactum/collision/contact.h"
 #include "tactum/geometry/polytope.h"
@@ -25,7 +25,7 @@ enum class ImpactStatus : std::uint8_t {
   kHit,            ///< at `time` the distance is the target, up to kImpactGap of the size above it
   kMiss,           ///< stays above the target for the whole time
   kStartedInside,  ///< at or below the target from the start: time is 0
-  kBounded,        ///< out of steps, or an answer was not certified: free up to `time`, not known beyond
+  kBounded,        ///< out of steps, or an answer was not certified: free up to `time`, unknown beyond
 };
 
 struct TimeOfImpact {

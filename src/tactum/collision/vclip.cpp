@@ -128,7 +128,7 @@ void set_features(const PiecePair& pair, double crossing_tolerance, PairDistance
   FeaturePair at = {x.a, x.b};
   Place place;
   step_on(pair, crossing_tolerance, at, place, x);
-  if (place.gap == kInfinity) {  // the step did not come to know them: a corner of each
+  if (place.gap == kInfinity) {  // the step did not compute them: take a corner of each
     const Sides<false> S(pair, crossing_tolerance);
     place.p = pair.A.vertices[vertex_of(pair.A, x.a)];
     place.q = pair.B.vertices[vertex_of(pair.B, x.b)];

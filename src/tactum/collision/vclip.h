@@ -2,8 +2,8 @@
 /// The walk to the closest features of two convex pieces [Lin and Canny 1991; Mirtich 1998].
 ///
 /// The state is a pair of features. Closest points of the two features are tested against the Voronoi region
-/// of the other feature; a point outside it names the neighbour to go to. Where nothing is violated, the pair
-/// is closest.
+/// of the other feature; a point outside it determines the neighbour to go to. Where nothing is violated, the
+/// pair is closest.
 ///
 ///     vertex-vertex  <->  vertex-edge  <->  vertex-face          (and the same with A and B exchanged)
 ///                            |                  |
@@ -12,16 +12,16 @@
 /// A vertex that leaves a face goes to the face across the edge or to an end of the edge, where it belongs to
 /// either, without a stop at the edge.
 ///
-/// Departs from Mirtich in edge-edge, where the place along both edges is computed, by dot products where
-/// they cross at an angle and by cross products where they run alike (his clipping against the four planes
-/// says the same and rounds worse near parallel edges), and in what happens when rounding makes the walk go
-/// in circles: the nearest state of the circle is returned and the caller's certificate judges it.
+/// It differs from Mirtich's in edge-edge, where the place along both edges is computed, by dot products
+/// where they cross at an angle and by cross products where they are nearly parallel (his clipping against
+/// the four planes gives the same and rounds worse near parallel edges), and in its answer when rounding
+/// makes the walk cycle: the nearest state of the cycle is returned and the caller's certificate judges it.
 ///
 /// The walk's last tests are a proof. A vertex all of whose edges fall away from a plane is the support
 /// vertex of a convex piece, an edge square to the plane whose two faces fall away is its support edge, a
 /// face is its own: so the planes through the answer's features, square to its normal, separate the pieces by
-/// the answer's distance. What rounding leaves open is added up in `error_bound`. Cost: 15-25 ns a step; one
-/// step when the features of the last frame still hold.
+/// the answer's distance. The error that rounding leaves is added up in `error_bound`. Cost: 15-25 ns a step;
+/// one step when the features of the last frame still hold.
 
 #include "tactum/collision/feature_walk.h"
 #include "tactum/collision/pair_view.h"

@@ -1,6 +1,6 @@
 #pragma once
-/// The steps of the walk of vclip.h, inline: under haptic motion nearly every query is one step, and
-/// what calls and copies of answers around it take would be half of its time.
+/// The steps of the walk of vclip.h, inline: under haptic motion nearly every query is one step, and calls
+/// and copies of answers around it would take half of its time.
 
 #include <cmath>
 #include <limits>
@@ -33,7 +33,7 @@ struct Sides {
   Vec3 in_P(const Vec3& q) const noexcept { return Swapped ? rotated_back(X_AB.R, q - X_AB.p) : X_AB * q; }
   /// Of a point of each piece, in its own frame, the one of A.
   static const Vec3& of_A(const Vec3& p, const Vec3& q) noexcept { return Swapped ? q : p; }
-  /// The normal from B to A, in A's frame, of a vector from P to Q told in both frames.
+  /// The normal from B to A, in A's frame, of a vector from P to Q given in both frames.
   static Vec3 normal(const Vec3& d_P, const Vec3& d_Q) noexcept { return Swapped ? d_Q : Vec3(-d_P); }
   Vec3 turned_to_Q(const Vec3& d) const noexcept {
     return Swapped ? rotated(X_AB.R, d) : rotated_back(X_AB.R, d);
@@ -43,7 +43,7 @@ struct Sides {
   }
 };
 
-/// How far beyond a plane through `v` the piece may reach when the steepest of the edges at `v` rises by
+/// How far the piece may extend beyond a plane through `v` when the steepest of the edges at `v` rises by
 /// `slope` over it (sine). A point of the piece is v + sum c_i u_i, c_i >= 0 over the edges at v, and the sum
 /// of the c_i is at most its distance from v over the least cosine between an edge and their mean.
 inline double height_beyond(const Polytope& P, int v, double slope) noexcept {
@@ -55,9 +55,8 @@ inline double height_beyond(const Polytope& P, int v, double slope) noexcept {
   return least > 0.0 ? slope * P.extent.size * mean.norm() / least : kInfinity;
 }
 
-/// The same at an edge whose steeper face rises by `slope`: the piece lies in the wedge of its two faces.
-/// What the edge's own line rises by comes on top, over the whole size: the wedge goes on beyond the edge's
-/// ends.
+/// The same at an edge whose steeper face rises by `slope`: the piece lies in the wedge of its two faces. The
+/// rise of the edge's own line is added, over the whole size: the wedge continues beyond the edge's ends.
 inline double height_beyond(const Polytope& P, const Polytope::Edge& e, double slope) noexcept {
   if (slope <= 0.0) return 0.0;
   const double cosine = P.sides[e.left_slot].normal.dot(P.sides[e.right_slot].normal);
@@ -70,8 +69,8 @@ struct Steepest {
   double slope;
 };
 
-/// Selects without a branch: which edge it is cannot be predicted from vertex to vertex, and a branch that is
-/// predicted wrong costs as much as all the edges.
+/// Selects without a branch: which edge it is cannot be predicted from vertex to vertex, and a mispredicted
+/// branch costs as much as all the edges.
 inline Steepest steepest_edge(const Polytope& P, int v, const Vec3& d) noexcept {
   const std::span<const Polytope::Ray> rays = P.rays_at(v);
   const Polytope::Ray* steepest = rays.data();
@@ -86,15 +85,15 @@ inline Steepest steepest_edge(const Polytope& P, int v, const Vec3& d) noexcept 
 
 enum class Outcome : std::uint8_t { kClosest, kMoved, kOverlap, kBehind };
 
-/// How a step ended, and the features of P and Q: to go on from, or where it ended.
+/// The outcome of a step, and the features of P and Q: to go on from, or where it ended.
 struct Step {
   Outcome outcome = Outcome::kMoved;
   Feature p, q;
 };
 
-/// Where a step began: the closest points of its two features, each in its own piece's frame.
+/// The start of a step: the closest points of its two features, each in its own piece's frame.
 struct Place {
-  double gap = kInfinity;  ///< the points' distance; infinite where the step does not know them [m]
+  double gap = kInfinity;  ///< the points' distance; infinite where the step does not compute them [m]
   Vec3 p, q;               ///< known when the gap is [m]
 };
 
@@ -102,8 +101,8 @@ inline Feature vertex(int index) noexcept { return {FeatureKind::kVertex, index}
 inline Feature edge(int index) noexcept { return {FeatureKind::kEdge, index}; }
 inline Feature face(int index) noexcept { return {FeatureKind::kFace, index}; }
 
-/// The end of a walk at the point `p_a` of A, across the normal `n` from B to A, in A's frame. Number by
-/// number: what is copied as a whole waits for parts that have just been written.
+/// The end of a walk at the point `p_a` of A, across the normal `n` from B to A, in A's frame. Written number
+/// by number: a copy as a whole waits for parts that have just been written.
 inline void set_answer(const Vec3& p_a, const Vec3& n, double gap, double error_bound,
                        PairDistance& x) noexcept {
   x.p_a << p_a.x(), p_a.y(), p_a.z();
@@ -123,7 +122,7 @@ void set_points(const Sides<Swapped>& S, const Place& at, PairDistance& x) noexc
   x.error_bound = kInfinity;
 }
 
-/// Which of an edge, its ends and its faces a point leads to from the edge.
+/// The feature that a point leads to from an edge: the edge, its ends or its faces.
 inline Feature beside_edge(const Polytope& Q, int index, const Vec3& p, double crossing_tolerance) noexcept {
   const Polytope::Edge& g = Q.edges[index];
   const double along = g.direction.dot(p - Q.vertices[g.tail]);
@@ -179,7 +178,7 @@ Step vertex_edge(const Sides<Swapped>& S, Feature fp, Feature fq, Place& at, Pai
   if (at.gap <= tolerances::kTouching * S.P.extent.size) {
     set_points(S, at, x);
   } else {
-    // The normal itself is judged: over a small gap it is off by more than the point is.
+    // The normal itself is judged: over a small gap its error is larger than the point's.
     const double rise = std::max(left.normal.dot(d_Q), right.normal.dot(d_Q));
     const double error_bound = height_beyond(S.P, fp.index, at_p.slope / at.gap) +
                                height_beyond(S.Q, g, rise / at.gap) +
@@ -211,8 +210,8 @@ Step vertex_face(const Sides<Swapped>& S, Feature fp, Feature fq, Place& at, Pai
   const Polytope::Face* at_face = &S.Q.faces[fq.index];
   if (const int slot = slot_outside(S.Q, at_face->first, at_face->count, p_Q, S.crossing_tolerance);
       slot >= 0) {
-    // Mostly above the next face: one step to there, whose loop is told beside the side. Below it is no
-    // place to go on to: at a sharp edge rounding alone leads there, and from there back.
+    // Mostly above the next face: one step leads there, and its loop is stored beside the side. Below it
+    // there is nowhere to go on to: at a sharp edge rounding alone leads there, and from there back.
     const Polytope::Side& side = S.Q.sides[slot];
     at_face = &S.Q.faces[side.across];
     if (slot_outside(S.Q, side.first, side.count, p_Q, S.crossing_tolerance) >= 0 ||
@@ -241,7 +240,7 @@ Step vertex_face(const Sides<Swapped>& S, Feature fp, Feature fq, Place& at, Pai
   return {Outcome::kClosest, fp, fq};
 }
 
-/// A direction from an edge, along the side planes' normals of its faces: how much it leads out of the column
+/// A direction from an edge, along the side planes' normals of its faces: how far it leads out of the column
 /// of each (as long as the direction; negative: into it).
 struct OutOfColumns {
   double left, right;
@@ -253,7 +252,7 @@ inline OutOfColumns out_of_columns(const Polytope& P, const Polytope::Edge& e, d
   return {sign * P.sides[e.left_slot].normal.dot(d), sign * P.sides[e.right_slot].normal.dot(d)};
 }
 
-/// The face at an edge into whose column a direction leads most, and how much (negative when it leads into
+/// The face at an edge into whose column a direction leads most, and how far (negative when it leads into
 /// neither).
 struct Toward {
   int face;
@@ -264,12 +263,12 @@ inline Toward face_toward(const Polytope::Edge& e, const OutOfColumns& out) noex
   return out.left < out.right ? Toward{e.left, -out.left} : Toward{e.right, -out.right};
 }
 
-/// Edges of any kind: alike, nearest at an end, far off, level with a face. Out of line and from the start,
-/// so that nothing is kept at hand for it where edges cross.
+/// For edges of any kind: nearly parallel, nearest at an end, far off, parallel to a face. Out of line and
+/// from the start, so that the frequent case of crossing edges keeps no registers for it.
 [[gnu::noinline]] Step edges_along(const PiecePair& pair, double crossing_tolerance, int a, int b, Place& at,
                                    PairDistance& x) noexcept;
 
-/// Of a place along an edge, the end it lies beyond; else the edge.
+/// For a place along an edge, the end it lies beyond; else the edge.
 inline Feature end_or_edge(const Polytope::Edge& e, double at, Feature whole) noexcept {
   if (at > 0.0 && at < e.length) return whole;
   return vertex(at > 0.0 ? e.head : e.tail);
@@ -296,9 +295,9 @@ inline Step past_an_end(const Polytope::Edge& e, const Polytope::Edge& g, Featur
 }
 
 /// Where a hand moves two parts half of all walks end at edges that cross at an angle and are nearest between
-/// their ends. Nothing there needs the points: the normal is the edges' cross product c, the gap r . c / |c|,
-/// and where along the edges it is, s and t times the sine squared, are dot products. What rounding leaves is
-/// known beforehand.
+/// their ends. There the points are not needed: the normal is the edges' cross product c, the gap r . c /
+/// |c|, and the places along the edges, s and t times the sine squared, are dot products. The rounding error
+/// is known beforehand.
 inline Step edge_edge(const PiecePair& pair, const Sides<false>& S, Feature fp, Feature fq, Place& at,
                       PairDistance& x) noexcept {
   const Polytope::Edge& e = S.P.edges[fp.index];
@@ -320,7 +319,7 @@ inline Step edge_edge(const PiecePair& pair, const Sides<false>& S, Feature fp, 
   if (!crossing) return edges_along(pair, S.crossing_tolerance, fp.index, fq.index, at, x);
 
   const double along = r.dot(c);
-  const double sign = std::copysign(1.0, along + 0.0);  // of the outward direction as c tells it; -0 is +0
+  const double sign = std::copysign(1.0, along + 0.0);  // of the outward direction along c; -0 is +0
   const double per_square = 1.0 / sine_sq;
   const double per_sine = std::sqrt(sine_sq) * per_square;
   const double gap = std::abs(along) * per_sine;
@@ -351,9 +350,9 @@ inline Step edge_edge(const PiecePair& pair, const Sides<false>& S, Feature fp, 
 [[gnu::noinline]] Step edge_face(const Polytope& Q, const Polytope::Edge& e, const Vec3& p0, const Vec3& u,
                                  double crossing_tolerance, Feature fp, Feature fq) noexcept;
 
-/// Dispatch on the kinds, P owning the lower one. Tells `x` where the features are closest, and the place
-/// where it moved on, if it came to know it. Two faces, from which only a caller starts, go on from a vertex
-/// of the second.
+/// Dispatches on the kinds, P owning the lower one. Sets in `x` where the features are closest, and returns
+/// the place where it moved on, if it was computed. Two faces, from which only a caller starts, go on from a
+/// vertex of the second.
 template <bool Swapped>
 Step step(const PiecePair& pair, const Sides<Swapped>& S, Feature fp, Feature fq, Place& at,
           PairDistance& x) noexcept {
@@ -370,7 +369,7 @@ Step step(const PiecePair& pair, const Sides<Swapped>& S, Feature fp, Feature fq
                    fq);
 }
 
-/// A step from the features `at` of A and B, which become those of its end.
+/// A step from the features `at` of A and B, which are set to those of its end.
 inline Outcome step_on(const PiecePair& pair, double crossing_tolerance, FeaturePair& at, Place& place,
                        PairDistance& x) noexcept {
   if (at.a.kind > at.b.kind) {
@@ -383,16 +382,16 @@ inline Outcome step_on(const PiecePair& pair, double crossing_tolerance, Feature
   return next.outcome;
 }
 
-/// The end of a walk that proves nothing: where the features `x.a`, `x.b` are nearest.
+/// Sets the end of a walk that proves nothing: where the features `x.a`, `x.b` are nearest.
 [[gnu::noinline]] void set_features(const PiecePair& pair, double crossing_tolerance,
                                     PairDistance& x) noexcept;
 
-/// What feature_walk() does, inline.
+/// feature_walk(), inline.
 inline FeatureWalk walk_features(const PiecePair& pair, FeaturePair at, double crossing_tolerance,
                                  PairDistance& x) noexcept {
   double least = kInfinity;
   FeaturePair nearest = at;
-  FeaturePair mark;  // a state to be met again, if the walk goes in circles [Brent 1980]
+  FeaturePair mark;  // a state to be met again if the walk cycles [Brent 1980]
   int next_mark = 8;
   const auto bound = [&] { return 64 + static_cast<int>(pair.A.edges.size() + pair.B.edges.size()) / 4; };
   FeatureWalk walk;

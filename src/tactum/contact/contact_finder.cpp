@@ -16,12 +16,12 @@ using Index = std::size_t;
 /// Below every accumulated motion less a tolerance.
 constexpr double kAlwaysDue = -1e300;
 
-/// A budget is ample when every due pair can be tested so often: once when it is found, and at the poses on
-/// trial.
+/// A budget is ample when every due pair can be tested so many times: once when it is found, and at trial
+/// poses.
 constexpr std::size_t kAmple = 4;
 
-/// An answer holds while what has moved since is no more than this share of the distance; of an overlap,
-/// while nothing has.
+/// An answer holds while the motion since is no more than this fraction of the distance; of an overlap, while
+/// there was none.
 constexpr double kKnownShare = 0.05;
 
 }  // namespace
@@ -51,7 +51,7 @@ void ContactFinder::find_patches(std::span<const Pose> X_WB, int budget, PatchPo
   std::fill(blocked_.begin(), blocked_.end(), 0);
   list_due_pairs();
   budget_limited_ = kAmple * due_.size() > static_cast<Index>(std::max(budget, 0));
-  // Pairs whose answer still holds leave the list before it is put in order.
+  // Pairs whose answer still holds are removed before the list is sorted.
   const int may_test = budget_limited_ ? skip_still_valid(X_WB) : budget;
   const int checked = prioritise(due_, may_test, head_start_);
   work_.due = static_cast<int>(due_.size());
@@ -76,7 +76,7 @@ void ContactFinder::find_patches(std::span<const Pose> X_WB, int budget, PatchPo
       test(pair, X_AB);
     } else {
       PairDistance last = pair.last.found;
-      // Of what was apart only a bound is known, and that it is apart.
+      // Of a pair that was apart only a bound is known.
       const double bound = pair.free_until - accumulated_motion(pair.body_a, pair.body_b);
       last.distance = last.distance > 0.0 ? std::max(bound, 0.0) : std::min(bound, last.distance);
       emit_patch(pair, last, X_AB);
@@ -100,8 +100,8 @@ std::uint8_t ContactFinder::priority_of(int a, int b) const noexcept {
   return priority_.empty() ? priority::kOther : std::min(priority_[Index(a)], priority_[Index(b)]);
 }
 
-/// A lower bound of the pair's distance: an answer less what the smaller body has moved since, as the other
-/// one sees it.
+/// A lower bound of the pair's distance: an answer less the motion of the smaller body since, relative to the
+/// other one.
 double ContactFinder::bound_at(const Pair& pair, const Answer& answer, const Pose& X_AB) const noexcept {
   if (!answer.certified) return kAlwaysDue;
   const double radius_a = radius_[Index(pair.body_a)];
@@ -179,7 +179,7 @@ void ContactFinder::test(Pair& pair, const Pose& X_AB) noexcept {
   ++work_.exact_tests;
   work_.feature_steps += pair.last.found.steps;
   if (!pair.last.certified) ++work_.uncertified;
-  // What is not certified proves nothing: the pair is due again in the next frame.
+  // An answer that is not certified proves nothing: the pair is due again in the next frame.
   pair.free_until = pair.last.certified
                         ? accumulated_motion(pair.body_a, pair.body_b) + pair.last.found.distance
                         : kAlwaysDue;
@@ -199,7 +199,7 @@ void ContactFinder::add_candidate(Pair& pair, const PairDistance& found, bool in
   candidate.patch = patch;
 }
 
-/// Makes a patch of what was found, when it is within the tolerance.
+/// Makes a patch of the answer, when it is within the tolerance.
 void ContactFinder::emit_patch(Pair& pair, const PairDistance& found, const Pose& X_AB) noexcept {
   const Part& part_a = *bodies_[Index(pair.body_a)].part;
   const Part& part_b = *bodies_[Index(pair.body_b)].part;
@@ -280,7 +280,7 @@ GapAnswer ContactFinder::distance_at(const ContactPatch& patch, std::span<const 
   if (tests_left_ <= keep_back) return GapAnswer::kUnknown;
   answer(pair, X_AB, pair.trial);
   const double found = pair.trial.found.distance;
-  distance = pair.trial.certified ? found : std::min(0.0, found);  // 0 where it is no number
+  distance = pair.trial.certified ? found : std::min(0.0, found);  // 0 where it is not a number
   return GapAnswer::kExact;
 }
 

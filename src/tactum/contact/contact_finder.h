@@ -1,31 +1,31 @@
 #pragma once
-/// Where do the bodies touch? The first half of a frame, from poses to contact patches, in three steps:
+/// Finds where the bodies touch. The first half of a frame, from poses to contact patches, in three steps:
 ///
 ///   bodies -- sweep and prune --> near bodies -- hierarchies --> near pieces -- exact tests --> patches
 ///
-/// Bodies made of convex pieces meet piece by piece, by tracked pairs. Where either has none, both meet by
-/// their surfaces: every local minimum of distance is a patch of one point (surface_minima.h).
+/// Bodies made of convex pieces are tested piece by piece, by tracked pairs. Where either has none, both are
+/// tested by their surfaces: every local minimum of distance is a patch of one point (surface_minima.h).
 ///
-/// What holds from frame to frame is kept: no step is repeated while a bound on the motion proves that its
+/// Answers are kept from frame to frame: no step is repeated while a bound on the motion proves that its
 /// answer cannot have changed. For every body the accumulated motion `travel` is kept: no point of it has
 /// moved farther than that since the start. With S the sum of two bodies' accumulated motions, a list of
-/// their pairs made with range R at S0 holds all pairs within `tolerance` while  (S - S0) + tolerance <= R;
-/// a pair found d apart at S0 needs no test while  d - (S - S0) > tolerance. Both are proofs, not guesses;
-/// they are what makes a frame with coherent motion cheap.
+/// their pairs made with range R at S0 holds all pairs within `tolerance` while (S - S0) + tolerance <= R; a
+/// pair found d apart at S0 needs no test while d - (S - S0) > tolerance. Both are proofs, not guesses; they
+/// are what makes a frame with coherent motion cheap.
 ///
 /// Exact tests are bounded by a budget (schedule.h). While it is ample, every pair that may be within its
-/// tolerance is tested. Where it is not, answers are kept as long as they hold, and what is left over is
+/// tolerance is tested. Where it is not, answers are kept as long as they hold, and the pairs left over are
 /// judged:
 ///
-///   found d apart at X_AB, moved by m since    known, when m is a small share of d: no test is needed
+///   found d apart at X_AB, moved by m since    known, when m is a small part of d: no test is needed
 ///   d - m > what both may move in the frame    left safely: they cannot touch, and their patch is not missed
 ///   else                                       left unproven: neither body may move, see blocked()
 ///
-/// Pieces of one part share walls that nobody can touch, and true faces that were cut; what pairs of pieces
-/// answer is settled between them before it is handed on (seam_settler.h).
+/// Pieces of one part share walls that nobody can touch, and true faces that were cut; the contacts of pairs
+/// of pieces are settled between them before patches are emitted (seam_settler.h).
 ///
-/// What is handed on moves from frame to frame without a step (steady_contact.h): the normal of an overlap
-/// and the centroid of a patch follow the exact ones at a bounded rate.
+/// Emitted patches move from frame to frame without a step (steady_contact.h): the normal of an overlap and
+/// the centroid of a patch follow the exact ones at a bounded rate.
 
 #include <cstdint>
 #include <span>
@@ -54,7 +54,7 @@ struct CollisionBody {
   bool moves = true;  ///< two bodies that do not move are never tested
 };
 
-/// What the points of a patch's manifold are.
+/// The kind of points in a patch's manifold.
 enum class PatchPoints {
   kQuadrature,  ///< weighted, for forces over the area; they move without steps
   kClosest      ///< the closest point alone, on the closest features, as they are
@@ -66,15 +66,15 @@ class ContactFinder final : public GapOracle {
   ContactFinder(std::vector<CollisionBody> bodies, std::span<const Pose> X_WB,
                 const ContactFinderCapacity& capacity = {}, double dt_s = kReferenceStep_s);
 
-  /// Renews what the motion since the last frame has made stale. `motion_bound[i]` [m] bounds how far any
-  /// point of body i moves in this frame; the tolerance of a pair is the sum of both bounds, at least
-  /// `min_tolerance` [m].
+  /// Renews the boxes and lists that the motion since the last frame has made stale. `motion_bound[i]` [m]
+  /// bounds how far any point of body i moves in this frame; the tolerance of a pair is the sum of both
+  /// bounds, at least `min_tolerance` [m].
   void find_near_pairs(std::span<const Pose> X_WB, std::span<const double> motion_bound,
                        double min_tolerance) noexcept;
 
-  /// Exact tests of the near pairs that could be within tolerance, at most `budget` of them, and manifolds.
-  /// Of a budget that is not ample, half of what the held part leaves is kept for distances_at(). `priority`
-  /// has an entry per body (schedule.h), or none.
+  /// Makes exact tests of the near pairs that could be within tolerance, at most `budget` of them, and
+  /// manifolds. Of a budget that is not ample, half of what the grasped part leaves is kept for
+  /// distances_at(). `priority` has an entry per body (schedule.h), or none.
   void find_patches(std::span<const Pose> X_WB, int budget, PatchPoints points = PatchPoints::kQuadrature,
                     std::span<const std::uint8_t> priority = {}) noexcept;
   bool budget_limited() const noexcept override { return budget_limited_; }
@@ -103,8 +103,8 @@ class ContactFinder final : public GapOracle {
     std::int32_t body_a = -1, body_b = -1, piece_a = -1, piece_b = -1;
     PairCache cache;
     SteadyContact shown;
-    Answer last;                     ///< where the pair is, or was not long ago
-    Answer trial;                    ///< where it was on trial; nothing says that it went there
+    Answer last;                     ///< of the last test
+    Answer trial;                    ///< of a test at a trial pose, which the pair need not have taken
     double free_until = -1e300;      ///< accumulated motion at which the distance may have shrunk to zero
     std::int64_t last_checked = -1;  ///< frame
     bool in_contact = false;
@@ -118,7 +118,7 @@ class ContactFinder final : public GapOracle {
     bool cut_short = false;           ///< the room was full: pairs are missing
     std::int64_t renewal = -1;        ///< the renewal it was last part of
     double free_until = -1e300;       ///< of two surfaces: as in Pair
-    bool apart = false;               ///< ... and nothing was within the tolerance when last asked
+    bool apart = false;               ///< ... and nothing was within the tolerance at the last query
   };
 
   void move_boxes(std::span<const Pose> X_WB) noexcept;
@@ -167,7 +167,7 @@ class ContactFinder final : public GapOracle {
   SweepAndPrune sweep_;
   std::vector<BodyPair> lists_;  // by slot of a near pair
   ReservedVector<Pair> pairs_, renewed_;
-  ReservedVector<std::pair<std::int32_t, std::int32_t>> near_pieces_;  // of the two bodies in work
+  ReservedVector<std::pair<std::int32_t, std::int32_t>> near_pieces_;  // of the two bodies being tested
   ReservedVector<DuePair> due_;
   ReservedVector<std::int32_t> emitted_;   // pairs with an answer, or that had one
   std::vector<char> blocked_;              // by body

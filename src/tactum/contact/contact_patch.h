@@ -1,5 +1,5 @@
 #pragma once
-/// A contact patch of two bodies, as the contact finder hands it on.
+/// A contact patch of two bodies, as the contact finder emits it.
 
 #include <algorithm>
 
@@ -9,7 +9,8 @@
 namespace tactum::inline v0_1 {
 
 /// The facets of A and of B that a patch lies on, each -1 where it lies on none: groups of the surface, see
-/// SurfaceGroups. Patches of the same bodies and facets touch on the same two walls: they share a stiffness.
+/// SurfaceGroups. Patches of the same bodies and facets touch on the same two walls: they have one stiffness
+/// together.
 struct FacetPair {
   int a = -1, b = -1;
 };
@@ -30,8 +31,8 @@ struct ContactPatch {
   Manifold manifold;
 };
 
-/// A patch's weight in its facet's stiffness: its area; for a segment, next to that, its length times a
-/// hair's breadth; for a point next to nothing [m^2].
+/// A patch's weight in its facet's stiffness: its area; for a segment its length times a very small width,
+/// for a point almost nothing, both small beside any area [m^2].
 inline double patch_weight(const Manifold& manifold) noexcept {
   if (manifold.area > 0.0) return manifold.area;
   if (manifold.points.size() < 2) return tolerances::kPointArea_m2;

@@ -12,8 +12,8 @@ constexpr double kFarthest = 1e300;
 using Scratch = std::span<ReductionScratch>;
 using Index = std::size_t;
 
-/// The smaller of what is known and of by how much a step can overstep `dropped` when it oversteps `kept` by
-/// nothing. Most are seen to be the larger one without a root.
+/// The smaller of the error of `dropped` so far and of the most by which a step can overstep `dropped` when
+/// it oversteps `kept` by nothing. Most prove to be the larger one without a root.
 double lowered_error(const ReductionScratch& dropped, const ReductionScratch& kept) noexcept {
   const double nearer = std::max(0.0, kept.distance - dropped.distance);
   const double left = dropped.error - nearer;
@@ -23,8 +23,8 @@ double lowered_error(const ReductionScratch& dropped, const ReductionScratch& ke
   return std::min(dropped.error, nearer + std::sqrt(push_sq) + std::sqrt(turn_sq));
 }
 
-/// Whether two are so far apart that whatever is within `error` of one is no nearer to the other: the
-/// triangle inequality.
+/// Whether two are so far apart that a minimum within `error` of one is no nearer to the other: the triangle
+/// inequality.
 bool far_apart(const ReductionScratch& a, const ReductionScratch& b, double error) noexcept {
   const double least_sq = 4.0 * error * error;
   return (a.push - b.push).squaredNorm() >= least_sq || (a.turn - b.turn).squaredNorm() >= least_sq;
@@ -44,8 +44,8 @@ void put(Scratch all, int candidate, Index group) noexcept {
   all[group].farthest = farther(all, all[group].farthest, candidate);
 }
 
-/// Holds the candidates of a group against the one kept last, which is dropped from the list; those that are
-/// nearer to it than to their own go over to the group `kept_last`.
+/// Compares the candidates of a group with the one kept last, which is dropped from the list; those that are
+/// nearer to it than to their own move to the group `kept_last`.
 void share_out(Scratch all, Index group, Index kept_last) noexcept {
   const int kept = all[kept_last].chosen;
   int next = std::exchange(all[group].first, -1);
@@ -60,7 +60,7 @@ void share_out(Scratch all, Index group, Index kept_last) noexcept {
   }
 }
 
-/// Keeps the nearest; all others are its group.
+/// Keeps the nearest; all others form its group.
 void keep_nearest(std::span<const SurfaceMinimum> minima, Scratch all,
                   const ReductionBounds& bounds) noexcept {
   Index nearest = 0;
@@ -84,7 +84,7 @@ void keep_nearest(std::span<const SurfaceMinimum> minima, Scratch all,
 void move_kept_first(std::span<SurfaceMinimum> minima, Scratch all, Index kept) noexcept {
   for (Index rank = 0; rank < kept; ++rank) {
     Index from = Index(all[rank].chosen);
-    while (from < rank) from = Index(all[from].went);  // it gave way to one that was kept earlier
+    while (from < rank) from = Index(all[from].went);  // it was exchanged for one that was kept earlier
     std::swap(minima[rank], minima[from]);
     std::swap(all[rank].error, all[from].error);
     all[rank].went = static_cast<int>(from);

@@ -5,20 +5,20 @@
 ///
 ///      n . x + (r x n) . w  >=  -distance            r = p_b - center
 ///
-/// that is a point (n, r x n, distance) in seven dimensions. A minimum may be left out where a kept one says
-/// nearly the same: for all steps within the bounds, it is overstepped by no more than
+/// that is a point (n, r x n, distance) in seven dimensions. A minimum may be left out where a kept one has
+/// almost the same half-space: for all steps within the bounds, it is overstepped by no more than
 ///
 ///      error = max(0, distance_kept - distance)
 ///              + |n - n_kept| max_translation + |r x n - (r x n)_kept| max_rotation
 ///
-/// Kept first is the nearest, then again and again the one with the largest error, until none is above
+/// The nearest is kept first, then again and again the one with the largest error, until none is above
 /// `enough` or the room is full: farthest-first, which is within twice the best possible choice of as many
-/// [Gonzalez 1985]. So the first few spread over normals and lever arms, and what is said about the dropped
-/// ones is a bound, not an estimate. Ties go to the lower index.
+/// [Gonzalez 1985]. So the first few spread over normals and lever arms, and the error of the dropped ones is
+/// a bound, not an estimate. Ties go to the lower index.
 ///
-/// The dropped stand in groups about the kept one they are nearest to. A group that is far enough from the
-/// one just kept has nothing to lose to it and is not looked at [Elkan 2003]; of 4 400 minima on a thread,
-/// 1 024 kept, that leaves a fortieth of the pairs.
+/// The dropped minima form groups about the kept one they are nearest to. A group that is far enough from the
+/// one just kept loses no member to it and is skipped [Elkan 2003]; of 4 400 minima on a thread, 1 024 kept,
+/// that leaves a fortieth of the pairs.
 
 #include <span>
 
@@ -40,7 +40,7 @@ struct ReductionReport {
       0.0;  ///< a dropped minimum can be overstepped by at most this in a step within the bounds [m]
 };
 
-/// What is remembered of each minimum and of each group meanwhile.
+/// The state of each minimum and of each group meanwhile.
 struct ReductionScratch {
   double error = 0.0;        ///< afterwards, of a dropped one: by how much it can be overstepped [m]
   Vec3 push = Vec3::Zero();  ///< the normal times the largest translation [m]
@@ -49,8 +49,8 @@ struct ReductionScratch {
   int next = -1;             ///< in its group
   int first = -1;            ///< of the group with this number
   int farthest = -1;         ///< of the group: the one with the largest error
-  int chosen = -1;           ///< of the group: the kept one it stands about
-  int went = -1;             ///< where the minimum with this number went when a kept one took its place
+  int chosen = -1;           ///< of the group: the kept one in its middle
+  int went = -1;             ///< of the minimum with this number: its place after a kept one took its own
 };
 
 /// Orders `minima` so that the kept ones, at most `room`, come first, in the order of their choice; the rest

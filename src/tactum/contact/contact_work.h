@@ -1,6 +1,5 @@
 #pragma once
-/// What the search for contacts has memory for, and what it did in a frame: plain numbers, for settings and
-/// reports.
+/// The capacity of the search for contacts, and its work in a frame: plain numbers, for settings and reports.
 
 #include <cstddef>
 
@@ -11,27 +10,27 @@ struct ContactFinderCapacity {
   std::size_t pairs = 1 << 16;     ///< near piece pairs
   std::size_t patches = 4096;      ///< contact patches of a frame
   std::size_t minima = 8192;       ///< local minima of two surfaces
-  std::size_t kept_minima = 1024;  ///< ... of which so many are handed on (contact_reduction.h)
+  std::size_t kept_minima = 1024;  ///< ... of which so many become patches (contact_reduction.h)
 };
 
 /// Counted work of one frame: N, K and M of the paper's T_h = N t_s + K t_c + M t_f, and what was left.
 struct ContactWork {
-  int broad_phase_runs = 0;    ///< 1 when boxes or lists had to be renewed, else 0 ("N-body tests")
-  int bodies = 0;              ///< N
-  int near_pairs = 0;          ///< pairs on the lists
-  int exact_tests = 0;         ///< K: of near pairs; pairs of surfaces that were asked count as one each
-  int feature_steps = 0;       ///< feature pairs visited by the exact tests
-  int surface_queries = 0;     ///< pairs of bodies asked for the local minima of their surfaces
-  int minima = 0;              ///< found by them
-  int dropped_minima = 0;      ///< of these, left out for want of room
-  double dropped_error = 0.0;  ///< a dropped one can be overstepped by this at most [m]
-  int patches = 0;             ///< M
-  int uncertified = 0;         ///< answers without a certificate
-  int due = 0;              ///< pairs that may be within their tolerance, and whose last answer holds no more
-  int known = 0;            ///< ... and those whose last answer holds
-  int unchecked = 0;        ///< due pairs beyond the budget
-  int left_unproven = 0;    ///< ... that no bound proves to stay apart in this frame
-  int left_of_grasped = 0;  ///< ... of these, pairs of the held part
+  int broad_phase_runs = 0;       ///< 1 when boxes or lists had to be renewed, else 0 ("N-body tests")
+  int bodies = 0;                 ///< N
+  int near_pairs = 0;             ///< pairs on the lists
+  int exact_tests = 0;            ///< K: of near pairs; each query of a pair of surfaces counts as one
+  int feature_steps = 0;          ///< feature pairs visited by the exact tests
+  int surface_queries = 0;        ///< pairs of bodies whose surfaces were searched for local minima
+  int minima = 0;                 ///< found by them
+  int dropped_minima = 0;         ///< of these, left out for want of room
+  double dropped_error = 0.0;     ///< a dropped one can be overstepped by this at most [m]
+  int patches = 0;                ///< M
+  int uncertified = 0;            ///< answers without a certificate
+  int due = 0;                    ///< pairs that may be within their tolerance, with no valid answer
+  int known = 0;                  ///< ... and those whose last answer holds
+  int unchecked = 0;              ///< due pairs beyond the budget
+  int left_unproven = 0;          ///< ... that no bound proves to stay apart in this frame
+  int left_of_grasped = 0;        ///< ... of these, pairs of the grasped part
   int longest_unchecked = 0;      ///< frames since the last check of a pair that was left unproven
   bool capacity_reached = false;  ///< something was dropped: raise the capacity
 };

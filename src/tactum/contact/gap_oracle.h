@@ -1,7 +1,7 @@
 #pragma once
-/// What a response may ask beyond the patches of a frame: the exact gap of every patch at poses on trial, how
-/// deep an overlap is along a motion, and when moving bodies first touch. How answers are found, and what
-/// they cost, is the contact finder's business.
+/// The queries of a response beyond the patches of a frame: the exact gap of every patch at trial poses, how
+/// deep an overlap is along a motion, and when moving bodies first touch. The contact finder decides how
+/// answers are found, and what they cost.
 
 #include <cstdint>
 #include <span>
@@ -10,26 +10,26 @@
 
 namespace tactum::inline v0_1 {
 
-/// What is asked and known of a patch's distance at other poses.
+/// The state of a query for a patch's distance at other poses.
 enum class GapAnswer : std::uint8_t {
   kNotAsked,
   kAsked,
   kExact,   ///< the distance has been computed
-  kProven,  ///< what has moved since it was computed proves that it is enough
+  kProven,  ///< the motion since the last test proves that it is enough
   kUnknown  ///< the budget was spent
 };
 
 /// When moving bodies first touch.
 struct FirstImpact {
-  double time_s = 0.0;   ///< no two of the pieces asked touch before [s]
-  bool complete = true;  ///< false: the budget was spent before all pairs were asked
+  double time_s = 0.0;   ///< no two of the queried pieces touch before [s]
+  bool complete = true;  ///< false: the budget was spent before all pairs were tested
 };
 
-/// Bodies that turn by less in a frame move on lines, as far as an impact goes: distance over closing speed
-/// then mistakes a distance by at most half this share of the margin delta = v_c dt [rad].
+/// Bodies that turn by less in a frame are taken to move on lines in the search for an impact: distance over
+/// closing speed then mistakes a distance by at most half this fraction of the margin delta = v_c dt [rad].
 inline constexpr double kLeastTurn = 0.025;
 
-/// Whether two bodies turn so much in `dt_s` that the estimate of an impact must not leave it out.
+/// Whether two bodies turn so much in `dt_s` that the estimate of an impact must not neglect it.
 inline bool turns_in(double dt_s, const Twist& V_WA, const Twist& V_WB) noexcept {
   return (V_WA.w.norm() + V_WB.w.norm()) * dt_s > kLeastTurn;
 }
@@ -37,28 +37,30 @@ inline bool turns_in(double dt_s, const Twist& V_WA, const Twist& V_WB) noexcept
 class GapOracle {
  public:
   virtual ~GapOracle() = default;
-  /// The exact signed distance of the pieces of every patch with the bodies at other poses, near those of
-  /// the patches: what a step has to keep positive. `distance` has an entry per patch [m]. A distance that
-  /// could not be certified counts as none. Between surfaces it is that of every local minimum there is at
-  /// the other poses, told by the patches of the same features; where there is none, by the nearest patch.
+  /// The exact signed distance of the pieces of every patch with the bodies at other poses, near those of the
+  /// patches: the distance that a step has to keep positive. `distance` has an entry per patch [m]. A
+  /// distance that could not be certified counts as zero at most. Between surfaces it is that of every local
+  /// minimum there is at the other poses, entered for the patches of the same features; where there is none,
+  /// for the nearest patch.
   ///
   /// `asked` has an entry per patch and is answered in place. No test is made, when the budget is not ample,
-  /// where what moved since the last one proves that the distance is at least `enough`, nor when only
-  /// `keep_back` tests are left: then the distance is the bound. Pairs of the held part are asked first.
+  /// where the motion since the last one proves that the distance is at least `enough`, nor when only
+  /// `keep_back` tests are left: then the distance is the bound. Pairs of the grasped part are tested first.
   /// Returns how many tests were made.
   virtual int distances_at(std::span<const Pose> X_WB, std::span<double> distance, std::span<GapAnswer> asked,
                            std::span<const double> enough, int keep_back) noexcept = 0;
-  /// The depth of an overlapping patch along a motion: how far A must move along unit `direction_W` until
-  /// the two pieces of the patch are apart [m]. Where they come apart at a wall between pieces of a part,
-  /// which nothing can touch, it is the distance out through the plane of the patch instead. `patch` is the
-  /// number of a patch of this frame, and the bodies are where it was found. Zero where no depth is known:
-  /// for surfaces without pieces, for a motion that leads no way out, and where no test is left. One test.
+  /// The depth of an overlapping patch along a motion: how far A must move along unit `direction_W` until the
+  /// two pieces of the patch are apart [m]. Where they separate at a wall between pieces of a part, which
+  /// nothing can touch, it is the distance out through the plane of the patch instead. `patch` is the number
+  /// of a patch of this frame, and the bodies are at the poses where it was found. Zero where no depth is
+  /// known: for surfaces without pieces, for a motion that never separates them, and where no test is left.
+  /// One test.
   virtual double depth_along(int patch, std::span<const Pose> X_WB, const Vec3& direction_W) noexcept = 0;
   /// When the first two pieces touch, if every body moves as advanced(X_WB, V_WB, t), turns included; `dt_s`
-  /// when none does by then. Asked are the pairs of pieces that this frame found apart and within the margin,
-  /// of bodies that turn (turns_in), with the bodies where they were found; surfaces without pieces are not.
-  /// The time is that of the contact to rounding; where that takes too many steps, before it. Costs the tests
-  /// of time_of_impact.h for pairs that may touch in that time, and nothing for others.
+  /// when none does by then. Tested are the pairs of pieces that this frame found apart and within the
+  /// margin, of bodies that turn (turns_in), with the bodies where they were found; surfaces without pieces
+  /// are not. The time is that of the contact to rounding; where that takes too many steps, before it. Costs
+  /// the tests of time_of_impact.h for pairs that may touch in that time, and nothing for others.
   virtual FirstImpact first_impact(std::span<const Pose> X_WB, std::span<const Twist> V_WB,
                                    double dt_s) noexcept = 0;
   /// Exact tests that are left of the frame's budget.

@@ -1,4 +1,4 @@
-/// What the contact finder answers about motions (gap_oracle.h).
+/// The answers of the contact finder about motions (gap_oracle.h).
 
 #include <algorithm>
 
@@ -14,13 +14,13 @@ namespace {
 
 using Index = std::size_t;
 
-/// A piece, and how it moves.
+/// A piece, and its motion.
 struct MovingPiece {
   const Polytope& P;
   const Pose& X_W;
   const Twist& V_W;
 
-  /// The greatest distance by which a point of the piece goes along unit `n_W` in `dt`.
+  /// The greatest distance that a point of the piece moves along unit `n_W` in `dt`.
   double farthest_along(const Vec3& n_W, double dt) const noexcept {
     const Vec3 center = rotated(X_W.R, P.extent.center);
     const double turning = n_W.cross(V_W.w).norm() * P.extent.radius;
@@ -29,7 +29,7 @@ struct MovingPiece {
   }
 };
 
-/// Steps that a pair may take. A slow roll just over a surface would take many, and its impact is then early.
+/// Steps allowed for a pair. A slow roll just over a surface would take many, and its impact is then early.
 constexpr int kMostSteps = 16;
 
 /// How long the gap that is left at a hit takes to close; 0 where there was no hit, or nothing approaches.

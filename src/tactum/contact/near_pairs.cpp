@@ -12,8 +12,8 @@ namespace {
 
 using Index = std::size_t;
 
-/// Boxes and lists of near pairs are grown by this share of the smaller body's radius beyond the tolerance:
-/// more means they are renewed less often but hold more pairs.
+/// Boxes and lists of near pairs are grown by this fraction of the smaller body's radius beyond the
+/// tolerance: with more they are renewed less often but hold more pairs.
 constexpr double kBoxGrowth = 0.05;
 
 /// The axis-aligned box around a turned box.
@@ -155,8 +155,8 @@ bool ContactFinder::collect(int a, int b, const Pose& X_AB, double range) noexce
   return complete;
 }
 
-/// Makes pairs of the near pieces. Those of the old list stay what they are: both are sorted, so one walk
-/// along both suffices. What was not on it was beyond its range.
+/// Makes pairs of the near pieces. Those of the old list are kept: both are sorted, so one pass along both
+/// suffices. A pair that is not on it was beyond its range.
 void ContactFinder::append_pairs(int a, int b, const BodyPair& old) noexcept {
   const bool known = old.renewal == renewal_;
   Index from = known ? Index(old.first) : 0;

@@ -9,7 +9,8 @@
 namespace tactum::inline v0_1 {
 namespace {
 
-/// A face that leans by more than this cosine says (84 degrees) is an edge, seen along the normal.
+/// A face whose normal makes a smaller cosine with the contact normal (an angle above 84 degrees) is seen as
+/// an edge.
 constexpr double kSteep = 0.1;
 
 /// The contact plane, in A's frame.

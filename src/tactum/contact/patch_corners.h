@@ -1,14 +1,14 @@
 #pragma once
-/// Every corner of a contact patch, each with its gap: what a response needs in which nothing may penetrate.
+/// Every corner of a contact patch, each with its gap, for a response in which nothing may penetrate.
 ///
 ///        A  /.........../        seen along the normal, A's face and B's face overlap in a polygon; the gap
 ///    ------c-----------c---      between them is linear over it, so that no point of the polygon comes
 ///    B     `-----------'         nearer than its corners do
 ///
 /// The four weighted points of a manifold (manifold.h) carry a force as well as the whole area does, but lie
-/// inside it: held apart there, the corners overlap. Here the polygon is cut only where the gap exceeds the
-/// tolerance, never by how the faces lean. An edge or vertex that touches is taken as the border of its most
-/// level face. Where no face is near level the manifold's own points stand in.
+/// inside it: with gaps kept open there, the corners overlap. Here the polygon is cut only where the gap
+/// exceeds the tolerance, never by how the faces lean. An edge or vertex that touches is replaced by its
+/// reference face. Where no face is nearly square to the normal the manifold's own points are used.
 ///
 /// Cost: 0.1 us for boxes.
 
@@ -32,12 +32,12 @@ using PatchCorners = StaticVector<PatchCorner, PatchPolygon::capacity() + 4>;
 int reference_face(const Polytope& P, const Feature& f, const Vec3& n) noexcept;
 
 /// The corners of `patch`, found at distance `distance` [m], whose gap is at most `tolerance` [m]. The least
-/// gap is among them. False when the manifold's own points stand in.
+/// gap is among them. False when the manifold's own points are used.
 bool patch_corners(const Polytope& A, const Polytope& B, const Pose& X_AB, const Manifold& patch,
                    double distance, double tolerance, PatchCorners& corners) noexcept;
 
-/// The corners of patches of pieces that lie as they lay when they were last asked for: remembered, so that
-/// what rests costs a comparison. A pair has one slot, which it may have to share; allocated at load time.
+/// A cache of the corners of patches whose pieces lie as they lay at the last query, so that bodies at rest
+/// cost a comparison. A pair has one slot, which it may share with other pairs; allocated at load time.
 class CornerMemory {
  public:
   explicit CornerMemory(std::size_t slots) : slots_(slots) {}
@@ -46,7 +46,7 @@ class CornerMemory {
 
  private:
   /// The corners of one patch, with everything that they were computed from. A patch of more corners than
-  /// there is room for is not remembered.
+  /// there is room for is not stored.
   struct Slot {
     std::array<int, 4> pair{-1, -1, -1, -1};
     FeaturePair features;

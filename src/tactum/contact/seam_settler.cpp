@@ -14,7 +14,7 @@ namespace {
 using Index = std::size_t;
 
 /// A contact whose depth on the whole part exceeds so many times the depth on its pieces and of the
-/// representatives together is looked for again: that depth is probably the way through the whole piece.
+/// representatives together is searched for again: that depth probably goes through the whole piece.
 constexpr double kFarDeeper = 2.0;
 
 /// The candidates of two bodies.
@@ -37,7 +37,7 @@ class TwoBodies {
   bool full() const noexcept { return full_; }
 
  private:
-  /// Whether a representative answers for the candidate, which is then settled.
+  /// Whether a representative covers the candidate, which is then settled.
   bool answered(SeamCandidate& candidate) noexcept {
     const PairView pair(candidate.a.polytope(), candidate.b.polytope(), X_AB_);
     for (const SeamCandidate* other : candidates_) {
@@ -50,7 +50,7 @@ class TwoBodies {
     return false;
   }
 
-  /// Finds an internal contact again on the whole part. Where there is none it may still follow.
+  /// Finds an internal contact again on the whole part. Where there is none it may still be merged.
   void find_again(SeamCandidate& candidate) noexcept {
     candidate.on_pieces = candidate.found;
     const std::optional<PairDistance> depth = on_true_surface(candidate, 0.0);
@@ -59,11 +59,11 @@ class TwoBodies {
     candidate.internal = false;
   }
 
-  /// Looks again for a contact whose depth on the true surface is far greater than on its pieces and than
-  /// that of the representatives. In a corner of two walls the deepest point of a contact with the one lies
-  /// inside the other, as deep as that one is entered, so the search goes that far beside the covered place.
-  /// The depth on the pieces is taken where rounding leaves no true face or edge there, or where the contact
-  /// is true in its middle. Returns false when nothing is in contact.
+  /// Searches again for a contact whose depth on the true surface is far greater than on its pieces and than
+  /// that of the representatives. In a corner of two walls the deepest point of a contact with one lies
+  /// inside the other, as deep as the penetration of that one, so the search goes that far beside the covered
+  /// place. The depth on the pieces is taken where rounding leaves no true face or edge there, or where the
+  /// contact is true in its middle. Returns false when nothing is in contact.
   bool find_beside_representatives(SeamCandidate& candidate) noexcept {
     const PairDistance& on_pieces = candidate.on_pieces;
     const double entered = deepest_representative();
@@ -79,7 +79,7 @@ class TwoBodies {
         candidate.found = on_pieces;
       }
     }
-    // Apart, and beside the face.
+    // Apart, and not over the face itself.
     candidate.internal = candidate.found.distance >= candidate.margin ||
                          (on_pieces.distance >= 0.0 && candidate.found.distance < 0.0);
     return !candidate.internal;
@@ -90,15 +90,15 @@ class TwoBodies {
                                  X_AB_, candidate.on_pieces, candidate.margin, beside);
   }
 
-  /// Whether what was found is a true contact, or would be no farther than `beside` away.
+  /// Whether the answer is a true contact, or would be no farther than `beside` away.
   bool touches_beside(const SeamCandidate& candidate, double beside) const noexcept {
     return is_true_contact(*candidate.a.part, candidate.a.piece, *candidate.b.part, candidate.b.piece, X_AB_,
                            candidate.on_pieces, beside);
   }
 
   /// Whether a contact that is internal by its closest points, which of a flat contact may be any, is a true
-  /// contact in the middle: in a corner that is entered both ways each wall is covered by the other at its
-  /// edge.
+  /// contact in the middle: in a corner that is penetrated in both directions each wall is covered by the
+  /// other at its edge.
   bool touches_in_the_middle(const SeamCandidate& candidate) const noexcept {
     Manifold manifold;
     contact_manifold(candidate.a.polytope(), candidate.b.polytope(), X_AB_, candidate.on_pieces,
@@ -107,7 +107,7 @@ class TwoBodies {
     return flat && is_true_stretch(candidate, manifold);
   }
 
-  /// How deep the deepest representative is; none overlaps: 0.
+  /// The depth of the deepest representative; 0 when none overlaps.
   double deepest_representative() const noexcept {
     double deepest = 0.0;
     for (const SeamCandidate* other : candidates_)
@@ -144,7 +144,7 @@ class TwoBodies {
     return &patch;
   }
 
-  /// Makes the patch of a true contact: its own stretch and those of its followers, as one.
+  /// Makes the patch of a true contact: its own stretch and those of the contacts merged with it, as one.
   void lead(SeamCandidate& nearest) noexcept {
     PairDistance shown = steady_depth(nearest.a.polytope(), nearest.b.polytope(), X_AB_, nearest.found,
                                       steady_, *nearest.shown);
@@ -182,8 +182,8 @@ class TwoBodies {
         remember(*other, representative, shown);
   }
 
-  /// The representative's memory is that of whom it leads, unless what was shown would be the way through
-  /// another wall.
+  /// Gives `other` the representative's memory, unless the displayed depth would go through another wall for
+  /// it.
   void remember(SeamCandidate& other, const SeamCandidate& representative,
                 const PairDistance& shown) const noexcept {
     const PairView pair(other.a.polytope(), other.b.polytope(), X_AB_);
@@ -194,8 +194,9 @@ class TwoBodies {
     *other.shown = through ? SteadyContact{} : *representative.shown;
   }
 
-  /// Where the nearest touches at a true edge that others have too, the one of them with the largest features
-  /// square to the normal; its patch is put in place, and in `led` the contact as it has it.
+  /// Where the nearest touches at a true edge that other pieces have too, returns the candidate with the
+  /// largest features square to the normal; puts its patch in place, and in `led` the contact on its
+  /// features.
   SeamCandidate& widest(SeamCandidate& nearest, const PairDistance& shown, ContactPatch& patch,
                         PairDistance& led) noexcept {
     const auto size_of = [](const Manifold& manifold) {
@@ -221,7 +222,7 @@ class TwoBodies {
     return *best;
   }
 
-  /// The stretches that `other` has of features of `of`; false when it has none.
+  /// Finds the stretches that `other` has of features of `of`; false when it has none.
   static bool same_features(const Feature& a, const Feature& b, const SeamCandidate& of,
                             const SeamCandidate& other, FeaturePair& out) noexcept {
     out.a = same_feature(*other.a.part, of.a.piece, a, other.a.piece);
@@ -236,8 +237,8 @@ class TwoBodies {
     return out;
   }
 
-  /// Settles `other` when it touches where the nearest does, with nothing to add: on the same features, or at
-  /// a corner that both have.
+  /// Settles `other` when it touches where the nearest does and has nothing to add: on the same features, or
+  /// at a corner that both have.
   static void share(SeamCandidate& other, const SeamCandidate& nearest, int patch) noexcept {
     const double noise = tolerances::kCoplanarMeshOffset *
                          std::max(nearest.a.polytope().extent.size, nearest.b.polytope().extent.size);
@@ -255,7 +256,7 @@ class TwoBodies {
     other.led_by = patch;
   }
 
-  /// Takes the stretch that `other` has of the representative's contact into it; false when it has none.
+  /// Merges the stretch that `other` has of the representative's contact; false when it has none.
   bool follow(SeamCandidate& other, const SeamCandidate& representative, const PairDistance& shown,
               const ContactPatch& patch) noexcept {
     FeaturePair same;
@@ -289,7 +290,7 @@ class TwoBodies {
   const Pose& X_AB_;
   const SteadyLimits& steady_;
   std::vector<ContactPatch>& patches_;
-  StaticVector<Stretch, 512> stretches_;  // of the patch in work
+  StaticVector<Stretch, 512> stretches_;  // of the patch being made
   bool full_ = false;
 };
 

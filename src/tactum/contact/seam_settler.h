@@ -5,18 +5,18 @@
 ///
 /// settle_seams() makes contact patches of the answers:
 ///
-///   for each two bodies, nearest first:  a true contact leads. Every other pair with a stretch of the same
-///                                        true faces (or edges) follows: its stretch goes into the
-///                                        patch of the first, which is then that of the uncut part
-///                                        (manifold.h).
-///   then internal contacts:              dropped when they are apart or a representative stands
-///                                        for them; else they lead by the least depth on the true
-///                                        surface, or in a corner by that beside it, or as they
-///                                        were found.
+///   for each two bodies, nearest first:  a true contact is a representative. Every other pair with a
+///                                        stretch of the same true faces (or edges) is merged: its
+///                                        stretch goes into the patch of the first, which is then that
+///                                        of the uncut part (manifold.h).
+///   then internal contacts:              dropped when they are apart or a representative covers
+///                                        them; else they become representatives by the least depth
+///                                        on the true surface, or in a corner by that beside it, or
+///                                        as they were found.
 ///
-/// The memory of what was shown goes from the representative to all it answers for, so that a contact slides
-/// over a seam without forgetting. Cost: what the patches cost, and a look-up for each representative and
-/// pair.
+/// The memory of the last frame's contact goes from the representative to all contacts merged with it or
+/// covered by it, so that a contact slides over a seam without a step. Cost: that of the patches, and a
+/// look-up for each representative and pair.
 
 #include <cstdint>
 #include <span>
@@ -43,15 +43,15 @@ struct SeamCandidate {
   SteadyContact* shown = nullptr;  ///< the pair's memory
   double margin = 0.0;             ///< tolerance of the pair [m]
   PairDistance found;
-  PairDistance on_pieces;  ///< of an internal contact that was found again: what was found before
+  PairDistance on_pieces;  ///< of an internal contact that was found again: the first answer
   bool internal = false;
   bool settled = false;
   int patch = -1;   ///< of a representative; of a closest point, its own
-  int led_by = -1;  ///< a representative's patch
+  int led_by = -1;  ///< the patch of the representative it was merged with
 };
 
-/// Appends the patches of `candidates`, which are settled and their order changed. False when `patches` is
-/// full.
+/// Appends the patches of `candidates`, which are marked as settled, and their order is changed. False when
+/// `patches` is full.
 bool settle_seams(std::span<SeamCandidate*> candidates, std::span<const Pose> X_WB,
                   const SteadyLimits& steady, std::vector<ContactPatch>& patches) noexcept;
 

@@ -9,8 +9,8 @@ namespace {
 
 using Index = std::size_t;
 
-/// How far a normal is leant over an edge to see whether the surface bends there [rad, small]: less than
-/// that is flat to a patch, whose features lean by as much anyway.
+/// The angle by which a normal is tilted over an edge to see whether the surface bends there [rad, small]: an
+/// edge that bends less is flat to a patch, whose features lean by as much anyway.
 constexpr double kLeanOver = 0.05 * tolerances::kPatchAngle;
 
 double noise_of(const Part& part) noexcept { return tolerances::kCoplanarMeshOffset * part.size; }
@@ -33,8 +33,8 @@ bool in_column(const Polytope& P, int face, const Vec3& p, double margin) noexce
   return true;
 }
 
-/// Of one side: the faces of `F`, told in its own frame, against the support of `S`. Calls
-/// take(face, vertex of S, distance) for those that could be nearer than `best`.
+/// For one side: the faces of `F`, in its own frame, against the support of `S`. Calls take(face, vertex of
+/// S, distance) for those that could be nearer than `best`.
 template <class Take>
 void for_true_faces(const Part& part, int piece, const Polytope& S, const Pose& X_FS, int start,
                     const Take& take) noexcept {
@@ -57,8 +57,8 @@ const Vec3& side_at(const Polytope& P, int face, int edge) noexcept {
   return P.sides[face == e.left ? e.left_slot : e.right_slot].normal;
 }
 
-/// Whether the surface bends at `edge` of `piece`, at point `p` on `at`: a normal that leans over the edge a
-/// little is one of the whole part's.
+/// Whether the surface bends at `edge` of `piece`, at point `p` on `at`: a normal tilted a little over the
+/// edge is one of the whole part's.
 bool is_true_edge(const Part& part, int piece, int edge, const Feature& at, const Vec3& p) noexcept {
   const Polytope& P = part.pieces[Index(piece)];
   for (const int face : {P.edges[edge].left, P.edges[edge].right}) {
@@ -69,7 +69,7 @@ bool is_true_edge(const Part& part, int piece, int edge, const Feature& at, cons
   return false;
 }
 
-/// The face at `edge` that can be touched; where none can, `otherwise`.
+/// The exposed face at `edge`; where there is none, `otherwise`.
 Feature exposed_face(const Part& part, int piece, int edge, const Feature& otherwise) noexcept {
   const Polytope& P = part.pieces[Index(piece)];
   for (const int face : {P.edges[edge].left, P.edges[edge].right})
@@ -81,7 +81,8 @@ Feature exposed_face(const Part& part, int piece, int edge, const Feature& other
 constexpr std::size_t kMostEdgePairs = 16384;
 using EdgeList = StaticVector<int, 1024>;
 
-/// The edges of `piece` where the surface bends, told at their middles; no more than there is room for.
+/// Lists the edges of `piece` where the surface bends, judged at their middles; no more than there is room
+/// for.
 void true_edges(const Part& part, int piece, EdgeList& edges) noexcept {
   const Polytope& P = part.pieces[Index(piece)];
   for (int e = 0; e < P.counts[1]; ++e) {
@@ -110,7 +111,7 @@ std::optional<PairDistance> crossing_edges(const Polytope& A, int edge_a, const 
   const Vec3 along_b = X_AB.R * b.direction;
   Vec3 n = a.direction.cross(along_b);
   const double sine = n.norm();
-  if (!(sine > tolerances::kSamePlane)) return std::nullopt;  // parallel: the faces have told them
+  if (!(sine > tolerances::kSamePlane)) return std::nullopt;  // parallel: the faces have covered them
   n /= sine;
   const double sign = cone_sign(A, edge_a, -n);
   if (sign == 0.0 || cone_sign(B, edge_b, sign * rotated_back(X_AB.R, n)) != 1.0) return std::nullopt;
@@ -266,7 +267,7 @@ bool answered_by(const PairView& pair, const PairDistance& found, const Vec3& n,
   double height_a = -n.dot(pair.A.vertices[Index(a)]);
   double height_b = n_B.dot(pair.B.vertices[Index(b)]);
   const double apart = -n.dot(pair.X_AB.p);  // of the origins
-  // Towards the supports a step at a time: most neighbours turn out not to part the pieces at the first.
+  // Climbs to the supports a step at a time: most neighbours prove at the first not to separate the pieces.
   for (;;) {
     if (apart - height_a - height_b < least) return false;
     const int next_a = uphill(pair.A, -n, a, height_a);

@@ -18,15 +18,15 @@ using Index = std::size_t;
 /// Faces with more corners are flat ends, not parts of curved surfaces.
 constexpr int kMostCorners = 16;
 
-/// The weighted normals' sum inside a convex polygon: w_i = A(i-1,i,i+1) prod_{j != i-1,i} A(j,j+1,p). The
+/// The sum of weighted normals inside a convex polygon: w_i = A(i-1,i,i+1) prod_{j != i-1,i} A(j,j+1,p). The
 /// first area is in the corner's weighted normal; the product is that of all before times that of all behind.
 inline Vec3 weighted_sum(const ShadedCorner* corners, int n, const Vec3& point) {
   const auto area_beside = [&](int i) {
     return std::max(0.0, corners[i].inward.dot(point) - corners[i].offset);
   };
-  // A ruled face, as what is swept has: see ruled().
+  // A ruled face, as a swept surface has: see ruled().
   if (n == 2) return area_beside(0) * corners[0].weighted + area_beside(1) * corners[1].weighted;
-  if (n == 4) {  // of what is turned most are: the same products, written out
+  if (n == 4) {  // as most faces of a turned surface: the same products, written out
     const double a0 = area_beside(0);
     const double a1 = area_beside(1);
     const double a2 = area_beside(2);
@@ -58,7 +58,7 @@ inline Vec3 interpolated(const ShadedFace& face, const ShadedCorner* corners, co
   return length_sq > 0.0 ? Vec3(sum * (1.0 / std::sqrt(length_sq))) : face.normal;
 }
 
-/// A corner by its name on one of the pieces that have it.
+/// A corner by its number on one of the pieces that have it.
 struct CornerName {
   int piece = -1, vertex = -1;
 };
@@ -116,7 +116,7 @@ const Vec3& place_of(const Part& part, const CornerName& corner) {
   return part.pieces[Index(corner.piece)].vertices[Index(corner.vertex)];
 }
 
-/// The corners of faces in one plane as those of one face; none when they are not convex as one.
+/// The corners of faces in one plane as those of one face; none when their union is not convex.
 std::vector<CornerName> corners_as_one(const Part& part, const std::vector<std::pair<int, int>>& faces) {
   const auto [first_piece, first_face] = faces.front();
   const Vec3& normal = part.pieces[Index(first_piece)].faces[Index(first_face)].normal;
@@ -144,8 +144,9 @@ std::vector<CornerName> corners_as_one(const Part& part, const std::vector<std::
   return corners;
 }
 
-/// Of a parallelogram whose opposite sides i and i + 2 have one normal each the areas beside the other two
-/// sides add up to the same everywhere: what is left of the sum is linear, a2 n0 + a0 n2. Two corners say it.
+/// In a parallelogram whose opposite sides i and i + 2 have one normal each the areas beside the other two
+/// sides add up to the same everywhere: the rest of the sum is linear, a2 n0 + a0 n2. Two corners describe
+/// it.
 void ruled(const Part& part, const std::vector<CornerName>& names, std::vector<ShadedCorner>& corners) {
   if (corners.size() != 4) return;
   const auto p = [&](Index i) -> const Vec3& { return place_of(part, names[i % 4]); };
@@ -162,7 +163,7 @@ void ruled(const Part& part, const std::vector<CornerName>& names, std::vector<S
   }
 }
 
-/// The corners' share of the shading; none when all have the face's own normal, or the face is a flat end.
+/// The corners' weights in the shading; none when all have the face's own normal, or the face is a flat end.
 std::vector<ShadedCorner> shaded(const Part& part, const std::vector<CornerName>& names, const Vec3& normal,
                                  double cosine, NormalsAround& around) {
   if (names.size() > Index(kMostCorners)) return {};

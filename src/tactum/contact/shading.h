@@ -5,9 +5,9 @@
 ///
 /// A corner's normal on a face is the mean of the normals of the faces around the corner that meet that face
 /// at less than the crease angle; at a sharp edge it is the face's own. Inside a face, Wachspress coordinates
-/// of the polygon weigh the corners: linear on its edges, so that the direction is continuous from face to
-/// face. Faces and those around a corner are the part's true ones: what pieces cut across is shaded as one,
-/// unless it is not convex as one; then stretch by stretch.
+/// of the polygon weight the corners: linear on its edges, so that the direction is continuous from face to
+/// face. Faces and those around a corner are the part's true ones: a face that was cut into pieces is shaded
+/// as one, unless its union is not convex; then stretch by stretch.
 
 #include <array>
 #include <span>
@@ -18,8 +18,8 @@
 
 namespace tactum::inline v0_1 {
 
-/// A corner of a face, as Wachspress coordinates need it; of two, one of the sides that a ruled face is
-/// between: its normal, and the side across.
+/// A corner of a face, as Wachspress coordinates need it. A ruled face has two of them instead, one for each
+/// of its two curved sides: the side's normal, and the side across.
 struct ShadedCorner {
   Vec3 weighted = Vec3::Zero();  ///< the surface's normal, times twice the triangle of its neighbours [m^2]
   // Twice the area of the side to the next corner with a point p is  inward . p - offset.
@@ -27,7 +27,7 @@ struct ShadedCorner {
   double offset = 0.0;         ///< part's frame [m^2]
 };
 
-/// A true face. No corners: nothing of it deviates.
+/// A true face. Without corners its normals do not deviate.
 struct ShadedFace {
   Vec3 normal = Vec3::Zero();  ///< unit [-]
   int first = 0, count = 0;    ///< of its corners, counter-clockwise; two of a ruled face
@@ -40,8 +40,8 @@ class ShadingNormals {
 
   /// Whether any normal of the part deviates.
   bool bends() const noexcept { return !corners_.empty() || !triangle_normals_.empty(); }
-  /// The face that a feature of a piece is, where normals of it deviate; null for other features and for
-  /// faces whose edges are all sharp.
+  /// The face that a feature of a piece is, where its normals deviate; null for other features and for faces
+  /// whose edges are all sharp.
   const ShadedFace* bent_face(int piece, const Feature& feature) const noexcept;
   /// How much the interpolated normal at `point` (part's frame) differs from a bent face's own.
   Vec3 deviation(const ShadedFace& face, const Vec3& point) const noexcept;
@@ -64,8 +64,7 @@ class ShadingNormals {
 };
 
 /// At the first of the patch's points, as many as there is room for: the patch's normal, turned by the
-/// deviations of the faces it lies on; told in A's frame. X_AB is the pose of body B in A and X_BA its
-/// inverse.
+/// deviations of the faces it lies on, in A's frame. X_AB is the pose of body B in A and X_BA its inverse.
 void shaded_normals(const ShadingNormals& a, const ShadingNormals& b, const Pose& X_AB, const Pose& X_BA,
                     const ContactPatch& patch, std::span<Vec3> normals) noexcept;
 

@@ -8,7 +8,7 @@
 namespace tactum::inline v0_1 {
 namespace {
 
-/// The depth along unit `n`, told at the point of `found`.
+/// The depth along unit `n`, at the point of `found`.
 PairDistance depth_across(const PairView& pair, const PairDistance& found, const Vec3& n) noexcept {
   PairDistance result = found;
   int a = vertex_of(pair.A, found.a);
@@ -31,7 +31,7 @@ PairDistance steady_depth(const Polytope& A, const Polytope& B, const Pose& X_AB
   if (found.distance >= 0.0 || from.isZero() || from.dot(found.normal) >= limits.cosine) return found;
   const Vec3 toward = found.normal - from * from.dot(found.normal);
   const double sine = toward.norm();
-  if (sine < tolerances::kParallelSine) return found;  // turned right round: no way is the nearest
+  if (sine < tolerances::kParallelSine) return found;  // opposite: no shortest path between
   const PairView pair(A, B, X_AB);
   const Vec3 n = from * limits.cosine + toward * (limits.sine / sine);
   const PairDistance between = depth_across(pair, found, n.normalized());

@@ -1,4 +1,4 @@
-/// The half of the contact finder (contact_finder.h) for bodies that meet by their surfaces.
+/// The half of the contact finder (contact_finder.h) for bodies that are tested by their surfaces.
 
 #include <algorithm>
 
@@ -10,15 +10,15 @@ namespace {
 
 using Index = std::size_t;
 
-/// How deep surfaces may cross in the penalty response and still be told apart, as a share of the smaller
+/// How deep surfaces may cross in the penalty response and still be told apart, as a fraction of the smaller
 /// part's size. Walls thinner than that may be pushed through; the constraint response lets nothing cross.
 constexpr double kSurfaceDepth = 0.02;
 
-/// At the end of a step only gaps below this share of the tolerance are looked for: the others are open.
+/// At the end of a step only gaps below this fraction of the tolerance are searched: the others are open.
 constexpr double kWatched = 0.15;
 
-/// Of surfaces that were apart it is asked first how far, up to so many tolerances: that far they need not be
-/// asked again.
+/// For surfaces that were apart the first query is how far, up to so many tolerances: until they moved that
+/// far they need no other query.
 constexpr double kFarther = 8.0;
 
 }  // namespace
@@ -35,7 +35,7 @@ void ContactFinder::test_surfaces(const SweepAndPrune::Pair& near, std::span<con
   ++work_.exact_tests;
   const Part& part_a = *bodies_[Index(a)].part;
   const Part& part_b = *bodies_[Index(b)].part;
-  // Where nothing may cross, what is below zero is rounding.
+  // Where nothing may cross, a distance below zero is rounding.
   const bool may_cross = points_ == PatchPoints::kQuadrature;
   const MinimaQuery query{
       .max_distance = margin,

@@ -1,5 +1,5 @@
 #pragma once
-/// The contract of a haptic device: what every device, real or simulated, looks like to the loop.
+/// The contract of a haptic device: the interface of every device, real or simulated, for the loop.
 ///
 /// Units are SI. The device frame D is: x toward the operator, y to the operator's right, z up, origin at the
 /// centre of the workspace; a driver converts its own axes. H is the handle. Wrenches act on the hand, at the
@@ -18,34 +18,34 @@
 
 namespace tactum::inline v0_1 {
 
-/// What the device says about the hand at one instant.
+/// The state of the hand at one instant, as the device reports it.
 struct DeviceSample {
   double time_s = 0.0;  ///< when it was measured, on the loop's clock [s]
   Pose X_DH;            ///< handle in device frame [m]
   Twist V_DH;  ///< of the handle's origin, axes of D [m/s, rad/s]; zero when the device has no estimate
   bool has_velocity = false;  ///< whether V_DH was measured or estimated by the device
   std::uint32_t buttons = 0;  ///< bit 0 is the primary button
-  bool motors_on = true;  ///< false: the device says that it does not push now: dead-man switch, brakes, no
+  bool motors_on = true;  ///< false: the device reports that it does not push: dead-man switch, brakes, no
                           ///< power, its own watchdog
   bool valid = false;     ///< false: the read failed, everything else is the last known
 };
 
-/// No device reaches farther than this; a handle reported beyond it is a driver's mistake.
+/// No device's workspace is larger than this; a handle reported beyond it is a driver's mistake.
 inline constexpr double kFarthestHandle_m = 10.0;  ///< [m]
 
-/// Whether a pose can be that of a handle: finite, within reach, and its matrix a rotation to six decimals. A
-/// buffer of zeros is finite and would otherwise pass for a turn by half a circle.
+/// Whether a pose can be that of a handle: finite, within that distance, and its matrix a rotation to six
+/// decimals. A buffer of zeros is finite and would otherwise pass for a turn by half a circle.
 inline bool plausible(const Pose& X_DH) noexcept {
   const auto x = X_DH.R.col(0), y = X_DH.R.col(1), z = X_DH.R.col(2);
   const auto is = [](double found, double expected) {
-    return std::abs(found - expected) < tolerances::kRotationNear;  // not of what is no number
+    return std::abs(found - expected) < tolerances::kRotationNear;  // false when it is not a number
   };
   return X_DH.finite() && X_DH.p.norm() < kFarthestHandle_m && is(x.dot(x), 1.0) && is(y.dot(y), 1.0) &&
          is(z.dot(z), 1.0) && is(x.dot(y), 0.0) && is(y.dot(z), 0.0) && is(z.dot(x), 0.0) &&
          x.cross(y).dot(z) > 0.0;
 }
 
-/// How the handle moves, as far as anyone knows; 0: unknown.
+/// The dynamics of the handle, as far as known; 0: unknown.
 struct HandleDynamics {
   double mass_kg = 0.0;              ///< apparent at the handle [kg]
   double inertia_kg_m2 = 0.0;        ///< [kg m^2]
@@ -58,7 +58,7 @@ struct HandleDynamics {
   double delay_s = 0.0;              ///< from a write to the motors [s]
 };
 
-/// What a device can do; queried, never guessed from its name.
+/// The abilities of a device; queried, never guessed from its name.
 struct DeviceInfo {
   std::string name;                       ///< "simulated premium-1.5-6dof"
   bool senses_rotation = false;           ///< orientation of the handle is measured
@@ -66,12 +66,11 @@ struct DeviceInfo {
   bool actuates_torque = false;           ///< can turn the handle
   double max_force_N = 0.0;               ///< largest force it may be asked for [N]
   double max_torque_Nm = 0.0;             ///< largest torque it may be asked for [N m]
-  double max_stiffness_N_per_m = 0.0;     ///< stiffest wall its maker or users hold stable at 1 kHz [N/m]
+  double max_stiffness_N_per_m = 0.0;     ///< stiffest wall that its maker or users find stable, 1 kHz [N/m]
   double max_stiffness_Nm_per_rad = 0.0;  ///< the same for rotation [N m/rad]
-  double workspace_radius_m = 0.0;        ///< largest sphere about the origin it reaches [m]
-  double max_still_s =
-      0.0;  ///< no hand keeps its reading the same to the bit for longer; 0: cannot be told [s]
-  double rate_Hz = 1000.0;  ///< rate it wants to be served at [Hz]
+  double workspace_radius_m = 0.0;        ///< largest sphere about the origin within its workspace [m]
+  double max_still_s = 0.0;  ///< no hand keeps its reading the same to the bit for longer; 0: unknown [s]
+  double rate_Hz = 1000.0;   ///< rate it wants to be served at [Hz]
   HandleDynamics handle{};
 };
 
@@ -82,7 +81,8 @@ class Device {
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
 
-  /// Makes the device ready with zero wrench. Slow; may allocate. Errors say what is missing and the cure.
+  /// Makes the device ready with zero wrench. Slow; may allocate. An error states what is missing and the
+  /// remedy.
   virtual Result<void> open() = 0;
   /// Zero wrench, then releases the device. Safe to call twice.
   virtual void close() noexcept = 0;
@@ -92,7 +92,7 @@ class Device {
   /// A simulated device moves its world up to `now_s` here. Never waits longer than a device transfer.
   virtual bool read(double now_s, DeviceSample& sample) noexcept = 0;
 
-  /// Asks for a wrench on the hand until the next write; false when the device did not take it.
+  /// Sets the wrench on the hand until the next write; false when the device did not take it.
   virtual bool write(const Wrench& F_D) noexcept = 0;
 };
 

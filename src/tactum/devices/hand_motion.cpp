@@ -11,7 +11,7 @@
 namespace tactum::inline v0_1 {
 namespace {
 
-/// Share of the way done and its rate against the share of the time spent.
+/// Fraction of the path that is done, and its rate, against the fraction of the time spent.
 struct Progress {
   double s;
   double rate;

@@ -1,6 +1,6 @@
 #pragma once
-/// What the hand intends: a pose, its velocity and the buttons as functions of time. A motion is immutable
-/// and has no memory, so it can be asked for any time, in any order, by any number of devices.
+/// The intended motion of the hand: a pose, its velocity and the buttons as functions of time. A motion is
+/// immutable and has no memory, so it can be evaluated at any time, in any order, for any number of devices.
 ///
 ///   ScriptedMotion   move_to, turn_about and hold, one after the other
 ///   TremorMotion     another motion with small sinusoids on top
@@ -19,8 +19,8 @@ namespace tactum::inline v0_1 {
 
 /// The intention at one instant, in the device frame D.
 struct HandState {
-  Pose X_DH;                  ///< where the hand wants the handle [m]
-  Twist V_DH;                 ///< how fast it wants it to move [m/s, rad/s]
+  Pose X_DH;                  ///< the intended pose of the handle [m]
+  Twist V_DH;                 ///< its intended velocity [m/s, rad/s]
   std::uint32_t buttons = 0;  ///< bit 0 is the primary button
 };
 
@@ -86,8 +86,8 @@ class ScriptedMotion final : public HandMotion {
   double end_s_ = 0.0;
 };
 
-/// Minimum-jerk moves from keyframe to keyframe; a keyframe's buttons hold until the next one. Errors name
-/// the keyframe: times must increase, poses must be finite rotations.
+/// Minimum-jerk moves from keyframe to keyframe; a keyframe's buttons are kept until the next one. Errors
+/// name the keyframe: times must increase, poses must be finite rotations.
 Result<ScriptedMotion> motion_through(const std::vector<Keyframe>& keyframes);
 
 /// One sinusoid of a tremor: both amplitudes times sin(2 pi f t + phase).

@@ -9,8 +9,8 @@
 ///
 ///   frame,time_s,a_px,...,a_m22,b_px,...,b_m22    or o1_ and o2_ for a_ and b_
 ///
-/// Columns with other names are read past. A matrix within tolerances::kRotationExact of a rotation is taken
-/// as one; within kRotationNear it is too, and the repair counted (files with six decimals); anything else is
+/// Columns with other names are ignored. A matrix within tolerances::kRotationExact of a rotation is taken as
+/// one; within kRotationNear it is too, and the repair counted (files with six decimals); anything else is
 /// refused, as it would stretch a part. Taken means: replaced by the nearest rotation, a change of rounding
 /// only.
 
@@ -24,7 +24,7 @@
 
 namespace tactum::inline v0_1 {
 
-/// What had to be mended while reading, to be told to the user.
+/// Repairs made while reading, to be reported to the user.
 struct MotionRepairs {
   std::size_t orthonormalized_rows = 0;  ///< rows with an orientation that was near a rotation, not exact
   double worst_deviation = 0.0;          ///< largest |R R^T - I| entry, or |1 - length| of a quaternion [-]
@@ -56,7 +56,7 @@ Result<TwoBodyMotion> read_two_body_motion(const std::string& path);
 
 /// The motion moved and scaled into a sphere of `radius_m` about the origin: a room-sized recording for a
 /// desk-sized device. The centre of its bounding box goes to the origin; it is only ever made smaller;
-/// orientations are told relative to the first.
+/// orientations are relative to the first.
 Motion fitted(const Motion& motion, double radius_m);
 
 /// A recorded motion as a hand's intention: straight and by one rotation from row to row.

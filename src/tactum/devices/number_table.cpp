@@ -45,7 +45,7 @@ std::string quoted(std::string_view text) {
   return "'" + shown + (text.size() > kMaxQuoted ? "...'" : "'");
 }
 
-/// The number, or NaN when the cell is none; `plain` says whether it was a number at all.
+/// The number, or NaN when the cell is none; `plain` is set to whether it was a number at all.
 double parsed(std::string_view cell, bool& plain) {
   if (!cell.empty() && cell.front() == '+') cell.remove_prefix(1);
   double value = std::nan("");

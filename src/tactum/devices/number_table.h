@@ -1,7 +1,7 @@
 #pragma once
 /// A text file of numbers in columns: comma-separated with a header, or space-separated without one. Strict:
-/// every row has every column, every cell is a finite number, and what is wrong is told with file, line and
-/// column. Windows line ends, blank lines, '#' comments, a byte order mark and scientific notation are fine.
+/// every row has every column, every cell is a finite number, and errors give file, line and column. Windows
+/// line ends, blank lines, '#' comments, a byte order mark and scientific notation are fine.
 
 #include <span>
 #include <string>

@@ -1,19 +1,19 @@
 #pragma once
 /// A simulated device (simulated_device.h) whose hand is led from outside: by the mouse on the viewer's page,
-/// or by any program that has a pose to offer. Until somebody aims it, the hand plays its script, forth and
-/// back again without end, so that a scene is alive before anyone touches it.
+/// or by any program that has a pose to offer. Until it is aimed, the hand plays its script, forth and back
+/// again without end, so that a scene is alive before anyone touches it.
 ///
-///   aim ---> critically damped, limited in speed and reach --+
+///   aim ---> critically damped, limited in speed and range --+
 ///                                                            +--> intended pose --> simulated device
 ///   script, forth and back ----------------------------------+
 ///
-/// A mouse tells a few dozen poses a second, with jumps. Each step of the loop moves the intended pose along
+/// A mouse gives a few dozen poses a second, with jumps. Each step of the loop moves the intended pose along
 /// the closed form of a critically damped spring with rate kFollow_per_s,
 ///
 ///   e(t) = (e0 + (v0 + w e0) t) exp(-w t)         e: intended pose minus aim; rotation as rotation vector
 ///
-/// which is stable for any step, and never faster than kMaxSpeed_m_per_s and kMaxTurn_rad_per_s. What the
-/// hand then does is the simulated hand's affair: it holds the handle by its spring and gives way to forces.
+/// which is stable for any step, and never faster than kMaxSpeed_m_per_s and kMaxTurn_rad_per_s. The rest is
+/// done by the simulated hand: it holds the handle by its spring and gives way to forces.
 
 #include <memory>
 
@@ -38,14 +38,15 @@ class PointerDevice final : public Device {
   bool write(const Wrench& F_D) noexcept override { return device_.write(F_D); }
 
   // On the thread that reads. From the first aim or rest on the script plays no more.
-  /// Where the hand shall go. What is no pose is ignored; what is out of reach is brought within it.
+  /// Sets the pose that the hand shall go to. An invalid pose is ignored; one outside the workspace is moved
+  /// into it.
   void aim(const Pose& X_DH, std::uint32_t buttons) noexcept;
-  /// The hand stays where it wants to be now, and presses nothing.
+  /// The hand stays at its present intended pose, and presses no button.
   void rest() noexcept;
   bool aimed() const noexcept { return aimed_; }
 
  private:
-  /// What the simulated hand sees: one straight piece of motion a read.
+  /// The motion of the simulated hand: one straight piece a read.
   struct Hand final : HandMotion {
     HandState at(double world_s) const noexcept override;
     double duration_s() const noexcept override { return 0.0; }
@@ -64,7 +65,7 @@ class PointerDevice final : public Device {
   DeviceInfo info_;
   bool started_ = false;
   double now_s_ = 0.0;    // of the last read
-  double world_s_ = 0.0;  // the device's own time, which sleeps through jumps
+  double world_s_ = 0.0;  // the device's own time, which is stopped during jumps
   bool aimed_ = false;
   Pose X_aim_;
   std::uint32_t buttons_ = 0;

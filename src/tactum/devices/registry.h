@@ -15,7 +15,7 @@
 
 namespace tactum::inline v0_1 {
 
-/// What a device may need beside its name. Real devices ignore the hand.
+/// Parameters of a device beside its name. Real devices ignore the hand.
 struct DeviceOptions {
   std::shared_ptr<const HandMotion> hand_motion;  ///< of the simulated hand; null: it rests at the origin
   std::string grip = "medium";                    ///< of the simulated hand; "none" for a free handle
@@ -28,7 +28,7 @@ struct DeviceListing {
   std::string description;  ///< one line
 };
 
-/// Makes a device, not yet open. An unknown name is answered with the names there are.
+/// Makes a device, not yet open. The error for an unknown name lists the known names.
 Result<std::unique_ptr<Device>> make_device(const std::string& name, const DeviceOptions& options);
 
 std::vector<DeviceListing> list_devices();

@@ -1,7 +1,7 @@
 #pragma once
-/// A device that plays a motion: the hand of a recording that no wrench can move. It senses only; what it is
-/// sent is limited and counted, so that a run against it meets the same limits as one against a device of its
-/// class, and nothing is felt.
+/// A device that plays a motion: the hand of a recording that no wrench can move. It senses only; the wrench
+/// that it is sent is limited and counted, so that a run against it meets the same limits as one against a
+/// device of its class, and nothing is felt.
 
 #include <memory>
 #include <string>
@@ -11,7 +11,7 @@
 
 namespace tactum::inline v0_1 {
 
-/// What happens when the motion is over.
+/// What the handle does when the motion is over.
 enum class AtEnd {
   kRest,   ///< the handle stays at the last pose
   kRepeat  ///< from the beginning; a recording that does not end where it began jumps
@@ -21,7 +21,7 @@ struct ReplaySettings {
   AtEnd at_end = AtEnd::kRest;
   double max_force_N = 8.5;          ///< wrenches are limited to this [N]
   double max_torque_Nm = 0.188;      ///< [N m]
-  double workspace_radius_m = 0.12;  ///< told in DeviceInfo [m]
+  double workspace_radius_m = 0.12;  ///< reported in DeviceInfo [m]
 };
 
 class ReplayDevice final : public Device {

@@ -36,7 +36,7 @@ Vec3 midpoint(const Half& half, const Vec3& force, const Vec3& error, const Vec3
   const Vec3 push = slowness * v + force + half.hand_stiffness * error + half.hand_damping * v_hand;
   const Vec3 kept = rubbed(push, half.friction);
   const Vec3 u = kept / (slowness + 0.5 * h * half.hand_stiffness + half.hand_damping + half.device_damping);
-  // Friction that eats the whole push holds the handle; 2u - v would leave it quivering.
+  // Friction larger than the whole push stops the handle; 2u - v would leave it quivering.
   const bool stuck = half.friction > 0.0 && kept.isZero(0.0);
   v = stuck ? Vec3(Vec3::Zero()) : Vec3(2.0 * u - v);
   return u;
@@ -130,7 +130,7 @@ bool SimulatedDevice::read(double now_s, DeviceSample& sample) noexcept {
   sample.time_s = now_s;
   sample.X_DH = encoded();
   sample.buttons = intended_.buttons;
-  sample.motors_on = !(limp_ && watchdog_trips_ > 0);  // nothing written yet is no fault
+  sample.motors_on = !(limp_ && watchdog_trips_ > 0);  // before the first write there is no fault
   sample.valid = true;
   estimate_velocity(now_s, sample);
   return true;
@@ -199,7 +199,7 @@ void SimulatedDevice::stop_at_workspace_edge() noexcept {
   const Vec3 outward = X_DH_.p / distance;
   X_DH_.p = outward * model_.workspace_radius_m;
   const double speed = V_DH_.v.dot(outward);
-  if (speed > 0.0) V_DH_.v -= speed * outward;  // the stop takes the blow and gives nothing back
+  if (speed > 0.0) V_DH_.v -= speed * outward;  // the stop takes the impact without rebound
 }
 
 double SimulatedDevice::energy_J() const noexcept {

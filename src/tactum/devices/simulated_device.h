@@ -7,21 +7,21 @@
 ///   intended motion -> spring, damper -+   stops at the workspace's edge
 ///
 /// `read(now)` moves this world up to `now` in equal substeps of about 0.1 ms with the last written wrench
-/// held, as a real device's amplifier holds it. Each substep is the implicit midpoint rule in the hand's
+/// held constant, as by a real device's amplifier. Each substep is the implicit midpoint rule in the hand's
 /// spring and all dampers, with Coulomb friction as a proximal step:
 ///
 ///   u = prox( 2 m v / h + F + k (x_hand - x) + b v_hand ) / (2 m / h + h k / 2 + b + b_device)
 ///   x += h u,  v = 2 u - v            prox shortens a vector by the friction force, to zero if shorter
 ///
-/// It is stable for any stiffness and makes no energy: the work of every element is its force times u. It is
-/// of second order because a first-order rule would carry the handle half a substep ahead under a held force
-/// and so hide a tenth of the half period of delay by which a held wrench makes a stiff wall unstable.
-/// Rotation does the same with a rotation vector and an isotropic inertia; there the energy balance holds to
-/// second order of the substep.
+/// It is stable for any stiffness and generates no energy: the work of every element is its force times u. It
+/// is of second order because a first-order rule would carry the handle half a substep ahead under a constant
+/// force and so hide a tenth of the half period of delay by which a held wrench makes a stiff wall unstable.
+/// Rotation is computed in the same way with a rotation vector and an isotropic inertia; there the energy
+/// balance holds to second order of the substep.
 ///
-/// A jump of `now` by more than kMaxStepsPerRead substeps is not caught up: the world, hand included, sleeps
-/// through the rest, so that a debugger's pause does not end in a leap. Deterministic: the state depends only
-/// on the sequence of calls.
+/// A jump of `now` by more than kMaxStepsPerRead substeps is not caught up: the world, hand included, stands
+/// still for the rest, so that a debugger's pause does not end in a leap. Deterministic: the state depends
+/// only on the sequence of calls.
 
 #include <array>
 #include <memory>
@@ -50,8 +50,8 @@ struct SimulatedDeviceModel {
   double watchdog_s = 0.030;         ///< without a write for so long, the motors go limp [s]
   double max_force_N = 0.0;          ///< saturation of the force's magnitude [N]
   double max_torque_Nm = 0.0;  ///< saturation of the torque's magnitude; 0: cannot turn the handle [N m]
-  double max_stiffness_N_per_m = 0.0;     ///< told in DeviceInfo [N/m]
-  double max_stiffness_Nm_per_rad = 0.0;  ///< told in DeviceInfo [N m/rad]
+  double max_stiffness_N_per_m = 0.0;     ///< reported in DeviceInfo [N/m]
+  double max_stiffness_Nm_per_rad = 0.0;  ///< reported in DeviceInfo [N m/rad]
   double workspace_radius_m = 0.1;        ///< mechanical stop, a sphere about the origin [m]
   double rate_Hz = 1000.0;                ///< [Hz]
 };
@@ -75,7 +75,7 @@ class SimulatedDevice final : public Device {
   bool read(double now_s, DeviceSample& sample) noexcept override;
   bool write(const Wrench& F_D) noexcept override;
 
-  // What a real device cannot tell; for tests and displays.
+  // Quantities that a real device cannot report; for tests and displays.
   const Pose& true_pose() const noexcept { return X_DH_; }          ///< before the encoders [m]
   const Twist& true_twist() const noexcept { return V_DH_; }        ///< [m/s, rad/s]
   const Wrench& motor_wrench() const noexcept { return motors_; }   ///< acting at the last substep [N, N m]
@@ -117,7 +117,7 @@ class SimulatedDevice final : public Device {
   bool is_open_ = false;
   bool started_ = false;  // a first read has set the clock
   double now_s_ = 0.0;    // of the last read, the loop's clock
-  double world_s_ = 0.0;  // of this world: starts at 0, sleeps through jumps
+  double world_s_ = 0.0;  // of this world: starts at 0, stopped during jumps
   double slept_s_ = 0.0;
   Pose X_DH_;
   Twist V_DH_;

@@ -53,7 +53,7 @@ Result<void> check_joint(const Joint& joint, const std::string& name) {
   return {};
 }
 
-/// By how much the part's mass and inertia are multiplied.
+/// The factor of the part's mass and inertia.
 Result<double> mass_factor(const BodySpec& spec) {
   if (spec.mass_kg && spec.density_kg_per_m3)
     return Error{"the body has two masses", "mass_kg and density_kg_per_m3", "one of them", spec.name};

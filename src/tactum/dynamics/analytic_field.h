@@ -1,7 +1,8 @@
 #pragma once
-/// Force fields by formula: what a sample point of unit weight feels at a place. Told in the field's own
-/// frame F, whose origin is the middle and whose z axis is the field's. Fields of a potential push downhill,
-/// F = - grad U; a vortex has none. Each is smooth everywhere, so that a hand can go through its middle.
+/// Force fields by formula: the force on a sample point of unit weight at a place. They are stated in the
+/// field's own frame F, whose origin is the middle and whose z axis is the field's. Fields of a potential
+/// push downhill, F = - grad U; a vortex has none. Each is smooth everywhere, so that a hand can go through
+/// its middle.
 ///
 ///     dipole   U = M z / rho^3,  rho^2 = r^2 + a^2          in at one end, out at the other
 ///     well     U = - D exp(- r^2 / (2 w^2))                 to the middle
@@ -43,7 +44,7 @@ FieldValue value_at(const VortexField& field, const Vec3& p) noexcept;
 double potential_at(const DipoleField& field, const Vec3& p) noexcept;
 double potential_at(const WellField& field, const Vec3& p) noexcept;
 
-/// No gradient is steeper [N/m].
+/// A bound on the steepness of the field everywhere [N/m].
 double steepest(const DipoleField& field) noexcept;
 double steepest(const WellField& field) noexcept;
 double steepest(const VortexField& field) noexcept;

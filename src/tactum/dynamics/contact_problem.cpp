@@ -10,14 +10,14 @@ namespace {
 
 using Index = std::size_t;
 
-/// The unknown of a joint's friction has a spring of its own, for the metric must be positive: it changes the
-/// friction by less than this share over the farthest travel of a step.
+/// The unknown of a joint's friction has a spring of its own, because the metric must be positive: it changes
+/// the friction by less than this fraction over the farthest travel of a step.
 constexpr double kFrictionSoftness = 1e-3;
 constexpr double kFarthestTravel = 0.05;  // [rad or m]
 
 /// Rows of joints' limits and frictions, of each body.
 constexpr Index kJointRows = 4;
-/// A run of a row is read in whole lanes, beyond the last unknown.
+/// A run of a row is read in whole lanes, also beyond the last unknown.
 constexpr Index kRoomBehind = 8;
 
 Vec6 column(const Vec3& displacement, const Vec3& turn) {
@@ -31,7 +31,7 @@ Vec6 at_point(const Vec6& x, const Vec3& r) {
   return column(x.head<3>() + Vec3(x.tail<3>()).cross(r), x.tail<3>());
 }
 
-/// The work of a push on a displacement stated at `centre`.
+/// The work of a push over a displacement stated at `centre`.
 double work(const Push& push, const Vec3& centre, const Vec6& x) {
   const Vec3 torque = push.torque + (push.p_W - centre).cross(push.force);
   return push.force.dot(x.head<3>()) + torque.dot(x.tail<3>());
@@ -142,8 +142,8 @@ ProblemBody& ContactProblem::next_body(int body, std::size_t rank, const Vec3& o
   return next;
 }
 
-/// The unknowns of a jointed body: its target is what is nearest to `target` in the metric, with the joint's
-/// spring and damping. All stated at the body's centre.
+/// Sets the unknowns of a jointed body: its target is the allowed one nearest to `target` in the metric, with
+/// the joint's spring and damping. All stated at the body's centre.
 void ContactProblem::set_motions(ProblemBody& body, const Body& what, const Pose& X_WB,
                                  const BodyMetric& metric, const Vec6& target, double h) noexcept {
   const JointForces forces = h > 0.0 ? joint_forces(what, X_WB, h) : JointForces{};
@@ -193,8 +193,9 @@ void ContactProblem::follow(const ContactProblem& led) noexcept {
   add_joint_rows(true);
 }
 
-/// One more unknown t that may not be less than the travel a of the joint, either way, and that the friction
-/// pulls down:  t >= a,  t >= -a,  energy  T t + e t^2 / 2,  so |T_a| <= T + e t, with e t a thousandth of T.
+/// Adds one more unknown t that may not be less than the travel a of the joint, in either direction, and that
+/// the friction pulls down: t >= a, t >= -a, energy T t + e t^2 / 2, so |T_a| <= T + e t, with e t a
+/// thousandth of T.
 void ContactProblem::add_friction_unknown(const JointFriction& friction) noexcept {
   if (unknowns_ == kMostUnknowns) return;
   const Index unknown = unknowns_++;
@@ -264,7 +265,7 @@ void ContactProblem::set_cone(std::size_t first_edge, const QpCone& cone) noexce
   *(cones_.begin() + (first_edge - rows_.size()) / QpCone::kEdges) = loaded(cone);
 }
 
-/// The cone as it asks of z'.
+/// The cone with its offsets for z'.
 QpCone ContactProblem::loaded(const QpCone& cone) const noexcept {
   QpCone shifted = cone;
   if (is_loaded_)
@@ -294,7 +295,7 @@ void ContactProblem::begin(std::span<const int> first) noexcept { qp_.begin(near
 const QpAnswer& ContactProblem::solve_on(int max_iterations) noexcept {
   const QpProblem problem = nearest_point();
   const QpAnswer& answer = qp_.solve_on(problem, max_iterations);
-  // By the multipliers, so that what the bodies do is to the last bit what the forces give them.
+  // From the multipliers, so that displacements are to the last bit those that the forces cause.
   z_.assign(load_.begin(), load_.end());
   for (const QpActive& active : answer.active)
     push(problem.row(Index(active.row)), active.multiplier, z_.data());

@@ -1,21 +1,21 @@
 #pragma once
-/// The contact problem of one island of bodies over one step of h seconds: which displacements are nearest to
-/// the targets while every row keeps its offset.
+/// The contact problem of one island of bodies over one step of h seconds: it finds the displacements that
+/// are nearest to the targets among those that satisfy every row.
 ///
 ///     least  sum over bodies |x - x*|^2_M / 2     with   n . (x_a(p) - x_b(p)) >= offset
 ///
 /// x is a body's displacement over the step at its origin, axes of W: (displacement [m], turn [rad]); x* is
-/// its target, where it goes when nothing touches it. M is its metric: for a body that moves by itself its
-/// inertia over h^2; for one that a coupling pulls, the stiffness of that coupling. So the multipliers are
-/// the contact forces in newtons, and M (x - x*) is their sum. With h = 1 s the same rows are the problem of
-/// an impact: displacements are velocities then, and forces are impulses.
+/// its target, the displacement without contact. M is its metric: for a body that moves by itself its inertia
+/// over h^2; for one that a coupling pulls, the stiffness of that coupling. So the multipliers are the
+/// contact forces in newtons, and M (x - x*) is their sum. With h = 1 s the same rows are the problem of an
+/// impact: displacements are velocities then, and forces are impulses.
 ///
 /// With x = x* + B z and M^-1 = B B^T it is the nearest point to the origin in a polyhedron (small_qp.h): six
 /// unknowns for a free body, one for a hinged or sliding one, three for one on a ball. A joint's spring and
 /// damper are part of its body's metric, its limits are rows, its dry friction is a force of bounded size.
 ///
 /// Three solvers work on it: solve_exactly.h (active set, for few bodies), solve_by_sweeps.h (projected
-/// Gauss-Seidel, for any number), solve_penalty.h (rows that yield). solver_choice() says which.
+/// Gauss-Seidel, for any number), solve_penalty.h (rows that yield). choose_solver() selects one.
 
 #include <vector>
 
@@ -36,7 +36,8 @@ struct BodyMetric {
 BodyMetric inertial_metric(const Body& body, const Pose& X_WB, double h) noexcept;
 
 /// A body of the problem. Its six unknowns are the displacement of `centre`, each times `per_displacement`,
-/// and the turn, the columns of `turns`; or the fewer ones of a jointed body are the columns of `motions`.
+/// and the turn, in terms of the columns of `turns`; a jointed body has fewer, in terms of the columns of
+/// `motions`.
 struct ProblemBody {
   int body = -1;                    ///< index into World::bodies
   std::size_t first = 0, rank = 0;  ///< its unknowns
@@ -48,22 +49,22 @@ struct ProblemBody {
   Eigen::Matrix<double, 6, 3> motions;  ///< the first `rank` columns, of a jointed body
 };
 
-/// What a row pushes with, per unit of its multiplier: a force at a point, and a torque beside it.
+/// The force of a row per unit of its multiplier: a force at a point, and a torque beside it.
 struct Push {
   Vec3 p_W = Vec3::Zero();     ///< [m]
   Vec3 force = Vec3::Zero();   ///< [-]
   Vec3 torque = Vec3::Zero();  ///< [m]
 };
 
-/// The push of a contact row.
+/// That of a contact row.
 inline Push push_of(const ContactRow& row) { return {row.p_W, row.n_BA_W, Vec3::Zero()}; }
 
 /// How many unknowns a joint leaves.
 std::size_t freedom_of(const Joint& joint) noexcept;
-/// The same and one for the joint's dry friction, as the exact solver needs it.
+/// The same, and one more for the joint's dry friction, as the exact solver needs it.
 std::size_t exact_unknowns_of(const Joint& joint) noexcept;
 
-/// How far a unit force along a row moves what the row measures [m/N].
+/// The displacement along a row, as the row measures it, for a unit force along it [m/N].
 inline double mobility(const QpRow& row) noexcept {
   double sum = 0.0;
   for (const QpRow::Run& run : row.runs)
@@ -71,7 +72,7 @@ inline double mobility(const QpRow& row) noexcept {
   return sum;
 }
 
-/// Adds to the unknowns what a force along a row does to them.
+/// Adds to the unknowns their change by a force along a row.
 inline void push(const QpRow& row, double force, double* z) noexcept {
   for (const QpRow::Run& run : row.runs)
     for (std::size_t i = 0; i < run.count; ++i) z[run.first + i] += run.g[i] * force;
@@ -86,20 +87,20 @@ class ContactProblem {
   ContactProblem(std::size_t most_rows, std::size_t world_bodies)
       : ContactProblem(most_rows, world_bodies, world_bodies) {}
 
-  /// Forgets everything; then the bodies are added, then the rows of their joints, then other rows.
+  /// Removes everything; then the bodies are added, then the rows of their joints, then other rows.
   void clear() noexcept;
   /// `centre_W` is where the metric and the target are stated. The joint acts for `h` seconds; with 0, as in
-  /// an impact, it leaves its free motions alone. A fixed body needs no entry: what was not added does not
-  /// move.
+  /// an impact, it leaves its free motions alone. A fixed body needs no entry: a body that was not added does
+  /// not move.
   void add_body(int body, const Body& what, const Pose& X_WB, const Vec3& centre_W, const BodyMetric& metric,
                 const Vec6& target, double h) noexcept;
-  /// A body whose displacement is given: nothing in this problem changes it.
+  /// Adds a body whose displacement is given: nothing in this problem changes it.
   void add_given(int body, const Vec3& origin_W, const Vec6& displacement) noexcept;
-  /// The same bodies, each with the other problem's answer as its target, and the rows of their joints'
-  /// limits; friction has had its say.
+  /// Takes the same bodies, each with the other problem's answer as its target, and the rows of their joints'
+  /// limits. Joint friction is not added: that answer contains it.
   void follow(const ContactProblem& led) noexcept;
-  /// The rows of joints. `exact`: dry friction becomes an unknown of its own with two rows, as long as there
-  /// is room for it.
+  /// Adds the rows of joints. `exact`: dry friction becomes an unknown of its own with two rows, as long as
+  /// there is room for it.
   void add_joint_rows(bool exact) noexcept;
 
   /// The row  push . (x_a - x_b) >= 0. A body that was not added does not move.
@@ -108,9 +109,9 @@ class ContactProblem {
   double opening(const QpRow& row) const noexcept { return dot(row, z()) - row.offset; }
   /// Adds the row  push . (x_a - x_b) >= offset. False when full.
   bool add_row(int body_a, int body_b, const Push& push, double offset) noexcept;
-  /// Those of cones not counted.
+  /// The number of rows; those of cones are not counted.
   std::size_t rows() const noexcept { return rows_.size(); }
-  /// Makes a row ask for `by` more; of a cone's edges, see cone().
+  /// Increases what a row has to open by; for a cone's edges see set_cone().
   void tighten(std::size_t row, double by) noexcept { rows_[row].offset += by; }
 
   /// Adds the edges of a cone as rows of the exact solver, after all others; returns the number of the first.
@@ -119,14 +120,14 @@ class ContactProblem {
   void forget_cones() noexcept { cones_.clear(); }
   /// Exchanges the cone whose first edge has this number for another one on the same rows.
   void set_cone(std::size_t first_edge, const QpCone& cone) noexcept;
-  /// Loads the bodies with a force along what a row measures, beside all that the rows push with [N].
+  /// Loads the bodies with a force along the direction of a row, beside the forces of the rows [N].
   void add_load(const QpRow& along, double force_N) noexcept;
 
   // Of the exact solver.
   /// Chooses the rows to begin the next solution with.
   void begin(std::span<const int> first) noexcept;
-  /// Solves from there, or from those that hold now, after rows were tightened, or added or forgotten at the
-  /// end. The answer keeps until the next call.
+  /// Solves from there, or from the active set of the last answer, after rows were tightened, or added or
+  /// removed at the end. The answer stays valid until the next call.
   const QpAnswer& solve_on(int max_iterations) noexcept;
   const QpAnswer& answer() const noexcept { return qp_.answer(); }
 
@@ -144,13 +145,13 @@ class ContactProblem {
   std::size_t unknowns() const noexcept { return unknowns_; }
   /// Sets the unknowns to zero, for a solver to change; the answer is read from them from now on.
   void begin_values() noexcept;
-  /// The unknowns, and behind them room that row runs may read and add nothing to.
+  /// The unknowns, followed by zeros that runs of rows may read.
   double* values() noexcept { return z_.data(); }
 
   std::span<const ProblemBody> bodies() const noexcept { return bodies_; }
   /// Displacement of a body's origin in the last answer; zero when it was not added [m, rad].
   Vec6 displacement(int body) const noexcept;
-  /// How far a body's target turns it; not at all when it was not added [rad].
+  /// The turn of a body's target; zero when it was not added [rad].
   Vec3 target_turn(int body) const noexcept;
   /// The displacement at the body's centre.
   Vec6 displacement_at_centre(const ProblemBody& body) const noexcept;
@@ -158,7 +159,7 @@ class ContactProblem {
  private:
   struct Limit {
     int body = -1;
-    Push push;            // along the joint's position
+    Push push;            // along the joint's coordinate
     double travel = 0.0;  // that is left, not negative [rad or m]
   };
   QpProblem nearest_point() const noexcept;
@@ -181,7 +182,7 @@ class ContactProblem {
   ReservedVector<Limit> limits_;
   ReservedVector<QpRow> rows_;
   StaticVector<QpCone, kMostCones> cones_;
-  // What loads do to the unknowns: with z = z' + load the rows of qp_ are those of z'.
+  // The change of the unknowns by loads: with z = z' + load the rows of qp_ are those of z'.
   std::array<double, columns::kColumn> load_{};
   bool is_loaded_ = false;
   ReservedVector<double> z_;  // the answer

@@ -1,5 +1,5 @@
 #pragma once
-/// A contact point of two bodies as every solver takes it, and how a solution ended.
+/// A contact point of two bodies as every solver takes it, and the outcome of a solution.
 
 #include <cmath>
 #include <cstddef>
@@ -9,9 +9,9 @@
 
 namespace tactum::inline v0_1 {
 
-/// Which surfaces of two bodies touch, by groups of coplanar faces that their parts name. The corners and
-/// edges of one body that touch the same face of the other are on one pair of surfaces, whatever faces they
-/// belong to: kAnyGroup.
+/// The surfaces of two bodies that touch, by groups of coplanar faces that their parts number. The corners
+/// and edges of one body that touch the same face of the other are on one pair of surfaces, whatever faces
+/// they belong to: kAnyGroup.
 struct SurfacePair {
   int body_a = -1, body_b = -1, group_a = -1, group_b = -1;
   bool operator==(const SurfacePair&) const = default;
@@ -19,19 +19,19 @@ struct SurfacePair {
 
 inline constexpr int kAnyGroup = -1;
 
-/// What an impact needs of a point.
+/// The parameters of an impact at a point.
 struct ImpactLaw {
-  double restitution = 0.0;  ///< of the speed [-]
+  double restitution = 0.0;  ///< fraction of the speed that is left [-]
   bool enabled = true;       ///< takes part in impacts
-  bool seen = false;         ///< an impact was seen here first, in this frame
+  bool seen = false;         ///< the impact of the pair was found at this point, in this frame
 };
 
 /// One contact point between two bodies: normal from B to A, as in collision/contact.h, in world axes.
 struct ContactRow : SurfacePair {
   const SurfacePair& surfaces() const noexcept { return *this; }
 
-  int patch = -1;              ///< the caller's number of the patch it stands for; solvers ignore it
-  int friction_patch = -1;     ///< the caller's number of the friction it takes part in; solvers ignore it
+  int patch = -1;              ///< the caller's number of its patch; solvers ignore it
+  int friction_patch = -1;     ///< the caller's number of its friction patch; solvers ignore it
   int state = -1;              ///< number of its state in RowMemory; -1: none is kept
   Vec3 n_BA_W = Vec3::Zero();  ///< unit [-]
   Vec3 p_W = Vec3::Zero();     ///< where the force acts [m]
@@ -39,7 +39,7 @@ struct ContactRow : SurfacePair {
   double asked = 0.0;          ///< by how much the step has to open it at least; negative: it may close [m]
   double friction = 0.0;       ///< Coulomb's coefficient [-]
   double margin = 0.0;         ///< delta, the contact margin of the pair [m]
-  double stiffness = 0.0;      ///< k of the penalty law, the point's share [N/m]
+  double stiffness = 0.0;      ///< k of the penalty law, the point's part of it [N/m]
   ImpactLaw impact;
   double impulse = 0.0;  ///< along the normal, the answer [N s]
 };
@@ -56,26 +56,26 @@ struct RowsInProblem {
   }
 };
 
-/// Which lengths count.
+/// The lengths by which contacts are judged.
 struct ContactScale {
   double skin_m = 0.0;         ///< the gap at which contacts are kept [m]
-  double settled_m = 0.0;      ///< a lift, or a gap beyond the skin, below this is none [m]
-  double opening_share = 0.0;  ///< of what is missing to the skin, opened in a step [-]
+  double settled_m = 0.0;      ///< a lift, or a gap beyond the skin, below this counts as zero [m]
+  double opening_share = 0.0;  ///< fraction of the depth below the skin that is opened in a step [-]
 };
 
-/// The share that opens in a step of h seconds: a tenth in a millisecond.
+/// The fraction that opens in a step of h seconds: a tenth in a millisecond.
 inline double opening_share(double h) noexcept {
   constexpr double kOpening_s = 0.0095;
   return 1.0 - std::exp(-h / kOpening_s);
 }
 
-/// What a step asks of a row: that its gap closes to the skin at most, or opens towards it [m].
+/// By how much a step has to open a row: its gap may close to the skin, or must open towards it [m].
 inline double asked_of(const ContactRow& row, const ContactScale& scale) noexcept {
   const double missing = scale.skin_m - row.distance;
   return missing > 0.0 ? scale.opening_share * missing : missing;
 }
 
-/// How a search for forces ended.
+/// The outcome of a search for forces.
 struct SolverResult {
   int iterations = 0;      ///< sweeps, rounds of Newton's method, or changes of the active set
   bool converged = false;  ///< false: the iterations ran out; the forces are usable, not exact

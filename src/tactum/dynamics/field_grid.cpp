@@ -11,17 +11,18 @@ namespace {
 using Index = std::size_t;
 
 constexpr int kMostNodes = 4096;       // a side
-constexpr double kLargestForce = 1e9;  // of a sample: what is beyond is a wrong file [N]
+constexpr double kLargestForce = 1e9;  // of a sample: a larger one means a wrong file [N]
 
 template <class Number>
 Vec3 vector_at(const Number* three) {
   return {double(three[0]), double(three[1]), double(three[2])};
 }
 
-/// A place along one axis: the node below, how far it is to the next, and how much of the field is left.
+/// A place along one axis: the node below, how far it is to the next, and the factor of the field at the
+/// edge.
 struct Place {
   Index node;
-  double share;      // of the way to the next node
+  double share;      // fraction of the distance to the next node
   double left;       // 1 inside the box, 0 beyond the edge
   double left_rate;  // its change [1/m]
   bool inside;
@@ -34,7 +35,7 @@ Place place_of(double x, int nodes, double per_spacing, double per_edge) {
     const int cell = static_cast<int>(u);
     return {static_cast<Index>(cell), u - cell, 1.0, 0.0, true};
   }
-  const double inside = u > 0.0 ? last : 0.0;  // also of what is no number
+  const double inside = u > 0.0 ? last : 0.0;  // also when u is not a number
   const int below = u > 0.0 ? nodes - 2 : 0;
   Place place{static_cast<Index>(below), inside - below, 1.0, 0.0, true};
   const double out = u < 0.0 ? -x : u > last ? x - last / per_spacing : 0.0;
@@ -46,7 +47,8 @@ Place place_of(double x, int nodes, double per_spacing, double per_edge) {
   return place;
 }
 
-/// Linear in each direction, with the gradient inside the cell; `row` and `layer` are steps of memory.
+/// Interpolates linearly in each direction, with the gradient inside the cell; `row` and `layer` are steps of
+/// memory.
 template <class Number>
 void interpolate(const Number* corner, Index row, Index layer, const double (&s)[3], const Vec3& per_spacing,
                  FieldValue& value) {
@@ -73,7 +75,7 @@ void interpolate(const Number* corner, Index row, Index layer, const double (&s)
   }
 }
 
-/// What is left of the field over the edge.
+/// Multiplies the field by its factors at the edge.
 void fade(const Place (&place)[3], FieldValue& value) {
   const double left[3] = {place[0].left, place[1].left, place[2].left};
   const double all = left[0] * left[1] * left[2];
@@ -89,7 +91,8 @@ void fade(const Place (&place)[3], FieldValue& value) {
   }
 }
 
-/// The gradient of differences at every node; at the last nodes of the box, to the zero beyond the edge.
+/// The gradients from differences at every node; at the outermost nodes also that of the fall to zero at the
+/// edge.
 template <class Number>
 double steepest_of(const GridShape& shape, const std::vector<Number>& samples, const Vec3& per_spacing,
                    const Vec3& per_edge) {

@@ -3,8 +3,8 @@
 /// [Gregory 2000, 7]).
 ///
 ///       n-1 |     .--------.          outside the box of the nodes it goes to zero
-///           |    /          \         over `edge` (one spacing unless told), linearly:
-///           |---'            '---     no step is felt where the data ends
+///            |    /          \         over `edge` (one spacing by default), linearly:
+///            |---'            '---     no step is felt where the data ends
 ///           0  edge  box  edge
 ///
 /// Samples are kept as they come, in single or double precision, x fastest, the three components of a node
@@ -48,7 +48,7 @@ class FieldGrid {
   FieldValue at(const Vec3& p) const noexcept;
   const GridShape& shape() const noexcept { return shape_; }
   const Samples& samples() const noexcept { return samples_; }
-  /// No difference between neighbouring nodes is steeper, nor the fall to zero at the edge [N/m].
+  /// A bound on the steepness between neighbouring nodes, and of the fall to zero at the edge [N/m].
   double steepest() const noexcept { return steepest_; }
 
  private:

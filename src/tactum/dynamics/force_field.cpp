@@ -11,7 +11,7 @@ using GridPointer = std::shared_ptr<const FieldGrid>;
 FieldValue value_at(const GridPointer& grid, const Vec3& p) noexcept { return grid->at(p); }
 double steepest(const GridPointer& grid) noexcept { return grid->steepest(); }
 
-/// Of one field, limited.
+/// The load of one field, limited.
 template <class Shape>
 FieldLoad load_of(const Shape& shape, const ForceField& field, std::span<const FieldPoint> points,
                   const Pose& X_WB, const Vec3& p_BH) noexcept {
@@ -26,7 +26,8 @@ FieldLoad load_of(const Shape& shape, const ForceField& field, std::span<const F
     const Vec3 force = point.weight * value.force;
     sum.f += force;
     sum.t += r_F.cross(force);
-    // A turn about the handle moves the point by its lever, and its force turns the body by the same.
+    // A turn about the handle moves the point by its lever, and the torque of its force changes by the same
+    // factor.
     const Mat3 steep = std::abs(point.weight) * value.gradient.cwiseAbs();
     const double lever_sq = (point.p_B - p_BH).squaredNorm();
     translation += steep;
@@ -82,7 +83,7 @@ std::vector<FieldPoint> spread_over(const TriangleMesh& surface, int count) {
   }
   std::vector<FieldPoint> points;
   if (!(area > 0.0)) return points;
-  // Equal steps of area, and within a triangle the two-dimensional golden sequence.
+  // Equal steps of area; within a triangle the two-dimensional golden sequence.
   constexpr double kGolden = 1.32471795724474602596;  // g^3 = g + 1
   double u = 0.5, v = 0.5;
   for (int i = 0; i < count; ++i) {

@@ -10,22 +10,22 @@ namespace {
 
 using Index = std::size_t;
 
-/// A patch that left one piece of a surface for the next is in the same plane within so many skins.
+/// A patch that moved from one piece of a surface to the next is in the same plane within so many skins.
 constexpr double kSamePlaneSkins = 20.0;
 
-/// How much less than the gap a row asks for, by the anchor's distance.
+/// By how much the anchor's displacement relaxes a row beyond the gap.
 double allowance(const FrictionPatch& patch, Index k) {
   if (k >= Friction::kDirections || patch.anchor.apart_W.isZero(0.0)) return 0.0;
   return (cone_edge(patch, k).force - patch.place.n_BA_W).dot(patch.anchor.apart_W);
 }
 
-/// How far the patch's anchor has come apart in the surface.
+/// The displacement between the patch's two anchor points in the surface.
 Vec3 apart(const FrictionPatch& patch, const Pose& X_WA, const Pose& X_W_B) {
   const Vec3 difference = X_WA * patch.anchor.on_A - X_W_B * patch.anchor.on_B;
   return difference - patch.place.n_BA_W * patch.place.n_BA_W.dot(difference);
 }
 
-/// How far beyond the skin a distance is; too little to count is nothing.
+/// How far a distance is beyond the skin; zero where that is too little to count.
 double gap_beyond(double distance_m, const ContactScale& scale) {
   return distance_m - scale.skin_m > scale.settled_m ? distance_m - scale.skin_m : 0.0;
 }
@@ -80,7 +80,7 @@ FrictionPatch* Friction::patch_of(const SurfacePair& surfaces) noexcept {
   return found == patches_.end() ? nullptr : found;
 }
 
-/// The patches that push in the last answer.
+/// Finds the patches that push in the last answer.
 void Friction::find_pushing(const RowsInProblem& contacts, const ContactProblem& problem) noexcept {
   const auto for_pushing_rows = [&](const auto& visit) {
     for (const QpActive& active : problem.answer().active) {
@@ -98,7 +98,7 @@ void Friction::find_pushing(const RowsInProblem& contacts, const ContactProblem&
       visit(*found, *row, active.multiplier);
     }
   };
-  std::array<double, kMostPatches> opening{};  // that the rows ask for
+  std::array<double, kMostPatches> opening{};  // by how much the rows have to open
   for_pushing_rows([&](FrictionPatch& patch, const ContactRow& row, double force) {
     patch.load_N += force;
     patch.place.centre_W += force * row.p_W;
@@ -117,7 +117,7 @@ void Friction::find_pushing(const RowsInProblem& contacts, const ContactProblem&
   });
 }
 
-/// The patches whose cone pushed in the last frame, do not push by themselves, and touch.
+/// Finds the patches whose cone pushed in the last frame, that do not push by themselves, and that touch.
 void Friction::find_last_pushing(const RowsInProblem& contacts, const FrictionAnchors& anchors,
                                  std::span<const Pose> X_WB) noexcept {
   const Index pushing = patches_.size();
@@ -143,8 +143,8 @@ void Friction::find_last_pushing(const RowsInProblem& contacts, const FrictionAn
   for (Index i = pushing; i < patches_.size(); ++i) patches_[i].place.n_BA_W.normalize();
 }
 
-/// How fast the turning that is the bodies' target takes the patch off, about the middle of all patches on
-/// the body; negative: it squeezes it.
+/// How fast the turn in the bodies' targets takes the patch apart, about the middle of all patches on the
+/// body; negative: the turn squeezes it.
 double Friction::taken_off(const FrictionPatch& patch, const ContactProblem& problem) const noexcept {
   double off = 0.0;
   for (const int body : {patch.surfaces.body_a, patch.surfaces.body_b}) {
@@ -163,7 +163,7 @@ double Friction::taken_off(const FrictionPatch& patch, const ContactProblem& pro
   return off;
 }
 
-/// Takes those out that only pushed in the last frame and that no turning squeezes.
+/// Removes patches that only pushed in the last frame and that no turn squeezes.
 void Friction::drop_unsqueezed(const ContactProblem& problem) noexcept {
   std::array<bool, kMostPatches> stays{};
   for (Index i = 0; i < patches_.size(); ++i)
@@ -193,7 +193,7 @@ bool Friction::begin(const RowsInProblem& contacts, std::span<const Pose> X_WB, 
   return acts();
 }
 
-/// The cone of a patch, with what its edges ask for.
+/// The cone of a patch, with the offsets of its edges.
 QpCone Friction::cone_now(const FrictionPatch& patch) noexcept {
   QpCone cone = cone_of(patch);
   const double slip = patch.coefficient * patch.slip.displacement_m;
@@ -225,7 +225,7 @@ void Friction::note_sticking(const ContactProblem& problem) noexcept {
   }
 }
 
-/// Its rows ask for nothing that a part could miss.
+/// Relaxes the cone's rows so far that every displacement satisfies them.
 void Friction::release_cone(const FrictionPatch& patch, ContactProblem& problem) noexcept {
   constexpr double kAnywhere_m = 1e3;  // [m]
   QpCone cone = cone_now(patch);
@@ -238,7 +238,7 @@ void Friction::release(FrictionPatch& patch, ContactProblem& problem) noexcept {
   patch.acts = false;
 }
 
-/// What the cone and the corners of a patch carry in the last answer.
+/// The forces of the cone and the corners of a patch in the last answer.
 Friction::Loads Friction::loads_of(const FrictionPatch& patch, const RowsInProblem& contacts,
                                    const ContactProblem& problem) noexcept {
   Loads loads;
@@ -258,9 +258,9 @@ Friction::Loads Friction::loads_of(const FrictionPatch& patch, const RowsInProbl
   return loads;
 }
 
-/// What slides without lifting (on the way to a wall that it has not reached) needs no slip: of a wedged
-/// part, every slip would lead to another. And what a wedged part could move by in such gaps would grow
-/// without bound near the limit.
+/// A patch that slides without lifting (towards a wall that it has not met) needs no slip: in a wedged part,
+/// every slip would lead to another, and the room for motion in such gaps would grow without bound near the
+/// limit of wedging.
 bool Friction::update_slip(ContactProblem& problem) noexcept {
   bool changed = false;
   for (FrictionPatch& patch : patches_) {
@@ -293,14 +293,14 @@ void Friction::set_load(const SlidingForce& force, FrictionPatch& patch, Contact
   patch.sliding = force;
 }
 
-/// The patch sticks, or slips by what its cone allows, as before it had a load.
+/// Removes the load of a patch: it sticks, or slips by what its cone allows, as before.
 void Friction::refuse_load(FrictionPatch& patch, ContactProblem& problem) noexcept {
   set_load({}, patch, problem);
   problem.set_cone(patch.rows.first, cone_now(patch));
 }
 
-/// How stiffly a patch's bodies resist its friction: the force that changes no more than what is asked,
-/// whether along the surface or, at the patch's radius, about its normal [N/m].
+/// How stiffly a patch's bodies resist its friction: the smaller of the stiffnesses along the surface and, at
+/// the patch's radius, about its normal [N/m].
 double Friction::give_of(const FrictionPatch& patch) noexcept {
   const double along = std::max(mobility(patch.motion.along), mobility(patch.motion.across));
   const double about = patch.place.radius_m * patch.place.radius_m * mobility(patch.motion.about);
@@ -308,19 +308,20 @@ double Friction::give_of(const FrictionPatch& patch) noexcept {
   return most > 0.0 ? 1.0 / most : 0.0;
 }
 
-/// The friction that the last answer's slide makes of the friction it had: against the slide, force and
-/// torque sharing mu N as on an area all of whose points slide, an ellipse [Howe and Cutkosky 1996]. Where it
-/// stays what it was, it is mu N against the slide, or less and nothing slides.
+/// The next force of sliding friction, from the last one and the slide in its answer: less the slide times
+/// the stiffness, then within mu N, which force and torque use up together as on an area all of whose points
+/// slide, an ellipse [Howe and Cutkosky 1996]. Where it no longer changes, it is mu N against the slide, or
+/// less and nothing slides.
 SlidingForce Friction::next_force(const FrictionPatch& patch, const SlidingForce& last, double most_N,
                                   const ContactProblem& problem) const noexcept {
   const double give = give_of(patch);
   const double r = patch.place.radius_m;
   SlidingForce next{.acts = true};
-  const Slide slide = slide_of(patch, problem);  // from the anchor: what sticks goes back to it
+  const Slide slide = slide_of(patch, problem);  // from the anchor: a sticking patch goes back to it
   next.force_W = last.force_W - give * slide.displacement;
   next.torque_Nm = last.torque_Nm - give * r * r * slide.turn;
   const double size = r > 0.0 ? std::hypot(next.force_W.norm(), next.torque_Nm / r) : next.force_W.norm();
-  // At its bound it may still be on the way to rest: a slide that does not count is none.
+  // At the bound the patch may still be coming to rest: a slide too small to count is none.
   next.sticks = size < most_N || slide.displacement.norm() + r * std::abs(slide.turn) <= scale_.settled_m;
   if (size > most_N) {
     const double share = size > 0.0 ? most_N / size : 0.0;
@@ -337,7 +338,7 @@ bool Friction::update_sliding(const RowsInProblem& contacts, ContactProblem& pro
     const Loads loads = loads_of(patch, contacts, problem);
     const double most_N = patch.coefficient * (loads.cone_N + loads.corners_N);
     SlidingForce last = patch.sliding;
-    if (!last.acts) {  // the cone's force, which its edges and its diamond hold inside the ellipse
+    if (!last.acts) {  // the cone's force, which is inside the ellipse
       last.force_W = loads.cone_force;
       last.torque_Nm = loads.cone_torque.dot(patch.place.n_BA_W);
     }

@@ -8,30 +8,29 @@
 ///     B                a  how far the anchor, a point of each body, has come apart in the plane
 ///
 /// With slip = 0 these rows let the point move sideways only if it lifts by mu times as much, so no force
-/// within the cone moves it: it sticks. A step is answered to first order and a turn leaves that by its
-/// square, always to the same side: the anchor takes the patch back, or a part rocked on its edge would walk.
-/// Where the force lies on the cone, it lifts; slip is then set to the sideways motion it made and the
+/// within the cone moves it: it sticks. A step is solved to first order, and a turn leaves an error of its
+/// square, always to the same side: the anchor takes the patch back, or a part rocked on its edge would
+/// creep. Where the force lies on the cone, the point lifts; slip is then set to its sideways motion and the
 /// problem solved again, which ends with no lift, sliding, and the force mu N against the motion [Anitescu
 /// and Potra 1997; De Saxce and Feng 1998]. A patch that slid is anchored where it came to rest. The forces
-/// of a patch's corners count to N, as c is the centre of them all; found from the last frame's, it settles
-/// within a few.
-///
+/// of a patch's corners count to N, as c is the centre of them all; it is found from the last frame's forces
+/// and settles within a few frames.
 /// Turning about the normal has two rows of the same kind, with the torque mu N r of the patch's mean radius
 /// r; force and torque share the cone linearly, a diamond inside the ellipse that an area has.
 ///
-/// What slips has its friction as a load in the end, in place of its cone: mu N against the slide and the
-/// turn, on the ellipse, with N from whatever carries it (update_sliding). Cones alone say too little where
-/// corners, which have no friction of their own, carry a part of the load.
+/// A patch that slips gets its friction as a load in the end, in place of its cone: mu N against the slide
+/// and the turn, on the ellipse, with N from whatever carries it (update_sliding). Cones alone give too
+/// little where corners, which have no friction of their own, carry a part of the load.
 ///
-/// Patches have a cone that would push without friction, and those whose cone pushed in the last frame and
-/// that still touch: where the line between two of these lies inside both cones no motion is left, and the
-/// part is wedged though nothing presses it there [Simunovic 1975; Whitney 1982]. Forces within the cones
-/// could hold it against a turn that takes the points off their walls as well, for ever; so of those that
-/// only pushed in the last frame, one that would have to slip is released, and one that the target's turn
-/// does not squeeze: a force through two contacts on opposite walls is what a torque has pressed in, as a
-/// push or a pull takes off the one wall what it adds to the other.
+/// A cone is given to patches that push without friction, and to those whose cone pushed in the last frame
+/// and that still touch: where the line between two of these lies inside both cones no motion is left, and
+/// the part is wedged though nothing presses it there [Simunovic 1975; Whitney 1982]. Forces within the cones
+/// could for ever hold it also against a turn that takes the points off their walls. So of the patches that
+/// only pushed in the last frame, two kinds are released: one that would have to slip, and one that the
+/// target's turn does not squeeze. For the force through two contacts on opposite walls comes from a torque;
+/// a push or a pull takes from one wall what it adds to the other.
 ///
-/// This file is friction in the exact solver. The sweeps (solve_by_sweeps.h) take the same patches.
+/// This file is friction in the exact solver. The sweeps (solve_by_sweeps.h) use the same patches.
 
 #include "tactum/dynamics/friction_anchors.h"
 #include "tactum/dynamics/friction_patch.h"
@@ -44,28 +43,28 @@ class Friction {
   static constexpr std::size_t kDirections = QpCone::kAround;
   static constexpr std::size_t kRowsAPatch = QpCone::kEdges;
 
-  /// Finds the patches that push in the last answer; their rows are added to the problem. False when there is
-  /// none.
+  /// Finds the patches that push in the last answer, and those that pushed in the last frame; adds their rows
+  /// to the problem. False when there are none.
   bool begin(const RowsInProblem& contacts, std::span<const Pose> X_WB, const ContactScale& scale,
              const FrictionAnchors& anchors, ContactProblem& problem) noexcept;
   /// Appends the rows that pushed in the last frame while the patches stuck.
   void rows_that_stuck(StaticVector<int, kMostUnknowns>& rows) const noexcept;
-  /// Notes which rows push: the last answer is that of patches that stick.
+  /// Stores which rows push: the last answer is that of patches that stick.
   void note_sticking(const ContactProblem& problem) noexcept;
-  /// Lets patches slip by what they slid in the last answer. True when that changed a row.
+  /// Lets patches slip as far as they slid in the last answer. True when that changed a row.
   bool update_slip(ContactProblem& problem) noexcept;
   /// Gives patches that slip the friction of the last answer as a load, in place of their cone: exactly mu N
   /// against the motion, whichever corners carry N. True when that changed a load.
   bool update_sliding(const RowsInProblem& contacts, ContactProblem& problem) noexcept;
-  /// Takes all loads back.
+  /// Removes all loads.
   void refuse_loads(ContactProblem& problem) noexcept;
-  /// Takes the anchors off, when they ask for what cannot be.
+  /// Gives up the anchors, when their rows have no solution together.
   void forget_anchors(ContactProblem& problem) noexcept;
-  /// Keeps anchors and centres. X_WB is where the step began.
+  /// Stores anchors and centres. X_WB are the poses at the start of the step.
   void end(const RowsInProblem& contacts, const ContactProblem& problem, std::span<const Pose> X_WB,
            FrictionAnchors& anchors) const noexcept;
-  /// Visits what cones and sliding patches push with in the last answer: visit(patch number, push,
-  /// multiplier [N]).
+  /// Visits the forces of cones and sliding patches in the last answer: visit(patch number, push, multiplier
+  /// [N]).
   template <class Visit>
   void for_each_force(const ContactProblem& problem, const Visit& visit) const {
     for (const QpActive& active : problem.answer().active)
@@ -84,7 +83,7 @@ class Friction {
 
   bool acts() const noexcept { return !patches_.empty(); }
   std::span<const FrictionPatch> patches() const noexcept { return {patches_.begin(), patches_.end()}; }
-  /// Nothing acts.
+  /// Removes all patches.
   void clear() noexcept { patches_.clear(); }
 
  private:
@@ -117,12 +116,12 @@ class Friction {
 };
 
 /// Sets the anchor of a patch, and its centre in the patch's plane, to the last frame's; a patch that had
-/// none is anchored at its centre. Returns the last frame's, or null.
+/// none is anchored at its centre. Returns the last frame's anchor, or null.
 const FrictionAnchor* take_anchor(const FrictionAnchors& anchors, std::span<const Pose> X_WB,
                                   const ContactScale& scale, FrictionPatch& patch) noexcept;
 
-/// What a patch keeps for the next frame, when its forces had their centre at `centre_W` and the step began
-/// at X_WB: the anchor of a patch that stuck goes with the centre, that of one that slid is set anew.
+/// The anchor of a patch for the next frame, when its forces had their centre at `centre_W` and the step
+/// began at X_WB: that of a patch that stuck goes with the centre, that of one that slid is set anew.
 FrictionAnchor next_anchor(const FrictionPatch& patch, const Vec3& centre_W, bool pushed,
                            std::span<const Pose> X_WB) noexcept;
 

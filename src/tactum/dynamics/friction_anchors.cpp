@@ -9,7 +9,8 @@ namespace {
 
 using Index = std::size_t;
 
-/// Patches of one plane have normals at no larger angle than a step may turn a body by, and some.
+/// Patches of one plane have normals at no larger angle than the largest turn of a body in a step, and a bit
+/// more.
 constexpr double kSameDirection = 0.998;  // cosine
 
 auto key(const SurfacePair& pair) { return std::tuple(pair.body_a, pair.body_b, pair.group_a, pair.group_b); }
@@ -47,7 +48,7 @@ const FrictionAnchor* FrictionAnchors::find(const FrictionPatch& patch, std::spa
 }
 
 void FrictionAnchors::sort_and_exchange() noexcept {
-  // Without a stable sort, for that allocates: each knows its place.
+  // No stable sort, because that allocates: the index decides between equal keys.
   order_.clear();
   for (Index i = 0; i < now_.size(); ++i) order_.push_back(static_cast<int>(i));
   std::sort(order_.begin(), order_.end(), [&](int a, int b) {

@@ -1,5 +1,5 @@
 #pragma once
-/// What patches of dry friction keep from frame to frame: where they stick, and where their forces had their
+/// The memory of friction patches from frame to frame: where they stick, and where their forces had their
 /// centre.
 
 #include <span>
@@ -30,19 +30,19 @@ class FrictionAnchors {
     now_.reserve(most_patches);
     order_.reserve(most_patches);
   }
-  /// The last frame's anchor of a patch; null when it had none. Of the same surfaces; where there is none, as
-  /// when a body slides from one piece of a floor on to the next, of the same bodies in the same plane, no
-  /// farther off it than `same_plane_m`.
+  /// The last frame's anchor of a patch; null when it had none. It is that of the same surfaces; where there
+  /// is none, as when a body slides from one piece of a floor on to the next, that of the same bodies in the
+  /// same plane, no farther off it than `same_plane_m`.
   const FrictionAnchor* find(const FrictionPatch& patch, std::span<const Pose> X_WB,
                              double same_plane_m) const noexcept;
   /// The last frame's anchor of the same surfaces, null when there is none.
   const FrictionAnchor* find(const SurfacePair& surfaces) const noexcept;
-  /// Keeps an anchor for the next frame; of several of the same surfaces the last one.
+  /// Stores an anchor for the next frame; of several of the same surfaces the last one counts.
   void add(const FrictionAnchor& anchor) noexcept {
     if (now_.size() < now_.capacity()) now_.push_back(anchor);
   }
-  /// Ends the frame: what was added is the last frame's from now on. The anchors of bodies that do not move
-  /// in this frame are kept: `moves(body)`.
+  /// Ends the frame: the anchors that were added are the last frame's from now on. The anchors of bodies that
+  /// do not move in this frame are kept: `moves(body)`.
   template <class Moves>
   void end_frame(const Moves& moves) noexcept {
     for (const FrictionAnchor& anchor : last_)

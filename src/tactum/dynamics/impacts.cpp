@@ -13,7 +13,8 @@ using Index = std::size_t;
 
 constexpr int kMostIterations = 200;
 
-/// The corners of one pair that are hit together; each asks for its normal velocity after the impact [m/s].
+/// The corners of one pair that are solved together, each with its least normal velocity after the impact
+/// [m/s].
 using Corners = StaticVector<ContactRow, ImpactScratch::kMostCorners>;
 
 double approach(const ContactRow& row, const ImpactBodies& bodies) {
@@ -23,8 +24,8 @@ double approach(const ContactRow& row, const ImpactBodies& bodies) {
                          velocity_at(bodies.V_WB[b], row.p_W - bodies.X_WB[b].p));
 }
 
-/// All corners of the pair of `first` that close within h, or are as near as that one: of a face that meets
-/// another one flat, rounding must not leave corners out.
+/// Finds all corners of the pair of `first` that close within h, or are as near as that one: where two faces
+/// meet flat, rounding must not leave corners out.
 void find_corners(std::span<const ContactRow> rows, const ContactRow& first, const ImpactBodies& bodies,
                   double h, Corners& corners) {
   for (const ContactRow& row : rows) {
@@ -37,14 +38,14 @@ void find_corners(std::span<const ContactRow> rows, const ContactRow& first, con
   }
 }
 
-/// The problem of the pair: velocities for displacements, impulses for forces.
+/// Sets up the problem of the pair: velocities for displacements, impulses for forces.
 RowsInProblem set_problem(const Corners& corners, const ImpactBodies& bodies, ContactProblem& problem) {
   problem.clear();
   for (const int body : {corners[0].body_a, corners[0].body_b}) {
     const Index i = Index(body);
     const Body& what = bodies.world.bodies[i];
     const Pose& X_WB = bodies.X_WB[i];
-    if (bodies.moves[i] == 0) {  // it has a velocity all the same: the other one meets it
+    if (bodies.moves[i] == 0) {  // the impact does not change its velocity, but depends on it
       problem.add_given(body, X_WB.p, to_vector(bodies.V_WB[i]));
       continue;
     }
@@ -56,7 +57,7 @@ RowsInProblem set_problem(const Corners& corners, const ImpactBodies& bodies, Co
   return contacts;
 }
 
-/// Gives the observer a share of an answer's impulses.
+/// Reports the fraction `share` of an answer's impulses to the observer.
 void report(const RowsInProblem& contacts, const Friction& friction, const ContactProblem& problem,
             double share, ImpactObserver* observer) {
   if (observer == nullptr || !(share > 0.0)) return;
@@ -82,7 +83,7 @@ class PairImpact {
         bodies_(bodies),
         scratch_(scratch) {}
 
-  /// Solves for the velocities after the impact, each corner leaving with `asked`, or, plastic, with none.
+  /// Solves for the velocities after the impact, each corner leaving with `asked`, or, plastic, with zero.
   bool solve(bool plastic) {
     corners_now_ = corners_;
     if (plastic)
@@ -98,7 +99,7 @@ class PairImpact {
     return V;
   }
   PairTwists now() const { return {bodies_.V_WB[Index(body(0))], bodies_.V_WB[Index(body(1))]}; }
-  /// Kinetic energy of those of the pair that an impact moves [J].
+  /// Kinetic energy of the bodies of the pair that an impact moves [J].
   double energy(const PairTwists& V) const {
     double energy_J = 0.0;
     for (Index i = 0; i < 2; ++i) {
@@ -109,7 +110,7 @@ class PairImpact {
     }
     return energy_J;
   }
-  /// Whether nothing outside works on the pair.
+  /// Whether no body with a given velocity does work on the pair.
   bool is_closed() const {
     const PairTwists V = now();
     for (Index i = 0; i < 2; ++i)
@@ -141,16 +142,17 @@ PairTwists mixed(double share, const PairTwists& one, const PairTwists& other) {
 
 /// Solves the impact of the pair of `first`; false when its impulses are not exact.
 ///
-/// Newton's restitution with friction can make energy where friction turns the slip round [Kane 1984]. Then
-/// the answer is mixed with that of Poisson's restitution, which never does: the plastic impulses and e times
-/// these again. Both keep the cones and leave no corner approaching, and so does what lies between them.
+/// Newton's restitution with friction can increase the energy where friction reverses the slip [Kane 1984].
+/// Then the answer is mixed with that of Poisson's restitution, which never does: the plastic impulses and e
+/// times these again. Both satisfy the cones and leave no corner approaching, and so does every mixture of
+/// them.
 bool hit(std::span<const ContactRow> rows, const ContactRow& first, const ImpactBodies& bodies, double speed,
          double h, ImpactScratch& scratch, ImpactObserver* observer) {
   Corners corners;
   find_corners(rows, first, bodies, h, corners);
   PairImpact impact(corners, speed, bodies, scratch);
   const PairTwists before = impact.now();
-  if (!impact.solve(false)) {  // what has no room to bounce, being hit from both sides, stays
+  if (!impact.solve(false)) {  // a body without room to bounce, hit from both sides, stays
     const bool solved = impact.solve(true);
     impact.give(1.0, observer);
     impact.set(impact.answer());
@@ -158,7 +160,7 @@ bool hit(std::span<const ContactRow> rows, const ContactRow& first, const Impact
   }
   const PairTwists newton = impact.answer();
   const double most_J = impact.energy(before);
-  // A given velocity does work on the other body: then energy says nothing.
+  // A given velocity does work on the other body: then energy is no criterion.
   const bool closed = impact.is_closed();
   if (!closed || !(impact.energy(newton) > most_J * (1.0 + tolerances::kImpactSettled))) {
     impact.give(1.0, observer);

@@ -1,13 +1,13 @@
 #pragma once
-/// Impacts: what bodies do to each other in no time at all [Mirtich 1996b]. One pair of bodies after the
-/// other, the fastest approach first, until none approaches faster than what rests does. So an impact travels
-/// through a row of touching balls as it does through Newton's cradle, where all contacts at once would share
-/// it.
+/// Impacts: momentum that bodies exchange in no time [Mirtich 1996b]. One pair of bodies is solved after the
+/// other, the fastest approach first, until none approaches faster than resting bodies do. So an impact
+/// travels through a row of touching balls as through Newton's cradle; solved all at once, the contacts would
+/// divide it among them.
 ///
-/// Within a pair all its corners are hit together:  vn after >= -e vn before,  impulses >= 0, with Coulomb's
+/// Within a pair all its corners are solved together: vn after >= -e vn before, impulses >= 0, with Coulomb's
 /// friction for each pair of surfaces; a box that falls flat on its face leaves flat. It is the contact
-/// problem of two bodies with velocities for displacements, and is solved exactly: the order of corners means
-/// nothing.
+/// problem of two bodies with velocities for displacements, and is solved exactly: the order of corners has
+/// no effect.
 
 #include <span>
 
@@ -19,7 +19,7 @@ namespace tactum::inline v0_1 {
 /// Approach slower than this is rest, not impact: a few frames' worth of gravity [m/s].
 inline constexpr double kImpactSpeed = 0.03;
 
-/// Receives what every pair that is hit gives to each other.
+/// Receives the impulses between the two bodies of every pair that is hit.
 class ImpactObserver {
  public:
   virtual ~ImpactObserver() = default;
@@ -28,7 +28,7 @@ class ImpactObserver {
                    const Vec3& p_W) noexcept = 0;
 };
 
-/// The bodies of a world and which of them an impact moves; an entry per body.
+/// The bodies of a world, and the mark of those that an impact moves; an entry per body.
 struct ImpactBodies {
   const World& world;
   std::span<const Pose> X_WB;
@@ -45,7 +45,7 @@ struct ImpactResult {
 /// Working memory of resolve_impacts().
 struct ImpactScratch {
   explicit ImpactScratch(std::size_t bodies) : problem(kMostCorners, bodies, 2) {}
-  /// Corners of one pair that are hit together; of more, the first ones.
+  /// Corners of one pair that are solved together; of more, the first ones.
   static constexpr std::size_t kMostCorners = 32;
 
   ContactProblem problem;
@@ -53,9 +53,9 @@ struct ImpactScratch {
   Friction friction;
 };
 
-/// Changes the twists of what is hit within the next `h` seconds, from rows with distances at their start;
-/// leaves the rows' impulses as they were and marks the fastest corner of every pair that was hit. At most
-/// `most` pairs are hit. `observer` may be null.
+/// Changes the twists of the bodies that hit each other within the next `h` seconds, from rows with distances
+/// at their start; leaves the rows' impulses as they were and marks the fastest corner of every pair that was
+/// hit. At most `most` pairs are hit. `observer` may be null.
 ImpactResult resolve_impacts(std::span<ContactRow> rows, const ImpactBodies& bodies, double h, int most,
                              ImpactScratch& scratch, ImpactObserver* observer) noexcept;
 

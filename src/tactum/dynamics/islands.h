@@ -1,6 +1,6 @@
 #pragma once
-/// Which bodies may push each other in a frame: an island is a set of bodies that move and that contacts
-/// join. What does not move joins nothing. Islands answer independently of each other.
+/// The bodies that may push each other in a frame: an island is a set of bodies that move and that contacts
+/// join. A body that does not move joins nothing. Islands are solved independently of each other.
 
 #include <span>
 #include <vector>
@@ -14,7 +14,7 @@ class Islands {
   explicit Islands(const World& world) : parent_(world.bodies.size()), moves_(world.bodies.size()) {
     for (std::size_t i = 0; i < parent_.size(); ++i) set_alone(i, world.bodies[i].moves());
   }
-  /// Every body on its own; those with an entry in `waits` that is not 0 do not move in this frame.
+  /// Puts every body on its own; those with an entry in `waits` that is not 0 do not move in this frame.
   void clear(const World& world, std::span<const char> waits) noexcept {
     for (std::size_t i = 0; i < parent_.size(); ++i) set_alone(i, world.bodies[i].moves() && waits[i] == 0);
   }
@@ -22,7 +22,7 @@ class Islands {
     if (!moves(a) || !moves(b)) return;
     const int root_a = of(a);
     const int root_b = of(b);
-    // The smaller number leads, so that the order of contacts does not matter.
+    // The smaller number becomes the root, so that the order of contacts does not matter.
     parent_[static_cast<std::size_t>(std::max(root_a, root_b))] = std::min(root_a, root_b);
   }
   /// The number of a body's island: its first body.

@@ -1,14 +1,15 @@
 #pragma once
-/// Joints as the paper applies them: to the velocities at the start of the frame and to the transforms at its
-/// end [Gregory 2000, 6.2]. In between, the contact problem has only what the joint leaves free as unknowns.
+/// Joints as the paper applies them: to the velocities at the start of the frame and to the poses at its end
+/// [Gregory 2000, 6.2]. In between, the unknowns of the contact problem are the motions that the joint leaves
+/// free.
 
 #include "tactum/dynamics/world.h"
 
 namespace tactum::inline v0_1 {
 
-/// How a body resists: the symmetric positive matrix M of  impulse = M (change of twist), about the centre of
-/// mass, world axes, twist order (v, w). A rigid body's is its inertia; a held proxy's comes from the
-/// coupling.
+/// How a body resists: the symmetric positive matrix M of impulse = M (change of twist), about the centre of
+/// mass, world axes, twist order (v, w). That of a rigid body is its inertia; that of a grasped proxy comes
+/// from the coupling.
 using Resistance = Mat6;
 
 /// Mass and inertia at the present orientation.
@@ -20,8 +21,8 @@ Resistance inertial_resistance(const Body& body, const Pose& X_WB) noexcept;
 using JointMotions = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, 3>;
 JointMotions joint_motions(const Joint& joint, const Pose& X_WB) noexcept;
 
-/// The twist that changes the joint's position, and how: position' = rate . V. Zero where there is none. For
-/// a ball the axis it has turned about.
+/// The row that gives the rate of the joint's position from a twist: position' = rate . V. Zero where there
+/// is none. For a ball it is along the axis about which the ball has turned.
 Vec6 joint_rate(const Body& body, const Pose& X_WB) noexcept;
 
 /// The velocity the joint allows that is nearest to V in the metric of the resistance: constraints applied to
@@ -29,8 +30,7 @@ Vec6 joint_rate(const Body& body, const Pose& X_WB) noexcept;
 Twist constrained_velocity(const Joint& joint, const Pose& X_WB, const Resistance& M,
                            const Twist& V) noexcept;
 
-/// The pose the joint allows that is nearest to X_WB: constraints applied to transforms at the end of the
-/// frame.
+/// The pose the joint allows that is nearest to X_WB: constraints applied to poses at the end of the frame.
 Pose constrained_pose(const Body& body, const Pose& X_WB) noexcept;
 
 inline Vec6 to_vector(const Twist& V) {

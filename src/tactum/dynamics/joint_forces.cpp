@@ -7,7 +7,7 @@ JointForces joint_forces(const Body& body, const Pose& X_WB, double h) noexcept 
   const Joint& joint = body.joint;
   if (joint.kind == JointKind::kFree || joint.kind == JointKind::kFixed) return forces;
   const bool has_spring = joint.stiffness != 0.0 && joint.kind != JointKind::kBall;
-  // The position takes an arc tangent: it is computed only where a spring or a limit asks for it.
+  // The position takes an arc tangent: it is computed only where a spring or a limit needs it.
   const bool by_position = has_spring || joint.limited();
   forces.acts = by_position || joint.damping != 0.0 || joint.friction != 0.0;
   if (!forces.acts) return forces;

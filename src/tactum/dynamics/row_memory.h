@@ -1,5 +1,5 @@
 #pragma once
-/// What contact rows keep from frame to frame for the sweeps: the force each ended with, by the row's name.
+/// The memory of contact rows from frame to frame for the sweeps: the last force of each, by the row's name.
 
 #include <algorithm>
 #include <cstdint>
@@ -11,7 +11,7 @@ namespace tactum::inline v0_1 {
 struct RowState {
   std::uint64_t name = 0;
   double force_N = 0.0;   ///< along the normal; not negative [N]
-  int closed_frames = 0;  ///< in so many frames its gap is not asked to open
+  int closed_frames = 0;  ///< in so many more frames its gap need not open
 };
 
 class RowMemory {
@@ -26,9 +26,9 @@ class RowMemory {
     now_.clear();
     next_ = 0;
   }
-  /// The number of the next row of this frame, with what the row of the same name had in the last one; -1
+  /// The number of the next row of this frame, with the state of the row of the same name in the last one; -1
   /// when there is no room. Rows come in the same order from frame to frame but for those that come and go;
-  /// so many may at once before a force is forgotten.
+  /// so many may do so at once before a force is lost.
   int recall(std::uint64_t name) noexcept {
     if (now_.size() == now_.capacity()) return -1;
     RowState state{.name = name};

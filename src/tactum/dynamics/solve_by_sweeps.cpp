@@ -17,16 +17,16 @@ namespace {
 using Index = std::size_t;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// In this share of the sweeps contacts are asked to open; what has not come to an end by then is wedged, and
-/// is not asked again for kClosed_s.
+/// In this part of the sweeps (one in so many) contacts have to open; rows that have not converged by then
+/// are wedged, and need not open again for kClosed_s.
 constexpr int kOpeningShare = 3;
 constexpr double kClosed_s = 0.016;
 
-/// In the last sweeps, so many in one of all, friction grows no more with what it presses together.
+/// In the last sweeps, one in so many of all, friction grows no more with the normal force.
 constexpr int kLimitedShare = 6;
 
-/// A sweep has more to change than the one before by this factor, squared: where loads move from contact to
-/// contact at a steady rate, it has as much, give or take a little, and there momentum is what helps most.
+/// A sweep has more to change than the one before if the sum of squares grew by this factor: where loads move
+/// from contact to contact at a steady rate, the changes stay about the same, and there momentum helps most.
 constexpr double kMoreToChange = 1.01;
 
 auto key(const ContactRow& row) { return std::tuple(row.body_a, row.body_b, row.group_a, row.group_b); }
@@ -41,7 +41,7 @@ Sweeps::Sweeps(std::size_t most_rows, std::size_t bodies) {
   order_.reserve(most_rows);
 }
 
-/// A patch for each pair of surfaces that rubs, at the last frame's centre of pressure.
+/// Makes a patch for each pair of surfaces with friction, at the last frame's centre of pressure.
 void Sweeps::make_patches(const RowsInProblem& contacts, const ContactScale& scale,
                           std::span<const Pose> X_WB, const FrictionAnchors& anchors,
                           ContactProblem& problem) noexcept {
@@ -92,7 +92,7 @@ void Sweeps::begin(const RowsInProblem& contacts, const ContactScale& scale, std
     const RowState& state = memory[contacts.rows[i].state];
     Row& row = rows_[contacts.first + i];
     row.force.now = state.force_N;
-    // What is not asked to open for some time only may not close further.
+    // A row that need not open for some time may still close no further.
     row.opening = std::max(0.0, contacts.rows[i].asked);
     if (state.closed_frames == 0) continue;
     problem.tighten(contacts.first + i, -row.opening);
@@ -125,11 +125,12 @@ void Sweeps::tighten(std::size_t contact, double by_m, ContactProblem& problem) 
   const Index row = first_contact_ + contact;
   const QpRow& asked = problem.row_list()[row];
   problem.tighten(row, by_m);
-  // A gap that closes in this step may close less; only what is asked beyond that opens it.
+  // A gap that closes in this step may close less; only what exceeds that opens it.
   rows_[row].opening += std::clamp(asked.offset, 0.0, by_m);
 }
 
-/// A joint's dry friction keeps it where it is, as far as it reaches; the change of its travel [m or rad].
+/// Updates a joint's dry friction, which keeps the joint where it is as far as its bound allows; returns the
+/// change of its travel [m or rad].
 double Sweeps::relax_joint(std::size_t joint, ContactProblem& problem) noexcept {
   const ContactProblem::JointFriction& friction = problem.joint_frictions()[joint];
   double& z = problem.values()[problem.bodies()[friction.body].first];
@@ -142,7 +143,8 @@ double Sweeps::relax_joint(std::size_t joint, ContactProblem& problem) noexcept 
   return std::abs(force.now - force.before) * mobile;
 }
 
-/// A patch sticks as far as what its rows push allows; the largest change of a displacement [m].
+/// Updates a patch's friction: it sticks as far as the normal force allows; returns the largest change of a
+/// displacement [m].
 double Sweeps::relax_friction(std::size_t number, ContactProblem& problem) noexcept {
   const FrictionPatch& patch = patches_[number];
   Friction3& friction = frictions_[number];
@@ -163,7 +165,7 @@ double Sweeps::relax_friction(std::size_t number, ContactProblem& problem) noexc
     forces[d]->now += by;
     push(*rows[d], by, z);
   }
-  // Force and torque share the load as on an area whose points all slide, an ellipse.
+  // Force and torque use up the bound together as on an area whose points all slide, an ellipse.
   const double sideways = std::hypot(forces[0]->now, forces[1]->now);
   const double twisting = patch.place.radius_m > 0.0 ? std::abs(forces[2]->now) / patch.place.radius_m : 0.0;
   const double used = std::hypot(sideways, twisting);
@@ -178,7 +180,7 @@ double Sweeps::relax_friction(std::size_t number, ContactProblem& problem) noexc
   return change;
 }
 
-/// One round of projected Gauss-Seidel; the largest change of a displacement.
+/// One round of projected Gauss-Seidel; returns the largest change of a displacement.
 double Sweeps::sweep(ContactProblem& problem) noexcept {
   for_each_force(problem, [](Force& force, const auto&) { force.before = force.now; });
   for (Friction3& friction : frictions_) friction.load = 0.0;
@@ -202,9 +204,9 @@ double Sweeps::sweep(ContactProblem& problem) noexcept {
   return change;
 }
 
-/// Adds momentum from sweep to sweep, by a share that grows with their number [Nesterov 1983]; begins anew
-/// where the last sweep had more to change than the one before [Donoghue 2015]. What it oversteps, the next
-/// sweep projects.
+/// Adds momentum from sweep to sweep, a fraction of the last change that grows with their number [Nesterov
+/// 1983]; sets it to zero where the last sweep had more to change than the one before [Donoghue 2015]. Forces
+/// that overstep their bounds are projected by the next sweep.
 void Sweeps::accelerate(Pace& pace, ContactProblem& problem) noexcept {
   double change = 0.0;
   for_each_force(problem, [&](Force& force, const auto&) {
@@ -223,7 +225,7 @@ void Sweeps::accelerate(Pace& pace, ContactProblem& problem) noexcept {
   });
 }
 
-/// Contacts are asked to open no more, and forces are what they began with. False when none was asked.
+/// Contacts need no longer open, and forces go back to what they began with. False when none had to open.
 bool Sweeps::close_only(ContactProblem& problem) noexcept {
   bool asked = false;
   for (Index i = 0; i < rows_.size(); ++i) {

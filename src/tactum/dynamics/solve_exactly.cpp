@@ -3,7 +3,7 @@
 namespace tactum::inline v0_1 {
 namespace {
 
-/// How often patches that slid are let slip further: what is left of the error is mu^2 a round.
+/// How often patches that slid are allowed further slip: each round leaves the fraction mu^2 of the error.
 constexpr int kSlipRounds = 6;
 
 bool solve_on(int max_iterations, ContactProblem& problem, ExactResult& result) {
@@ -14,12 +14,12 @@ bool solve_on(int max_iterations, ContactProblem& problem, ExactResult& result) 
   return result.solved;
 }
 
-/// How often the loads of sliding patches are brought to what the answer with them says: of one body, whose
-/// answers cost little, until they stay; of several only as far as that takes no longer than all the rest.
+/// How often the loads of sliding patches are updated from the answer with them: for one body, whose
+/// solutions cost little, until they stay; for several only while that takes no longer than all the rest.
 constexpr int kSlidingRounds = 60;
 constexpr int kSlidingRoundsOfSeveral = 16;
 
-/// Lets every patch stick, then slip where it must, until none slips further.
+/// Solves with every patch sticking, then allows slip where it must be, until no patch slips further.
 void solve_cones(const RowsInProblem& contacts, int max_iterations, ExactStart& start, Friction& friction,
                  ContactProblem& problem, ExactResult& result) {
   for (int round = 0; round <= kSlipRounds; ++round) {
@@ -36,7 +36,7 @@ void solve_cones(const RowsInProblem& contacts, int max_iterations, ExactStart& 
   }
 }
 
-/// Gives what slides its friction.
+/// Replaces the cones of sliding patches by loads.
 void solve_sliding(const RowsInProblem& contacts, int max_iterations, Friction& friction,
                    ContactProblem& problem, ExactResult& result) {
   const int rounds = problem.bodies().size() == 1 ? kSlidingRounds : kSlidingRoundsOfSeveral;
@@ -60,8 +60,8 @@ void solve_with_friction(const RowsInProblem& contacts, int max_iterations, Exac
   solve_on(max_iterations, problem, result);
 }
 
-/// Begins with what pushed in the last frame while every patch stuck, if any did. One body has so few rows
-/// that to go on from the answer without friction costs no more.
+/// Begins with the rows that pushed in the last frame while every patch stuck, if any did. For one body there
+/// are so few rows that it costs no more to continue from the answer without friction.
 void begin_sticking(const RowNumbers& last, const Friction& friction, ContactProblem& problem) {
   if (problem.bodies().size() == 1) return;
   RowNumbers rows = last;

@@ -9,19 +9,19 @@ namespace tactum::inline v0_1 {
 /// Numbers of rows of the problem.
 using RowNumbers = StaticVector<int, kMostUnknowns>;
 
-/// Rows to begin with, as a rule those that pushed in the last frame; afterwards those that push now.
+/// Rows to begin with, as a rule those that pushed in the last frame; after the solution those that push now.
 struct ExactStart {
   RowNumbers without_friction;
   RowNumbers sticking;  ///< while every patch sticks
 };
 
 struct ExactResult {
-  bool solved = false;   ///< false: no displacement keeps all rows, or the iterations ran out
+  bool solved = false;   ///< false: no displacement satisfies all rows, or the iterations ran out
   bool bounded = false;  ///< the iterations ran out
   int iterations = 0;
 };
 
-/// What friction in the exact solver needs beside the contacts.
+/// The input of friction in the exact solver, beside the contacts.
 struct FrictionInput {
   std::span<const Pose> X_WB;  ///< of all bodies of the world, at the start of the step
   ContactScale scale;
@@ -29,14 +29,15 @@ struct FrictionInput {
 };
 
 /// Solves the problem, whose contact rows are `contacts`. Friction is that of the rows' coefficients. Where
-/// no answer keeps the anchors they are taken off; where there is none at all, friction.
+/// no answer satisfies the anchors' rows, the anchors are given up; where there is no answer at all,
+/// friction.
 ExactResult solve_exactly(const RowsInProblem& contacts, const FrictionInput& input, int max_iterations,
                           ExactStart& start, Friction& friction, ContactProblem& problem) noexcept;
 
-/// Solves a problem without friction, from the rows it was begun with, or from those that push.
+/// Solves a problem without friction, beginning with the rows that were chosen, or with those that push.
 ExactResult solve_once(int max_iterations, ContactProblem& problem) noexcept;
 
-/// Goes on from the last answer, after rows were tightened; patches stay what they are.
+/// Solves again from the last answer, after rows were tightened; the patches and their slip stay.
 ExactResult solve_again(const RowsInProblem& contacts, int max_iterations, ExactStart& start,
                         Friction& friction, ContactProblem& problem) noexcept;
 

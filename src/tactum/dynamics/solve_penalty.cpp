@@ -14,7 +14,7 @@ namespace {
 using Index = std::size_t;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// How much stiffer than its bodies a row is that does not yield.
+/// How much stiffer than its bodies a row is that should not yield.
 constexpr double kRigid = 1e9;
 
 /// The law of a row's force:  stiffness (offset - g z), between two bounds.
@@ -119,7 +119,7 @@ class Newton {
   static constexpr int kMostSlopes = 30;
   static constexpr double kFlat = 0.1;  // of the slope at the start
 
-  /// Its force is the least, follows the law, or is the most.
+  /// The row's force is the least, follows the law, or is the most.
   enum State : std::uint8_t { kIdle, kYields, kSaturated };
 
   struct Row {
@@ -128,12 +128,12 @@ class Newton {
     static_assert(kMostUnknowns <= 256);
     std::array<double, 12> g;
     double stiffness, wanted, least, most;
-    double missing;         // wanted - g z, since the last step
+    double missing;         // offset - g z, since the last step
     double missing_before;  // before it, where the step is guarded
     State state;
   };
 
-  /// What a row in this state adds to H and to the right side, or takes off.
+  /// Adds the terms of a row in this state to H and to the right side, or removes them.
   void add_state(const Row& row, State state, double sign) {
     if (state == kYields) {
       const double weight = sign * row.stiffness;
@@ -239,12 +239,12 @@ class Newton {
   }
   bool is_wrong(const Row& row) const {
     const double force = row.missing * row.stiffness;
-    // Of a force with bounds a share of these; else what the law makes of the length that may be missing.
+    // For a force with bounds a fraction of these; else the force of the length that may be missing.
     const double tolerance =
         row.most < kInfinity ? tolerances::kContactVelocity * row.most : allowed_ * row.stiffness;
     switch (row.state) {
       case kIdle:
-        return !(force <= row.least + tolerance);  // NaN is wrong
+        return !(force <= row.least + tolerance);  // a NaN is wrong
       case kYields:
         return !(force >= row.least - tolerance && force <= row.most + tolerance);
       case kSaturated:
@@ -261,7 +261,7 @@ class Newton {
   double right_[kMostUnknowns], z_[kMostUnknowns], z_before_[kMostUnknowns], inverse_[kMostUnknowns];
 };
 
-/// Projected Gauss-Seidel from first row to last, until a sweep changes next to nothing.
+/// Projected Gauss-Seidel from first row to last, until a sweep changes almost nothing.
 SolverResult sweep(std::span<const double> stiffness, int max_sweeps, ReservedVector<double>& forces,
                    ContactProblem& problem) {
   SolverResult result;

@@ -1,5 +1,5 @@
 #pragma once
-/// Which solver answers a contact problem; the one place where that is decided.
+/// The choice of the solver for a contact problem; the one place where it is made.
 
 #include "tactum/dynamics/contact_problem.h"
 
@@ -12,13 +12,13 @@ enum class ContactSolver : std::uint8_t {
   kPenalty = 4,  ///< rows that yield, solve_penalty.h
 };
 
-/// Unknowns of an island that nothing but its bodies' inertia resists: two free bodies. Beyond that sweeps,
-/// which begin with the last frame's forces, take less time for what rests.
+/// Unknowns of an island that only the inertia of its bodies resists: two free bodies. Beyond that the
+/// sweeps, which begin with the last frame's forces, take less time for bodies at rest.
 inline constexpr std::size_t kMostExactAlone = 12;
 
 /// For rows that do not yield. `coupled`: a coupling pulls one of the island's bodies, so its forces are
-/// felt; then the exact solver, as long as it has room for the unknowns, one for each joint's dry friction
-/// among them.
+/// felt; then the exact solver, as long as it has room for the unknowns. One of these is counted for each
+/// joint's dry friction.
 inline ContactSolver choose_solver(std::size_t exact_unknowns, bool coupled) noexcept {
   const std::size_t most = coupled ? kMostUnknowns : kMostExactAlone;
   return exact_unknowns <= most ? ContactSolver::kExact : ContactSolver::kSweeps;

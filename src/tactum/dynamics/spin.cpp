@@ -8,7 +8,7 @@ Vec3 rate_midway(const Mat3& inertia_B, const Mat3& R_WB, const Vec3& w_WB, doub
   const Vec3 momentum = inertia_at(inertia_B, R_WB) * w_WB;
   const Mat3 compliance_B = inertia_B.inverse();
   Vec3 rate = w_WB;
-  for (int round = 0; round < 3; ++round) {  // each is right to one more power of h
+  for (int round = 0; round < 3; ++round) {  // each round adds one order of h to the accuracy
     const Mat3 R_mid = exp_rotation(0.5 * h * rate) * R_WB;
     rate = rotated(R_mid, compliance_B * rotated_back(R_mid, momentum));
   }

@@ -1,5 +1,5 @@
 #pragma once
-/// How a body that nothing touches turns: its angular momentum stays, its axis wanders.
+/// The rotation of a body without contact: its angular momentum is constant, its axis moves.
 ///
 /// Over a step of h seconds it turns by the rate it has midway, w = I(R_mid)^-1 L, which keeps L to the bit
 /// and its energy to the second order of h.

@@ -1,9 +1,8 @@
 #pragma once
-/// Bodies, how they are held, and where they are: World is constant while frames run, WorldState is what they
-/// change.
+/// Bodies, their joints, and their poses: World is constant while frames run, WorldState is what they change.
 ///
 /// A body's frame B has its origin at the centre of mass and the axes of its part's file, so that a twist at
-/// the origin is a twist at the centre of mass. V_WB is told in world axes.
+/// the origin is a twist at the centre of mass. V_WB is in world axes.
 
 #include <cmath>
 #include <limits>
@@ -19,18 +18,18 @@
 
 namespace tactum::inline v0_1 {
 
-/// What holds a body to the world.
+/// The joint between a body and the world.
 enum class JointKind {
-  kFree,    ///< nothing
-  kFixed,   ///< everything: the body never moves
+  kFree,    ///< none
+  kFixed,   ///< the body never moves
   kHinge,   ///< turns about an axis through a point
   kSlider,  ///< slides along an axis, without turning
   kBall,    ///< turns about a point
 };
 
-/// Its position is how far the body has come from its pose at the start: the angle of a hinge, the way of a
-/// slider; of a ball, the angle turned, whatever the axis. Numbers are of torque for what turns, of force for
-/// a slider.
+/// Its position is how far the body has come from its pose at the start: the angle of a hinge, the
+/// displacement of a slider; for a ball, the angle turned, about any axis. Numbers are torques for a hinge or
+/// ball, forces for a slider.
 struct Joint {
   JointKind kind = JointKind::kFree;
   Vec3 axis_W = Vec3::UnitZ();   ///< of a hinge or slider, unit, fixed in the world [-]
@@ -38,14 +37,14 @@ struct Joint {
   double damping = 0.0;          ///< viscous, against the motion [N m s/rad or N s/m]
   double friction = 0.0;         ///< largest dry friction of a hinge or slider [N m or N]
   double stiffness = 0.0;        ///< of the spring of a hinge or slider [N m/rad or N/m]
-  double rest = 0.0;             ///< the position its spring pulls to [rad or m]
+  double rest = 0.0;             ///< the position at which its spring is at rest [rad or m]
   double lower = -std::numeric_limits<double>::infinity();  ///< least position of a hinge or slider [rad, m]
   double upper = std::numeric_limits<double>::infinity();   ///< largest position [rad or m]
 
   bool limited() const { return std::isfinite(lower) || std::isfinite(upper); }
 };
 
-/// A rigid body; its part's pieces are told in B.
+/// A rigid body; its part's pieces are stated in B.
 struct Body {
   std::string name;
   std::string material;  ///< by which pairs of bodies get friction and restitution; may be empty
@@ -55,12 +54,12 @@ struct Body {
   Pose X_WB;                      ///< at the start [m]
   Twist V_WB;                     ///< at the start [m/s, rad/s]
   Joint joint;
-  std::vector<FieldPoint> field_points;  ///< where force fields act while it is held
+  std::vector<FieldPoint> field_points;  ///< where force fields act while it is grasped
 
   bool moves() const { return joint.kind != JointKind::kFixed; }
 };
 
-/// What World::add makes a body from. Mass and inertia follow from the part.
+/// The input of World::add. Mass and inertia follow from the part.
 struct BodySpec {
   std::string name = {};                  ///< empty, or one that no other body of the world has
   std::shared_ptr<const Part> part = {};  ///< about its centre of mass: PartOptions::about_center_of_mass
@@ -75,18 +74,18 @@ struct BodySpec {
 
 /// Constant while frames run.
 struct World {
-  /// Adds a body and returns its index. An error says what the body cannot be made from: no part, a part
-  /// that is not about its centre of mass, a mass or density that is not positive (or both), a pose or
-  /// velocity that is not finite, an axis of length zero, limits that leave out the pose at the start, a name
-  /// that is taken. The world is then unchanged. Cost: linear in the number of bodies.
+  /// Adds a body and returns its index. An error states why there can be no such body: no part, a part that
+  /// is not about its centre of mass, a mass or density that is not positive (or both), a pose or velocity
+  /// that is not finite, an axis of length zero, limits that exclude the pose at the start, a name that is
+  /// taken. The world is then unchanged. Cost: linear in the number of bodies.
   Result<int> add(const BodySpec& spec);
 
   std::vector<Body> bodies;
   Vec3 gravity_W = Vec3::Zero();   ///< [m/s^2]
-  std::vector<ForceField> fields;  ///< felt by the held part
+  std::vector<ForceField> fields;  ///< felt by the grasped part
 };
 
-/// What frames change. One entry per body of the World.
+/// The state that frames change. One entry per body of the World.
 struct WorldState {
   std::vector<Pose> X_WB;
   std::vector<Twist> V_WB;

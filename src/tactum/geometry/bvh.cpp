@@ -50,13 +50,13 @@ class Builder {
     return index;
   }
 
-  /// Half the sides, grown so that center +- half holds the box in spite of rounding.
+  /// Half the sides, grown so that center +- half contains the box in spite of rounding.
   static Vec3 outer_half(const Aabb& box) {
     const Vec3 scale = box.min.cwiseAbs().cwiseMax(box.max.cwiseAbs());
     return box.half() + tolerances::kBoxMargin * scale;
   }
 
-  /// The place that parts the range at the bin border of least cost, or `first` when there is none.
+  /// The place that divides the range at the bin border of least cost, or `first` when there is none.
   int split_by_area(int first, int last, const Aabb& centers) {
     double best_cost = 1e300;
     int best_axis = -1;

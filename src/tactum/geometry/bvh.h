@@ -4,8 +4,8 @@
 ///   node i holds a box around all below it; an inner node's children are i + 1 and nodes[i].second;
 ///   a leaf holds order[first .. first + count).
 ///
-/// Split by surface area over 16 bins per axis, by the median where that does not part the items or the tree
-/// gets too deep; so the depth is at most 64 and the walks keep fixed stacks. Building: n log n. Walks:
+/// Split by surface area over 16 bins per axis, by the median where that does not divide the items or the
+/// tree gets too deep; so the depth is at most 64 and the walks keep fixed stacks. Building: n log n. Walks:
 /// noexcept, no allocation.
 
 #include <array>
@@ -34,7 +34,7 @@ class Bvh {
   };
 
   Bvh() = default;
-  /// Over boxes that hold something. Deterministic.
+  /// Builds the tree over boxes that are not empty. Deterministic.
   explicit Bvh(const std::vector<Aabb>& boxes, int leaf_size = 1);
 
   const std::vector<Node>& nodes() const noexcept { return nodes_; }
@@ -47,7 +47,7 @@ class Bvh {
   std::vector<std::int32_t> order_;
 };
 
-/// B's boxes in A's frame: the rotation and its absolute values, grown so that rounding parts nothing.
+/// B's boxes in A's frame: the rotation and its absolute values, grown so that rounding separates nothing.
 struct BoxPairFrame {
   Pose X_AB;
   Mat3 abs_R = Mat3::Identity();
@@ -58,7 +58,7 @@ struct BoxPairFrame {
 };
 
 /// A lower bound of the distance of two boxes [m]: each box's distance from the other's bounding box in its
-/// own axes, the larger of the two; zero when neither parts them.
+/// own axes, the larger of the two; zero when neither axis separates them.
 inline double box_gap(const BoxPairFrame& frame, const Bvh::Node& a, const Bvh::Node& b) noexcept {
   const Vec3 t = frame.X_AB * b.center - a.center;
   const Vec3 gap_a = (t.cwiseAbs() - a.half - frame.abs_R * b.half).cwiseMax(0.0);
@@ -67,7 +67,8 @@ inline double box_gap(const BoxPairFrame& frame, const Bvh::Node& a, const Bvh::
   return std::sqrt(std::max(gap_a.squaredNorm(), gap_b.squaredNorm()));
 }
 
-/// Whether some cross product of edges parts the boxes by more than `tolerance`. Asked after box_gap.
+/// Whether some cross product of edges separates the boxes by more than `tolerance`. To be called after
+/// box_gap.
 inline bool parted_by_edges(const BoxPairFrame& frame, const Bvh::Node& a, const Bvh::Node& b,
                             double tolerance) noexcept {
   const Mat3& R = frame.X_AB.R;

@@ -7,9 +7,8 @@
 
 namespace tactum::inline v0_1 {
 
-/// The patch of each triangle: connected triangles in one plane, to the tolerances kCoplanarMeshSine and
-/// kCoplanarMeshOffset. Patches grow from the largest triangles, whose planes are known best. Numbered from
-/// 0.
+/// The group of each triangle: connected triangles in one plane, to the tolerances kCoplanarMeshSine and
+/// kCoplanarMeshOffset. Groups grow from the largest triangles, whose planes are known best. Numbered from 0.
 std::vector<int> coplanar_groups(const TriangleMesh& welded);
 
 }  // namespace tactum::inline v0_1

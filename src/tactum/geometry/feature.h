@@ -1,5 +1,5 @@
 #pragma once
-/// Names of what a shape is made of.
+/// The features of a shape: vertex, edge, face.
 
 #include <cstdint>
 

@@ -57,7 +57,7 @@ TriangleMesh surface_of(const Polytope& hull) {
   return mesh;
 }
 
-/// A box that holds the points, no side thinner than a thousandth of its diagonal.
+/// The mass of a box around the points, no side thinner than a thousandth of its diagonal.
 MassProperties of_box(const TriangleMesh& mesh, double density) {
   constexpr double kThinnest = 1e-3;  // of the diagonal: a plate still has a mass
   const Aabb box = bounds(mesh.vertices);

@@ -16,15 +16,15 @@ struct MassProperties {
   double mass = 0.0;            ///< [kg]
   Vec3 center = Vec3::Zero();   ///< of mass, in the mesh's frame [m]
   Mat3 inertia = Mat3::Zero();  ///< about the centre of mass, axes of the mesh's frame [kg m^2]
-  std::string approximation;    ///< empty when exact; else a sentence that says what stands in for the solid
+  std::string approximation;    ///< empty when exact; else a sentence that names the replacement of the solid
 };
 
-/// Of a closed, consistently oriented surface with normals outward; anything else is an error that says what
-/// is open.
+/// Of a closed, consistently oriented surface with normals outward; anything else is an error that states
+/// what is open.
 Result<MassProperties> mass_properties(const TriangleMesh& mesh, double density_kg_per_m3);
 
-/// Of anything: exact when the surface is closed (turned round when its normals point inward), otherwise of
-/// the convex hull, or of the bounding box when the points lie in a plane; `approximation` says which.
+/// Of any mesh: exact when the surface is closed (reversed when its normals point inward), otherwise of the
+/// convex hull, or of the bounding box when the points lie in a plane; `approximation` states which.
 MassProperties mass_properties_or_hull(const TriangleMesh& mesh, double density_kg_per_m3);
 
 }  // namespace tactum::inline v0_1

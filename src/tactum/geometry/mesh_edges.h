@@ -1,6 +1,5 @@
 #pragma once
-/// The edges of a triangle mesh with the triangles at each, sorted: what every topological question starts
-/// from.
+/// The edges of a triangle mesh with the triangles at each, sorted: the basis of every topological query.
 
 #include <algorithm>
 #include <vector>
@@ -43,7 +42,7 @@ class DisjointSets {
     while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
     return i;
   }
-  /// The lower root stays root, so the names of sets do not depend on the order of joining.
+  /// The lower root stays root, so the numbers of sets do not depend on the order of joining.
   void join(int a, int b) {
     a = find(a);
     b = find(b);

@@ -35,7 +35,7 @@ int count_edges(const WeldedMesh& welded, const std::vector<HalfEdge>& sides, Me
   return edges;
 }
 
-/// Vertices that triangles use, and the sets they fall into.
+/// Counts the vertices that triangles use, and their connected sets.
 void count_vertices(const TriangleMesh& mesh, MeshReport& report) {
   DisjointSets sets(static_cast<int>(mesh.vertices.size()));
   std::vector<bool> used(mesh.vertices.size(), false);
@@ -70,7 +70,7 @@ bool all_edges_convex(const TriangleMesh& mesh, const std::vector<HalfEdge>& sid
   return convex;
 }
 
-/// Edges of two triangles that agree, by the way they are bent.
+/// Counts the edges of two triangles that agree, by the direction of their bend.
 void count_bends(const TriangleMesh& mesh, const std::vector<HalfEdge>& sides, MeshReport& report) {
   const auto unit_normal = [&](const Triangle& t) {
     const Vec3& a = mesh.vertices[t[0]];
@@ -134,8 +134,8 @@ MeshReport report_mesh(const TriangleMesh& mesh, double tolerance) {
 }
 
 UnitGuess guess_unit(const Aabb& box) {
-  // Parts people hold and assemble are a few millimetres to a metre; the bounds part the three readings of a
-  // number.
+  // Parts people hold and assemble are a few millimetres to a metre; the bounds separate the three readings
+  // of a number.
   constexpr double kLargestInMetres = 2.0;
   constexpr double kLargestInInches = 12.0;
   const double d = box.diagonal();

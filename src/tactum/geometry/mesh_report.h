@@ -1,7 +1,7 @@
 #pragma once
-/// What a mesh is: closed or not, manifold, oriented, in how many pieces, how large, convex. Made of the mesh
-/// as welded at tolerances::kWeld; triangles that two equal corners make none are counted and left out,
-/// triangles without area are counted and kept (their sides close the surface).
+/// Properties of a mesh: closed or not, manifold, oriented, in how many pieces, how large, convex. Determined
+/// for the mesh as welded at tolerances::kWeld; triangles that two equal corners make none are counted and
+/// left out, triangles without area are counted and kept (their sides close the surface).
 
 #include <string>
 #include <vector>
@@ -11,7 +11,7 @@
 
 namespace tactum::inline v0_1 {
 
-/// The unit a file seems to be in. Files seldom say, so this is a guess with its reason.
+/// The unit a file seems to be in. Files seldom give it, so this is a guess with its reason.
 struct UnitGuess {
   std::string name;              ///< "metres", "millimetres", "inches"
   double metres_per_unit = 1.0;  ///< [m]
@@ -25,7 +25,7 @@ struct MeshReport {
   int components = 0;           ///< sets of triangles joined by vertices
   int boundary_edges = 0;       ///< edges with one triangle
   int non_manifold_edges = 0;   ///< edges with more than two
-  int misoriented_edges = 0;    ///< edges that both triangles run the same way
+  int misoriented_edges = 0;    ///< edges whose two triangles run the same way along it
   int convex_edges = 0;         ///< of two triangles: bent outward by more than kCoplanarMeshSine
   int reflex_edges = 0;         ///< ... bent inward by more than that; the rest is flat
   int euler = 0;                ///< V - E + F; 2 for each component without handles
@@ -45,8 +45,8 @@ struct MeshReport {
   bool manifold() const { return non_manifold_edges == 0; }
 };
 
-/// Vertices within `tolerance` (share of the diagonal) count as one; 0 joins only equal coordinates, as
-/// strict programs do.
+/// Vertices within `tolerance` (as a fraction of the diagonal) count as one; 0 joins only equal coordinates,
+/// as strict programs do.
 MeshReport report_mesh(const TriangleMesh& mesh, double tolerance = tolerances::kWeld);
 
 /// The unit of a mesh whose bounding box is in the units of its file.

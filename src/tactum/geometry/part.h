@@ -1,6 +1,6 @@
 #pragma once
-/// A part: what is felt. Convex pieces under a hierarchy of boxes, or a surface alone; mass; and for every
-/// piece the contact patch it belongs to. mesh/make_part.h makes parts.
+/// A part: convex pieces under a hierarchy of boxes, or a surface alone; mass; and for every piece the
+/// contact patch it belongs to. mesh/make_part.h makes parts.
 ///
 /// Every part has the tree of its surface, so that solids can meet surfaces. The part's frame has the axes of
 /// the input, and its origin too, unless the part is made about its centre of mass, as bodies need it.
@@ -19,14 +19,14 @@ namespace tactum::inline v0_1 {
 
 /// How a part was made, in words for a person.
 struct PartNotes {
-  /// How the pieces were made, and why so: "solid: 13 convex pieces from 8 reflex edges".
+  /// How the pieces were made, and the reason: "solid: 13 convex pieces from 8 reflex edges".
   std::string pieces;
-  std::vector<std::string> remarks;  ///< what was repaired or approximated, as sentences
+  std::vector<std::string> remarks;  ///< repairs and approximations, as sentences
 };
 
-/// The groups of a part's surface: contact patches that lie on the same two groups share one stiffness. Each
-/// piece is a group; of a part that is felt by its surface these are the coplanar groups of the triangles;
-/// the tree of the surface keeps which triangle belongs to which.
+/// The groups of a part's surface: contact patches that lie on the same two groups have one stiffness
+/// together. Each piece is a group; of a part that is felt by its surface these are the coplanar groups of
+/// the triangles; the tree of the surface knows which triangle belongs to which.
 struct SurfaceGroups {
   std::vector<int> of_piece;  ///< of each piece: its group, 0 .. count - 1
   int count = 0;
@@ -39,7 +39,7 @@ struct Part {
   std::vector<Polytope> pieces;  ///< in the part's frame
   SurfaceGroups groups;
   Bvh hierarchy;             ///< over the pieces
-  TrueSurface true_surface;  ///< what of solid pieces can be touched; single_piece() for surfaces
+  TrueSurface true_surface;  ///< exposed features of solid pieces; single_piece() for surfaces
   SurfaceTree tree;          ///< over the surface
   MassProperties mass;
   Vec3 origin = Vec3::Zero();  ///< the part's origin, in the frame of the input [m]
@@ -50,7 +50,7 @@ struct Part {
   bool is_surface() const noexcept { return pieces.empty(); }
 };
 
-/// Finds what of the pieces can be touched, from the pieces and their hierarchy.
+/// Finds the exposed features of the pieces, from the pieces and their hierarchy.
 void find_true_surface(Part& part);
 
 }  // namespace tactum::inline v0_1

@@ -95,7 +95,8 @@ void build_sides(Polytope& P) {
   }
 }
 
-/// Of four corners three: how far normals of sides are from square, their product tells.
+/// Whether all corners are square; of four it is enough to test three: the product measures how far normals
+/// of sides are from square.
 bool has_square_corners(const Polytope& P, const Polytope::Face& face) {
   if (face.count != 4) return false;
   const auto square_at = [&](int slot) {
@@ -124,7 +125,7 @@ int cell_of(const Vec3& direction) noexcept {
   if (a.z() > a[axis]) axis = 2;
   constexpr int n = Polytope::kTableSide;
   const double scale = 0.5 * n / a[axis];
-  // Clamped in this order what is no number is a cell as well.
+  // Clamped in this order, a value that is not a number gives a cell as well.
   const auto clamped = [](double at) { return static_cast<int>(std::min(n - 1.0, std::max(0.0, at))); };
   const int column = clamped(direction[(axis + 1) % 3] * scale + 0.5 * n);
   const int row = clamped(direction[(axis + 2) % 3] * scale + 0.5 * n);
@@ -150,7 +151,7 @@ int table_vertex(const Polytope& polytope, const Vec3& direction) noexcept {
 }
 
 int uphill(const Polytope& P, const Vec3& direction, int vertex, double& height) noexcept {
-  // Which ray is the steepest is chosen, not jumped for: at a new vertex every guess would be one.
+  // The steepest ray is selected without a branch: at a new vertex every prediction would be a guess.
   const std::span<const Polytope::Ray> rays = P.rays_at(vertex);
   const Polytope::Ray* steepest = rays.data();
   double most = 0.0;
@@ -161,7 +162,7 @@ int uphill(const Polytope& P, const Vec3& direction, int vertex, double& height)
   }
   if (!(most > 0.0)) return vertex;
   const double higher = direction.dot(P.vertices[Index(steepest->far)]);
-  if (!(higher > height)) return vertex;  // slopes may go round in rounding, heights cannot
+  if (!(higher > height)) return vertex;  // slopes may cycle by rounding, heights cannot
   height = higher;
   return steepest->far;
 }

@@ -39,7 +39,7 @@ struct Polytope {
     bool rectangle = false;      ///< four corners, all square up to rounding
   };
 
-  /// A plane that bounds a face's column, normal . x <= offset inside, and what lies beyond it: told here as
+  /// A plane that bounds a face's column, normal . x <= offset inside, and the face beyond it: stored here as
   /// well, so that a walk that leaves the face over it need not wait for the edge and the face.
   struct Side {
     Vec3 normal = Vec3::Zero();  ///< unit, in the face's plane, pointing away from the face across the edge
@@ -48,7 +48,7 @@ struct Polytope {
     int across = 0;              ///< the face beyond
     int first = 0, count = 0;    ///< its loop
   };
-  /// An edge as seen from one of its ends. All that a climb and a Voronoi test of a vertex read.
+  /// An edge as seen from one of its ends, with everything that a climb and a Voronoi test of a vertex read.
   struct Ray {
     Vec3 direction = Vec3::Zero();  ///< unit, away from the vertex
     int edge = 0;
@@ -94,7 +94,7 @@ struct Polytope {
 int table_vertex(const Polytope& polytope, const Vec3& direction) noexcept;
 
 /// A step up: the neighbour of a vertex up the steepest ray, or the vertex when none is higher. `height`,
-/// that of the vertex along `direction`, becomes the neighbour's.
+/// that of the vertex along `direction`, is set to the neighbour's.
 int uphill(const Polytope& polytope, const Vec3& direction, int vertex, double& height) noexcept;
 
 /// The vertex farthest along `direction`, climbing from vertex `start`. Exact up to rounding; a climb over a

@@ -11,8 +11,8 @@ namespace {
 
 constexpr std::size_t kLanes = SurfaceLayout::kLanes;
 
-/// Of two boxes the larger is opened, or rather the one with the wider cone: its children face less. Beside
-/// this angle widths do not count [rad].
+/// Of two boxes the larger is opened, or rather the one with the wider cone: its children face fewer
+/// directions. Below this angle widths do not count [rad].
 constexpr float kNarrow = 0.02F;
 
 void put_lane(SurfaceLayout::Lanes3& lanes, std::size_t lane, const Vec3& v) {
@@ -81,7 +81,7 @@ std::int32_t SurfaceBoxes::make_tree() {
   return static_cast<std::int32_t>(index);
 }
 
-/// The box of a range and what is below it. Nodes move while others are made.
+/// Makes the box of a range and the nodes below it. Nodes move while others are made.
 void SurfaceBoxes::make_child(std::size_t node, std::size_t lane, Range range) {
   make_box(nodes[node], lane, range);
   const bool leaf = range.second - range.first <= kLanes;
@@ -122,8 +122,8 @@ void SurfaceBoxes::split(Range range, std::size_t unit, std::vector<Range>& part
   split({middle, range.second}, unit, parts);
 }
 
-/// Halves whose boxes are smallest, by the squares of their diagonals: cut across the longest spread of
-/// places, or where others are nearly as long across one of them, or half-way between.
+/// Divides into halves whose boxes are smallest, by the squares of their diagonals: cut across the longest
+/// spread of places, or where others are nearly as long across one of them, or half-way between.
 void SurfaceBoxes::sort_halves(Range range, std::size_t halfway) {
   constexpr double kNearly = 0.3;
   const Spread spread =

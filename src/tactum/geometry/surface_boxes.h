@@ -12,8 +12,8 @@
 namespace tactum::inline v0_1 {
 
 /// Leaves hold eight features each but the last, nodes as many children as fill them: a node of n leaves has
-/// children of the largest power of eight below n. Features that stay together lie near each other and look
-/// the same way.
+/// children of the largest power of eight below n. Features that stay together lie near each other and have
+/// similar directions.
 class SurfaceBoxes {
  public:
   SurfaceBoxes(const TriangleMesh& mesh, const SurfaceCones& cones, const Vec3& center);
@@ -40,7 +40,7 @@ class SurfaceBoxes {
   void sort_halves(Range range, std::size_t halfway);
   void cut_across(const Vec3& axis, Range range, std::size_t halfway);
 
-  std::size_t points() const { return std::size_t(kind_) + 1; }  ///< of a feature of the kind at hand
+  std::size_t points() const { return std::size_t(kind_) + 1; }  ///< of a feature of this kind
   /// The corner of a triangle that is `after` this one, from the center.
   Vec3 point(std::int32_t corner, std::size_t after) const {
     const Triangle& t = mesh_.triangles[corner / 3];
@@ -50,9 +50,9 @@ class SurfaceBoxes {
 
   const TriangleMesh& mesh_;
   Vec3 center_;
-  double grown_;  // by what rounding to single precision may move a point [m]
+  double grown_;  // the largest error of a point in single precision
   SurfaceLayout::Kind kind_ = SurfaceLayout::kVertices;
-  std::vector<ConedFeature> order_;  // of the kind at hand
+  std::vector<ConedFeature> order_;  // of the kind being stored
   std::vector<std::pair<double, ConedFeature>> keyed_;
 };
 

@@ -13,7 +13,7 @@ namespace {
 
 double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
-/// What is left of the hull of `rays` (in turn around it) where e . u <= 0.
+/// The part of the hull of `rays` (in turn around it) where e . u <= 0.
 std::vector<Vec3> clipped(const std::vector<Vec3>& rays, const Vec3& e) {
   std::vector<Vec3> left;
   for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -117,7 +117,7 @@ class Finder {
   void take_vertex(int vertex, std::span<const int> corners) {
     around_.clear();
     bool flat = true;
-    Vec3 outward = Vec3::Zero();  // weighted by angles: tells the outside at any vertex [Baerentzen 2005]
+    Vec3 outward = Vec3::Zero();  // weighted by angles: points outside at any vertex [Baerentzen 2005]
     for (int corner : corners) {
       const int t = corner / 3;
       const int k = corner % 3;
@@ -147,7 +147,7 @@ class Finder {
     cones_.around.insert(cones_.around.end(), around_.begin(), around_.end());
   }
 
-  /// To the triangle from whose normal the cone's farthest ray is nearest.
+  /// Gives the cone to the triangle whose normal is nearest to the cone's farthest ray.
   void give(std::span<const int> corners, const std::vector<Vec3>& rays) {
     int best = -1;
     double best_lean = 0.0;
@@ -164,7 +164,7 @@ class Finder {
     axis.normalize();
     double width = 0.0;
     for (const Vec3& ray : rays) width = std::max(width, angle_between(axis, ray));
-    // Beyond a right angle the hull of rays may reach farther than its rays.
+    // Beyond a right angle the hull of rays may extend farther than its rays.
     own(SurfaceLayout::kVertices, best / 3, best % 3, axis, width < 0.5 * kPi ? width : kPi, best_lean);
   }
 
@@ -179,7 +179,7 @@ class Finder {
 }  // namespace
 
 std::vector<Vec3> polar_cone(const std::vector<Vec3>& edges) {
-  // All directions, as four cones; what is left of each may be one more part of the answer.
+  // All directions, as four cones; the rest of each may be one more part of the answer.
   const std::array<Vec3, 4> corner = {Vec3(1, 1, 1), Vec3(1, -1, -1), Vec3(-1, 1, -1), Vec3(-1, -1, 1)};
   std::vector<Vec3> all;
   for (std::size_t i = 0; i < 4; ++i) {

@@ -1,6 +1,6 @@
 #pragma once
-/// Which features of a triangle surface have a normal cone, who owns them, and how wide they are: the
-/// topology under surface_tree.h.
+/// The features of a triangle surface that have a normal cone, the triangles that own them, and the widths of
+/// their cones: the topology under surface_tree.h.
 
 #include <array>
 #include <cstdint>

@@ -1,6 +1,6 @@
 #pragma once
-/// How the features of a surface are stored under their trees of oriented boxes: what surface_tree.h holds,
-/// and surface_boxes.h and surface_cones.h fill in.
+/// The storage of the features of a surface under their trees of oriented boxes: surface_tree.h owns it,
+/// surface_boxes.h and surface_cones.h fill it.
 
 #include <array>
 #include <cstdint>
@@ -18,8 +18,8 @@ struct SurfaceLayout {
   struct Stand {
     Lanes3 up, center, along, across;  ///< axes are units [-], the center [m]
   };
-  /// Eight boxes, told from the mesh's center. `up` is the mean direction of the cones within; `cone` is the
-  /// largest angle from it to one of them.
+  /// Eight boxes, relative to the mesh's center. `up` is the mean direction of the cones within; `cone` is
+  /// the largest angle from it to one of them.
   struct Node {
     Stand at{};
     Lanes3 half{};    ///< half the sides along `along`, `across` and `up` [m]

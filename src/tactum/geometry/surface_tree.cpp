@@ -36,7 +36,7 @@ std::size_t SurfaceTree::memory() const noexcept {
 }
 
 bool SurfaceTree::sound(std::int32_t first, std::int32_t last) const noexcept {
-  // Children stand behind their parents, so no walk goes round.
+  // Children stand behind their parents, so no walk cycles.
   for (std::int32_t i = first; i < last; ++i) {
     for (std::int32_t child : nodes_[std::size_t(i)].child) {
       if (child > 0 ? child <= i || child >= last : child < 0 && std::size_t(~child) >= leaves_.size())

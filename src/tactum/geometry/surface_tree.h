@@ -1,6 +1,6 @@
 #pragma once
-/// A triangle surface as the query surface against surface sees it: its features with their normal cones,
-/// each kind under a tree of oriented boxes, eight children a node.
+/// A triangle surface for queries of surface against surface: its features with their normal cones, each kind
+/// under a tree of oriented boxes, eight children a node.
 ///
 ///      convex edge: u between n1 and n2      vertex: every edge falls         boundary: as if a wall went
 ///              n1  u  n2                     away from u (polar cone)         back from the rim
@@ -10,15 +10,15 @@
 ///                                                                                 : wall
 /// A direction u is in a feature's normal cone when, from the feature, the surface falls away from u on all
 /// sides: only there can the feature be nearest to something outside. Faces have one direction, their outward
-/// normal. Features without a cone own nothing and cost nothing: reflex edges, pits and saddles, and the
-/// edges and vertices inside a flat face (coplanar_groups.h), which would be felt as ghosts.
+/// normal. Features without a cone are not stored and cost nothing: reflex edges, pits and saddles, and the
+/// edges and vertices inside a flat face (coplanar_groups.h), which would be felt as internal contacts.
 ///
 /// Edges of one triangle, of more than two, and of two that disagree about outside are rims of each of their
 /// triangles: the surface is closed there by a wall straight behind it, so a rim is felt from the front and
-/// from the side, never from behind. Nothing is asked of the mesh but that triangles have an area.
+/// from the side, never from behind. The only condition on the mesh is that triangles have an area.
 ///
-/// Names of features: vertices and triangles keep the numbers of the mesh; the edge from corner k of triangle
-/// t to the next corner is 3 t + k, named by the one of its two triangles that owns it.
+/// Numbers of features: vertices and triangles keep the numbers of the mesh; the edge from corner k of
+/// triangle t to the next corner is 3 t + k, numbered by the one of its two triangles that owns it.
 ///
 /// Memory: at most 120 bytes a triangle on closed meshes, all of it in flat arrays of plain data that a file
 /// can hold as they are. Building: n log n, some microseconds a triangle, with some 500 bytes a
@@ -46,7 +46,7 @@ class SurfaceTree : public SurfaceLayout {
 
   bool empty() const noexcept { return triangles_.empty(); }
   double size() const noexcept { return scalars_.size; }  ///< diagonal of the bounding box [m]
-  std::size_t memory() const noexcept;                    ///< held by the arrays [bytes]
+  std::size_t memory() const noexcept;                    ///< of the arrays [bytes]
   int triangle_count() const noexcept { return static_cast<int>(triangles_.size()); }
   int vertex_count() const noexcept { return static_cast<int>(vertices_.size()); }
 
@@ -74,7 +74,7 @@ class SurfaceTree : public SurfaceLayout {
     return triangles_[std::size_t(corner) / 3][std::size_t(corner) % 3];
   }
 
-  /// Of the features a triangle owns, one bit for each of its three edges, then each of its three corners:
+  /// For the features a triangle owns, one bit for each of its three edges, then each of its three corners:
   /// whether it is narrow, that is, no direction of its cone lies behind the triangle.
   bool narrow_edge(std::int32_t corner) const noexcept { return narrow_bit(corner, 0); }
   bool narrow_vertex(std::int32_t corner) const noexcept { return narrow_bit(corner, 3); }
@@ -85,8 +85,8 @@ class SurfaceTree : public SurfaceLayout {
     return beyond_[std::size_t(corner) / 3][std::size_t(corner) % 3];
   }
 
-  /// What must fall away from a direction of an owned vertex's cone: the vertices at the other ends of its
-  /// edges, and ~t for the wall behind a rim of triangle t.
+  /// The directions that must fall away from a direction of an owned vertex's cone: the vertices at the other
+  /// ends of its edges, and ~t for the wall behind a rim of triangle t.
   std::span<const std::int32_t> around(int vertex) const noexcept {
     const auto first = std::size_t(first_around_[std::size_t(vertex)]);
     return {around_.data() + first, std::size_t(first_around_[std::size_t(vertex) + 1]) - first};
@@ -104,7 +104,7 @@ class SurfaceTree : public SurfaceLayout {
   Vec3 center() const noexcept { return {scalars_.center[0], scalars_.center[1], scalars_.center[2]}; }
 
   /// Calls visitor(vector) for every array, always in the same order, so that a file can write and read the
-  /// tree without knowing it. After reading, ask sound().
+  /// tree without knowing it. After reading, call sound().
   template <class Visitor>
   void for_each_array(Visitor&& visitor) {
     arrays(*this, visitor);
@@ -113,7 +113,8 @@ class SurfaceTree : public SurfaceLayout {
   void for_each_array(Visitor&& visitor) const {
     arrays(*this, visitor);
   }
-  /// Whether every index points into its array and every walk ends: what a damaged file could break. Linear.
+  /// Whether every index points into its array and every walk ends, which a damaged file could violate.
+  /// Linear.
   bool sound() const noexcept;
 
  private:

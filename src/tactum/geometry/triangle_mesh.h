@@ -1,5 +1,5 @@
 #pragma once
-/// An indexed triangle mesh: what files hold and parts are made of.
+/// An indexed triangle mesh, as files hold it and parts are made of it.
 
 #include <array>
 #include <vector>

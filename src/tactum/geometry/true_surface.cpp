@@ -13,8 +13,7 @@
 namespace tactum::inline v0_1 {
 namespace {
 
-/// Touching intervals and areas are worth the name when they are longer, or wider, than this many times the
-/// noise.
+/// Touching intervals and areas count when they are longer, or wider, than this many times the noise.
 constexpr double kLongerThanNoise = 4.0;
 
 class Builder {
@@ -25,7 +24,7 @@ class Builder {
     covered_.assign(static_cast<std::size_t>(features_), 0.0);
   }
 
-  /// Finds what of piece i piece k touches and covers.
+  /// Finds the features of piece i that piece k touches and covers.
   void touch(int i, int k) {
     const Polytope& P = pieces_[i];
     const Polytope& K = pieces_[k];
@@ -41,7 +40,7 @@ class Builder {
     }
   }
 
-  /// What is one across pieces i and k. When all have touched.
+  /// Joins the features that are one across pieces i and k. To be called when all have been through touch().
   void join(int i, int k) {
     const Polytope& P = pieces_[i];
     const Polytope& K = pieces_[k];
@@ -108,7 +107,7 @@ class Builder {
   int edge(int piece, int e) const { return first_[piece][1] + e; }
   int face(int piece, int f) const { return first_[piece][2] + f; }
 
-  /// Of face f, what nobody covers; zero when it is narrower than the noise [m^2].
+  /// The exposed area of face f; zero when it is narrower than the noise [m^2].
   double open_area(int piece, int f) const {
     const Polytope& P = pieces_[piece];
     const std::vector<Vec3> corners = face_corners(P, f);
@@ -188,7 +187,7 @@ class Builder {
   bool in_line(const Polytope& P, int e, const Polytope& K, int other) const {
     return shared_length(P, P.edges[e], K, K.edges[other]) >= -kLongerThanNoise * noise_;
   }
-  /// Of two edges in one line: how far they overlap; below zero: how far they are apart. -1e300: in no line.
+  /// How far two edges in one line overlap; below zero: how far they are apart. -1e300: not in one line.
   double shared_length(const Polytope& P, const Polytope::Edge& a, const Polytope& K,
                        const Polytope::Edge& b) const {
     constexpr double kNone = -1e300;

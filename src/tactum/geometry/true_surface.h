@@ -1,6 +1,6 @@
 #pragma once
-/// What of the pieces' own surfaces is the part's true surface. Pieces that share walls have faces, edges and
-/// corners that nobody can touch, and true faces that were cut into several:
+/// The part of the pieces' own surfaces that is the part's true surface. Pieces that share walls have faces,
+/// edges and corners that nobody can touch, and true faces that were cut into several:
 ///
 ///      ____________            a  the corner is in the middle of a true face: its only normal is up
 ///     |     a|     |           b  the face is covered by the neighbour: nothing can touch it
@@ -9,9 +9,9 @@
 ///            d
 ///
 /// The normals with which a union of convex pieces can be touched at a point are those that each piece there
-/// allows: the normal cone of a union is what its pieces' cones have in common. So all that is kept is which
-/// pieces touch each feature; most features are touched by none, and are true as they are. Pieces may share
-/// walls; where they overlap, what is inside another counts as covered.
+/// allows: the normal cone of a union is the intersection of its pieces' cones. So only the pieces that touch
+/// each feature are stored; most features are touched by none, and are true as they are. Pieces may share
+/// walls; where they overlap, the part inside another counts as covered.
 
 #include <array>
 #include <span>
@@ -37,7 +37,7 @@ struct TrueSurface {
     int piece = -1, index = -1;  ///< the edge or face of that piece
   };
   std::vector<Member> members;
-  double exposed_area = 0.0;  ///< of all faces, without what is covered [m^2]
+  double exposed_area = 0.0;  ///< of all faces, without covered parts [m^2]
 
   /// No two pieces touch: every feature is true as it is.
   bool single_piece() const noexcept { return first.empty(); }
@@ -45,7 +45,7 @@ struct TrueSurface {
   int number(int piece, int kind, int index) const noexcept {
     return first[static_cast<std::size_t>(piece)][static_cast<std::size_t>(kind)] + index;
   }
-  /// Of a face, -1 when nothing of it can be touched; of an edge.
+  /// Of a face, -1 when it is wholly covered; of an edge.
   int group_of(int piece, int kind, int index) const noexcept {
     return group[static_cast<std::size_t>(number(piece, kind, index))];
   }

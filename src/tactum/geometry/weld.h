@@ -1,5 +1,5 @@
 #pragma once
-/// Welding: vertices that are one in truth become one, and triangles that are none go. STL stores each corner
+/// Welding: vertices in one place become one, and triangles that are none are removed. STL stores each corner
 /// anew, OBJ doubles vertices where textures meet; without welding such meshes look full of holes.
 ///
 /// Vertices are taken in order; each joins the first kept vertex within the tolerance (a grid hash finds it)
@@ -14,7 +14,7 @@
 namespace tactum::inline v0_1 {
 
 struct WeldOptions {
-  double tolerance = tolerances::kWeld;  ///< share of the mesh's diagonal; 0 joins only equal coordinates [-]
+  double tolerance = tolerances::kWeld;  ///< fraction of the mesh's diagonal; 0 joins only equal points [-]
   bool drop_zero_area = false;  ///< also drop triangles without area (their corners differ but lie on a line)
   bool drop_duplicates = false;  ///< also drop later triangles with the same three corners
 };

@@ -26,7 +26,7 @@ void find_priorities(int grasped, ContactStage& stage) {
   priority[Index(grasped)] = priority::kGrasped;
 }
 
-/// Distances are those the frame found, before anything moved.
+/// Reports the distances that the frame found, before anything moved.
 void report_distances(const World& world, std::span<const ContactPatch> patches, FrameReport& report) {
   for (const ContactPatch& patch : patches) {
     const double size =

@@ -1,6 +1,6 @@
 #pragma once
 /// The stage of a frame that finds where bodies touch: the contact finder, with the priorities of bodies, and
-/// what a face's shading makes of the contacts.
+/// the shading of their faces.
 
 #include <vector>
 
@@ -14,11 +14,11 @@ struct ContactStage {
 
   ContactFinder finder;
   std::vector<std::uint8_t> priority;   ///< of each body (contact/schedule.h)
-  std::vector<ShadingNormals> shading;  ///< one per body; empty when shading is off, or bends nothing
+  std::vector<ShadingNormals> shading;  ///< one per body; empty when shading is off, or bends no normal
 };
 
-/// Finds which pairs could touch, when no point of body i moves farther than `motion_bound[i]` [m]. What is
-/// held, and what touched it in the last frame, goes first: fills stage.priority.
+/// Finds which pairs could touch, when no point of body i moves farther than `motion_bound[i]` [m]. The
+/// grasped part, and bodies that touched it in the last frame, go first: fills stage.priority.
 void find_near_pairs(const FrameSettings& settings, std::span<const Pose> X_WB,
                      std::span<const double> motion_bound, int grasped, ContactStage& stage) noexcept;
 

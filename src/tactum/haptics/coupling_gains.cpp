@@ -11,15 +11,16 @@
 namespace tactum::inline v0_1 {
 namespace {
 
-constexpr double kUsed = 0.5;         // share of the bound that is used
-constexpr double kDamperShare = 0.1;  // of the hand's damping, as the coupling's damper
+constexpr double kUsed = 0.5;         // the fraction of the bound that is used
+constexpr double kDamperShare = 0.1;  // fraction of the hand's damping that becomes the coupling's damper
 
-/// Of a handle that nobody has told the inertia of: the lightest of the presets.
+/// Of a handle whose inertia is not given: the lightest of the presets.
 constexpr double kLightest_kg = 0.045;
 constexpr double kLightest_kg_m2 = 2e-5;  // [kg m^2]
 
-/// Damping that is computed from the way of one frame is itself late by half a frame; a tenth of m / T is far
-/// from where that swings. And one encoder step of noise must not push by more than this share of the limit.
+/// Damping that is computed from the displacement of one frame is itself late by half a frame; a tenth of m /
+/// T is far from where that oscillates. And one encoder step of noise must not push by more than this
+/// fraction of the limit.
 constexpr double kInjectedShare = 0.1;
 constexpr double kNoiseShare = 0.05;
 
@@ -27,7 +28,7 @@ constexpr double kNoiseShare = 0.05;
 /// of a fist, so that a part of a hand's size gives way in translation first.
 constexpr double kLever_m = 0.2;
 
-/// Everything that bounds one half.
+/// Everything that bounds one half of the coupling, translation or rotation.
 struct Half {
   double device_damping, hand_damping, friction, encoder_step, stiffest;
 };

@@ -1,23 +1,23 @@
 #pragma once
-/// How stiff may the virtual coupling be on this device, at this rate? A spring K and damper B that are
-/// sampled every T and act after a delay of tau look to the hand like a thing that makes energy, and the
-/// device's own damping b must eat it:
+/// The largest stiffness of the virtual coupling on a device, at a rate. A spring K and damper B that are
+/// sampled every T and act after a delay of tau generate energy at the hand, and the device's own damping b
+/// must dissipate it:
 ///
 ///   b > K (T / 2 + tau) + |B|            [Colgate and Schenkel 1994], with delay [Gil 2009]
 ///
-/// With it the port is passive whatever the hand does, letting go included. Devices are built to have as
-/// little damping as possible, so few walls people use every day meet it (a Premium: 0.05 N s/m, 100 N/m at 1
-/// kHz). A hand that holds the handle adds its damping, 3 N s/m when it is loose: with that the same law says
-/// what does not buzz in a hand. Both are told; the gains are chosen for the hand, and the observer
-/// (passivity.h) watches for the rest.
+/// With it the port is passive whatever the hand does, also when it releases the handle. Devices are built to
+/// have as little damping as possible, so few walls in daily use satisfy it (a Premium: 0.05 N s/m, 100 N/m
+/// at 1 kHz). A hand that holds the handle adds its damping, 3 N s/m when it is loose: with that the same law
+/// bounds the stiffness that does not buzz in a hand. Both bounds are given; the gains are chosen for the
+/// hand, and the observer (passivity.h) watches for the rest.
 ///
 /// A coarse encoder makes a stiff spring chatter by one step and back, which friction stops when
 ///
 ///   friction > K step / 2                [Abbott and Okamura 2005]
 ///
 /// On a device that cannot turn the handle there is no loop around the turning spring, so no bound. It is
-/// never felt, only decides where the proxy gives way: chosen stiff, so that the rotation follows the hand
-/// and what the contact does against it is felt as force, the only thing that can be.
+/// never felt and only determines how far the proxy yields: chosen stiff, so that the rotation follows the
+/// hand and a contact that resists it is felt as force, the only thing that can be.
 
 #include <string>
 
@@ -27,13 +27,13 @@
 
 namespace tactum::inline v0_1 {
 
-/// The damping that a coupling asks for: K (T / 2 + tau) + |B|. The same for rotation.
+/// The damping that a coupling requires: K (T / 2 + tau) + |B|. The same for rotation.
 double damping_needed(double stiffness, double damping, double period_s, double delay_s) noexcept;
 
-/// The stiffest spring that `device_damping` can bear beside a damper B; 0 when B alone is too much.
+/// The stiffest spring that `device_damping` allows beside a damper B; 0 when B alone is too much.
 double stiffness_allowed(double device_damping, double damping, double period_s, double delay_s) noexcept;
 
-/// What bounds the coupling in one of its halves, translation or rotation (then N m/rad).
+/// The bounds of the coupling in one of its halves, translation or rotation (then N m/rad).
 struct GainBounds {
   double alone = 0.0;       ///< nobody holds the handle: passive [N/m]
   double loose_hand = 0.0;  ///< in a loose hand [N/m]
@@ -46,13 +46,13 @@ struct CouplingGains {
 };
 
 /// The gains for a device served at `rate_Hz`: half of what a loose hand allows, no more than the encoder and
-/// the device's makers do, with a tenth of that hand's damping as its damper.
+/// the device's makers allow, with a tenth of that hand's damping as its damper.
 CouplingGains coupling_gains(const DeviceInfo& info, double rate_Hz);
 
-/// What the passivity stage should know of this device.
+/// The settings of the passivity stage for this device.
 PortSettings port_settings(const DeviceInfo& info, double rate_Hz);
 
-/// How much of the bounds a coupling uses, in a sentence for people.
+/// Which fraction of the bounds a coupling uses, in a sentence for people.
 std::string margin_sentence(const Coupling& coupling, const DeviceInfo& info, double rate_Hz);
 
 }  // namespace tactum::inline v0_1

@@ -21,33 +21,33 @@ Wrench haptic_frame(const World& world, const FrameSettings& settings, const Dev
   WorldState& bodies = state.world;
   ContactStage& contacts = state.contacts;
   Wrench felt;
-  // Where is the hand, what does it hold, and what do force fields do to that?
+  // The pose of the probe, the grasped part, and the load of force fields on it.
   const GraspedPart grasped = track_hand(world, settings, sample, bodies.X_WB, state.hand);
   report.grasped_body = grasped.body;
   if (!grasped.hand_known) report.flags |= frame_flag::kNoHand;
   state.ended(Stage::kHand);
 
   if (grasped.hand_known) {
-    // How far may everything move in this frame?
+    // The motion bounds of this frame.
     const MotionInput motion{world, settings, grasped, contacts.finder.radii(), settings.dt_s};
     const std::span<const double> motion_bound = state.response.bound_motion(motion, bodies);
     state.ended(Stage::kVelocities);
 
-    // Which pairs could touch, and where do they?
+    // The pairs that could touch, and their contact patches.
     find_near_pairs(settings, bodies.X_WB, motion_bound, grasped.body, contacts);
     state.ended(Stage::kNearPairs);
     const std::span<const ContactPatch> patches =
         find_patches(world, settings, bodies.X_WB, state.response.points(), contacts, report);
     state.ended(Stage::kExactTests);
 
-    // How do the held part and the world answer?
+    // The response of the grasped part and the world.
     state.X_WB_start = bodies.X_WB;  // same size: nothing is allocated
     const StepInput step{motion, patches, contacts.priority, report.work, contacts.shading, state.X_WB_start};
     state.response.step(step, contacts.finder, bodies, report);
     add_field_work(bodies.X_WB, state.hand.field);
     state.ended(Stage::kResponse);
 
-    // What does the hand feel?
+    // The wrench that the hand feels.
     report_grasp(grasped, bodies, report);
     felt = state.response.felt(step, bodies);
   }
@@ -55,7 +55,7 @@ Wrench haptic_frame(const World& world, const FrameSettings& settings, const Dev
   report.smoothed =
       smooth_wrench(settings.smoothing, settings.dt_s, state.smoothing, to_device(state.hand, felt));
 
-  // What does the caller add? Does it make energy? Is it safe to send?
+  // The caller's own wrench, then passivity, then safety.
   PortInput port{.wanted = report.smoothed, .sent = state.safety.sent, .dt_s = settings.dt_s};
   const double pending_J = state.response.pending_J();
   add_stored_energy(world, settings.coupling, bodies, report, state.hand.field.given_J, pending_J, port);

@@ -5,9 +5,9 @@
 namespace tactum::inline v0_1 {
 namespace {
 
-// That no member of the report is missing in the list of its fields: as many members are named as there are.
+// Checks that no member of the report is missing in the list of its fields: as many are listed as there are.
 
-/// Stands for any member of an aggregate.
+/// Converts to any member of an aggregate.
 struct AnyMember {
   template <class T>
   operator T() const;  // NOLINT: an initializer of everything

@@ -1,5 +1,5 @@
 #pragma once
-/// Names what a frame computed, so that two runs can be compared to the bit.
+/// The hash of a frame, so that two runs can be compared to the bit.
 
 #include "tactum/base/hash.h"
 #include "tactum/response/frame_report.h"
@@ -9,7 +9,7 @@ namespace tactum::inline v0_1 {
 /// Adds everything that was computed and counted to the hash (a negative zero as zero): equal hashes mean
 /// equal frames.
 void add_to(FrameHash& hash, const FrameReport& report) noexcept;
-/// The same for where the bodies are and how they move.
+/// The same for the poses and velocities of the bodies.
 void add_to(FrameHash& hash, const WorldState& state) noexcept;
 
 }  // namespace tactum::inline v0_1

@@ -10,7 +10,7 @@ FrameState::FrameState(const World& constant_world, const FrameSettings& setting
       contacts(constant_world, settings, world.X_WB),
       response(constant_world, settings, world),
       observer(stage_observer) {
-  // The first frame begins with what is near, as every other does.
+  // The first frame begins with the near pairs, as every other does.
   const std::vector<double> at_rest(constant_world.bodies.size(), 0.0);
   contacts.finder.find_near_pairs(world.X_WB, at_rest, settings.penalty.min_tolerance_m);
   contacts.finder.find_patches(world.X_WB, settings.budget.max_exact_tests, response.points(),

@@ -1,6 +1,6 @@
 #pragma once
-/// What a frame changes: the poses of the bodies, and the state of each stage. Allocated once at load time; a
-/// copy goes on by itself.
+/// The state that a frame changes: the poses of the bodies, and the state of each stage. Allocated once at
+/// load time; a copy can be stepped on its own.
 
 #include <vector>
 
@@ -13,11 +13,12 @@
 
 namespace tactum::inline v0_1 {
 
-/// The parts of a frame that a stage observer is told the end of.
+/// The parts of a frame whose ends are reported to a stage observer.
 enum class Stage { kHand, kVelocities, kNearPairs, kExactTests, kResponse, kShow };
 inline constexpr int kStageCount = 6;
 
-/// Told when a stage has ended. The frame reads no clock; whoever wants times passes an observer that does.
+/// Called when a stage has ended. The frame reads no clock; a caller that wants times passes an observer that
+/// does.
 class StageObserver {
  public:
   virtual ~StageObserver() = default;

@@ -5,8 +5,8 @@ namespace {
 
 using Index = std::size_t;
 
-/// Moves the mapping of the device so that the hand is at the grasp point, and takes the part as it is
-/// turned.
+/// Moves the mapping of the device so that the probe is at the grasp point, and grasps the part in its
+/// present orientation.
 void take_first(const Vec3& p_BH, std::span<const Pose> X_WB, HandStage& hand) {
   if (hand.grasp.body < 0) return;
   const Pose& X_WB_grasped = X_WB[Index(hand.grasp.body)];

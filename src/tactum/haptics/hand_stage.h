@@ -1,5 +1,5 @@
 #pragma once
-/// The first stage of a frame: where is the hand, what does it hold, and what do force fields do to that?
+/// The first stage of a frame: the pose of the probe, the grasped part, and the load of force fields on it.
 
 #include "tactum/haptics/hand.h"
 #include "tactum/haptics/picking.h"
@@ -7,7 +7,7 @@
 
 namespace tactum::inline v0_1 {
 
-/// What the stage keeps from frame to frame.
+/// The state of the stage, from frame to frame.
 struct HandStage : HandTracking {
   Grasp grasp;
   FieldPull field;
@@ -16,7 +16,7 @@ struct HandStage : HandTracking {
 /// The stage before the first frame.
 HandStage begin_hand(const FrameSettings& settings);
 
-/// Takes a sample in. The first time the hand is known, the device is mapped so that the handle stands at the
+/// Takes a sample in. The first time the probe is known, the device is mapped so that the handle is at the
 /// tool's grasp point and the part is grasped in the orientation it has: nothing is pulled.
 GraspedPart track_hand(const World& world, const FrameSettings& settings, const DeviceSample& sample,
                        std::span<const Pose> X_WB, HandStage& hand) noexcept;

@@ -21,7 +21,7 @@
 
 namespace tactum::inline v0_1 {
 
-/// What a run keeps of a field (telemetry/run_record.h).
+/// The value of a field that a run keeps (telemetry/run_record.h).
 enum class InRun {
   kNothing,
   kLargest,  ///< the largest value of a frame

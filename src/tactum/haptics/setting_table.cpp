@@ -20,7 +20,7 @@ constexpr SettingKind kChoice = SettingKind::kChoice;
 constexpr const char* kResponses[] = {"penalty", "constraint"};  // as in ResponseModel
 constexpr const char* kDepths[] = {"shortest", "along_motion"};  // as in OverlapDepth
 
-/// Reading and writing a member of a section of the frame's settings, and of what is asked of safety.
+/// Reads and writes a member of a section of the frame's settings, and of the user's safety settings.
 template <auto Section, auto Member>
 double get_field(const Frame& frame, const Safety&) {
   return static_cast<double>((frame.*Section).*Member);
@@ -177,7 +177,7 @@ std::string settings_toml(const FrameSettings& frame, const SafetySettings& safe
   std::string_view section;
   for (const SettingInfo& setting : kSettings) {
     const double value = setting.get(frame, safety);
-    if (!std::isfinite(value)) continue;  // no limit: the key's absence says so
+    if (!std::isfinite(value)) continue;  // no limit: the key is left out
     const std::string shown = setting.kind == SettingKind::kOnOff ? (value != 0.0 ? "true" : "false")
                               : setting.kind == SettingKind::kChoice
                                   ? fmt::format("\"{}\"", setting.choices[static_cast<std::size_t>(value)])

@@ -1,8 +1,8 @@
 #pragma once
-/// The settings described by themselves: section and key as in scene files, unit, range, meaning. One table,
-/// from which scene files are read and written, ranges are checked, and the viewer's panel and
-/// docs/settings.md are made; a setting that gets a line here appears everywhere. What is no single number,
-/// as the pose of the workspace, what is held, and coefficients of pairs of materials, belongs to the scene.
+/// The table of settings: section and key as in scene files, unit, range, meaning. Scene files are read and
+/// written, ranges are checked, and the viewer's panel and docs/settings.md are made from it; a setting that
+/// gets a line here appears everywhere. Settings that are no single number, such as the pose of the
+/// workspace, the grasped part, and coefficients of pairs of materials, belong to the scene.
 
 #include <span>
 #include <string>
@@ -12,8 +12,8 @@
 
 namespace tactum::inline v0_1 {
 
-/// What can be set: the frame's settings, and what the user asks of safety (which only tightens the device's
-/// limits).
+/// Everything that can be set: the frame's settings, and the user's limits of safety (which only tighten the
+/// device's).
 struct UserSettings {
   FrameSettings frame;
   SafetySettings safety;
@@ -30,7 +30,7 @@ struct SettingInfo {
   const char* section;  ///< of the scene file; "" for the file's top
   const char* key;      ///< in it; its unit stands in the name
   const char* name;     ///< for people: "Stiffness"
-  const char* unit;     ///< of the values told here: "N/m"; "" for none
+  const char* unit;     ///< of the values in this table: "N/m"; "" for none
   const char* meaning;  ///< one line
   double low, high;     ///< the range, of files as of panels; the ends belong to it
   SettingKind kind;

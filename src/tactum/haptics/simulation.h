@@ -1,5 +1,5 @@
 #pragma once
-/// A world and its settings, stepped frame by frame: what a program needs that has no scene file.
+/// A world and its settings, stepped frame by frame, for a program without a scene file.
 ///
 ///   World world;                                                 bodies, by World::add
 ///   FrameSettings settings = settings_for(device.info(), 1000.0);
@@ -21,8 +21,9 @@ namespace tactum::inline v0_1 {
 /// without mass or inertia, a tool that holds no body of the world, a step that is not positive.
 Result<void> check_world(const World& world, const FrameSettings& settings);
 
-/// The default settings with what depends on the device: the step, the limits of safety, what the passivity
-/// stage knows of it, and the stiffest coupling it holds stable. Without these limits no force is sent.
+/// The default settings with those that depend on the device: the step, the limits of safety, the device's
+/// properties for the passivity stage, and the stiffest coupling that is stable on it. Without these limits
+/// no force is sent.
 FrameSettings settings_for(const DeviceInfo& info, double rate_Hz);
 
 class Simulation final : public HapticFrame {
@@ -35,7 +36,7 @@ class Simulation final : public HapticFrame {
   /// One frame, FrameSettings::dt_s after the last. The sample counts as measured now, whatever its time.
   /// Returns the wrench on the hand, axes of D, at the handle [N, N m].
   Wrench step(const DeviceSample& sample) noexcept;
-  /// The same with nothing known but the pose of the handle.
+  /// The same when only the pose of the handle is known.
   Wrench step(const Pose& X_DH) noexcept;
   /// The same with the loop's own index and time; the sample's time is then on the loop's clock.
   Wrench run(const DeviceSample& sample, const FrameTick& tick) noexcept override;
@@ -44,7 +45,7 @@ class Simulation final : public HapticFrame {
   /// Between two frames the caller may change what setting_table.h calls live, and the budget.
   FrameSettings& settings() noexcept { return settings_; }
   const FrameSettings& settings() const noexcept { return settings_; }
-  /// Where the bodies are and how they move.
+  /// The poses and velocities of the bodies.
   const WorldState& bodies() const noexcept { return state_.world; }
   const FrameState& state() const noexcept { return state_; }
   /// Of the last frame.

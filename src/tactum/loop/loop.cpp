@@ -8,7 +8,7 @@ namespace tactum::inline v0_1 {
 
 Result<void> check_rate(double rate_Hz) {
   constexpr double kLowest = 10.0;    // below, no hand would take it for touch
-  constexpr double kHighest = 1.0e5;  // above, no timer of this machine wakes anybody
+  constexpr double kHighest = 1.0e5;  // above, no timer of this machine wakes a thread
   if (rate_Hz >= kLowest && rate_Hz <= kHighest) return {};
   return Error{"bad rate of the haptic loop", std::to_string(rate_Hz) + " Hz", "10 to 100000 Hz", ""};
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// What a loop is: read the device, run the frame, write the wrench, at a fixed rate. Two drivers share it:
+/// The loop: read the device, run the frame, write the wrench, at a fixed rate. Two drivers run it:
 ///
 ///   run_virtual   (here)            a virtual clock, as fast as it goes; the same inputs give the same bits
 ///   LoopThread    (loop_thread.h)   real time, absolute deadlines
@@ -13,7 +13,7 @@
 
 namespace tactum::inline v0_1 {
 
-/// What the loop tells the frame beside the sample.
+/// The input of a frame from the loop, beside the sample.
 struct FrameTick {
   std::uint64_t index = 0;  ///< frames since the start
   double now_s = 0.0;       ///< on the loop's clock, zero at the start [s]
@@ -45,7 +45,7 @@ struct FrameRecord {
   double frame_time_s = 0.0;  ///< of HapticFrame::run, on the steady clock [s]
 };
 
-/// Told about every frame of a virtual run, outside the measured time.
+/// Called after every frame of a virtual run, outside the measured time.
 class LoopObserver {
  public:
   virtual ~LoopObserver() = default;

@@ -116,8 +116,8 @@ bool LoopThread::run_frame(Clock& clock, FrameTick& tick, DeviceSample& sample) 
   const std::int64_t before_ns = monotonic_ns();
   const Wrench computed = frame_->run(sample, tick);
   const std::int64_t after_ns = monotonic_ns();
-  // A frame that was held up answers a pose long past: nothing is better. The next one is late and ramps up
-  // again.
+  // A frame that was delayed so long belongs to an old pose: zero is better. The next frame is late and ramps
+  // up again.
   const Wrench F_D = after_ns - begin_ns > clock.late_ns ? Wrench{} : computed;
   const bool written = device_->write(F_D);
   const std::int64_t end_ns = monotonic_ns();

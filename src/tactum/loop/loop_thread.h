@@ -5,10 +5,10 @@
 ///   |--frame--|     |---- frame too long ---|        the frame of k+1 ends after k+2: k+2 is counted as
 ///                             ^ missed      |--      missed and skipped, never caught up in a burst
 ///
-/// A frame that starts later than one period plus `late_limit_s` after the last is told so (FrameTick::late),
-/// and safety sends zero. Stop: the frame is asked to lead the wrench to zero (FrameTick::stop); when it is,
-/// or after kMaxStop_s, zero is written and the device closed. A device that refuses many writes in a row is
-/// given up as unplugged. While it runs, a failed assertion anywhere first writes a zero wrench
+/// A frame that starts later than one period plus `late_limit_s` after the last is marked (FrameTick::late),
+/// and safety sends zero. Stop: the frame is asked to lead the wrench to zero (FrameTick::stop); when it is
+/// zero, or after kMaxStop_s, zero is written and the device closed. A device that refuses many writes in a
+/// row is given up as unplugged. While the loop runs, a failed assertion anywhere first writes a zero wrench
 /// (base/assert.h); with several loops at once that hook serves the one started last.
 ///
 /// Other threads may read status() and, one of them, pop timings(); everything else is for the owner.
@@ -29,11 +29,11 @@ struct LoopSettings {
   std::uint64_t frames = 0;         ///< asks for the stop by itself after so many; 0: never
   double late_limit_s = 0.010;      ///< beyond the period; a later frame sends zero [s]
   int writes_until_lost = 50;       ///< so many refused writes in a row: the device is unplugged
-  std::size_t timing_room = 16384;  ///< frames the timing ring holds until somebody pops them
+  std::size_t timing_room = 16384;  ///< frames the timing ring holds until a reader pops them
   RealtimeSettings realtime;
 };
 
-/// How one frame went, on the monotonic clock.
+/// The times of one frame, on the monotonic clock.
 struct FrameTiming {
   std::uint64_t index = 0;             ///< of the frame
   double now_s = 0.0;                  ///< when it began, since the loop's start [s]
@@ -48,10 +48,10 @@ struct LoopStatus {
   bool device_lost = false;  ///< refused writes; the loop has ended
   std::uint64_t frames = 0;
   std::uint64_t missed_deadlines = 0;
-  std::uint64_t late_frames = 0;  ///< told FrameTick::late
+  std::uint64_t late_frames = 0;  ///< marked FrameTick::late
   std::uint64_t failed_reads = 0;
   std::uint64_t failed_writes = 0;
-  std::uint64_t dropped_timings = 0;  ///< nobody popped them in time
+  std::uint64_t dropped_timings = 0;  ///< lost because the ring was full
 };
 
 class LoopThread {
@@ -69,7 +69,7 @@ class LoopThread {
   void request_stop() noexcept { stop_requested_.store(true, std::memory_order_relaxed); }
 
   LoopStatus status() const noexcept;
-  /// What the operating system granted; valid after start.
+  /// The privileges that the operating system granted; valid after start.
   const LoopPrivileges& privileges() const noexcept { return privileges_; }
   /// One consumer. Valid after the first start, until the next start.
   SpscRing<FrameTiming>& timings() noexcept { return *timings_; }

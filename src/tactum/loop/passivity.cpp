@@ -11,10 +11,10 @@ namespace {
 /// One of the two balances over one step.
 struct Step {
   Vec3 displacement;  // made since the last frame
-  Vec3 sent;          // force (torque) held meanwhile
+  Vec3 sent;          // force (torque) that acted meanwhile
   double damping;     // the device's own
   double given_J;     // by the scene's bodies
-  double highest_J;   // the balance may become
+  double highest_J;   // upper bound of the balance
   double credit_J;
   double max_injected;
   double dt_s;
@@ -26,14 +26,15 @@ void book(const Step& step, double& energy_balance_J) noexcept {
   energy_balance_J = std::clamp(energy_balance_J + passed_J, -step.credit_J, step.highest_J);
 }
 
-/// What the wrench and the controller's part of it have done over the way.
+/// Adds the work of the wrench, and of the controller's part of it, over a displacement.
 void add_up(const Vec3& displacement, const Vec3& sent, const Vec3& damper, EnergyTotals& total) noexcept {
   const double work_J = sent.dot(displacement);
   (work_J > 0.0 ? total.to_hand_J : total.from_hand_J) += std::abs(work_J);
   total.damped_J -= damper.dot(displacement);
 }
 
-/// A thread turns one kind of work into the other: what one balance owes, the other pays as far as it can.
+/// A thread turns one kind of work into the other: a deficit of one balance is covered by the other as far as
+/// it can.
 void settle(double& energy_balance_J, double& other_J) noexcept {
   const double paid_J = std::max(0.0, std::min(-energy_balance_J, other_J));
   energy_balance_J += paid_J;

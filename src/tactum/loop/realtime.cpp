@@ -37,13 +37,13 @@ void ask_realtime(int priority, LoopPrivileges& got) {
 }
 
 void ask_locked_memory(LoopPrivileges& got) {
-  // Under a finite limit, locking what is yet to come would make later allocations fail, so then it is not
-  // asked.
+  // Under a finite limit, locking future memory would make later allocations fail, so then it is not
+  // requested.
   rlimit limit{};
   const bool unlimited =
       geteuid() == 0 || (getrlimit(RLIMIT_MEMLOCK, &limit) == 0 && limit.rlim_cur == RLIM_INFINITY);
   int error = unlimited ? 0 : EPERM;
-  // On fault: pages are locked once touched, the gigabytes a program only reserves are not.
+  // On fault: pages are locked once touched; the gigabytes that a program only reserves are not.
   if (unlimited && mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) != 0) error = errno;
   got.memory_locked = error == 0;
   got.sentences.push_back(got.memory_locked

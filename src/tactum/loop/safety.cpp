@@ -12,7 +12,8 @@ using namespace safety_flag;
 
 constexpr double kFullScaleTime_s = 0.005;
 
-/// A frozen pose matters when this share of the largest force (torque) would go on being sent.
+/// A frozen pose is a fault when more than this fraction of the largest force (torque) would go on being
+/// sent.
 constexpr double kMatters = 0.01;
 
 /// Scales `v` to at most `limit`; true when it did. A limit of zero gives exactly zero.
@@ -31,7 +32,7 @@ bool limit_step(const Vec3& from, Vec3& v, double step) noexcept {
   return true;
 }
 
-/// What is wrong with how the pose moves; remembers the pose.
+/// The faults in the motion of the pose; stores the pose.
 std::uint32_t faults_of_motion(const SafetyLimits& limits, SafetyState& state,
                                const SafetyInput& input) noexcept {
   if (!input.sample_valid || !plausible(input.X_DH)) return 0;

@@ -1,6 +1,6 @@
 #pragma once
-/// The last stage before the device: whatever the stages before it computed, what leaves here cannot hurt the
-/// hand or the motors. It stands on its own, cannot be switched off, only tightened.
+/// The last stage before the device: whatever the stages before it computed, the wrench that leaves here
+/// cannot hurt the hand or the motors. It stands on its own, cannot be switched off, only tightened.
 ///
 ///   fault? ---- yes -> zero, at once                     fault: wrench or pose not finite, sample stale,
 ///     no                                                        reads failing, pose leapt or frozen, loop
@@ -9,11 +9,11 @@
 ///   wanted -> magnitude limit -> * gain -> slew limit -> magnitude limit
 ///
 /// A fault drops to zero in one frame, without the slew limit: the wrench would otherwise go on answering a
-/// pose nobody has measured, and a motor that lets go is the one thing that is safe without knowing anything.
-/// When the fault is over the force comes back by the start ramp, from zero, so that a hand that meanwhile
-/// sank into a wall is not hit. A requested stop is no emergency: the pose is known, so the force is led down
-/// over the stop ramp and the hand is not surprised. At the end of the stop ramp the wrench is zero even when
-/// a tightened slew limit has not got there yet.
+/// pose that was not measured, and a motor without current is the one thing that is safe without knowing
+/// anything. When the fault is over the force comes back by the start ramp, from zero, so that a hand that
+/// meanwhile sank into a wall is not hit. A requested stop is no emergency: the pose is known, so the force
+/// is led down over the stop ramp and the hand is not surprised. At the end of the stop ramp the wrench is
+/// zero even when a tightened slew limit has not got there yet.
 ///
 /// So |f| and |t| never exceed their limits; the change of f (and of t) from one frame to the next never
 /// exceeds slew * period but when it goes to zero for a reason above or when the limits are tightened
@@ -45,7 +45,7 @@ struct SafetyLimits {
       std::numeric_limits<double>::infinity();  ///< a pose the same to the bit for longer is frozen [s]
 };
 
-/// What a user may ask for. Each can only make the limit tighter than the device's; anything else is ignored.
+/// The wishes of a user. Each can only make the limit tighter than the device's; anything else is ignored.
 struct SafetySettings {
   double max_force_N = std::numeric_limits<double>::infinity();               ///< [N]
   double max_torque_Nm = std::numeric_limits<double>::infinity();             ///< [N m]
@@ -91,7 +91,7 @@ struct SafetyInput {
   Pose X_DH;                  ///< the pose it was computed from [m]
   bool sample_valid = false;  ///< the read succeeded
   double sample_age_s = 0.0;  ///< now minus the sample's time [s]
-  bool motors_on = true;      ///< as the sample says
+  bool motors_on = true;      ///< as reported by the sample
   bool refused = false;       ///< the device did not take the last wrench
   double now_s = 0.0;         ///< on the loop's clock [s]
   double period_s = 0.001;    ///< nominal time between frames [s]
@@ -106,9 +106,9 @@ struct SafetyState {
   Wrench sent;              ///< last frame's answer [N, N m]
   double gain = 0.0;        ///< of the ramps, 0 to 1
   double invalid_s = 0.0;   ///< for how long reads have failed in a row [s]
-  Pose X_DH;                ///< the last that was measured, whatever it was worth [m]
+  Pose X_DH;                ///< the last that was measured, valid or not [m]
   double measured_s = 0.0;  ///< when, on the loop's clock [s]
-  double still_s = 0.0;     ///< for so long it has been the same to the bit [s]
+  double still_s = 0.0;     ///< how long it has been the same to the bit [s]
   bool measured = false;    ///< there has been one
 };
 

@@ -20,7 +20,7 @@ namespace tactum::inline v0_1 {
 struct SmoothingSettings {
   double max_force_step_N = 0.5;     ///< F_max of the force in 1 ms; infinity: no smoothing [N]
   double max_torque_step_Nm = 0.01;  ///< F_max of the torque in 1 ms; infinity: no smoothing [N m]
-  bool on = true;                    ///< false: what is computed is shown
+  bool on = true;                    ///< false: the computed force is shown
 };
 
 struct SmoothingState {

@@ -24,8 +24,8 @@ struct Kernels {
   /// shares[k] = column k . x
   void (*dots)(const double* columns, std::size_t count, const double* x, std::size_t n, double* shares);
   double (*dot)(const double* x, const double* y, std::size_t n);
-  /// x = R^-1 rest, R upper triangular of `count` columns, `reciprocal` of its diagonal. Rest is used up, and
-  /// what lies behind its `count` numbers, to the next eight.
+  /// x = R^-1 rest, R upper triangular of `count` columns, `reciprocal` of its diagonal. Rest is overwritten,
+  /// and so is the memory behind its `count` numbers, to the next multiple of eight.
   void (*solve_upper)(const double* columns, const double* reciprocal, std::size_t count, double* rest,
                       double* x);
   /// (one, other) -> (cosine one + sine other, cosine other - sine one)

@@ -1,6 +1,6 @@
 #pragma once
-/// The loops of column_kernels.h for so many lanes. Included by what compiles them for a processor, and
-/// includes nothing that could be compiled for another one as well.
+/// The loops of column_kernels.h for a number of lanes. Included by the files that compile them for a
+/// processor, and includes nothing that could be compiled for another one as well.
 
 #include <cstring>
 

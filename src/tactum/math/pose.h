@@ -1,5 +1,5 @@
 #pragma once
-/// Where a frame B is in a frame A. `X_AB * p_B` is the same point told in A; `X_AB * X_BC` is X_AC.
+/// The pose of a frame B in a frame A. `X_AB * p_B` is the same point in A; `X_AB * X_BC` is X_AC.
 
 #include "tactum/math/types.h"
 

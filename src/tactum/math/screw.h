@@ -50,7 +50,7 @@ inline Twist twist_between(const Pose& X_WB, const Pose& X_WC, double dt) {
   return {(X_WC.p - X_WB.p) / dt, log_rotation(X_WC.R * X_WB.R.transpose()) / dt};
 }
 
-/// The pose at `s` in [0, 1] on the way from X_WB (0) to X_WC (1).
+/// The pose at the fraction `s` in [0, 1] of the motion from X_WB (0) to X_WC (1).
 inline Pose interpolated(const Pose& X_WB, const Pose& X_WC, double s) {
   return advanced(X_WB, twist_between(X_WB, X_WC, 1.0), s);
 }

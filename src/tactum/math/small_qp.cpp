@@ -14,17 +14,17 @@ namespace {
 using Index = std::size_t;
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
-/// A row of which less than this share is left beside those begun with waits until it is broken: taken as an
-/// equation, what rows all but agree on would be solved for with forces that are as many times too large.
+/// A row that is linearly independent of those begun with by less than this fraction waits until it is
+/// broken: taken as an equation, rows that almost agree would give forces that are as many times too large.
 constexpr double kWorthBeginning = 1e-3;
 
-/// Of one body all rows are scanned before each is taken in. Where several sets of forces hold it alike, the
+/// For one body all rows are scanned before each is added. Where several sets of forces hold it equally, the
 /// order decides which is found: with less than the whole order a peg jammed 10 mm deep wedged from 1.07
 /// times the analytic friction instead of 1.03.
 constexpr Index kFewUnknowns = 6;
 
-/// How far from square the columns of Q may be; a row of which so little is left that rounding would lead
-/// farther is made square to them once more.
+/// How far from orthogonal the columns of Q may be; a row whose independent part is so small that rounding
+/// would lead farther is orthogonalised once more.
 constexpr double kRounding = std::numeric_limits<double>::epsilon();
 constexpr double kSquare = 5e4 * kRounding;
 
@@ -37,7 +37,7 @@ Lanes lanes(const double* x) noexcept {
   return both;
 }
 
-/// The next multiple of eight; what lies between is zero or meets zeros.
+/// The next multiple of eight; the numbers between are zero or are multiplied by zeros.
 Index whole(Index n) noexcept { return (n + 7) & ~Index(7); }
 
 /// Turns the pair (a, b) so that b vanishes.
@@ -57,7 +57,7 @@ struct Turn {
   }
 };
 
-/// Of the edges of a cone, one array each, to be looked at in lanes.
+/// The edges of a cone, one array each, for loops over lanes.
 struct Around {
   std::array<double, QpCone::kAround> cosine{}, sine{};
   Around() {
@@ -147,9 +147,9 @@ const QpAnswer& SmallQp::solve_on(const QpProblem& problem, int max_iterations) 
   return answer_;
 }
 
-/// The nearest point that keeps the rows that hold, without those that would have to pull.
+/// The nearest point that keeps the active rows, without those that would have to pull.
 void SmallQp::begin_at_active() noexcept {
-  Column& y = along_;  // z = Q y, R^T y = the offsets: still so after a row was let go
+  Column& y = along_;  // z = Q y, R^T y = the offsets: still so after a row was dropped
   y.fill(0.0);
   for (Index j = 0; j < count(); ++j) {
     const double rest = problem_.offset(Index(answer_.active[j].row));
@@ -161,7 +161,7 @@ void SmallQp::begin_at_active() noexcept {
   kernels_->combine(Q_[0].data(), count(), y.data(), 1.0, whole(problem_.unknowns), answer_.z.data());
 }
 
-/// Lets the row go that would have to pull most, if any would.
+/// Drops the row that would have to pull most, if any would.
 bool SmallQp::release_pulling() noexcept {
   const auto end = push_.begin() + static_cast<std::ptrdiff_t>(count());
   const auto least = std::min_element(push_.begin(), end);
@@ -172,7 +172,7 @@ bool SmallQp::release_pulling() noexcept {
 
 double SmallQp::missing(const QpRow& row) const noexcept { return row.offset - dot(row, answer_.z.data()); }
 
-/// By how much the edges of a cone are missed.
+/// By how much each edge of a cone is missed.
 std::array<double, QpCone::kEdges> SmallQp::missing(const QpCone& cone) const noexcept {
   const double off = missing(cone.off);
   const double along = cone.slope * missing(cone.along);
@@ -186,7 +186,7 @@ std::array<double, QpCone::kEdges> SmallQp::missing(const QpCone& cone) const no
   return by;
 }
 
-/// A row that is missed by most, if any is by more than the tolerance.
+/// Finds a row that is missed by most, if any is by more than the tolerance.
 bool SmallQp::most_broken(Index& worst) noexcept {
   double most = problem_.tolerance;
   bool found = false;
@@ -220,7 +220,7 @@ bool SmallQp::most_broken(Index& worst) noexcept {
   return found;
 }
 
-/// Walks until `row` is kept.
+/// Moves until `row` is kept.
 QpStatus SmallQp::take(Index index, int max_iterations) noexcept {
   const QpRow row = problem_.row(index);
   double multiplier = 0.0;
@@ -232,7 +232,7 @@ QpStatus SmallQp::take(Index index, int max_iterations) noexcept {
     const double whole_step = dependent ? kFar : missing(row) / free_sq_;
     Index blocking = 0;
     const double allowed = longest_step(blocking);
-    // No row lets go: there is no way, or the numbers are none (a scene that was set absurdly).
+    // No row can be dropped: there is no solution, or a number is not finite (a scene with absurd settings).
     if (allowed == kFar && (dependent || !(whole_step < kFar))) return QpStatus::kInfeasible;
     const double step = whole_step <= allowed ? whole_step : allowed;
     for (Index j = 0; j < count(); ++j) answer_.active[j].multiplier -= step * push_[j];
@@ -249,7 +249,7 @@ QpStatus SmallQp::take(Index index, int max_iterations) noexcept {
   return QpStatus::kBounded;
 }
 
-/// Splits g into what rows that hold see of it and what is free, the way to go.
+/// Splits g into its part along the active rows and the free part, the direction of the step.
 void SmallQp::set_direction(const QpRow& row) noexcept {
   const Index q = count();
   const Index n = whole(problem_.unknowns);
@@ -267,30 +267,30 @@ void SmallQp::set_direction(const QpRow& row) noexcept {
   free_off_square_ = kRounding;
 }
 
-/// Whether more than such a share of the row is free.
+/// Whether the free part is more than this fraction of the row.
 bool SmallQp::leaves(double share) const noexcept { return free_sq_ > share * share * length_sq_; }
 
-/// Takes the columns of Q, each times its share, off what is free.
+/// Subtracts the columns of Q, each times its factor, from the free part.
 void SmallQp::take_off(const Column& shares) noexcept {
   const Index n = whole(problem_.unknowns);
   kernels_->combine(Q_[0].data(), count(), shares.data(), -1.0, n, free_.data());
   free_sq_ = kernels_->dot(free_.data(), free_.data(), n);
 }
 
-/// Frees the way along the column of Q that was let go last.
+/// Makes the direction of the column of Q that was dropped last free again.
 void SmallQp::free_to(Index column) noexcept {
   const Index n = whole(problem_.unknowns);
   kernels_->combine(Q_[column].data(), 1, &along_[column], 1.0, n, free_.data());
   free_sq_ = kernels_->dot(free_.data(), free_.data(), n);
 }
 
-/// What the rows that hold push off with for a push along `along`.
+/// The multipliers of the active rows against a force along `along`.
 void SmallQp::set_push() noexcept {
   std::copy_n(along_.begin(), count(), work_.begin());
   kernels_->solve_upper(R_[0].data(), reciprocal_.data(), count(), work_.data(), push_.data());
 }
 
-/// How far until a holding row would pull, and which.
+/// How far the step may go until an active row would pull, and which one.
 double SmallQp::longest_step(Index& blocking) const noexcept {
   double longest = kFar;
   for (Index j = 0; j < count(); ++j) {
@@ -304,7 +304,7 @@ double SmallQp::longest_step(Index& blocking) const noexcept {
   return longest;
 }
 
-/// Takes in the row of the last direction.
+/// Adds the row of the last direction to the active set.
 void SmallQp::append(Index row, double multiplier) noexcept {
   const Index q = count();
   const double length = std::sqrt(free_sq_);
@@ -318,7 +318,7 @@ void SmallQp::append(Index row, double multiplier) noexcept {
   off_square_ = std::max(off_square_, free_off_square_);
 }
 
-/// Takes a column out of R and makes the rest triangular again. What of g and of Q it alone saw comes last.
+/// Takes a column out of R and makes the rest triangular again. Its own part of g and of Q comes last.
 void SmallQp::release(Index leaving) noexcept {
   const Index last = count() - 1;
   for (Index j = leaving; j < last; ++j) {

@@ -1,5 +1,5 @@
 #pragma once
-/// Twists and wrenches: a velocity and a force, each with its turning part, and how they move between frames.
+/// Twists and wrenches: a velocity and a force, each with its turning part, and their change between frames.
 ///
 /// A Twist V_WB is the velocity of B's origin and the angular velocity of B, both with axes of W.
 /// A Wrench F_W acts at a named reference point (mostly the body's centre of mass), with axes of W.
@@ -28,10 +28,10 @@ struct Wrench {
   bool finite() const { return f.allFinite() && t.allFinite(); }
 };
 
-/// The same motion told at a point `r` away (same axes).
+/// The same motion stated at a point `r` away (same axes).
 inline Twist moved(const Twist& V, const Vec3& r) { return {V.v + V.w.cross(r), V.w}; }
 
-/// The same load told at a point `r` away (same axes).
+/// The same load stated at a point `r` away (same axes).
 inline Wrench moved(const Wrench& F, const Vec3& r) { return {F.f, F.t - r.cross(F.f)}; }
 
 /// The same motion with axes of A instead of B.

@@ -1,5 +1,5 @@
 #pragma once
-/// Named arrays in one block of bytes: what a part file is made of.
+/// Named arrays in one block of bytes, the form of a part file.
 ///
 ///   magic 8 | version 4 | byte order 4 | whole size 8 | checksum 8          the checksum is of all the rest
 ///   name 24 | element size 4 | zero 4 | count 8 | elements, filled up to 8  ... once for each array
@@ -15,8 +15,8 @@
 ///     archive("tree", part.tree);                    // anything with for_each_array, scalars and sound
 ///   }
 ///
-/// The reader believes nothing: sizes are held against the bytes that are there before anything is allocated,
-/// and the first thing that is wrong ends it with a sentence.
+/// The reader trusts nothing: sizes are compared with the bytes that are there before anything is allocated,
+/// and the first error ends it with a sentence.
 
 #include <concepts>
 #include <cstddef>
@@ -33,11 +33,11 @@
 
 namespace tactum::inline v0_1 {
 
-/// Copied byte by byte. Eigen's small matrices are plain numbers too, though they do not say so.
+/// Copied byte by byte. Eigen's small matrices are plain numbers too, though their type traits deny it.
 template <class T>
 concept PlainData = std::is_trivially_copyable_v<T> || std::is_same_v<T, Vec3> || std::is_same_v<T, Mat3>;
 
-/// Keeps its data in flat arrays and can say whether they fit together.
+/// Keeps its data in flat arrays and can check whether they fit together.
 template <class T>
 concept ArraysInside = requires(T& object, const T& constant) {
   object.scalars();
@@ -74,7 +74,7 @@ class ArrayWriter {
 
 class ArrayReader {
  public:
-  /// Checks magic, version, size and checksum. `what` names the thing in errors ("part"), `where` the file.
+  /// Checks magic, version, size and checksum. Errors call the thing `what` ("part") and the file `where`.
   ArrayReader(std::string_view bytes, std::string_view magic, std::uint32_t version, std::string what,
               std::string where);
 
@@ -103,7 +103,7 @@ class ArrayReader {
   }
   void operator()(std::string_view name, std::string& text);
   void operator()(std::string_view name, std::vector<std::string>& texts);
-  /// Only corners and loops are stored; what follows from them is computed anew, to the same bits.
+  /// Only corners and loops are stored; the rest is computed from them anew, to the same bits.
   void operator()(std::string_view name, std::vector<Polytope>& pieces);
 
   /// Ends the reading with an error about the array. The first error stays.

@@ -3,9 +3,9 @@
 /// given to the neighbour across that side, which is cut there, and the cap is gone. At an open side the cap
 /// is just dropped. Picture in mesh_repair.h.
 ///
-/// Surfaces keep their shape to kDegenerateTriangle of the cap's length. Caps whose neighbour is not sure
-/// (more than two triangles at the side, or the cut would need an edge that is there already) stay.
-/// Rounds of n log n, at most kMostCapRounds: a fan of caps is undone from its rim inward.
+/// Surfaces keep their shape to kDegenerateTriangle of the cap's length. Caps whose neighbour is ambiguous
+/// (more than two triangles at the side, or the cut would need an edge that is there already) stay. Rounds of
+/// n log n, at most kMostCapRounds: a fan of caps is undone from its rim inward.
 
 #include <vector>
 

@@ -121,6 +121,7 @@ std::vector<Candidate> candidates_of(const Body& body) {
 }
 
 /// The bodies after one cut by the best plane that works; none when every plane has the whole body on one
+/// side: its reflex edges are then noise of the coordinates only.
 /// side: what is reflex is so by the noise of the coordinates only.
 Result<std::vector<Solid>> cut_once(std::vector<Vec3>& corners, const Body& body) {
   std::optional<Error> failure;

@@ -7,10 +7,10 @@
 ///     |          |          |          |   Bodies that come apart go on alone; what has no reflex edge is
 ///     |__________|          |__________|   convex. At last, pieces that are convex together are joined.
 ///
-/// Departs from the source: cuts go through the whole body rather than the one cross-section that holds the
-/// edge, and what was cut in vain is joined again; the plane is chosen by count, where the source takes any.
-/// Robust by counting: see decomposition_cut.h. The result is proved, not trusted: the volumes of the pieces
-/// add up to the volume of the solid, and no two pieces overlap.
+/// It differs from the source: cuts go through the whole body rather than the one cross-section that holds
+/// the edge, and pieces that were cut in vain are joined again; the plane is chosen by count, where the
+/// source takes any. Robust by counting: see decomposition_cut.h. The result is proved, not trusted: the
+/// volumes of the pieces add up to the volume of the solid, and no two pieces overlap.
 ///
 /// For parts of few pieces, where tracked pairs are fastest; a part of many is better felt by its surface.
 /// See docs/algorithms/decomposition.md.
@@ -23,8 +23,7 @@
 
 namespace tactum::inline v0_1 {
 
-/// So many pieces are few enough for the solid to be the better way than the surface, measured by the cost of
-/// near pairs.
+/// Up to so many pieces the solid is better than the surface, measured by the cost of near pairs.
 inline constexpr int kFewSolidPieces = 32;
 
 struct SolidPieces {
@@ -34,9 +33,9 @@ struct SolidPieces {
   int joined = 0;  ///< pieces that became part of a neighbour
 };
 
-/// Of a welded mesh with normals outward. An error says, with a place, that the mesh is open or not manifold
-/// or crosses itself, or that it would take more than `most_pieces` pieces. Cost: milliseconds for tens of
-/// pieces.
+/// The pieces of a welded mesh with normals outward. An error says, with a place, that the mesh is open or
+/// not manifold or crosses itself, or that it would take more than `most_pieces` pieces. Cost: milliseconds
+/// for tens of pieces.
 Result<SolidPieces> solid_pieces(const TriangleMesh& mesh, int most_pieces);
 
 }  // namespace tactum::inline v0_1

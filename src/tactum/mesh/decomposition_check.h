@@ -1,5 +1,6 @@
 #pragma once
-/// From convex bodies to pieces, pieces that are one after all, and the proof that they are the solid.
+/// From convex bodies to pieces, the joining of pieces that are convex together, and the proof that all are
+/// the solid.
 
 #include <vector>
 
@@ -9,19 +10,19 @@
 
 namespace tactum::inline v0_1::detail {
 
-/// The hull of a body without reflex edges. An error when it holds more than the body by more than `noise`
-/// [m] everywhere on its surface.
+/// The hull of a body without reflex edges. An error when it is larger than the body by more than `noise` [m]
+/// everywhere on its surface.
 Result<Polytope> convex_piece(const std::vector<Vec3>& corners, const Solid& body, double noise);
 
-/// Joins pieces whose union is convex, until there are none: a plane parts the two, and every other face of
-/// either holds the other. Returns how many pieces went.
+/// Joins pieces whose union is convex, until there are none: a plane separates the two, and both lie below
+/// every other face of either. Returns how many pieces were removed.
 int join_convex(std::vector<Polytope>& pieces, double noise);
 
 /// Whether the volumes add up to `volume` within `tolerance` [m^3] and no two pieces overlap by more than
 /// `noise` [m].
 Result<void> check_pieces(const std::vector<Polytope>& pieces, double volume, double noise, double tolerance);
 
-/// Whether the pieces share a point that is deeper than `depth` [m] in both.
+/// Whether the pieces have a common point that is deeper than `depth` [m] in both.
 bool overlap_deeper(const Polytope& a, const Polytope& b, double depth);
 
 /// [m^3]

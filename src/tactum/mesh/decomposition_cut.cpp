@@ -57,7 +57,7 @@ class Corners {
   std::map<std::pair<int, int>, int> new_;
 };
 
-/// A corner on the line of the cut, and what of the face begins (+1) or ends (-1) there, going along.
+/// A corner on the line of the cut, and the parts of the face that begin (+1) or end (-1) there, going along.
 struct LineCorner {
   double along = 0.0;
   int corner = 0;

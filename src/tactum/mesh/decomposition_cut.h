@@ -22,8 +22,8 @@ struct Halves {
   Solid below, above;  ///< either may be empty
 };
 
-/// New corners are appended to `corners`. An error says where counting went wrong: the surface crosses itself
-/// there, or is thinner than the noise. O(sides log sides).
+/// New corners are appended to `corners`. An error gives the place where counting failed: the surface crosses
+/// itself there, or is thinner than the noise. O(sides log sides).
 Result<Halves> cut(std::vector<Vec3>& corners, const Solid& solid, const CutPlane& plane, double noise);
 
 }  // namespace tactum::inline v0_1::detail

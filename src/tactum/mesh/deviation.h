@@ -1,11 +1,11 @@
 #pragma once
-/// How far the pieces of a part are from the mesh they were made of, both ways: an examination of what
-/// preparation did, by code that shares nothing with it.
+/// How far the pieces of a part are from the mesh they were made of, in both directions: a check of
+/// preparation, by code that has nothing in common with it.
 ///
 ///   mesh -> part   corners, middles of sides and a grid over every triangle of the mesh, each to the nearest
 ///                  point of the pieces' faces
-///   part -> mesh   the same of the pieces' faces to the mesh; what lies on or in another solid piece is a
-///                  cut of ours inside the solid, not surface, and is only counted
+///   part -> mesh   the same of the pieces' faces to the mesh; a sample on or in another solid piece is on a
+///                  cut of ours inside the solid, not on the surface, and is only counted
 ///
 /// The grid is finer on larger triangles. A part without pieces is
 /// judged by its surface. Under trees of boxes: n log n, about two microseconds a sample.
@@ -25,7 +25,7 @@ class NearestOnMesh {
  public:
   explicit NearestOnMesh(const TriangleMesh& mesh);
 
-  /// Distance from the point [m]; 1e300 from no triangle. Looks at the last answer first.
+  /// Distance from the point [m]; 1e300 from no triangle. Tests the last answer first.
   double distance(const Vec3& point);
 
  private:

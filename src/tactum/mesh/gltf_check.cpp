@@ -420,7 +420,7 @@ class GltfReducer {
   std::vector<std::string> buffers_;
   json out_ = json::object();
   std::string bin_;
-  std::vector<int> out_mesh_;  ///< number in the output of each mesh, -1 when nothing is left of it
+  std::vector<int> out_mesh_;                 ///< number in the output of each mesh, -1 when it is empty
   std::vector<std::uint64_t> mesh_vertices_;  ///< of each mesh
 };
 

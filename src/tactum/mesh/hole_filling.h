@@ -27,7 +27,8 @@ struct Rim {
 /// The rims of the mesh's holes, in the order of their lowest edges. Triangles must agree in orientation.
 std::vector<Rim> rims_of(const TriangleMesh& mesh);
 
-/// Closes rims of at most `most_edges` edges. New triangles are appended; the rims tell which were closed.
+/// Closes rims of at most `most_edges` edges. New triangles are appended; each rim is marked as closed or
+/// not.
 std::vector<Rim> close_holes(TriangleMesh& mesh, int most_edges);
 
 }  // namespace tactum::inline v0_1

@@ -1,6 +1,6 @@
 #pragma once
-/// What the readers of mesh files are given and return: limits, the mesh with its groups, and what was not
-/// taken as it stood.
+/// Input and output of the readers of mesh files: limits, the mesh with its groups, and a report of the
+/// differences from the file.
 
 #include <cstddef>
 #include <string>
@@ -25,7 +25,7 @@ struct MeshGroup {
   int triangle_count = 0;
 };
 
-/// What was not taken as it stood in the file.
+/// The differences between the mesh and the file.
 struct ImportReport {
   std::string format;                ///< "OBJ", "STL (binary)", ...
   int polygons_split = 0;            ///< faces of more than three corners, cut into triangles

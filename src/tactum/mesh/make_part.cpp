@@ -53,7 +53,7 @@ Result<void> check_options(const PartOptions& options) {
                "numbers above zero", options.name};
 }
 
-/// What follows from surface, pieces and mass.
+/// Sets the members that follow from surface, pieces and mass.
 void complete(Part& part) {
   part.size = bounds(part.surface.vertices).diagonal();
   for (const Vec3& vertex : part.surface.vertices) {
@@ -122,7 +122,7 @@ TriangleMesh group_mesh(const ImportedMesh& mesh, const MeshGroup& group, double
   return weld(part).mesh;
 }
 
-/// So many pieces are allowed when a solid is asked for.
+/// So many pieces are allowed when a solid is wanted.
 constexpr int kMostPieces = 512;
 
 void add_solid_pieces(std::vector<Polytope> pieces, Part& part) {
@@ -180,7 +180,7 @@ PartOptions for_moved_points(const PartOptions& options) {
   return moved;
 }
 
-/// The part with the word where its origin is in the frame of the input.
+/// The part, with a remark on the place of its origin in the frame of the input.
 Result<Part> with_origin(const Vec3& origin, Result<Part> part) {
   if (part) part->origin = origin;
   return part;
@@ -273,7 +273,7 @@ Result<Part> part_from_mesh(const TriangleMesh& mesh, const PartOptions& options
   part.surface = std::move(welded.mesh);
   note_repairs(welded.report, report, part);
   const TriangleMesh closed =
-      weld(scaled).mesh;  // where triangles without area still hold the surface together
+      weld(scaled).mesh;  // where triangles without area still keep the surface connected
   if (Result<void> made = add_pieces(closed, report.convex, options, part); !made) return made.error();
   if (part.surface.triangles.empty()) return unusable(options, "no triangle with an area", "a surface");
   complete(part);

@@ -1,5 +1,5 @@
 #pragma once
-/// From a mesh, or from convex pieces, to a part. All ways to pieces are exact to the input surface:
+/// From a mesh, or from convex pieces, to a part. All methods give pieces exact to the input surface:
 ///
 ///   given convex pieces       solid polytopes, each a patch of its own
 ///   a closed convex mesh      one solid polytope
@@ -29,8 +29,8 @@ struct PartOptions {
   double scale = 1.0;                 ///< metres per unit of the input [m]
   double density_kg_per_m3 = 1000.0;  ///< [kg/m^3]
   PieceSource pieces = PieceSource::kAuto;
-  bool about_center_of_mass = false;  ///< the part's origin is its centre of mass (Part::origin says where)
-  int most_solid_pieces = 0;  ///< 0: 32 where the way is chosen by itself, 512 where solid is asked for
+  bool about_center_of_mass = false;  ///< the part's origin is its centre of mass (Part::origin)
+  int most_solid_pieces = 0;  ///< 0: 32 where the method is chosen by itself, 512 where solid is wanted
 };
 
 /// Solid pieces from clouds of points; each piece is the hull of its cloud.
@@ -39,8 +39,8 @@ Result<Part> part_from_clouds(const std::vector<std::vector<Vec3>>& clouds, cons
 /// Solid pieces from the groups of a mesh; each must be closed and convex, or the error names the edge.
 Result<Part> part_from_convex_groups(const ImportedMesh& mesh, const PartOptions& options = {});
 
-/// By `options.pieces`. An error when a solid is asked for and the mesh is none, or would take too many
-/// pieces. Given pieces are groups, which a bare mesh has not: see part_from_convex_groups.
+/// By `options.pieces`. An error when a solid is wanted and the mesh is none, or would take too many pieces.
+/// Given pieces are groups, which a bare mesh has not: see part_from_convex_groups.
 Result<Part> part_from_mesh(const TriangleMesh& mesh, const PartOptions& options = {});
 
 }  // namespace tactum::inline v0_1

@@ -1,7 +1,7 @@
 #pragma once
-/// A file's bytes as memory, read only, mapped by the system: nothing is read before it is looked at, and
-/// nothing is held twice. The file must not be cut shorter while it is mapped; programs that write part files
-/// replace them whole (see write_whole_file).
+/// A file's bytes as memory, read only, mapped by the system: nothing is read before it is accessed, and
+/// nothing is stored twice. The file must not be cut shorter while it is mapped; programs that write part
+/// files replace them whole (see write_whole_file).
 
 #include <cstddef>
 #include <span>
@@ -14,7 +14,7 @@ namespace tactum::inline v0_1 {
 
 class MappedFile {
  public:
-  /// An error names what is wrong: not there, a folder, no permission, empty.
+  /// An error states the reason: not there, a folder, no permission, empty.
   static Result<MappedFile> open(const std::string& path);
 
   MappedFile(MappedFile&& other) noexcept;

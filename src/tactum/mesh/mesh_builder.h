@@ -1,6 +1,5 @@
 #pragma once
-/// What every reader fills: vertices, polygons and groups, with the caps and checks that hold for all
-/// formats.
+/// The mesh that every reader fills: vertices, polygons and groups, with the caps and checks of all formats.
 
 #include <string>
 #include <string_view>

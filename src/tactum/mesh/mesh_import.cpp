@@ -29,7 +29,7 @@ std::string ending_of(const std::string& name) {
   return ending;
 }
 
-/// What the first bytes say; empty when they say nothing sure.
+/// The format by the first bytes; empty when they are ambiguous.
 std::string_view sniffed(std::string_view bytes) {
   if (bytes.substr(0, 4) == "glTF") return "glb";
   const std::string_view first = detail::Tokens(bytes.substr(0, 256)).next();

@@ -2,8 +2,8 @@
 /// Meshes from files: OBJ, STL and PLY (text and binary), OFF, glTF and GLB.
 ///
 /// Text and the simple binary formats are read by our own readers: they keep the file's doubles (assimp
-/// stores single precision), split concave polygons rightly (a fan would fold over), name the line or byte
-/// where a file is wrong, and are bounded: no count from the file is believed before the bytes for it are
+/// stores single precision), split concave polygons correctly (a fan would fold over), give the line or byte
+/// where a file is wrong, and are bounded: no count from the file is trusted before the bytes for it are
 /// seen. glTF goes through assimp, but only after its structure was checked and everything that is not
 /// geometry taken out (gltf_check.h).
 ///
@@ -18,11 +18,11 @@
 
 namespace tactum::inline v0_1 {
 
-/// The mesh of a file; its format is told by its content, helped by the ending of its name.
+/// The mesh of a file; its format is recognised by its content, helped by the ending of its name.
 Result<ImportedMesh> import_mesh(const std::string& path, const ImportOptions& options = {});
 
 /// The same from bytes in memory. `name` gives the ending and the place in errors; files that a glTF refers
-/// to are looked for beside it.
+/// to are searched beside it.
 Result<ImportedMesh> import_mesh_bytes(std::string_view bytes, const std::string& name,
                                        const ImportOptions& options = {});
 

@@ -10,7 +10,7 @@
 namespace tactum::inline v0_1 {
 namespace {
 
-/// Across each side of each triangle: the neighbour, and whether both run along the side the same way.
+/// Across each side of each triangle: the neighbour, and whether both run along the side in one direction.
 struct Neighbour {
   int triangle = -1;
   bool against = false;
@@ -29,7 +29,7 @@ std::vector<Neighbour> neighbours_of(const std::vector<HalfEdge>& sides, std::si
   return neighbours;
 }
 
-/// Names the component of each triangle and marks those that must turn to agree with the component's first.
+/// Numbers the component of each triangle and marks those that must turn to agree with the component's first.
 std::vector<bool> flood(const std::vector<Neighbour>& neighbours, OrientedMesh& out) {
   std::vector<bool> turned(out.component.size(), false);
   std::vector<int> queue;
@@ -102,7 +102,7 @@ bool encloses(const MeshComponent& component) {
   return component.closed && component.twisted_edges == 0 && !component.empty_inside();
 }
 
-/// How many closed components each closed one lies in, asked at a few of its triangles' centres.
+/// How many closed components each closed one lies in, tested at a few of its triangles' centres.
 void find_depths(const TriangleMesh& mesh, OrientedMesh& out) {
   constexpr int kSamples = 7;
   if (std::count_if(out.components.begin(), out.components.end(), encloses) < 2) return;
@@ -118,7 +118,7 @@ void find_depths(const TriangleMesh& mesh, OrientedMesh& out) {
   const SurfaceCrossings crossings(mesh, surface);
   for (std::size_t c = 0; c < out.components.size(); ++c) {
     const int count = static_cast<int>(std::min<std::size_t>(kSamples, members[c].size()));
-    std::vector<int> around;  // names of the components a sample lies in, all samples together
+    std::vector<int> around;  // numbers of the components a sample lies in, all samples together
     for (int i = 0; i < count; ++i) {
       const Triangle& t = mesh.triangles[members[c][members[c].size() * i / count]];
       const Vec3 center = (mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]) / 3.0;

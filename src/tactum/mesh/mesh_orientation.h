@@ -1,9 +1,9 @@
 #pragma once
-/// Which way the triangles of a mesh face, set right by component.
+/// The orientation of the triangles of a mesh, corrected by component.
 ///
-/// A component is what hangs together over edges of two triangles; edges of more part it, since no two of
-/// their triangles are neighbours for sure. Within a component all triangles are made to agree with the
-/// first; then the component as a whole is turned or left:
+/// A component is a set of triangles connected over edges of two triangles; edges of more separate
+/// components, since no two of their triangles are neighbours for sure. Within a component all triangles are
+/// made to agree with the first; then the component as a whole is turned or left:
 ///
 ///        +-------------+
 ///        |  +-------+  |     closed:  outward, by the sign of the enclosed volume; inside an odd number of
@@ -13,8 +13,9 @@
 ///        |   depth 0   |     one-sided bands (Moebius) cannot be set right; they are reported
 ///        +-------------+
 ///
-/// Inside is asked by winding numbers along rays of a tree of boxes (surface_crossings.h). Components that
-/// cut through each other are left facing outward, and reported. n log n.
+/// Whether a point is inside is determined by winding numbers along rays of a tree of boxes
+/// (surface_crossings.h). Components that cut through each other are left facing outward, and reported. n log
+/// n.
 
 #include <vector>
 
@@ -34,7 +35,7 @@ struct MeshComponent {
   double area = 0.0;        ///< [m^2]
   Aabb box;                 ///< [m]
 
-  /// Closed and yet without an inside worth the name: tolerances::kNoVolume of its size cubed.
+  /// Closed but of negligible volume: below tolerances::kNoVolume of its size cubed.
   bool empty_inside() const;
 };
 

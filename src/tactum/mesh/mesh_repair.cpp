@@ -41,7 +41,8 @@ Triangle turned_to_lowest(const Triangle& t) {
   return {t[lowest], t[(lowest + 1) % 3], t[(lowest + 2) % 3]};
 }
 
-/// Drops triangles that an earlier one equals; tells which, and which stand back to back with an earlier one.
+/// Drops triangles that an earlier one equals; lists these, and those that stand back to back with an earlier
+/// one.
 void drop_duplicates(RepairedMesh& out, std::vector<int>& dropped, std::vector<int>& back_to_back) {
   std::map<Triangle, int> seen;
   std::size_t kept = 0;
@@ -74,7 +75,7 @@ void drop_unused_vertices(TriangleMesh& mesh) {
     for (int& corner : t) corner = target[corner];
 }
 
-/// Vertices at which fans of triangles meet that share no edge there.
+/// Vertices at which fans of triangles meet that have no edge in common there.
 std::vector<int> pinched_at(const TriangleMesh& mesh, const std::vector<HalfEdge>& sides) {
   DisjointSets fans(static_cast<int>(3 * mesh.triangles.size()));  // corners of triangles
   for_each_edge(sides, [&](const HalfEdge* first, const HalfEdge* last) {
@@ -102,7 +103,7 @@ std::vector<int> pinched_at(const TriangleMesh& mesh, const std::vector<HalfEdge
   return triangles;
 }
 
-/// Holes, and what is wrong at edges and vertices; `filled` are the rims that were closed.
+/// Notes holes, and faults at edges and vertices; `filled` are the rims that were closed.
 void note_topology(const RepairedMesh& out, const std::vector<int>& filled, Notes& notes) {
   notes.add(true, "closed_holes", "holes were closed", filled);
   std::vector<int> open;

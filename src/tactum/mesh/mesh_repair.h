@@ -1,8 +1,8 @@
 #pragma once
-/// A mesh made fit to be a part, and every word of what was done to it.
+/// A mesh made fit to be a part, with a report of every change.
 ///
-///   weld           vertices that are one become one; triangles with two equal corners go       (weld.h)
-///   duplicates     a triangle that stands twice the same way round goes; back to back it stays
+///   weld           vertices in one place become one; triangles with two equal corners go       (weld.h)
+///   duplicates     a repeated triangle of the same orientation is removed; back to back it stays
 ///   caps           a triangle without area gives its middle corner to the neighbour:
 ///
 ///             c                      c            T = a b c has no height. Its neighbour N = b a d is cut
@@ -13,8 +13,8 @@
 ///   orientation    outward by component, cavities inward                                (mesh_orientation.h)
 ///   holes          closed only when asked, up to a number of edges                          (hole_filling.h)
 ///
-/// No vertex is ever moved, so the surface stays the file's to the last bit but for what was taken away,
-/// which lies on what is left to kWeld and kDegenerateTriangle of its size. Deterministic; n log n.
+/// No vertex is ever moved, so the surface stays the file's to the last bit except for removed parts, which
+/// lie on the rest to kWeld and kDegenerateTriangle of its size. Deterministic; n log n.
 
 #include <string>
 #include <vector>

@@ -48,7 +48,7 @@ bool within_range(const std::vector<Vec3>& points) {
 
 bool positive(double value) { return std::isfinite(value) && value > 0.0; }
 
-/// What does not fit together, as what was found where; an empty name when all does.
+/// The first inconsistency, with its place; an empty name when there is none.
 struct Fault {
   const char* array = "";
   const char* found = "";

@@ -1,11 +1,11 @@
 #pragma once
-/// Parts on disk: what `tactum prepare` writes and scenes load.
+/// Parts on disk, as `tactum prepare` writes and scenes load them.
 ///
-/// One file, versioned and checksummed (array_file.h), mapped into memory to be read. It holds the part seen
-/// from its centre of mass, as bodies want it, and where that was in the mesh, so loading computes nothing
-/// anew but what follows exactly from the arrays: the pieces' planes and the tree over them.
+/// One file, versioned and checksummed (array_file.h), mapped into memory to be read. It holds the part about
+/// its centre of mass, as bodies need it, and the place of that in the mesh, so loading computes nothing anew
+/// but what follows exactly from the arrays: the pieces' planes and the tree over them.
 ///
-/// Loading survives any bytes: sizes, indices and numbers are checked; a sentence says what is wrong.
+/// Loading survives any bytes: sizes, indices and numbers are checked; an error states the fault.
 
 #include <string>
 #include <string_view>
@@ -22,7 +22,7 @@ struct PartFile {
   Part part;                          ///< relative to its centre of mass
   Vec3 origin = Vec3::Zero();         ///< that centre, in the frame of the mesh [m]
   double density_kg_per_m3 = 1000.0;  ///< that mass and inertia are for
-  std::string report;                 ///< what was found and done, as JSON (prepare_part.h)
+  std::string report;                 ///< findings and changes, as JSON (prepare_part.h)
 };
 
 /// Whether the bytes begin as a part file does.

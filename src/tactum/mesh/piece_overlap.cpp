@@ -40,7 +40,7 @@ double edge_separation(const Polytope& a, const Polytope& b, double enough) noex
       const Vec3 b_right = -b.faces[eb.right].normal;
       if (!arcs_cross(a_left, a_right, a_arc, b_left, b_right, b_right.cross(b_left))) continue;
       Vec3 axis = ea.direction.cross(eb.direction);
-      if (axis.norm() < tolerances::kParallelSine) continue;  // the faces beside them tell the same
+      if (axis.norm() < tolerances::kParallelSine) continue;  // the faces beside them give the same
       axis.normalize();
       const Vec3& p_a = a.vertices[ea.tail];
       if (axis.dot(p_a - a.extent.center) < 0.0) axis = -axis;

@@ -30,7 +30,7 @@ Result<UnitGuess> unit_of(const Aabb& box, const PrepareOptions& options) {
   return refused(fmt::format("the unit \"{}\"", options.unit), "auto, m, cm, mm or inch", options);
 }
 
-/// What no part can be made of.
+/// Faults with which no part can be made.
 Result<void> check_usable(const RepairedMesh& repaired, const UnitGuess& unit,
                           const PrepareOptions& options) {
   if (repaired.mesh.triangles.empty())
@@ -63,7 +63,7 @@ TriangleMesh reference_of(const TriangleMesh& given, const RepairedMesh& repaire
   return reference;
 }
 
-/// One way to pieces, from the mesh to the verdict.
+/// One method, from the mesh to the verdict.
 struct Attempt {
   const PiecesInput& input;
   const TriangleMesh& reference;
@@ -90,7 +90,7 @@ struct Attempt {
   }
 };
 
-/// The way asked for, or the first that suits and passes; the reason says what became of the others.
+/// The wanted method, or the first that suits and passes; the reason lists the outcome of the others.
 Result<void> make_pieces(const Attempt& attempt, const PrepareOptions& options, PartFile& file,
                          PrepareReport& report) {
   std::string tried;

@@ -3,11 +3,12 @@
 ///
 ///   mesh -> unit -> repair -> mass -> pieces -> verification -> part file
 ///
-/// Each stage reports what it found and did. Verification is code of its own (deviation.h, piece_overlap.h):
-/// the surface must agree both ways to kSurfaceDeviation, volumes and areas must add up, no two solid pieces
-/// may overlap. A part that fails is not written; when the choice of pieces was ours, the next way is tried.
+/// Each stage reports its findings and changes. Verification is code of its own (deviation.h,
+/// piece_overlap.h): the surfaces must agree in both directions to kSurfaceDeviation, volumes and areas must
+/// add up, no two solid pieces may overlap. A part that fails is not written; when the method was chosen
+/// automatically, the next one is tried.
 ///
-/// The ways to pieces, in the order "auto" tries them, stand in one table in prepare_pieces.cpp.
+/// The methods to make pieces, in the order "auto" tries them, are listed in one table in prepare_pieces.cpp.
 
 #include <functional>
 #include <string>
@@ -26,13 +27,13 @@ namespace tactum::inline v0_1 {
 struct PrepareOptions {
   std::string name = {};              ///< of the part
   std::string unit = "auto";          ///< of the mesh's numbers: auto, m, cm, mm, inch
-  std::string pieces = "auto";        ///< the way to pieces: auto, or one of pieces_ways()
+  std::string pieces = "auto";        ///< the method: auto, or one of pieces_ways()
   int close_holes = 0;                ///< holes of at most this many edges are closed; 0: none
   double density_kg_per_m3 = 1000.0;  ///< [kg/m^3]
   int area_samples = kAreaSamples;    ///< of the verification, over either surface, beside corners and sides
 };
 
-/// What verification measured.
+/// The measurements of verification.
 struct Verification {
   Deviation deviation;
   PieceOverlaps overlaps;
@@ -54,23 +55,23 @@ struct PrepareReport {
   Verification verification;
 };
 
-/// Told before each stage; `share` is the part of the work that is done, 0 to 1.
+/// Called before each stage; `share` is the fraction of the work that is done, 0 to 1.
 using PrepareProgress = std::function<void(const char* stage, double share)>;
 
-/// Of a mesh in the units of its file. An error says what makes it unusable and where.
+/// Prepares a mesh in the units of its file. An error says what makes it unusable and where.
 Result<PartFile> prepare_part(const ImportedMesh& imported, const PrepareOptions& options,
                               const PrepareProgress& progress = {});
 
-/// The names of the ways to pieces.
+/// The names of the methods to make pieces.
 std::vector<std::string> pieces_ways();
 
-/// Of a part with its frame at `origin` against the mesh it was made of, in metres. `reference` is the mesh
-/// before repair with the triangles that close holes; volume and area as in Verification, negative: not
-/// asked.
+/// Verifies a part with its frame at `origin` against the mesh it was made of, in metres. `reference` is the
+/// mesh before repair with the triangles that close holes; volume and area as in Verification, negative: not
+/// checked.
 Verification verify_part(const TriangleMesh& reference, const Part& part, const Vec3& origin, double volume,
                          double area, int area_samples = kAreaSamples);
 
-/// What verification found wrong, as an error; nothing when the part passes.
+/// The faults that verification found, as an error; nothing when the part passes.
 Result<void> verdict_on(const Verification& found, const std::string& name);
 
 std::string to_json(const PrepareReport& report, const Part& part);

@@ -47,7 +47,7 @@ Result<Vec3> center_of_groups(const PiecesInput& input) {
   return part->mass.center;
 }
 
-/// Of the groups, each by itself: where two share a wall, the whole is no closed surface.
+/// The pieces of the groups, each by itself: where two share a wall, the whole is no closed surface.
 double volume_of_groups(const PiecesInput& input) {
   const TriangleMesh mesh = groups_outward(input.given, bounds(input.mesh.vertices).center()).mesh;
   double six_volumes = 0.0;
@@ -60,9 +60,9 @@ double volume_of_mesh(const PiecesInput& input) {
   return input.report.closed && input.report.oriented ? input.report.volume : -1.0;
 }
 
-/// As part_from_mesh chooses: solid where that takes few pieces. Nothing else of the part is made for the
-/// question; that the cuts are made twice costs little where they are few, and where they are not the search
-/// ends early.
+/// As part_from_mesh chooses: solid where that takes few pieces. Nothing else of the part is made for this
+/// decision; making the cuts twice costs little where they are few, and where they are not the search ends
+/// early.
 std::string solid_suits(const PiecesInput& input) {
   if (!input.report.closed || !input.report.oriented) return {};
   if (input.report.convex) return "the mesh is convex as it is";

@@ -1,5 +1,5 @@
 #pragma once
-/// The ways from a repaired mesh to the pieces of a part, as `tactum prepare --pieces` offers them.
+/// The methods to make the pieces of a part from a repaired mesh, as `tactum prepare --pieces` offers them.
 
 #include <string>
 #include <vector>
@@ -12,7 +12,7 @@
 
 namespace tactum::inline v0_1 {
 
-/// What a way to pieces may look at.
+/// The input of a method.
 struct PiecesInput {
   const ImportedMesh& given;  ///< as in the file, in metres, with its groups
   const TriangleMesh& mesh;   ///< repaired, in metres

@@ -3,8 +3,8 @@
 #include "tactum/mesh/mesh_builder.h"
 #include "tactum/mesh/text_scanner.h"
 
-/// Wavefront OBJ: `v`, `f`, `o`, `g`; points and lines are counted, normals, textures and materials passed
-/// over. Indices start at 1; negative ones count back from the last vertex read.
+/// Wavefront OBJ: `v`, `f`, `o`, `g`; points and lines are counted, normals, textures and materials ignored.
+/// Indices start at 1; negative ones count back from the last vertex read.
 
 namespace tactum::inline v0_1::detail {
 namespace {

@@ -10,7 +10,7 @@
 
 /// PLY, text and binary of both byte orders. The header lists elements (vertex, face, ...) and their
 /// properties; of vertices x, y, z are taken, of faces the list vertex_indices or vertex_index, everything
-/// else is passed over.
+/// else is ignored.
 
 namespace tactum::inline v0_1::detail {
 namespace {

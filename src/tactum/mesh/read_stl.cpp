@@ -5,9 +5,8 @@
 #include "tactum/mesh/mesh_builder.h"
 #include "tactum/mesh/text_scanner.h"
 
-/// STL. Binary: 80 bytes, a count, then 50 bytes a triangle (normal, three vertices, two bytes). Text:
-/// solid / facet normal / outer loop / vertex ... Stored normals are passed over: the corners' order says the
-/// same.
+/// STL. Binary: 80 bytes, a count, then 50 bytes a triangle (normal, three vertices, two bytes). Text: solid
+/// / facet normal / outer loop / vertex ... Stored normals are ignored: the corners' order gives the same.
 
 namespace tactum::inline v0_1::detail {
 namespace {

@@ -1,6 +1,5 @@
 #pragma once
-/// What a ray crosses on its way out: the winding number of closed surfaces about a point, for each surface
-/// apart.
+/// The winding number of closed surfaces about a point, from the crossings of a ray, for each surface apart.
 ///
 /// The ray runs along +x, so a crossing is a point in a triangle of the yz plane, and the test there is
 /// half-open in z: an edge that two triangles share is crossed by exactly one of them, whatever the rounding,

@@ -59,7 +59,7 @@ class Tokens {
     rest_.remove_prefix(end);
     return word;
   }
-  /// What is left, without blanks at either end.
+  /// The rest of the line, without blanks at either end.
   std::string_view remainder() const {
     std::string_view text = rest_;
     while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);

@@ -144,7 +144,7 @@ Result<ThreadFit> screw_fit(const ScrewShape& shape) {
   if (!shape.clearance_m) return thread_fit(shape.size, shape.tolerance_class);
   const Result<MetricScrew> screw = metric_screw(shape.size);
   if (!screw) return screw.error();
-  const double most = screw->pitch_m / 8.0;  // half the profile's depth would be out of reach at 0.27 pitches
+  const double most = screw->pitch_m / 8.0;  // half the profile's depth cannot be had at 0.27 pitches
   if (!(*shape.clearance_m >= 0.0 && *shape.clearance_m <= most))
     return Error{"the thread's clearance cannot be", fmt::format("{} m", *shape.clearance_m),
                  fmt::format("0 to {} m (an eighth of the pitch)", most), ""};

@@ -26,7 +26,7 @@
 
 namespace tactum::inline v0_1 {
 
-/// What bolt and nut are made from; a pair needs equal size and facets.
+/// The sizes of bolt and nut; a pair needs equal size and facets.
 struct ScrewShape {
   std::string size = "M16";
   std::string tolerance_class = "medium";  ///< metric_thread.h
@@ -35,13 +35,13 @@ struct ScrewShape {
   int facets_per_turn = 64;                ///< a multiple of 16, 16 to 256 [-]
 };
 
-/// The fit the shape asks for. Errors name what is unknown or out of range.
+/// The fit of the shape. Errors name the value that is unknown or out of range.
 Result<ThreadFit> screw_fit(const ScrewShape& shape);
 
 Result<TriangleMesh> bolt_mesh(const ScrewShape& shape);
 
 /// The height is the standard's, rounded to a whole number of n-ths of the pitch, so that the thread's edges
-/// leave through the faces at corners. `length_m` is not looked at.
+/// leave through the faces at corners. `length_m` is ignored.
 Result<TriangleMesh> nut_mesh(const ScrewShape& shape);
 
 }  // namespace tactum::inline v0_1

@@ -48,8 +48,8 @@ struct Gear {
 /// A convex polygon, corners counter-clockwise [m].
 using Polygon = std::vector<Vec2>;
 
-/// The gear seen along its axis: the teeth in order, then the hub. Errors say which number of the gear cannot
-/// be.
+/// The gear seen along its axis: the teeth in order, then the hub. An error names the number of the gear that
+/// is impossible.
 Result<std::vector<Polygon>> gear_outlines(const Gear& gear);
 
 /// The same with its width: the teeth, then the hub.
@@ -59,8 +59,8 @@ Result<std::vector<Polytope>> gear_pieces(const Gear& gear);
 /// faces (flank_facets + 1 where there is no radial foot).
 Result<TriangleMesh> gear_surface(const Gear& gear);
 
-/// Distance of the axes at which the pair has the play told by `backlash_m` (half of it from each). Base
-/// circles are not brought closer than touching [m].
+/// Distance of the axes at which the pair has the play `backlash_m` (half of it from each). Base circles are
+/// not brought closer than touching [m].
 double centre_distance(const Gear& a, const Gear& b);
 
 /// Rotation of b at a + (centre_distance, 0, 0) that puts a gap of b before tooth 0 of an unturned a [rad].

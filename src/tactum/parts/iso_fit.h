@@ -42,8 +42,8 @@ struct Fit {
   double clearance_m(FitPosition position) const { return hole_m(position) - shaft_m(position); }
 };
 
-/// The zone of one tolerance class, "H7" (a hole) or "g6" (a shaft), at a nominal size. Errors say what of
-/// the name or the size is not in the table.
+/// The zone of one tolerance class, "H7" (a hole) or "g6" (a shaft), at a nominal size. An error names the
+/// part of the name or the size that is not in the table.
 Result<SizeLimits> iso_limits(const std::string& name, double nominal_m);
 
 /// The zones of a fit, "H7/g6": the hole's class first.

@@ -33,7 +33,7 @@ std::optional<Error> defect(const SlottedPlate& plate) {
   return std::nullopt;
 }
 
-/// What surrounds one end of a slot: from its straight sides' end (y = low) to the plate's edge.
+/// The region about one end of a slot: from its straight sides' end (y = low) to the plate's edge.
 struct Cell {
   double left = 0.0, right = 0.0, low = 0.0, high = 0.0;  // [m]
 
@@ -60,7 +60,7 @@ Polygon end_corners(const SlottedPlate& plate, double middle_x) {
   return corners;
 }
 
-/// One piece for each facet: the facet, and what the rays through its ends cut from the cell.
+/// One piece for each facet: the facet, and the part of the cell between the rays through its ends.
 std::vector<Polygon> fan(const Polygon& end, const Cell& cell) {
   const Vec2 middle(0.5 * (end.front().x() + end.back().x()), cell.low);
   const auto turned_left = [&middle](const Vec2& a, const Vec2& b) {

@@ -18,15 +18,15 @@ namespace {
 
 using Index = std::size_t;
 
-/// The trusted length after a step, in lengths of that step.
+/// The growth of the trust region radius: the next one, in lengths of the last step.
 constexpr double kTrustGrowth = 2.0;
-/// The tolerance of contact determination is so much more than the trusted length, in skins.
+/// By how much motion bounds exceed the trust region radius, in skins.
 constexpr double kBoundMargin = 4.0;
-/// A part whose steps have been refused for so long is felt where it stands, not where the forces would
-/// have it: what is felt would be the same however far the hand goes away.
+/// When the steps of a part have been refused for so long, the wrench that is felt is that where it stands,
+/// not where the forces would have it: that one would be the same however far the hand goes away.
 constexpr double kStands_s = 0.002;
 
-/// The bodies and their targets: to the hand, on along their motion; or, `at_rest`, where they are.
+/// Adds the bodies and their targets: to the hand, on along their motion; or, `at_rest`, where they are.
 void add_bodies(bool at_rest, ConstraintStep& step) {
   ContactProblem& problem = step.own.constraint.problem;
   problem.clear();
@@ -77,14 +77,14 @@ RowNumbers rows_of(const RowNames& names, Index first, ConstraintStep& step) {
   return rows;
 }
 
-/// Solves a problem without friction from the rows that pushed in the last frame.
+/// Solves a problem without friction, beginning with the rows that pushed in the last frame.
 bool solve_frictionless(Index first_row, ContactProblem& problem, ConstraintStep& step) {
   const RowNumbers rows = rows_of(step.own.constraint.warm_start.in_the_end, first_row, step);
   problem.begin({rows.begin(), rows.end()});
   return solved(solve_once(step.settings.budget.solver_iterations, problem), step.report);
 }
 
-/// Keeps what the answer says of forces: impulses, the rows that push, the wrench at the handle.
+/// Keeps the forces of the answer: impulses, the rows that push, the wrench at the handle.
 void keep_forces(ConstraintStep& step) {
   ConstraintState& c = step.own.constraint;
   RowNumbers pushing;
@@ -104,7 +104,7 @@ double travel_of(const ConstraintStep& step, const ProblemBody& problem_body) {
   return x.head<3>().norm() + x.tail<3>().norm() * step.radius_m[Index(problem_body.body)];
 }
 
-/// The share of the answer's step that is trusted.
+/// The fraction of the answer's step that is trusted.
 double trusted_share(const ConstraintStep& step) {
   const ConstraintState& c = step.own.constraint;
   double share = 1.0;
@@ -120,7 +120,7 @@ double trusted_share(const ConstraintStep& step) {
   return share;
 }
 
-/// Moves everything by `share` of the answer's step, on trial, and looks at every gap there.
+/// Moves everything by the fraction `share` of the answer's step, on trial, and checks every gap there.
 bool open_after(double share, ConstraintStep& step) {
   ConstraintState& c = step.own.constraint;
   c.trial.X_WB = step.bodies.X_WB;  // same size: nothing is allocated
@@ -144,7 +144,7 @@ void take_trial(ConstraintStep& step) {
     if (step.own.free.patch_asked[p]) c.trial.gap_now[p] = c.trial.gap[p];
 }
 
-/// Contacts nearer than half the skin are opened first, as far as there is room.
+/// Opens contacts nearer than half the skin first, as far as there is room.
 void restore(ConstraintStep& step) {
   ConstraintState& c = step.own.constraint;
   bool tight = false;
@@ -159,8 +159,9 @@ void restore(ConstraintStep& step) {
   take_trial(step);
 }
 
-/// Finds what pushes, where shading bends normals with these, and for those the problem of the way: to where
-/// the forces would have it, as far as the true normals let it. False when there is no answer.
+/// Finds the contact forces, with the shaded normals where shading bends some; then solves the position
+/// problem, which leads to where these forces would have the bodies as far as the true normals allow. False
+/// when there is no answer.
 bool find_forces(ConstraintStep& step) {
   ConstraintState& c = step.own.constraint;
   add_bodies(false, step);
@@ -183,7 +184,7 @@ bool find_forces(ConstraintStep& step) {
   return found && solve_frictionless(c.rows.first_of_positions, c.position_problem, step);
 }
 
-/// Solves again after a feedback.
+/// Solves again after a correction.
 bool find_again(ConstraintStep& step) {
   ConstraintState& c = step.own.constraint;
   const int max_iterations = step.settings.budget.solver_iterations;
@@ -195,14 +196,15 @@ bool find_again(ConstraintStep& step) {
   return found;
 }
 
-/// Goes where the hand wants as far as everything stays open; returns the share of the answer that was taken.
+/// Goes where the hand wants as far as everything stays open; returns the fraction of the answer that was
+/// taken.
 double advance(ConstraintStep& step) {
   if (!find_forces(step)) return 0.0;
   if (step.gaps.blocked(step.grasped.body)) return 0.0;
   double share = 0.0;
   for (int round = 0; round <= kFeedbacks; ++round) {
     if (round > 0) {
-      if (!(share > 0.0)) return 0.0;  // nothing may move: no exact gap says more
+      if (!(share > 0.0)) return 0.0;  // nothing may move: no exact gap can correct a row
       ++step.report.validation_retries;
       correct_rows(share, step);
       if (!find_again(step)) break;
@@ -218,8 +220,9 @@ double advance(ConstraintStep& step) {
   return 0.0;
 }
 
-/// The island of the held part: its bodies' velocities are what they did, but for what only opened a gap,
-/// which no force did. Returns the share of the answer that was taken.
+/// Moves the island of the grasped part. The velocities of its bodies are their displacements over the frame,
+/// less those that only opened gaps, which no force caused. Returns the fraction of the answer that was
+/// taken.
 double move_grasped_island(ConstraintStep& step) {
   ConstraintState& c = step.own.constraint;
   step.own.free.patch_asked.clear();
@@ -238,7 +241,7 @@ double move_grasped_island(ConstraintStep& step) {
   return share;
 }
 
-/// The length that is trusted in the next frame, from what the held part's island did in this one.
+/// The trust region radius of the next frame, from the motion of the grasped part's island in this one.
 void update_trust_length(ConstraintStep& step) {
   double travel = 0.0;
   for (Index i = 0; i < step.own.free.near_grasped.size(); ++i) {
@@ -252,8 +255,8 @@ void update_trust_length(ConstraintStep& step) {
       std::clamp(kTrustGrowth * travel, std::min(limits.least_step_m, most), most);
 }
 
-/// The points at which something pushes the body: corners, and the centre of a patch whose load friction's
-/// cone carries alone.
+/// The number of points at which something pushes the body: corners, and the centre of a patch whose load is
+/// carried by the cone of friction alone.
 int pushing_points(std::span<const ContactRow> corners, int body, const ConstraintState& c) {
   int points = 0;
   std::array<bool, Friction::kMostPatches> counted{};
@@ -270,7 +273,7 @@ int pushing_points(std::span<const ContactRow> corners, int body, const Constrai
   return points;
 }
 
-/// Appends what friction pushes with as contact rows; returns its torques about normals on `body`.
+/// Appends friction forces as contact rows; returns their torques about normals on `body`.
 Vec3 report_friction(int body, ConstraintStep& step) {
   const ConstraintState& c = step.own.constraint;
   std::vector<ContactRow>& rows = step.own.contact_rows.rows;
@@ -284,7 +287,7 @@ Vec3 report_friction(int body, ConstraintStep& step) {
   return torque;
 }
 
-/// The contacts as they push: normal forces of corners, and what friction pushes with.
+/// Reports the contact forces: normal forces of corners, and friction.
 void report_rows(ConstraintStep& step) {
   const int grasped = step.grasped.body;
   ConstraintState& c = step.own.constraint;

@@ -1,7 +1,6 @@
 #pragma once
-/// The `constraint` response as a stage of the frame: the held part and the bodies that move by themselves go
-/// as far as nothing is entered. constraint.h answers for the held part's island, free_bodies.h for the
-/// others.
+/// The `constraint` response as a stage of the frame: the grasped part and the bodies that move by themselves
+/// go as far as nothing penetrates. constraint.h moves the grasped part's island, free_bodies.h the others.
 
 #include "tactum/response/constraint_state.h"
 
@@ -9,34 +8,35 @@ namespace tactum::inline v0_1 {
 
 class ConstraintResponse {
  public:
-  /// What a patch is asked for: its features, whose corners become rows.
+  /// What it needs of a patch: its features, whose corners become rows.
   static constexpr PatchPoints kPoints = PatchPoints::kClosest;
 
   ConstraintResponse(const World& world, const FrameSettings& settings, WorldState& bodies);
 
-  /// How far any point of a body may move in this frame, by body [m]; gives gravity's first half.
+  /// How far any point of a body may move in this frame, by body [m]; adds the first half of gravity's
+  /// impulse.
   std::span<const double> bound_motion(const MotionInput& input, WorldState& bodies) noexcept;
-  /// Moves everything that moves, the held part's island last. Fills the report's response fields.
+  /// Moves everything that moves, the grasped part's island last. Fills the report's response fields.
   void step(const StepInput& input, GapOracle& gaps, WorldState& bodies, FrameReport& report) noexcept;
-  /// The sum of the contact forces on the held part and the pulses of its blows, at the handle, world axes
-  /// [N, N m]. Once a frame.
+  /// The sum of the contact forces on the grasped part and the pulses of its impacts, at the handle, world
+  /// axes [N, N m]. Once a frame.
   Wrench felt(const StepInput& input, const WorldState& bodies) noexcept;
 
-  /// The contacts of the last step, and what friction does at those that rub.
+  /// The contacts of the last step, and the friction at those that have it.
   std::span<const ContactRow> rows() const noexcept { return memory_.contact_rows.rows; }
   std::span<const FrictionUse> friction_uses() const noexcept {
     return {memory_.constraint.friction_uses.begin(), memory_.constraint.friction_uses.end()};
   }
-  /// Energy of blows that is still to be felt [J].
+  /// Energy of impacts that is still to be felt [J].
   double pending_J() const noexcept { return memory_.impulses.pending_J(); }
   /// Whether rows were dropped for want of room.
   bool rows_full() const noexcept { return memory_.contact_rows.full; }
-  /// What it keeps, for tests and displays that look inside.
+  /// Its memory, for tests and displays that look inside.
   const ConstraintMemory& memory() const noexcept { return memory_; }
 
  private:
   ConstraintMemory memory_;
-  int grasped_last_ = -1;  // the body that was held in the last frame
+  int grasped_last_ = -1;  // the body that was grasped in the last frame
 };
 
 }  // namespace tactum::inline v0_1

@@ -21,7 +21,7 @@ std::uint64_t name_of(const ContactPatch& patch, Index corner) {
   return (bodies << 40 ^ pieces) << 8 ^ corner;
 }
 
-/// Which surfaces a patch lies on.
+/// The surfaces that a patch lies on.
 SurfacePair surfaces_of(const World& world, const ContactPatch& patch) noexcept {
   const Part& A = *world.bodies[Index(patch.body_a)].part;
   const Part& B = *world.bodies[Index(patch.body_b)].part;
@@ -37,9 +37,9 @@ SurfacePair surfaces_of(const World& world, const ContactPatch& patch) noexcept 
 /// Whether a whole face of the body touches: a face beside the edge or corner that touches does not.
 bool by_face(const Feature& on, bool beside) { return on.kind == FeatureKind::kFace && !beside; }
 
-/// How the shading of the two bodies' faces bends a normal at a corner, A's frame. The one face that there is
-/// decides; of two curved faces each has half a say, and a flat one against a curved one all of it. A face
-/// beside the edge that touches has none, as the edge has none.
+/// How the shading of the two bodies' faces bends a normal at a corner, A's frame. A single face decides
+/// alone; of two curved faces each counts half, and a flat face against a curved one decides alone. A face
+/// beside the edge that touches counts nothing, as the edge does.
 Vec3 bend(const ShadingNormals& a, const ShadingNormals& b, const Pose& X_AB, const ContactPatch& patch,
           const PatchCorner& corner) {
   const auto deviation = [&](const ShadingNormals& shading, int piece, const Feature& on, bool beside,
@@ -81,7 +81,7 @@ struct RowMaker {
       const Polytope& B = step.world.bodies[Index(patch.body_b)].part->pieces[Index(patch.piece_b)];
       if (other < 0) {
         c.corner_memory.corners_of(A, B, X_AB, patch, corners);
-      } else {  // what the hand holds hardly ever lies still to the bit
+      } else {  // a grasped part hardly ever lies still to the bit
         patch_corners(A, B, X_AB, patch.manifold, patch.distance, patch.tolerance, corners);
       }
     }
@@ -89,7 +89,8 @@ struct RowMaker {
     const SurfacePair surfaces = surfaces_of(step.world, patch);
     const double friction = step.settings.friction.between(patch.body_a, patch.body_b);
     const double restitution = step.settings.impacts.restitution.between(patch.body_a, patch.body_b);
-    // What the hand drives into something that is held is no blow: its coupling is what bounces.
+    // The grasped part has no impacts with bodies that are fixed or jointed: there its coupling is what
+    // bounces.
     const Islands& islands = step.own.free.islands;
     const bool struck = (islands.moves(patch.body_a) || islands.moves(patch.body_b)) &&
                         (other < 0 || step.world.bodies[Index(other)].joint.kind == JointKind::kFree);

@@ -1,6 +1,6 @@
 #pragma once
-/// What the constraint response keeps from frame to frame and works on, allocated at load time: a struct for
-/// each of its parts, and the step that is being made. The functions stand in the parts' own headers.
+/// The memory of the constraint response and what it works on, allocated at load time: a struct for each of
+/// its parts, and the step that is being made. The functions stand in the parts' own headers.
 
 #include <vector>
 
@@ -37,7 +37,7 @@ struct CornerRows {
   bool shades = false;                 ///< ... so the step is the answer of the position problem
   ReservedVector<Vec3> shaded;         ///< normals of the own rows; empty without shading [-]
   RowMemory memory;                    ///< what rows keep from frame to frame, by their names
-  ReservedVector<double> feedback;     ///< what exact gaps have added to the rows [m]
+  ReservedVector<double> feedback;     ///< the corrections by exact gaps so far [m]
 
   explicit CornerRows(std::size_t most_rows) : memory(most_rows) {
     shaded.reserve(most_rows);
@@ -54,17 +54,17 @@ struct TrialPose {
   std::vector<Pose> X_WB;                ///< where the bodies would be [m]
   ReservedVector<double> gap_now;        ///< before the step [m]
   ReservedVector<double> gap;            ///< at the trial [m]
-  ReservedVector<double> gap_least;      ///< what it may become [m]
+  ReservedVector<double> gap_least;      ///< the least gap that is accepted at the trial [m]
   ReservedVector<GapAnswer> gap_answer;  ///< how the gap at the trial is known
 };
 
-/// How far the island's steps are trusted, by what came of the last ones.
+/// How far the island's steps are trusted, from the outcome of the last ones.
 struct StepTrust {
-  double length_m = 0.0;           ///< how far a point of a body may move in the next frame [m]
-  int consecutive_rejections = 0;  ///< frames on end in which no step could be taken [-]
+  double length_m = 0.0;           ///< the trust region radius of the next frame [m]
+  int consecutive_rejections = 0;  ///< frames in a row in which no step could be taken [-]
 };
 
-/// Of the held part's island (constraint.h).
+/// Of the grasped part's island (constraint.h).
 struct ConstraintState {
   ConstraintState(const World& world, const FrameSettings& settings);
 
@@ -72,11 +72,11 @@ struct ConstraintState {
   ContactProblem position_problem;  ///< with true normals: to where the forces would have the bodies
   Friction friction;
   FrictionAnchors anchors;
-  FrictionUses friction_uses;  ///< what friction does, for displays
+  FrictionUses friction_uses;  ///< friction at each patch, for displays
   double skin_m;               ///< the gap contacts are held at [m]
   ContactScale scale;          ///< the same and the other lengths that contacts are kept to
   StepTrust trust;
-  Vec6 wanted;  ///< what the coupling asked of the handle [m, rad]
+  Vec6 wanted;  ///< displacement of the handle that the coupling asked for [m, rad]
   Wrench felt;  ///< of the contact forces, at the handle, world axes [N, N m]
   WarmStart warm_start;
   CornerMemory corner_memory;
@@ -96,7 +96,7 @@ struct Momentum {
   void give(int body_a, int body_b, const Vec3& impulse) noexcept {
     due_Ns += counted(body_a, body_b, impulse);
   }
-  /// What of it the bodies that count have from bodies that do not [N s].
+  /// The part of it that counted bodies receive from bodies that are not counted [N s].
   Vec3 counted(int body_a, int body_b, const Vec3& impulse) const noexcept {
     const bool a = counts[static_cast<std::size_t>(body_a)] != 0;
     const bool b = counts[static_cast<std::size_t>(body_b)] != 0;
@@ -104,8 +104,8 @@ struct Momentum {
     return a ? impulse : Vec3(-impulse);
   }
 
-  std::vector<char> counts;    ///< bodies that are free, awake and not held
-  Vec3 due_Ns = Vec3::Zero();  ///< what they should have at the end of the frame
+  std::vector<char> counts;    ///< bodies that are free, awake and not grasped
+  Vec3 due_Ns = Vec3::Zero();  ///< momentum that they should have at the end of the frame
 };
 
 /// Of the bodies that move by themselves (free_bodies.h).
@@ -115,39 +115,39 @@ struct FreeBodies {
   Islands islands;
   Sweeps sweeps;
   Momentum momentum;
-  int grasped_island = -1;             ///< the island that constraint.h answers for; -1: none
-  bool grasped_here = false;           ///< the held part's island had no room there
+  int grasped_island = -1;             ///< the island that constraint.h moves; -1: none
+  bool grasped_here = false;           ///< the grasped part's island is too large for constraint.h
   Vec3 grasped_torque = Vec3::Zero();  ///< of friction about normals on the grasped part, found here [N m]
   bool others = false;                 ///< some body moves by itself
-  bool alone = true;                   ///< nothing but the held part's island moves
-  std::vector<char> near_grasped;      ///< of each body: in the held part's island in the last frame
+  bool alone = true;                   ///< nothing but the grasped part's island moves
+  std::vector<char> near_grasped;      ///< of each body: in the grasped part's island in the last frame
 
-  /// Whether a patch belongs to the island that constraint.h answers for.
+  /// Whether a patch belongs to the island that constraint.h moves.
   bool of_grasped(const ContactPatch& patch) const noexcept {
     return grasped_island >= 0 && islands.of_contact(patch.body_a, patch.body_b) == grasped_island;
   }
 
   // Scratch of one frame, one entry per body, or per patch.
-  std::vector<char> struck;             ///< it moves in impacts
+  std::vector<char> struck;             ///< impacts change its velocity
   std::vector<Twist> V_free;            ///< if nothing touches [m/s, rad/s]
-  std::vector<Vec3> given_Ns;           ///< by island: the momentum that contacts gave what counts [N s]
+  std::vector<Vec3> given_Ns;           ///< by island: the momentum that contacts gave counted bodies [N s]
   GroupedIndices bodies, rows;          ///< by island
   ReservedVector<ContactRow> gathered;  ///< copies of the rows of one island
   std::vector<Vec3> w_start;            ///< rates at the start [rad/s]
   std::vector<Vec3> w_free;             ///< ... midway, if nothing touches [rad/s]
-  std::vector<double> share;            ///< of a body's step that is taken [-]
-  std::vector<char> cut;                ///< it has just become less
-  std::vector<char> settled;            ///< an island's step has been found good
+  std::vector<double> share;            ///< fraction of a body's step that is taken [-]
+  std::vector<char> cut;                ///< its fraction was just reduced
+  std::vector<char> settled;            ///< an island's step has been found open
   ReservedVector<char> patch_asked;     ///< patches whose gap is asked for
   ReservedVector<char> patch_closed;    ///< ... and is not open
 };
 
-/// Who waits (waiting.h); one entry per body.
+/// Which bodies are deferred (waiting.h); one entry per body.
 struct Waiting {
   Waiting(const World& world, const FrameSettings& settings);
 
-  std::vector<char> waits;            ///< in this frame
-  std::vector<int> waited;            ///< how many frames on end [-]
+  std::vector<char> waits;            ///< deferred in this frame
+  std::vector<int> waited;            ///< deferred for so many frames in a row [-]
   std::vector<double> travel;         ///< of the last step it took or tried [m]
   std::vector<Pose> X_rest;           ///< the place it has hardly left
   std::vector<int> rested;            ///< frames that it moved in since [-]
@@ -156,14 +156,14 @@ struct Waiting {
   bool ran_out = false;               ///< tests did not suffice for the poses on trial in this frame
 
   // Scratch of one frame.
-  std::vector<Twist> V_kept;  ///< velocities of those that wait [m/s, rad/s]
+  std::vector<Twist> V_kept;  ///< velocities of the deferred bodies [m/s, rad/s]
   ReservedVector<int> order, first_patch, next_patch, patch_of;
   ReservedVector<char> counted;  ///< of each patch
   std::vector<int> contacts;     ///< patches of each body
-  std::vector<char> hit;         ///< by something fast
+  std::vector<char> hit;         ///< touched by something fast
 };
 
-/// Who sleeps (sleep.h); one entry per body.
+/// Which bodies sleep (sleep.h); one entry per body.
 struct Sleep {
   explicit Sleep(const World& world);
 
@@ -171,30 +171,30 @@ struct Sleep {
   std::vector<int> still;      ///< frames since it came there [-]
   std::vector<int> touched;    ///< patches in the last frame [-]
   std::vector<int> touches;    ///< ... and now [-]
-  Islands islands;             ///< by this frame's patches, whoever sleeps
+  Islands islands;             ///< by this frame's patches, asleep or not
   std::vector<char> restless;  ///< of islands
 };
 
-/// Everything that the constraint response keeps from frame to frame. Its parts work on each other: a step of
-/// one is made while the others' states are known (ConstraintStep).
+/// Everything that the constraint response keeps from frame to frame. Its parts depend on each other: a step
+/// of one is made while the others' states are known (ConstraintStep).
 struct ConstraintMemory {
   ConstraintMemory(const World& world, const FrameSettings& settings);
 
-  ConstraintState constraint;  ///< the island of the held part (constraint.h)
+  ConstraintState constraint;  ///< the island of the grasped part (constraint.h)
   FreeBodies free;             ///< the other islands (free_bodies.h)
   Waiting waiting;             ///< waiting.h
   Sleep sleep;                 ///< sleep.h
   ContactRows contact_rows;
-  ImpulseDisplay impulses;  ///< blows on the held part that are being felt
+  ImpulseDisplay impulses;  ///< impacts on the grasped part that are being felt
   ImpactScratch impact_scratch;
   std::vector<double> motion_bound;  ///< by body: how far it may move [m]
 };
 
-/// One step while it is made: its inputs, what it may ask, and what it changes.
+/// One step while it is made: its inputs, the gap oracle, and the states that it changes.
 struct ConstraintStep : StepInput {
   GapOracle& gaps;
-  WorldState& bodies;     ///< where everything is, and how it moves
-  ConstraintMemory& own;  ///< what the response keeps
+  WorldState& bodies;     ///< the poses and velocities of all bodies
+  ConstraintMemory& own;  ///< the memory of the response
   FrameReport& report;
 };
 

@@ -9,13 +9,13 @@ namespace {
 
 using Index = std::size_t;
 
-/// Gaps of bodies that touch are known to rounding only, some share of the skin. Kept to the bit, they would
-/// hold for ever what is jammed without play, and all that touches it.
+/// Gaps of bodies that touch are known only up to rounding, some fraction of the skin. If gaps had to be kept
+/// to the bit, a part that is jammed without play, and all that touches it, could never move again.
 constexpr double kKnownGap = tolerances::kCertificate;
 
-/// What a gap may become: open, and if it must shrink below half the skin, then by no more than half, or by
-/// as much as it is known to. Held to the exact last gap, a part that is a rounding too near could never move
-/// again.
+/// The least that a gap may become: open, and if it must shrink below half the skin, then by no more than
+/// half, or by its rounding. Held to the exact last gap, a part that is too near by a rounding could never
+/// move again.
 double least_gap(double now, double skin) {
   const double known = kKnownGap * skin;
   return std::min(0.5 * skin, now > known ? 0.5 * now : now - known);

@@ -20,14 +20,14 @@ bool same_facet(const Facet& a, const Facet& b) {
          std::tie(b.body_a, b.body_b, b.group_a, b.group_b);
 }
 
-/// What the rows are made from.
+/// The input from which rows are made.
 struct Source {
   std::span<const ContactPatch> patches;
   const std::vector<ShadingNormals>& shading;
   std::span<const double> depth_scale;  // by patch; empty: 1
 };
 
-/// Where the bodies of a facet are, which are those of the next one too as a rule.
+/// The poses of the bodies of a facet, which the next facet has too as a rule.
 struct BodyPoses {
   int a, b;
   Pose X_WA, X_AB, X_BA;
@@ -40,7 +40,7 @@ struct BodyPoses {
   bool are_of(const Facet& facet) const noexcept { return facet.body_a == a && facet.body_b == b; }
 };
 
-/// The points of a run of patches on one facet, weighed by area.
+/// The points of a run of patches on one facet, weighted by area.
 void gather_points(const Source& from, const BodyPoses& poses, std::span<const Facet> facet,
                    std::vector<FacetPoint>& points) {
   points.clear();

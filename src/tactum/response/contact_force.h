@@ -2,9 +2,9 @@
 /// From contact patches to the rows of the contact problem: which points push, in which direction, how
 /// stiffly.
 ///
-/// A patch pushes with the paper's k_s as a whole; its points share it by their weights (quadrature of the
-/// area, see collision/manifold.h). Pieces may be triangles, or cuts, of larger facets, so patches on the
-/// same facet are one patch: their points are weighed by area and reduced to four that carry the same area
+/// A patch pushes with the paper's k_s as a whole, divided among its points by their weights (quadrature of
+/// the area, see collision/manifold.h). Pieces may be triangles, or cuts, of larger facets, so patches on the
+/// same facet are one patch: their points are weighted by area and reduced to four that carry the same area
 /// integrals (mean, second moments, and the gap as a linear function). A wall feels the same however finely
 /// it was meshed or cut.
 
@@ -23,7 +23,7 @@ struct FacetPoint {
   Vec3 p_W = Vec3::Zero();     ///< [m]
   Vec3 n_BA_W = Vec3::Zero();  ///< unit [-]
   double distance = 0.0;       ///< [m]
-  double weight = 0.0;         ///< share of the facet's stiffness; they add up to one [-]
+  double weight = 0.0;         ///< fraction of the facet's stiffness; they add up to one [-]
 };
 
 /// Rows and scratch, allocated at load time.
@@ -49,7 +49,7 @@ void make_contact_rows(std::span<const Pose> X_WB, std::span<const ContactPatch>
                        const std::vector<ShadingNormals>& shading, double stiffness_N_per_m,
                        std::span<const double> depth_scale, ContactRows& out) noexcept;
 
-/// Appends what friction pushes A of a patch with as a contact row, as far as there is room.
+/// Appends the friction force on A of a patch as a contact row, as far as there is room.
 void append_friction(const FrictionPatch& patch, int number, const Vec3& force_W, double h,
                      std::vector<ContactRow>& rows) noexcept;
 

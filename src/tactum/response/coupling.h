@@ -1,14 +1,14 @@
 #pragma once
-/// The virtual coupling: the spring and damper between the hand and the proxy of the held part, "a simple
+/// The virtual coupling: the spring and damper between the probe and the proxy of the grasped part, "a simple
 /// spring model based on the transformation from the actual probe to its proxy" [Gregory 2000, 6.1]. Both
-/// ends are told at the handle: its pose X_WH by the device, and X_WB X_BH by the held body.
+/// ends are stated at the handle: the device gives its pose X_WH, the grasped body X_WB X_BH.
 
 #include "tactum/dynamics/contact_problem.h"
 #include "tactum/response/settings.h"
 
 namespace tactum::inline v0_1 {
 
-/// What the hand feels, at the handle, world axes: pulled and turned towards the proxy.
+/// The wrench that the hand feels, at the handle, world axes: it pulls and turns towards the proxy.
 Wrench coupling_wrench(const Coupling& coupling, const Pose& X_WH, const Twist& V_WH, const Pose& X_WH_proxy,
                        const Twist& V_WH_proxy) noexcept;
 

@@ -25,7 +25,8 @@ double bodies_energy(const World& world, const WorldState& bodies, int grasped) 
 void add_stored_energy(const World& world, const Coupling& coupling, const WorldState& bodies,
                        const FrameReport& report, double field_work_J, double pending_J,
                        PortInput& port) noexcept {
-  // What a field gives the held part is its own, as a falling weight's is; a vortex gives without end.
+  // The work of a field on the grasped part is taken from the field, as that on a falling weight is from
+  // gravity; a vortex does work without end.
   port.bodies_J = bodies_energy(world, bodies, report.grasped_body) - field_work_J;
   if (report.grasped_body < 0) return;
   const Twist stretch = twist_between(report.X_WH, report.X_WH_proxy, 1.0);

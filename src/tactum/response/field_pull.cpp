@@ -11,17 +11,17 @@ namespace {
 
 using Index = std::size_t;
 
-/// A step is at most so much more than what would end at the balance: at one and a half an error changes its
-/// sign and halves.
+/// A step is at most so many times the one that would end at the balance: at one and a half an error changes
+/// its sign and halves.
 constexpr double kOvershoot = 1.5;
-/// From where on a field is called steep beside the coupling, a share of its stiffness.
+/// From which fraction of the coupling's stiffness on a field is called steep beside it.
 constexpr double kSteep = 0.5;
 
 double work_over_step(const Wrench& load, std::span<const Pose> X_WB, const FieldPull& pull) {
   return power(load, twist_between(pull.X_WB_start, X_WB[Index(pull.body)], 1.0));
 }
 
-/// How stiff the field is beside the coupling, both against ways and against turns [-].
+/// How stiff the field is beside the coupling, both against displacements and against turns [-].
 double stiffness_beside(const Coupling& coupling, const FieldLoad& load) {
   return load.stiffness_N_per_m / coupling.stiffness_N_per_m +
          load.stiffness_Nm_per_rad / coupling.stiffness_Nm_per_rad;

@@ -11,7 +11,7 @@
 
 namespace tactum::inline v0_1 {
 
-/// What the frame could not do in full, each with the setting to raise. A frame never stops for these.
+/// The limits that a frame ran into, each with the setting to raise. A frame never stops for these.
 namespace frame_flag {
 inline constexpr std::uint32_t kBudgetShort = 1u << 0;  ///< pairs left unchecked: WorkBudget::max_exact_tests
 inline constexpr std::uint32_t kCapacityReached = 1u << 1;  ///< pairs or patches dropped: WorkBudget
@@ -25,48 +25,49 @@ inline constexpr std::uint32_t kNoHand =
     1u << 5;  ///< no valid sample yet: the scene stands still, nothing is felt
 }  // namespace frame_flag
 
-/// Dry friction of one frame, over all patches that push (constraint response); friction_use.h tells of each.
+/// Dry friction of one frame, over all patches that push (constraint response); friction_use.h has it by
+/// patch.
 struct FrictionReport {
   int sticking = 0;        ///< patches
   int slipping = 0;        ///< patches
-  double cone_used = 0.0;  ///< largest share of a friction cone in use; 1: at its edge [-]
+  double cone_used = 0.0;  ///< largest fraction of a friction cone in use; 1: at its edge [-]
 };
 
 struct FrameReport {
   std::uint64_t index = 0;   ///< frames since the start
   std::uint32_t flags = 0;   ///< frame_flag
   std::uint32_t safety = 0;  ///< safety_flag
-  int grasped_body = -1;     ///< the body that is held; -1: none
-  Pose X_WH;                 ///< where the hand is [m]
-  Pose X_WH_proxy;           ///< where the proxy would have it [m]
-  Wrench
-      restoring;  ///< sum of the contact forces on the held part, at its centre of mass, world axes [N, N m]
-  Wrench field;   ///< of force fields on the held part, at its centre of mass, world axes [N, N m]
-  Wrench coupling;  ///< what the response lets the hand feel, at the handle, world axes: raw [N, N m]
-  Wrench smoothed;  ///< after smoothing, device axes [N, N m]
-  PortReport port;  ///< energy that passed between hand and scene, and what was done about it
-  Wrench shown;     ///< after safety, device axes: what was sent [N, N m]
+  int grasped_body = -1;     ///< the body that is grasped; -1: none
+  Pose X_WH;                 ///< pose of the probe [m]
+  Pose X_WH_proxy;           ///< pose of the handle on the grasped part [m]
+  Wrench restoring;  ///< contact forces on the grasped part, at its centre of mass, world axes [N, N m]
+  Wrench field;      ///< of force fields on the grasped part, at its centre of mass, world axes [N, N m]
+  Wrench coupling;   ///< wrench that the response lets the hand feel, at the handle, world axes: raw [N, N m]
+  Wrench smoothed;   ///< after smoothing, device axes [N, N m]
+  PortReport port;   ///< energy that passed between hand and scene, and what the passivity controller did
+  Wrench shown;      ///< after safety, device axes: the wrench that was sent [N, N m]
   double tolerance_m = 0.0;     ///< largest delta of a pair in contact; 0 without contact [m]
   double min_distance_m = 0.0;  ///< smallest signed distance of the pairs in contact; 0 without contact [m]
   bool penetrating = false;     ///< some pair overlaps by more than its error bound
   double time_of_impact_s =
       0.0;                 ///< smallest, from the start of the frame; the whole step without impact [s]
   int contact_points = 0;  ///< rows of the contact problem
-  int grasped_contact_points = 0;  ///< ... that push the held part
-  int impacts = 0;  ///< pairs of bodies that hit each other, blow by blow (constraint response)
+  int grasped_contact_points = 0;  ///< ... that push the grasped part
+  int impacts = 0;  ///< pairs of bodies that hit each other, each impact counted (constraint response)
   int solver_iterations = 0;
   int solvers = 0;             ///< which solvers were at work: bits of ContactSolver (solver_choice.h)
   int active_constraints = 0;  ///< rows that hold the bodies (constraint response)
   int validation_tests = 0;    ///< exact tests of poses before they were taken
   int validation_retries = 0;  ///< steps that were not taken as they came
-  int waiting = 0;             ///< bodies that stood still for want of budget (waiting.h)
-  int asleep = 0;              ///< bodies that rest, and were not looked at
-  int longest_wait = 0;        ///< ... of these, frames on end
+  int waiting = 0;             ///< bodies that were deferred for want of budget (waiting.h)
+  int asleep = 0;              ///< bodies that rest, and were not tested
+  int longest_wait = 0;        ///< ... of the deferred ones, the most frames in a row
   int cut_short = 0;           ///< bodies that stayed, because no step of theirs was found open
-  /// By how much the momentum of what moves freely is off from what it was given (momentum.h) [N s].
+  /// By how much the momentum of the bodies that move freely differs from what they were given (momentum.h)
+  /// [N s].
   double momentum_off_Ns = 0.0;
   bool forced_short = false;  ///< ... because some step was cut short of where the forces would have it
-  FrictionReport friction;    ///< what patches do that rub
+  FrictionReport friction;    ///< friction over all patches
   ContactWork work;
 
   /// Exact tests in all: what the budget bounds.

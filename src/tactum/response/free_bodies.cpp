@@ -15,13 +15,14 @@ namespace {
 
 using Index = std::size_t;
 
-/// Impacts in a frame, for every contact point and in all; what is left then is taken as rest, without
-/// restitution.
+/// The most impacts in a frame, for every contact point and in all; the approach that is left then is solved
+/// as resting contact, without restitution.
 constexpr int kImpactsAPoint = 8;
 constexpr int kMostImpacts = 128;
-/// After the backtracking, how often those that are in the way of what stays may be found, before all stay.
+/// After the backtracking, how often bodies that are in contact with a stopped one may be stopped too, before
+/// all stop.
 constexpr int kMostStops = 12;
-/// Tests of each gap of the held part's island that are kept for it.
+/// Exact tests of each gap of the grasped part's island that are kept for it.
 constexpr int kRoundsOfGrasped = 4;
 
 /// The sums of all impacts; those on the grasped part are given at the handle.
@@ -62,7 +63,7 @@ Mat3 turning_inertia(const Body& body) {
   return body.inertia_B + body.mass_kg * (arm.squaredNorm() * Mat3::Identity() - arm * arm.transpose());
 }
 
-/// The share of every island's step that its bodies' motion bounds allow, and how far each would go.
+/// The fraction of every island's step that its bodies' motion bounds allow, and how far each would go.
 void limit_shares(ConstraintStep& step) {
   FreeBodies& f = step.own.free;
   std::fill(f.share.begin(), f.share.end(), 1.0);
@@ -80,7 +81,7 @@ void limit_shares(ConstraintStep& step) {
   if (f.grasped_here && step.gaps.blocked(step.grasped.body)) f.share[Index(step.grasped.body)] = 0.0;
 }
 
-/// Puts the bodies of unsettled islands where their step leads.
+/// Puts the bodies of unsettled islands, on trial, where their steps lead.
 void try_steps(ConstraintStep& step) {
   const FreeBodies& f = step.own.free;
   for (Index i = 0; i < step.world.bodies.size(); ++i) {
@@ -95,13 +96,13 @@ void try_steps(ConstraintStep& step) {
   }
 }
 
-/// Whether the trial has a body where it is now.
+/// Whether the trial leaves a body where it is now.
 bool stands(const ConstraintStep& step, int body) {
   return !moves_here(step, Index(body)) || step.own.free.share[Index(body)] == 0.0;
 }
 
 /// Settles the islands whose gaps are all open on trial; false when some are not. With `all` every gap of an
-/// unsettled island is looked at, else those of bodies whose share has changed.
+/// unsettled island is tested, else only those of bodies whose step was just cut.
 bool look(bool all, int keep_back, ConstraintStep& step) {
   FreeBodies& f = step.own.free;
   const std::span<const ContactPatch> patches = step.patches;
@@ -127,8 +128,8 @@ bool look(bool all, int keep_back, ConstraintStep& step) {
   return all_open;
 }
 
-/// Cuts the steps of the bodies whose gaps are not open: to half, or, where that has not helped or cannot be
-/// known, to nothing.
+/// Cuts the steps of the bodies whose gaps are not open: to half, or, without `halve` or where the gap is not
+/// known exactly, to nothing.
 void cut(bool halve, ConstraintStep& step) {
   FreeBodies& f = step.own.free;
   const std::span<const ContactPatch> patches = step.patches;
@@ -149,14 +150,14 @@ void cut(bool halve, ConstraintStep& step) {
   }
 }
 
-/// The bodies of islands that are not settled stay.
+/// Stops the bodies of islands that are not settled.
 void stay(ConstraintStep& step) {
   FreeBodies& f = step.own.free;
   for (Index i = 0; i < f.share.size(); ++i)
     if (moves_here(step, i) && !f.settled[Index(f.islands.of(static_cast<int>(i)))]) f.share[i] = 0.0;
 }
 
-/// Tests that are left to the held part's own island, when it comes after this.
+/// Tests that are kept for the grasped part's own island, which is moved after the others.
 int kept_for_grasped(const ConstraintStep& step) {
   const std::span<const ContactPatch> patches = step.patches;
   const auto own = std::count_if(patches.begin(), patches.end(),
@@ -179,7 +180,7 @@ void correct(ConstraintStep& step) {
     if (of_contact < 0 || f.settled[Index(of_contact)]) continue;
     const double too_much = overstated_at_trial(rows.subspan(first, end - first), step);
     const double share = f.share[Index(of_contact)];
-    if (!(share > 0.0)) continue;  // it stays, and its rows ask for nothing
+    if (!(share > 0.0)) continue;  // it stays, and its rows are not corrected
     for (Index r = first; r < end; ++r) {
       const double speed = rows[r].n_BA_W.dot(velocity_at(V_WB[a], rows[r].p_W - X_WB[a].p) -
                                               velocity_at(V_WB[b], rows[r].p_W - X_WB[b].p));
@@ -286,11 +287,11 @@ void move_free_bodies(ConstraintStep& step) noexcept {
   bool all = true;
   for (int round = 0, cuts = 0;; ++round) {
     try_steps(step);
-    if (cuts > kBacktracks + kMostStops) break;  // those stayed
+    if (cuts > kBacktracks + kMostStops) break;  // stay() has stopped the rest
     const int tests = step.report.validation_tests;
     if (look(all, keep_back, step)) break;
     ++step.report.validation_retries;
-    // To solve again asks for as many tests as now.
+    // Another solution takes as many tests as this one.
     all = round < kFeedbacks && step.gaps.tests_left() - keep_back >= step.report.validation_tests - tests;
     if (all) {
       correct(step);
@@ -307,7 +308,7 @@ void move_free_bodies(ConstraintStep& step) noexcept {
     if (!moves_here(step, i)) continue;
     step.bodies.X_WB[i] = c.trial.X_WB[i];
     if (f.share[i] > 0.0 || is_grasped(step, i)) continue;
-    // What does not go has no velocity: kept, it would grow under gravity while the body stays.
+    // A body that stays loses its velocity: kept, it would grow under gravity meanwhile.
     step.bodies.V_WB[i] = {};
     ++step.report.cut_short;
   }

@@ -25,7 +25,7 @@ bool is_idle(const IslandProblem& p) {
          p.step.world.bodies[Index(p.bodies[0])].joint.kind == JointKind::kFree;
 }
 
-/// The bodies of the island, and its rows; with `opening` gaps below the skin are asked to open.
+/// Adds the bodies of the island, and its rows; with `opening` the rows ask gaps below the skin to open.
 void assemble(bool exact, bool opening, IslandProblem& p) {
   const ConstraintStep& step = p.step;
   p.problem.clear();
@@ -48,13 +48,13 @@ void assemble(bool exact, bool opening, IslandProblem& p) {
   }
 }
 
-/// The momentum that the bodies that count have from a force.
+/// Adds the momentum that the bodies that count receive from a force.
 void give(const SurfacePair& bodies, const Vec3& force_W, const IslandProblem& p) {
   FreeBodies& f = p.step.own.free;
   f.given_Ns[p.island] += f.momentum.counted(bodies.body_a, bodies.body_b, p.step.dt_s * force_W);
 }
 
-/// Reports what friction pushes with on the grasped part as a row of its own, and its torque beside it.
+/// Reports the friction force on the grasped part as a row of its own, and its torque beside it.
 void report_friction(const FrictionPatch& patch, const Vec3& force_W, const Vec3& torque_W,
                      const IslandProblem& p) {
   give(patch.surfaces, force_W, p);
@@ -103,7 +103,7 @@ void solve_swept(IslandProblem& p) {
   Sweeps& sweeps = p.step.own.free.sweeps;
   assemble(false, true, p);
   sweeps.begin(p.in_problem, c.scale, p.step.bodies.X_WB, c.anchors, c.rows.memory, p.step.dt_s, p.problem);
-  // What is left moves nothing by more than the skin, and every step is looked at before it is taken.
+  // The error that is left moves nothing by more than the skin, and every step is tested before it is taken.
   const SolverResult solved = sweeps.solve(p.step.settings.budget.solver_iterations, c.skin_m, p.problem);
   p.step.report.solvers |= static_cast<int>(ContactSolver::kSweeps);
   p.step.report.solver_iterations += solved.iterations;

@@ -14,7 +14,7 @@ void begin_islands(ConstraintStep& step) noexcept;
 
 /// Solves for the velocities of the bodies in all islands that are not settled, from those without contact.
 /// Sets the impulses of their rows, and what is kept for the next frame. May be called again after rows were
-/// asked for more.
+/// corrected.
 void solve_islands(ConstraintStep& step) noexcept;
 
 }  // namespace tactum::inline v0_1

@@ -8,7 +8,7 @@ namespace {
 
 using Index = std::size_t;
 
-/// What pushes at one patch, in sum.
+/// The sum of the forces at one patch.
 struct Forces {
   double load_N = 0.0;
   Vec3 sideways = Vec3::Zero();

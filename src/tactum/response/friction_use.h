@@ -1,6 +1,6 @@
 #pragma once
-/// What friction does at every patch of the grasped part's island, for displays: whether it sticks or slips,
-/// and how much of its load the friction uses.
+/// Friction at every patch of the grasped part's island, for displays: whether the patch sticks or slips, and
+/// which fraction of its friction cone is in use.
 ///
 ///        \  |  /       used:  sqrt( |F_t|^2 + (|T_n| / r)^2 )  /  (mu F_n)
 ///         \ | * F
@@ -23,10 +23,10 @@ struct FrictionUse {
   double cone_used = 0.0;    ///< [-]
 };
 
-/// By number of ContactRow::friction_patch; empty where nothing rubs.
+/// By number of ContactRow::friction_patch; empty where there is no friction.
 using FrictionUses = StaticVector<FrictionUse, Friction::kMostPatches>;
 
-/// Fills `uses` from the problem's answer, and gives every row that pushes the number of the patch it counts
+/// Fills `uses` from the problem's answer, and gives every row that pushes the number of the patch it belongs
 /// to. `rows` are the contact rows of the problem, which begin at number `first` there.
 void use_of_friction(const Friction& friction, const ContactProblem& problem, std::size_t first,
                      std::span<ContactRow> rows, FrictionUses& uses) noexcept;

@@ -34,8 +34,8 @@ void add_grasped(const Vec6& target, const ConstraintStep& step, ContactProblem&
 }
 
 void feel(const Vec6& displacement, ConstraintStep& step) noexcept {
-  // M (x - x*) at the handle: with a free held part, exactly the sum of the contact forces, its weight
-  // and the load of fields.
+  // M (x - x*) at the handle: with a free grasped part, exactly the sum of the contact forces, its weight and
+  // the load of fields.
   const GraspMetric metric = grasp_metric(step.settings.coupling, step.dt_s);
   const Vec6 off = displacement - step.own.constraint.wanted;
   step.own.constraint.felt = {metric.stiffness_N_per_m * off.head<3>(),

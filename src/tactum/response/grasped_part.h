@@ -1,6 +1,7 @@
 #pragma once
-/// The held part in the constraint response: where the hand, its own weight and force fields would have it,
-/// and what the hand feels where it went instead. It has weight, but no inertia that could be felt.
+/// The grasped part in the constraint response: where the hand, its own weight and force fields would have
+/// it, and the wrench that the hand feels where it went instead. It has weight, but no inertia that could be
+/// felt.
 
 #include "tactum/response/constraint_state.h"
 
@@ -8,12 +9,12 @@ namespace tactum::inline v0_1 {
 
 /// The displacement of the handle that the coupling asks for, (m, rad).
 Vec6 wanted_by_hand(const ConstraintStep& step) noexcept;
-/// The displacement that `wanted` becomes when weight and force fields load the held part, (m, rad).
+/// The displacement that `wanted` becomes when weight and force fields load the grasped part, (m, rad).
 Vec6 with_load(const ConstraintStep& step, const Vec6& wanted) noexcept;
 /// Adds the grasped part to a contact problem: its coupling over one frame is its metric, stated at the
 /// handle, `target` its displacement there.
 void add_grasped(const Vec6& target, const ConstraintStep& step, ContactProblem& problem) noexcept;
-/// What the hand feels when the handle moves so: sets ConstraintState::felt.
+/// Sets ConstraintState::felt to the wrench that the hand feels when the handle moves by `displacement`.
 void feel(const Vec6& displacement, ConstraintStep& step) noexcept;
 
 }  // namespace tactum::inline v0_1

@@ -11,7 +11,7 @@ void ImpulseDisplay::add(const Impacts& impacts, double dt_s, const Wrench& impu
   const auto count = static_cast<std::size_t>(frames);
   const Wrench mean = impulse * (impacts.amplification / (frames * dt_s));
   for (std::size_t k = 0; k < count; ++k) {
-    // Midway through each frame, these add up to `frames` exactly.
+    // Taken at the middle of each frame, these add up to `frames` exactly.
     const double weight =
         count == 1 ? 1.0 : 1.0 - std::cos(2.0 * kPi * (static_cast<double>(k) + 0.5) / frames);
     Wrench& felt = ahead_[(now_ + k) % kMostFrames];

@@ -1,11 +1,11 @@
 #pragma once
-/// How a blow on the held part is felt. An impulse has no duration; shown in a single frame it is a blip that
-/// smoothing, the slew limit and the motors swallow [Gregory 2000, 6.2]. Here it is spread over time as a
-/// pulse that begins and ends smoothly and has the same momentum,
+/// How an impact on the grasped part is felt. An impulse has no duration; shown in a single frame it is a
+/// blip that smoothing, the slew limit and the motors swallow [Gregory 2000, 6.2]. Here it is spread over
+/// time as a pulse that begins and ends smoothly and has the same momentum,
 ///
 ///     F(t) = J a (1 - cos(2 pi t / T)) / T,    0 < t < T,     integral of F = a J
 ///
-/// with the expansion T and the amplification a as settings. Blows add up.
+/// with the expansion T and the amplification a as settings. Pulses of several impacts add up.
 
 #include <array>
 
@@ -17,12 +17,12 @@ class ImpulseDisplay {
  public:
   static constexpr std::size_t kMostFrames = 1024;  ///< of a pulse
 
-  /// An impulse [N s, N m s] on the hand, at the handle, world axes; `energy_J` is what the bodies lost by
-  /// it.
+  /// Adds an impulse [N s, N m s] on the hand, at the handle, world axes; `energy_J` is what the bodies lost
+  /// by it.
   void add(const Impacts& impacts, double dt_s, const Wrench& impulse, double energy_J) noexcept;
-  /// What is felt of all blows in this frame; the next call is the next frame's.
+  /// The wrench of all pulses in this frame; the next call is the next frame's.
   Wrench next() noexcept;
-  /// The energy of blows that is still to be felt [J].
+  /// The energy of impacts that is still to be felt [J].
   double pending_J() const noexcept { return pending_J_; }
 
  private:

@@ -7,7 +7,7 @@ namespace {
 
 using Index = std::size_t;
 
-/// What contacts and friction gave the bodies of the grasped part's island.
+/// Adds the impulses of contacts and friction on the bodies of the grasped part's island.
 void give_by_island(ConstraintStep& step) {
   const ConstraintState& c = step.own.constraint;
   Momentum& momentum = step.own.free.momentum;

@@ -26,7 +26,7 @@ Twist within_threshold(const Twist& V, double radius_m, double max_step_m, doubl
   return step > max_step_m ? V * (max_step_m / step) : V;
 }
 
-/// Keeps the held part's step below the threshold distance.
+/// Keeps the grasped part's step below the threshold distance.
 void limit_grasped(const MotionInput& input, WorldState& bodies) {
   if (input.grasped.body < 0) return;
   const Index grasped = Index(input.grasped.body);
@@ -34,13 +34,13 @@ void limit_grasped(const MotionInput& input, WorldState& bodies) {
                                           input.settings.penalty.max_step_m, input.dt_s);
 }
 
-/// Up to so many times the shortest depth, the depth along the motion is taken as it is; from so many times
-/// on it says no more than that the motion follows the surface or leaves it, and the shortest one is taken.
-/// Between, the one passes into the other without a step.
+/// Up to kTrustedDepth times the shortest depth, the depth along the motion is used as it is; from the second
+/// limit on it only means that the motion follows the surface or leaves it, and the shortest depth is used.
+/// Between the two limits the one passes into the other without a step.
 constexpr double kTrustedDepth = 2.0;
 constexpr double kIgnoredDepth = 4.0;
 
-/// By how much the shortest depth is multiplied where the depth along the motion is `ratio` times as large.
+/// The factor for the shortest depth where the depth along the motion is `ratio` times as large.
 double depth_scale(double ratio) {
   if (!(ratio < kIgnoredDepth)) return 1.0;
   if (ratio <= kTrustedDepth) return ratio;
@@ -58,8 +58,8 @@ Vec3 velocity_across(const ContactPatch& patch, std::span<const Pose> X_WB, std:
   return velocity_at(V_WB[a], p_W - X_WB[a].p) - velocity_at(V_WB[b], p_W - X_WB[b].p);
 }
 
-/// When the first contact closes, in [0, dt]: of convex pieces of bodies that turn, as the bodies move; else,
-/// and where the budget has no test left, by the published estimate, distance over closing speed.
+/// When the first contact closes, in [0, dt]: by conservative advancement for convex pieces of bodies that
+/// turn; else, and where the budget has no test left, by the published estimate, distance over closing speed.
 double first_impact(const StepInput& input, std::span<const ContactRow> rows, GapOracle& gaps,
                     std::span<const Twist> V_WB) noexcept {
   const std::span<const Pose> X_WB = input.X_WB_start;
@@ -123,7 +123,7 @@ std::span<const double> PenaltyResponse::bound_motion(const MotionInput& input, 
     if (number != input.grasped.body) V_WB.v += world.gravity_W * input.dt_s;
     V_before_joints_[i] = V_WB;
     if (number != input.grasped.body && body.joint.kind == JointKind::kFree) continue;
-    // What the joint allows, and where the hand and the joint's forces lead when nothing touches.
+    // First the motion that the joint allows, and where the hand and the joint's forces lead without contact.
     problem_.clear();
     add_body(input, number, input.dt_s, bodies);
     problem_.add_joint_rows(false);
@@ -187,7 +187,7 @@ void PenaltyResponse::solve(const StepInput& input, double rest_s, WorldState& b
                             FrameReport& report) noexcept {
   const World& world = input.world;
   const std::span<const ContactRow> rows = contacts_.rows;
-  // Of the joints' forces over the whole frame only what acted up to the impact counts here.
+  // Of the joints' forces over the whole frame, only the part up to the impact counts here.
   const double before_impact = 1.0 - rest_s / input.dt_s;
   for (Index i = 0; i < world.bodies.size(); ++i)
     if (world.bodies[i].moves())
@@ -237,7 +237,7 @@ void PenaltyResponse::step(const StepInput& input, GapOracle& gaps, WorldState& 
 Wrench PenaltyResponse::felt(const StepInput& input, const WorldState& bodies) const noexcept {
   const GraspedPart& grasped = input.grasped;
   if (grasped.body < 0) return {};
-  // The velocity that counts is that of the whole frame's displacement, not the last part's after an impact.
+  // The velocity is that of the whole frame's displacement, not of the last part after an impact.
   const Pose X_WH_before = input.X_WB_start[Index(grasped.body)] * grasped.X_BH;
   const Pose X_WH_proxy = bodies.X_WB[Index(grasped.body)] * grasped.X_BH;
   const Twist V_WH_proxy = twist_between(X_WH_before, X_WH_proxy, input.dt_s);

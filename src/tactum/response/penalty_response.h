@@ -4,12 +4,12 @@
 /// the smallest time of impact, the contact forces act, and the bodies advance with the new velocities for
 /// the rest of the frame.
 ///
-/// The held part moves straight to where the hand holds it, but no farther in one frame than the safe
-/// threshold distance [Gregory 2000, 3.2]. The tolerance of contact determination grows with that speed, so
-/// what moves towards the hand cannot slip past what it was tested against. (What contacts push it back by is
-/// bounded by the threshold too, but first tested in the next frame.) The threshold limits the step that is
-/// taken, not the pull that the contact forces are weighed against: with the pull cut to the threshold, a
-/// held gear could never push harder than the spring over half a millimetre.
+/// The grasped part moves straight towards the probe, but no farther in one frame than the safe threshold
+/// distance [Gregory 2000, 3.2]. The tolerance of contact determination grows with that speed, so a part that
+/// moves towards the hand cannot pass a contact that was not tested. (The displacement by which contacts push
+/// it back is bounded by the threshold too, but first tested in the next frame.) The threshold limits the
+/// step that is taken, not the pull that the contact forces are weighed against: with the pull cut to the
+/// threshold, a grasped gear could never push harder than the spring over half a millimetre.
 
 #include <vector>
 
@@ -24,19 +24,18 @@ namespace tactum::inline v0_1 {
 
 class PenaltyResponse {
  public:
-  /// What a patch is asked for: points that carry its force over its area.
+  /// What it needs of a patch: points that carry its force over its area.
   static constexpr PatchPoints kPoints = PatchPoints::kQuadrature;
 
   PenaltyResponse(const World& world, const FrameSettings& settings);
 
-  /// How far any point of a body moves in this frame at its wanted velocity, by body [m]: the held part's
-  /// leads to the hand, at most the threshold distance; the others go on as they moved, pulled by gravity;
-  /// all as their joints allow. Sets the bodies' velocities.
+  /// How far any point of a body moves in this frame at its wanted velocity, by body [m]: that of the grasped
+  /// part leads to the hand, at most the threshold distance; the others go on as they moved, pulled by
+  /// gravity; all as their joints allow. Sets the bodies' velocities.
   std::span<const double> bound_motion(const MotionInput& input, WorldState& bodies) noexcept;
-  /// Moves everything that moves, and puts every transform back on its joint. Fills the report's response
-  /// fields.
+  /// Moves everything that moves, and puts every pose back on its joint. Fills the report's response fields.
   void step(const StepInput& input, GapOracle& gaps, WorldState& bodies, FrameReport& report) noexcept;
-  /// The coupling from the hand to the held part, at the handle, world axes [N, N m].
+  /// The wrench of the coupling from the hand to the grasped part, at the handle, world axes [N, N m].
   Wrench felt(const StepInput& input, const WorldState& bodies) const noexcept;
 
   /// The contacts of the last step.
@@ -45,7 +44,7 @@ class PenaltyResponse {
   bool rows_full() const noexcept { return contacts_.full; }
 
  private:
-  /// Of each patch, by how much its depth is to be multiplied; none where the shortest depth is wanted.
+  /// Of each patch, the factor for its depth; empty where the shortest depth is wanted.
   std::span<const double> scale_depths(const StepInput& input, GapOracle& gaps,
                                        std::span<const Twist> V_WB) noexcept;
   static Vec6 to_hand(const MotionInput& input, const Pose& X_WB) noexcept;

@@ -1,7 +1,6 @@
 #pragma once
-/// How the held part and the world answer: one of two responses, each a stage of the frame with the same
-/// three calls. Which one is chosen here, in one place; a third would be another file and another
-/// alternative.
+/// How the grasped part and the world answer: one of two responses, each a stage of the frame with the same
+/// three calls. The choice is made here, in one place; a third would be another file and another alternative.
 
 #include <variant>
 
@@ -22,15 +21,15 @@ class Response {
   std::span<const double> bound_motion(const MotionInput& input, WorldState& bodies) noexcept;
   /// Moves everything that moves. Fills the report's response fields.
   void step(const StepInput& input, GapOracle& gaps, WorldState& bodies, FrameReport& report) noexcept;
-  /// What the hand feels of that, at the handle, world axes; nothing while nothing is held [N, N m].
-  /// Call it once a frame: it moves the pulses of impacts on.
+  /// The wrench that the hand feels, at the handle, world axes; zero while nothing is grasped [N, N m]. Call
+  /// it once a frame: it moves the pulses of impacts on.
   Wrench felt(const StepInput& input, const WorldState& bodies) noexcept;
 
   /// The contacts of the last step, for displays.
   std::span<const ContactRow> rows() const noexcept;
-  /// What friction does at the contacts that rub, by ContactRow::grip; empty in the penalty response.
+  /// Friction at the contacts that have it, by ContactRow::friction_patch; empty in the penalty response.
   std::span<const FrictionUse> friction_uses() const noexcept;
-  /// Energy of blows that is still to be felt [J].
+  /// Energy of impacts that is still to be felt [J].
   double pending_J() const noexcept;
 
   /// The constraint response, if it is the one; else null. For tests and displays that look inside.

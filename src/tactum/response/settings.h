@@ -1,8 +1,7 @@
 #pragma once
 /// Everything about the response that can be set, each with its unit, its default and, where there is one,
-/// the paper's value. Constant during a frame; what setting_table.h calls live may
-/// change between two frames. [Gregory 2000]: "Six Degree-of-Freedom Haptic Display of
-/// Polygonal Models".
+/// the paper's value. Constant during a frame; settings that setting_table.h calls live may change between
+/// two frames. [Gregory 2000]: "Six Degree-of-Freedom Haptic Display of Polygonal Models".
 
 #include <vector>
 
@@ -18,10 +17,10 @@ namespace tactum::inline v0_1 {
 struct Workspace {
   Pose X_WD;               ///< device frame in the world [m]
   double scale = 1.0;      ///< world metres per device metre; rotation is never scaled [-]
-  int clutch_button = -1;  ///< bit of DeviceSample::buttons that lets the handle slip; -1: none
+  int clutch_button = -1;  ///< bit of DeviceSample::buttons that disengages the handle; -1: none
 };
 
-/// The virtual coupling: the spring and damper between the hand's pose and the held part's proxy.
+/// The virtual coupling: the spring and damper between the probe and the proxy of the grasped part.
 struct Coupling {
   double stiffness_N_per_m = 600.0;     ///< k_t [N/m]
   double stiffness_Nm_per_rad = 0.3;    ///< k_r [N m/rad]
@@ -43,23 +42,23 @@ struct Penalty {
   OverlapDepth depth = OverlapDepth::kShortest;
 };
 
-/// Which of the two responses moves the held part.
+/// Which of the two responses moves the grasped part.
 enum class ResponseModel {
-  kPenalty,    ///< as published: contacts are springs, and are entered
-  kConstraint  ///< nothing is entered
+  kPenalty,    ///< as published: contacts are springs, which penetration loads
+  kConstraint  ///< no part penetrates another
 };
 
 /// The constraint response. The hand feels its coupling's stiffness and nothing else.
 struct Constraint {
-  double max_step_m = 1e-3;    ///< farthest that a point of the held part goes in a frame [m]
-  double least_step_m = 5e-5;  ///< as far it may always try to go; from there it doubles [m]
-  /// ... while surfaces without pieces touch: what can be met within a step, and the time to find it, grow
-  /// with the step.
+  double max_step_m = 1e-3;    ///< farthest that a point of the grasped part goes in a frame [m]
+  double least_step_m = 5e-5;  ///< the least that the limit sinks to; from there it doubles [m]
+  /// ... while surfaces without pieces touch: the number of contacts within a step, and the time to find
+  /// them, grow with the step.
   double max_step_on_surfaces_m = 3e-5;  ///< [m]
-  double max_turn_rad = 0.020;           ///< farthest that the held part turns in a frame [rad]
+  double max_turn_rad = 0.020;           ///< farthest that the grasped part turns in a frame [rad]
 };
 
-/// A coefficient for every pair of bodies (scene files tell it for pairs of materials).
+/// A coefficient for every pair of bodies (scene files give it for pairs of materials).
 struct PairCoefficients {
   std::vector<double> coefficients;  ///< bodies x bodies, row after row; empty: none [-]
   int bodies = 0;
@@ -69,19 +68,20 @@ struct PairCoefficients {
   }
 };
 
-/// Blows: bodies that hit each other in the constraint response, and how the hand feels those that hit the
-/// held part. "We are considering the possibility of force expansion over time or force amplification", 6.2.
+/// Impacts: bodies that hit each other in the constraint response, and how the hand feels those that hit the
+/// grasped part. "We are considering the possibility of force expansion over time or force amplification",
+/// 6.2.
 struct Impacts {
-  PairCoefficients restitution;  ///< of the speed of approach [-]
-  double expansion_s = 0.02;     ///< a blow is felt as a pulse of the same momentum, this long [s]
+  PairCoefficients restitution;  ///< fraction of the speed of approach that is left [-]
+  double expansion_s = 0.02;     ///< an impact is felt as a pulse of the same momentum, this long [s]
   double amplification = 1.0;    ///< ... times this [-]
 };
 
-/// Which part is held, and where.
+/// Which part is grasped, and where.
 struct Tool {
-  int body = -1;                  ///< index into World::bodies; -1: nothing is held, the hand feels nothing
-  Pose X_BH;                      ///< the handle in the held body's frame while grasped [m]
-  bool picks = false;             ///< the primary button picks up and lets go (picking.h)
+  int body = -1;                  ///< index into World::bodies; -1: nothing grasped, the hand feels nothing
+  Pose X_BH;                      ///< the handle in the grasped body's frame while grasped [m]
+  bool picks = false;             ///< the primary button grasps and releases (picking.h)
   double pick_distance_m = 0.01;  ///< how far from the handle [m]
 };
 
@@ -91,13 +91,13 @@ struct Shading {
   double crease_rad = 0.6;  ///< facets that meet at less than this are parts of one curved surface [rad]
 };
 
-/// What the frame may spend; part of the recorded input, never a clock reading.
+/// The budget of a frame; part of the recorded input, never a clock reading.
 struct WorkBudget {
   int max_exact_tests = 4096;      ///< exact tests a frame (paper 4.2: the array of fixed length) [-]
   int max_contact_points = 2048;   ///< contact points a frame [-]
   ContactFinderCapacity capacity;  ///< near pairs and patches there is memory for
-  int solver_iterations = 120;     ///< sweeps of the contact solver, or rows taken in and let go, at most [-]
-  bool sleep = true;               ///< what rests is not looked at, where nobody could tell (sleep.h)
+  int solver_iterations = 120;     ///< sweeps of the contact solver, or rows added and dropped, at most [-]
+  bool sleep = true;               ///< bodies at rest are not tested, where nothing could show (sleep.h)
 };
 
 /// All of it.

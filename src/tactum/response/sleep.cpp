@@ -11,7 +11,7 @@ namespace {
 using Index = std::size_t;
 
 constexpr double kStill_s = 0.06;
-/// No point has gone farther in that time than this share of the skin: some nanometres.
+/// No point has moved farther in that time than this fraction of the skin: some nanometres.
 constexpr double kStillShare = 0.01;
 
 void count_touches(ConstraintStep& step) {
@@ -25,7 +25,7 @@ void count_touches(ConstraintStep& step) {
   }
 }
 
-/// Whether the body is where it was, with what it touched.
+/// Whether the body is where it was, with as many contacts.
 bool is_still(const ConstraintStep& step, Index body) {
   const Sleep& s = step.own.sleep;
   if (s.touches[body] != s.touched[body] || static_cast<int>(body) == step.grasped.body) return false;
@@ -34,7 +34,7 @@ bool is_still(const ConstraintStep& step, Index body) {
   const Pose& is = step.bodies.X_WB[body];
   const double distance = (is.p - was.p).norm();
   if (distance > most) return false;
-  if (distance == 0.0 && is.R == was.R) return true;  // as all that sleeps
+  if (distance == 0.0 && is.R == was.R) return true;  // as for all bodies that sleep
   const Twist moved = twist_between(was, is, 1.0);
   return moved.v.norm() + moved.w.norm() * step.radius_m[body] <= most;
 }
@@ -44,7 +44,7 @@ bool is_still(const ConstraintStep& step, Index body) {
 void let_sleep(ConstraintStep& step) noexcept {
   Sleep& s = step.own.sleep;
   const int still_frames = frames_in(kStill_s, step.dt_s);
-  std::vector<char>& waits = step.own.waiting.waits;  // nobody so far
+  std::vector<char>& waits = step.own.waiting.waits;  // no body is deferred so far
   s.islands.clear(step.world, waits);
   count_touches(step);
   std::fill(s.restless.begin(), s.restless.end(), 0);

@@ -1,6 +1,6 @@
 #pragma once
-/// What a response is given in every frame: the world, what the hand holds and wants, and where bodies touch.
-/// Nothing here changes while the response works.
+/// The input of a response in every frame: the world, the grasped part and the pose of the hand, and the
+/// contacts. Nothing here changes while the response works.
 
 #include <span>
 #include <vector>
@@ -12,18 +12,18 @@
 
 namespace tactum::inline v0_1 {
 
-/// The part that the hand holds, where the hand is, and what force fields do to the part.
+/// The part that the hand holds, the pose of the probe, and the load of force fields on the part.
 struct GraspedPart {
   bool hand_known = false;  ///< false until the first valid sample: nothing may move
-  int body = -1;            ///< index into World::bodies; -1: nothing is held
-  Pose X_BH;                ///< the handle in the held body's frame [m]
-  Pose X_WH;                ///< the hand in the world [m]
+  int body = -1;            ///< index into World::bodies; -1: nothing is grasped
+  Pose X_BH;                ///< the handle in the grasped body's frame [m]
+  Pose X_WH;                ///< the probe in the world [m]
   Twist V_WH;               ///< its velocity [m/s, rad/s]
-  bool in_field = false;    ///< force fields act on the held part
-  FieldLoad field;          ///< what they do at the pose the frame starts with
+  bool in_field = false;    ///< force fields act on the grasped part
+  FieldLoad field;          ///< their load at the pose the frame starts with
 };
 
-/// What a motion bound depends on: everything that is known before contacts are looked for.
+/// The input of a motion bound: everything that is known before contacts are looked for.
 struct MotionInput {
   const World& world;
   const FrameSettings& settings;
@@ -35,7 +35,7 @@ struct MotionInput {
 struct StepInput : MotionInput {
   std::span<const ContactPatch> patches;
   std::span<const std::uint8_t> priority;      ///< of each body (contact/schedule.h)
-  const ContactWork& work;                     ///< what was looked at, and what was left
+  const ContactWork& work;                     ///< what was tested, and what was left
   const std::vector<ShadingNormals>& shading;  ///< one per body; empty when shading is off
   std::span<const Pose> X_WB_start;            ///< poses at the start of the frame [m]
 };

@@ -17,19 +17,19 @@ using Index = std::size_t;
 constexpr int kFewestRounds = 1;
 constexpr int kMostRounds = 8;
 
-/// While a body waits, the guess of how far it would go fades to this share in kReferenceStep_s, so that its
-/// turn comes however many gaps it has.
+/// While a body is deferred, the estimate of how far it would go fades to this fraction in kReferenceStep_s,
+/// so that it is admitted in the end however many gaps it has.
 constexpr double kFading = 0.8;
 
-// What rests: in so long it has gone no farther than this share of its radius. What wakes: a neighbour
-// as fast as this.
+// A body rests when in this time it has moved no farther than this fraction of its radius. A neighbour as
+// fast as this wakes it.
 constexpr double kRest_s = 0.06;
 constexpr double kRestShare = 0.03;
 constexpr double kWakingSpeed = 0.15;  // [m/s]
 
 bool asleep(const Waiting& w, Index body) { return w.contacts_at_rest[body] > 0; }
 
-/// Who falls asleep, and who wakes.
+/// Puts bodies to sleep, and wakes them.
 void watch_rest(ConstraintStep& step) {
   Waiting& w = step.own.waiting;
   const int rest_frames = frames_in(kRest_s, step.dt_s);

@@ -1,6 +1,6 @@
 #pragma once
-/// The bodies of a scene, as values in memory. Poses speak of the part's own frame P (that of its mesh file,
-/// or as parts/generated_parts.h and its neighbours draw it), not of the centre of mass.
+/// The bodies of a scene, as values in memory. Poses are those of the part's own frame P (that of its mesh
+/// file, or as drawn in parts/generated_parts.h and its neighbours), not of the centre of mass.
 
 #include <optional>
 #include <string>
@@ -58,7 +58,7 @@ using JointDescription = std::variant<FreeJoint, FixedJoint, HingeJoint, SliderJ
 
 /// One of several shapes of a body.
 struct ComponentDescription {
-  std::string name = {};                     ///< for those that stand on it; may be empty
+  std::string name = {};                     ///< for components placed on it; may be empty
   std::optional<PartDescription> part = {};  ///< it must come to convex pieces
   std::string on = {};                       ///< an earlier component, in whose frame the pose is; empty: P
   Pose X_OC = {};                            ///< the component's frame in that one [m]

@@ -5,7 +5,7 @@
 namespace tactum::inline v0_1 {
 namespace {
 
-constexpr double kWaterDensity = 1000.0;  // of a part whose description says nothing [kg/m^3]
+constexpr double kWaterDensity = 1000.0;  // of a part whose description gives none [kg/m^3]
 
 void set_limits(const std::optional<Interval>& limits, Joint& joint) {
   if (!limits) return;
@@ -60,7 +60,7 @@ class JointMaker {
   const Pose& X_WP_;
 };
 
-/// Where force fields act: so many points over the surface, or each by itself.
+/// The points where force fields act: a number of them spread over the surface, or each by itself.
 std::vector<FieldPoint> field_points(const BodyDescription& body, const Part& part) {
   if (body.field_points) return spread_over(part.surface, *body.field_points);
   std::vector<FieldPoint> points;
@@ -70,7 +70,7 @@ std::vector<FieldPoint> field_points(const BodyDescription& body, const Part& pa
   return points;
 }
 
-/// Names and velocity.
+/// Checks names and velocity.
 void check_body(SceneBuilder& builder, const std::string& path, const BodyDescription& body,
                 const World& world) {
   for (const Body& other : world.bodies)
@@ -87,7 +87,7 @@ void build_body(SceneBuilder& builder, const std::string& path, const BodyDescri
   BodySpec spec;
   spec.name = body.name;
   check_body(builder, path, body, scene.world);
-  // Described in the world, or in the frame of the part it stands on.
+  // Described in the world, or in the frame of the part it is placed on.
   spec.X_WP = body.X_OP;
   if (!body.on.empty()) {
     const int on = builder.find_body(item_path(path, "on"), body.on, scene.world);

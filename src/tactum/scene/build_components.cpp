@@ -17,7 +17,7 @@ struct Component {
   Pieces pieces;
 };
 
-/// Seen from `X`; the hull of the corners that have moved.
+/// The piece in the frame that `X` is stated in: the hull of the corners that have moved.
 Result<Polytope> moved(const Polytope& piece, const Pose& X) {
   std::vector<Vec3> points = piece.vertices;
   for (Vec3& point : points) point = X * point;
@@ -41,7 +41,7 @@ Result<Pieces> pieces_of(const Shape& shape) {
   return pieces;
 }
 
-/// How far two components are inside each other [m]: the deepest pair of pieces.
+/// The penetration depth of two components [m]: that of the deepest pair of pieces.
 double overlap(const Component& x, const Component& y) {
   double deepest = 0.0;
   for (const Polytope& a : x.pieces) {

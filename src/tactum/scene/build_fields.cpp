@@ -16,7 +16,7 @@ FieldGrid::Samples samples_of(const Formula& formula, const GridShape& shape) {
   return sampled<Number>(shape, [&](const Vec3& p) { return value_at(formula, p).force; });
 }
 
-/// What a field is felt as; its table is at `path`.
+/// Makes the shape of a field; its table is at `path`.
 class FieldMaker {
  public:
   FieldMaker(SceneBuilder& builder, const std::string& path, double edge_m)

@@ -77,7 +77,7 @@ class StepPlayer {
   ScriptedMotion& motion_;
 };
 
-/// The hand must not be sent where the device ends.
+/// Checks that the hand is not sent out of the device's workspace.
 void check_workspace(SceneBuilder& builder, const HandMotion& motion, const SimulatedDeviceModel& device) {
   constexpr double kLook_s = 0.01;
   double farthest = 0.0;

@@ -37,7 +37,7 @@ Vec3 rim_of(const HingeLine& hinge, const RimGrasp& grasp) {
   return middle_of(hinge) + grasp.radius_m * (std::cos(angle) * x + std::sin(angle) * hinge.axis_B.cross(x));
 }
 
-/// Where the handle sits in the grasped body.
+/// The place of the handle in the grasped body.
 Vec3 handle_in(SceneBuilder& builder, const BodyTool& tool, const Body& body) {
   const bool hinged = body.joint.kind == JointKind::kHinge;
   if (const auto* point = std::get_if<PointGrasp>(&tool.grasp)) return p_BP_of(body) + point->pos_m;
@@ -77,7 +77,7 @@ void build_settings(SceneBuilder& builder, Scene& scene) {
   set_pairs(builder, "friction", settings.friction, scene.world, scene.settings.friction);
   set_pairs(builder, "restitution", settings.restitution, scene.world, scene.settings.impacts.restitution);
 
-  // Where nothing else is said the device's middle is where the handle starts, and its axes are the world's.
+  // By default the device's middle is where the handle starts, and its axes are the world's.
   Pose& X_WD = scene.settings.workspace.X_WD;
   X_WD.R = description.workspace.R_WD;
   Vec3 handle_W = Vec3::Zero();

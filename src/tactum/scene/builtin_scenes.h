@@ -28,8 +28,8 @@ struct SceneEntry {
 /// Name and description of every built-in scene, in order.
 std::vector<SceneEntry> list_scenes();
 
-/// The description of a built-in scene by name, or of a scene file by path. What ends in .toml or holds a
-/// slash is a path. A program may change it before it builds the scene.
+/// The description of a built-in scene by name, or of a scene file by path. A text that ends in .toml or has
+/// a slash is a path. A program may change it before it builds the scene.
 Result<SceneDescription> describe_scene(const std::string& name_or_path);
 
 /// The scene of that description, built.

@@ -1,6 +1,6 @@
 #pragma once
-/// Whether a description made in code says what a file could say: ranges, finite numbers, one thing said
-/// once. What needs parts and bodies, such as names, is checked when the scene is built.
+/// Checks that a description made in code could come from a file: ranges, finite numbers, no item given
+/// twice. Checks that need parts and bodies, such as those of names, are made when the scene is built.
 
 #include "tactum/base/result.h"
 #include "tactum/scene/scene_description.h"

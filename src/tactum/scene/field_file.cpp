@@ -28,7 +28,7 @@ struct Header {
   std::size_t bytes() const { return 3 * shape.count() * (single ? sizeof(float) : sizeof(double)); }
 };
 
-/// Whole numbers only, and none that an int cannot hold: their range is checked with the shape.
+/// Reads whole numbers, and none that an int cannot represent: their range is checked with the shape.
 std::array<int, 3> read_nodes(const TomlReader& root, const char* key) {
   const Vec3 read = root.vector3(key);
   std::array<int, 3> nodes{0, 0, 0};

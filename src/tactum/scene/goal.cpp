@@ -11,7 +11,7 @@ namespace {
 
 using Index = std::size_t;
 
-/// Goals whose number at the end counts, not the best one on the way.
+/// Goals whose number at the end counts, not the best one meanwhile.
 bool counts_at_end(GoalKind kind) { return kind == GoalKind::kTurnedTo || kind == GoalKind::kFollowed; }
 
 /// Goals whose number must stay below the tolerance; the others must reach the amount.
@@ -67,7 +67,7 @@ void GoalRecord::watch(const World& world, const WorldState& state, int grasped,
   for (Index b = 0; b < angles_.size(); ++b) {
     const Body& body = world.bodies[b];
     if (body.joint.kind != JointKind::kHinge) continue;
-    // The whole turns that bring the told angle nearest to the last one.
+    // The whole turns that bring the measured angle nearest to the last one.
     const double measured = hinge_angle(body, state.X_WB[b]);
     angles_[b] = measured + 2.0 * kPi * std::round((angles_[b] - measured) / (2.0 * kPi));
   }

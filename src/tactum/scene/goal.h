@@ -1,6 +1,7 @@
 #pragma once
-/// What a scene's motion is meant to reach, and whether it did. A GoalRecord watches every frame, because a
-/// hinge's angle is only known modulo a turn from one pose, and because "once was there" outlives the moment.
+/// The goals of a scene's motion, and whether they were met. A GoalRecord watches every frame, because a
+/// hinge's angle is only known modulo a turn from one pose, and because some goals count when they were met
+/// at any time.
 
 #include <span>
 #include <string>
@@ -16,8 +17,8 @@ enum class GoalKind {
   kTurnedTo,  ///< at the end the hinge's angle is within `tolerance` of `amount`
   kMovedBy,   ///< at some time the point had moved by `amount` or more along `vector_W`
   kMovedTo,   ///< at some time the point was within `tolerance` of `vector_W`
-  kTouched,   ///< at some time the held part pushed it
-  kPicked,    ///< at some time it was held
+  kTouched,   ///< at some time the grasped part pushed it
+  kPicked,    ///< at some time it was grasped
   kFollowed   ///< at the end the angle is -`amount` times the driver's, within `tolerance`
 };
 
@@ -31,7 +32,7 @@ struct Goal {
   double tolerance = 0.0;        ///< [rad] or [m]
 };
 
-/// What has happened so far.
+/// The progress of the goals so far.
 class GoalRecord {
  public:
   GoalRecord() = default;
@@ -51,13 +52,13 @@ class GoalRecord {
   std::string describe(const World& world, std::size_t goal) const;
 
  private:
-  /// The number that decides a goal now: an angle, a way, a distance, or how far off.
+  /// The number that decides a goal now: an angle, a displacement, a distance, or an error.
   double measure(const Goal& goal, const World& world, const WorldState& state) const noexcept;
 
   std::vector<Goal> goals_;
   std::vector<double> angles_;          // of each body, unwrapped
   std::vector<char> touched_, picked_;  // of each body, so far
-  std::vector<double> best_;  // of each goal: best so far, or the present value for those told at the end
+  std::vector<double> best_;  // of each goal: best so far, or the present value where the end counts
 };
 
 }  // namespace tactum::inline v0_1

@@ -1,5 +1,5 @@
 #pragma once
-/// What the motion of a scene is meant to reach, as values in memory; goal.h says when a goal is met.
+/// The goals of the motion of a scene, as values in memory; goal.h defines when a goal is met.
 
 #include <optional>
 #include <string>
@@ -13,7 +13,7 @@ namespace tactum::inline v0_1 {
 struct TurnedGoal {
   static constexpr const char* kKind = "turned";
   std::string body = {};
-  std::optional<double> at_least_rad = {};   ///< negative: the other way round [rad]
+  std::optional<double> at_least_rad = {};   ///< negative: in the other direction [rad]
   std::optional<double> about_rad = {};      ///< [rad]
   std::optional<double> tolerance_rad = {};  ///< of about_rad [rad]
 };

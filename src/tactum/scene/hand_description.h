@@ -1,5 +1,5 @@
 #pragma once
-/// What the hand of a scene holds and does, as values in memory.
+/// The tool of a scene's hand and its motion, as values in memory.
 
 #include <optional>
 #include <string>
@@ -35,14 +35,14 @@ struct BodyTool {
   std::variant<CentreGrasp, RimGrasp, PointGrasp> grasp = {};
 };
 
-/// The hand begins empty; while the primary button is pressed it holds what was nearest.
+/// The hand begins empty; while the primary button is pressed it grasps the body that was nearest.
 struct PickingTool {
   double pick_distance_m = Tool{}.pick_distance_m;  ///< how far from the handle [m]
 };
 
 using ToolDescription = std::variant<BodyTool, PickingTool>;
 
-/// Where the device stands in the world. Its scale and clutch are settings.
+/// The place of the device in the world. Its scale and clutch are settings.
 struct WorkspaceDescription {
   std::optional<Vec3> pos_m = {};  ///< its middle; where the handle starts when absent [m]
   Mat3 R_WD = Mat3::Identity();    ///< its axes
@@ -64,7 +64,7 @@ struct TurnStep {
   bool button = false;  ///< the primary button is pressed meanwhile
 };
 
-/// The handle goes to a pose. What is absent stays as it is; one of the two is there.
+/// The handle goes to a pose. A member that is absent leaves its value as it is; one of the two is given.
 struct MoveStep {
   std::optional<Vec3> offset_m = {};    ///< from the handle's place at the start [m]
   std::optional<Mat3> rotation_W = {};  ///< from its orientation there, about the axes of the world

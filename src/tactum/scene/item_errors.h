@@ -1,5 +1,5 @@
 #pragma once
-/// What errors about a description and its file are made of: the first of them, ranges, and nearest names.
+/// Facilities for errors about a description and its file: the first of them, ranges, and nearest names.
 
 #include <limits>
 #include <optional>
@@ -12,7 +12,7 @@
 
 namespace tactum::inline v0_1 {
 
-/// Where a number may lie; the ends belong to it unless said.
+/// The range of a number; the ends belong to it unless stated.
 struct Range {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
@@ -54,7 +54,7 @@ std::string item_path(const std::string& table, std::string_view key);
 /// The path of an item of an array, counted from 0: "body[2]".
 std::string item_path(const std::string& table, std::string_view key, std::size_t index);
 
-/// How a table is called in a file, where tables are counted from 1: "[body 3.joint]" for "body[2].joint".
+/// The name of a table in a file, where tables are counted from 1: "[body 3.joint]" for "body[2].joint".
 std::string file_section(std::string_view path);
 
 }  // namespace tactum::inline v0_1

@@ -1,6 +1,6 @@
 #pragma once
-/// The keys of scene files, each with the member of the description it stands for, its range and its rules.
-/// They are told once, by the functions visit_items (visit_*.cpp); visitors use them for what they do:
+/// The keys of scene files, each with its member of the description, its range and its rules. They are listed
+/// once, by the functions visit_items (visit_*.cpp); the visitors are:
 ///
 ///   known_keys             which keys a table may have
 ///   read_description.cpp   TOML into a description, with the defaults of its members
@@ -40,7 +40,7 @@ class ItemVisitor {
 
   virtual ~ItemVisitor() = default;
 
-  // Values; what a file does not have stays as it is.
+  // Values; an absent one stays as it is.
   virtual void number(const char* key, double& value, Range range = kAny, Need need = Need::kOptional) = 0;
   /// Degrees in a file, radians in memory; the range is in degrees.
   virtual void angle(const char* key, double& value_rad, Range range_deg = kAny,
@@ -54,7 +54,7 @@ class ItemVisitor {
   /// `quat_wxyz` or `rpy_deg`.
   virtual void rotation(Mat3& R) = 0;
   virtual void setting(const SettingInfo& info, FrameSettings& frame, SafetySettings& safety) = 0;
-  /// The index of one of the words.
+  /// The index of one of several words.
   virtual int word(const char* key, int index, const WordList& words, Need need) = 0;
 
   // Structure.
@@ -65,8 +65,8 @@ class ItemVisitor {
   /// How many tables an array has.
   virtual std::size_t size(const char* key, std::size_t in_memory) = 0;
   virtual void element(const char* key, std::size_t index, const KeyList& keys, const Visit& visit) = 0;
-  /// Of alternatives known by their keys, `marks` of each, the one that is there; -1 and the error `fault`
-  /// when there is none or there are several.
+  /// The one of several alternatives that is present, where each has keys of its own, `marks`; -1 and the
+  /// error `fault` when there is none or there are several.
   virtual int marked(const std::vector<KeyList>& marks, const WordList& names, int in_memory,
                      const Error& fault) = 0;
   /// Whether all alternatives are visited, for their keys.
@@ -77,10 +77,10 @@ class ItemVisitor {
   // Rules.
   /// An error at the key, or at the table where it is null or absent.
   virtual void fail(const char* key, std::string what, std::string found, std::string expected) = 0;
-  /// How messages call the table that is visited.
+  /// The name of the visited table in messages.
   virtual std::string section() const = 0;
 
-  // What follows from these.
+  // Made of the functions above.
   void number(const char* key, std::optional<double>& value, Range range = kAny);
   void angle(const char* key, std::optional<double>& value_rad, Range range_deg = kAny);
   void vector(const char* key, std::optional<Vec3>& value);
@@ -120,7 +120,7 @@ class ItemVisitor {
                    const VisitKind& visit);
 };
 
-/// Takes the keys of the table that is visited, not those of tables in it.
+/// Collects the keys of the table that is visited, not those of tables in it.
 class KeyVisitor final : public ItemVisitor {
  public:
   using ItemVisitor::angle;
@@ -154,7 +154,7 @@ class KeyVisitor final : public ItemVisitor {
   void add(const char* key);
 };
 
-/// The keys of the table that stands for a T.
+/// The keys of the table of a T.
 template <class T>
 const KeyList& known_keys() {
   static const KeyList keys = [] {

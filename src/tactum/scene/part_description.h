@@ -1,5 +1,5 @@
 #pragma once
-/// What a body is made of, as a value in memory: a file, or a shape made by rule. kKind is the key of the
+/// The part of a body, as a value in memory: a file, or a shape made by rule. kKind is the key of the
 /// alternative in the table `part` of a scene file. Numbers without a default there are 0 here, which is out
 /// of their range.
 
@@ -31,7 +31,7 @@ struct FitDescription {
   std::optional<FitPosition> fit_position = {};  ///< kMid when absent; an error without a fit
 };
 
-/// What a gear is made of.
+/// The construction of a gear.
 enum class GearForm {
   kPieces,  ///< convex pieces
   kSurface  ///< one closed mesh of the same solid
@@ -51,7 +51,7 @@ struct PegPart {
 
 struct HoleBlockPart {
   static constexpr const char* kKind = "hole_block";
-  HoleBlock block = {};  ///< its clearance_m is not looked at when there is a fit
+  HoleBlock block = {};  ///< its clearance_m is ignored when there is a fit
   FitDescription fit = {};
 };
 
@@ -62,7 +62,7 @@ struct BoltPart {
 
 struct NutPart {
   static constexpr const char* kKind = "nut";
-  ScrewShape screw = {};  ///< its length_m is not looked at
+  ScrewShape screw = {};  ///< its length_m is ignored
 };
 
 struct HexKeyPart {
@@ -73,7 +73,7 @@ struct HexKeyPart {
 
 struct SocketPart {
   static constexpr const char* kKind = "socket";
-  HexSocket socket = {};  ///< its clearance_m is not looked at when there is a fit
+  HexSocket socket = {};  ///< its clearance_m is ignored when there is a fit
   FitDescription fit = {};
 };
 

@@ -82,7 +82,7 @@ class TomlVisitor final : public ItemVisitor {
   std::string section() const override { return reader_.section(); }
 
  private:
-  /// The key, whose place is noted where the file has it.
+  /// The key, whose place is stored where the file has it.
   const char* noted(const char* key) {
     if (reader_.has(key)) note_place(item_path(reader_.path(), key), key);
     return key;

@@ -6,7 +6,7 @@
 
 namespace tactum::inline v0_1 {
 
-/// Reads a whole file into `scene`, whose source names it, and notes there where its items stand. Unknown
+/// Reads a whole file into `scene`, whose source names it, and stores there the places of its items. Unknown
 /// keys, wrong types and numbers out of range go to `errors`.
 void read_description(const toml::table& document, SceneDescription& scene, FirstError& errors);
 

@@ -1,6 +1,6 @@
 #pragma once
-/// A scene: bodies, which of them the hand holds and how, what the hand does with it, and what counts as
-/// done. Made from a description (build_scene.h) or a scene file (scene_file.h); constant while frames run.
+/// A scene: bodies, the grasped part and its grasp, the motion of the hand, and its goals. Made from a
+/// description (build_scene.h) or a scene file (scene_file.h); constant while frames run.
 
 #include <memory>
 #include <string>
@@ -21,19 +21,19 @@ struct Scene {
   World world;
   FrameSettings settings;           ///< its safety limits are the device's, see `safety`
   bool coupling_by_device = false;  ///< a session chooses the coupling for its device and rate
-  SafetySettings safety;  ///< what the scene tightens; the session applies it to the device's limits
+  SafetySettings safety;  ///< limits that the scene tightens; the session applies them to the device's limits
   std::string device;     ///< preset of the simulated device the hand motion was made for
   std::string grip;       ///< hand model of the simulated hand
   std::shared_ptr<const HandMotion>
-      hand;  ///< what the simulated hand does, from the handle's pose on; may be null
+      hand;  ///< motion of the simulated hand, from the handle's pose on; may be null
   std::vector<Goal> goals;
-  std::vector<std::string> remarks;  ///< what was not taken as it stood, as sentences
+  std::vector<std::string> remarks;  ///< deviations from the description, as sentences
 };
 
 /// The origin of the frame P of the body's part, that of its file; the axes of B are P's [m].
 inline Vec3 p_BP_of(const Body& body) { return -body.part->origin; }
 
-/// The pose of a body's part as its file tells it: same axes as B, origin of the file.
+/// The pose of a body's part as in its file: same axes as B, origin of the file.
 inline Pose part_pose(const Body& body, const Pose& X_WB) { return {X_WB.R, X_WB * p_BP_of(body)}; }
 
 /// How many frames the hand's motion lasts; 0 without one.
@@ -42,9 +42,9 @@ inline long frames_of_motion(const Scene& scene) {
   return static_cast<long>(scene.hand->duration_s() / scene.settings.dt_s);
 }
 
-/// The scene's settings with what depends on the device: the limits of safety, tightened by the scene's, what
-/// the passivity stage knows of it, and the coupling where the scene leaves that to the device. For a session
-/// it is done; a Simulation of the scene's world takes these.
+/// The scene's settings with those that depend on the device: the limits of safety, tightened by the scene's,
+/// the device's properties for the passivity stage, and the coupling where the scene leaves that to the
+/// device. A session does this by itself; a Simulation of the scene's world takes these.
 FrameSettings settings_for(const Scene& scene, const DeviceInfo& info);
 
 }  // namespace tactum::inline v0_1

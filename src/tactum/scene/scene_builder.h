@@ -23,14 +23,14 @@ class SceneBuilder {
   void fail(const std::string& path, std::string what, std::string found = "", std::string expected = "") {
     errors_.add({std::move(what), std::move(found), std::move(expected), description_.source.where(path)});
   }
-  /// The same of an error that knows no place.
+  /// The same for an error without a place.
   void fail(const std::string& path, const Error& error) {
     fail(path, error.what, error.found, error.expected);
   }
-  /// How messages call the table at a path.
+  /// The name of the table at a path in messages.
   std::string section(const std::string& path) const { return description_.source.section(path); }
-  /// The path of a file by its name, absolute or in one of the source's folders; an error at the item when
-  /// there is none says where it was searched.
+  /// The path of a file by its name, absolute or in one of the source's folders; when there is none, an error
+  /// at the item, with the folders that were searched.
   std::optional<std::string> find_file(const std::string& path, const char* kind, const std::string& name);
   /// The index of a body by name; -1 and an error at the item when there is none.
   int find_body(const std::string& path, const std::string& name, const World& world);

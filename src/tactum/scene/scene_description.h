@@ -1,6 +1,6 @@
 #pragma once
-/// A scene as a plain value in memory: all that a scene file can say, with the same defaults. A program fills
-/// one, or reads one from a file (scene_file.h); build_scene.h makes the scene from it.
+/// A scene as a plain value in memory: everything that a scene file can contain, with the same defaults. A
+/// program fills one, or reads one from a file (scene_file.h); build_scene.h makes the scene from it.
 ///
 ///   SceneDescription scene;
 ///   scene.bodies.push_back({.name = "block", .part = BoxPart{{0.04, 0.03, 0.02}}});
@@ -32,21 +32,21 @@ struct SourcePlace {
   int column = 1;
 };
 
-/// Where a description comes from.
+/// The source of a description.
 struct SceneSource {
   std::string file;                           ///< as errors call it; empty: it was made in code
   std::vector<std::string> folders;           ///< in which meshes and fields are searched, in this order
   std::map<std::string, SourcePlace> places;  ///< in the file, of items by their path
 
-  /// "FILE:LINE:COLUMN" of an item, or of the table it would stand in; without a file the path itself.
+  /// "FILE:LINE:COLUMN" of an item, or of the table it would belong to; without a file the path itself.
   std::string where(const std::string& path) const;
-  /// How messages call a table: "[body 3.joint]" of a file, else its path; "the scene" for the whole.
+  /// The name of a table in messages: "[body 3.joint]" of a file, else its path; "the scene" for the whole.
   std::string section(const std::string& path) const;
 };
 
-/// What setting_table.h lists, and coefficients of pairs of materials. `frame` and `safety` count in that
-/// extent only: what is grasped, where the device stands, coefficients by bodies and the device's own limits
-/// are set when the scene is built and opened.
+/// The settings of setting_table.h, and coefficients of pairs of materials. `frame` and `safety` count in
+/// that extent only: the grasped part, the place of the device, coefficients by bodies and the device's own
+/// limits are set when the scene is built and opened.
 struct SettingsDescription {
   FrameSettings frame = {};
   SafetySettings safety = {};      ///< these only tighten the device's limits

@@ -1,12 +1,12 @@
 #pragma once
 /// Scene files: strict TOML, `schema = 1`. Every key has its unit in its name; an unknown key, a wrong type,
-/// a number out of range or a name that leads nowhere is an error "FILE:LINE:COLUMN: what: found ...,
+/// a number out of range or a name of nothing that exists is an error "FILE:LINE:COLUMN: what: found ...,
 /// expected ...".
 ///
 /// A file becomes a description (scene_description.h), and that a scene.
 ///
-/// Poses in a file speak of a part's own frame (that of its mesh file, or as generated_parts.h and gear.h
-/// draw it); the World that comes out speaks of centres of mass. docs/scene-format.md lists the keys.
+/// Poses in a file are those of a part's own frame (that of its mesh file, or as drawn in generated_parts.h
+/// and gear.h); those of the World are of centres of mass. docs/scene-format.md lists the keys.
 
 #include <string>
 #include <string_view>
@@ -18,17 +18,17 @@
 
 namespace tactum::inline v0_1 {
 
-/// The description in a file. Meshes are looked for beside the file, then in data_folders().
+/// The description in a file. Meshes are searched beside the file, then in data_folders().
 Result<SceneDescription> read_description_file(const std::string& path);
 
-/// The same from text. `file` is how errors call it; `folders` are searched for meshes in this order.
+/// The same from text. Errors call it `file`; `folders` are searched for meshes in this order.
 Result<SceneDescription> parse_description(std::string_view text, const std::string& name,
                                            const std::string& file, const std::vector<std::string>& folders);
 
 /// The scene of a file: its description, built (build_scene.h).
 Result<Scene> read_scene_file(const std::string& path);
 
-/// The same from text, as parse_description has it.
+/// The same from text, as in parse_description.
 Result<Scene> parse_scene(std::string_view text, const std::string& name, const std::string& file,
                           const std::vector<std::string>& folders);
 

@@ -1,7 +1,7 @@
 #pragma once
-/// What a body is made of before it becomes a part: convex pieces made by rule, a mesh from a file or made by
-/// rule, or a part that `tactum prepare` made, all told in the part's own frame P. The part that comes out
-/// has its origin at the centre of mass, as bodies want it.
+/// The shape of a body before it becomes a part: convex pieces made by rule, a mesh from a file or made by
+/// rule, or a part that `tactum prepare` made, all in the part's own frame P. The finished part has its
+/// origin at the centre of mass, as bodies need it.
 
 #include <memory>
 #include <string>
@@ -25,7 +25,7 @@ struct Shape {
   std::shared_ptr<const PartFile> prepared;       ///< instead of a mesh
 };
 
-/// The part about its centre of mass; Part::origin says where that is in P.
+/// The part about its centre of mass; Part::origin is the place of that in P.
 Result<std::shared_ptr<const Part>> part_of(const Shape& shape, double density_kg_per_m3);
 
 }  // namespace tactum::inline v0_1

@@ -13,7 +13,7 @@ namespace {
 
 const toml::table kEmptyTable;
 
-/// A value as the reader of an error knows it.
+/// A value as it is quoted in an error.
 std::string shown(const toml::node& node) {
   if (const auto* text = node.as_string()) return fmt::format("\"{}\"", text->get());
   if (const auto* number = node.as_integer()) return fmt::format("{}", number->get());

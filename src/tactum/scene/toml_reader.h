@@ -1,15 +1,14 @@
 #pragma once
-/// Strict reading of TOML tables: every key a table may have is named when it is opened, anything else in it
-/// is an error that names the nearest known key; every value has a type and a range. Errors tell file, line
+/// Strict reading of TOML tables: every key a table may have is listed when it is opened, anything else in it
+/// is an error that names the nearest known key; every value has a type and a range. Errors give file, line
 /// and column.
 ///
 ///   const TomlReader hand = scene.table("hand", {"grip", "tremor", "step"});
 ///   const std::string grip = hand.text("grip", "medium");
 ///   if (errors) ...                                   the first error is kept, later ones are not
 ///
-/// A reader given a wrong value remembers the first error and goes on with the fallback, so that a section
-/// reads as a list of its keys. For src/tactum/scene/*.cpp only: it shows toml++, which the layer uses
-/// privately.
+/// A reader given a wrong value stores the first error and goes on with the fallback, so that a section reads
+/// as a list of its keys. For src/tactum/scene/*.cpp only: it shows toml++, which the layer uses privately.
 
 #include <toml++/toml.h>
 #include <initializer_list>
@@ -61,7 +60,7 @@ class TomlReader {
   TomlReader table(const char* key, Keys keys) const {
     return table(key, std::span(keys.begin(), keys.size()));
   }
-  /// How many tables the array of tables `[[path.key]]` has; none when absent.
+  /// The number of tables in the array of tables `[[path.key]]`; 0 when absent.
   std::size_t size(const char* key) const;
   /// One of them, counted from 0, opened with its own keys.
   TomlReader element(const char* key, std::size_t index, std::span<const char* const> keys) const;
@@ -70,7 +69,7 @@ class TomlReader {
   void fail(const char* key, std::string what, std::string found = "", std::string expected = "") const;
   /// Of a key's value, or of the table where it is null or absent.
   toml::source_position position(const char* key = nullptr) const;
-  /// As item_path has it.
+  /// As in item_path.
   const std::string& path() const { return path_; }
 
  private:

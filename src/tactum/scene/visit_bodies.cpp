@@ -7,7 +7,7 @@ namespace {
 
 constexpr int kMostFieldPoints = 10'000;  // of a body
 
-/// Limits that hold the joint as it stands; `unit` as in ItemVisitor::interval.
+/// Limits that keep the joint as it is at the start; `unit` as in ItemVisitor::interval.
 void visit_limits(ItemVisitor& visitor, const char* key, std::optional<Interval>& limits, double unit) {
   visitor.optional(key, limits, [&](Interval& ends) {
     visitor.interval(key, ends, unit);

@@ -7,7 +7,7 @@ void visit_sampled(ItemVisitor& visitor, std::optional<SampledGrid>& sampled) {
   visitor.optional("sampled", sampled, [&](SampledGrid& grid) { visitor.table("sampled", grid); });
 }
 
-/// Whether the field is felt as a grid.
+/// Whether the shape of the field is a grid.
 bool has_edge(const FieldDescription& field) {
   return std::visit(
       [](const auto& shape) {

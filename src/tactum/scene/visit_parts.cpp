@@ -130,7 +130,8 @@ void visit_items(ItemVisitor& visitor, PrismPart& part) {
 
 namespace {
 
-/// The shapes in the table of a part. A mesh stands there itself, what is made by rule in a table of its own.
+/// The shapes in the table of a part. A mesh is given there itself, a shape made by rule in a table of its
+/// own.
 template <class... Kinds>
 void visit_shapes(ItemVisitor& visitor, std::variant<Kinds...>& part) {
   static const WordList names{Kinds::kKind...};

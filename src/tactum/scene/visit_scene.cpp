@@ -19,7 +19,7 @@ void visit_section(ItemVisitor& visitor, std::string_view section, SettingsDescr
                [&](const SettingInfo& info) { visitor.setting(info, settings.frame, settings.safety); });
 }
 
-/// The sections of settings; that of the workspace also tells where the device stands.
+/// The sections of settings; that of the workspace also has the place of the device.
 void visit_sections(ItemVisitor& visitor, SettingsDescription& settings, WorkspaceDescription& workspace) {
   std::string_view last;
   for (const SettingInfo& info : setting_table()) {
@@ -53,7 +53,7 @@ void visit_pairs(ItemVisitor& visitor, const char* key, std::vector<MaterialPair
     visitor.element(key, i, keys.keys, [&](ItemVisitor& inside) { visit_pair(inside, pairs[i], range); });
 }
 
-/// What code could say twice; a file cannot.
+/// Checks for items that code could give twice; a file cannot.
 void check_settings(ItemVisitor& visitor, const SettingsDescription& settings) {
   const FrameSettings& frame = settings.frame;
   const FrameSettings usual;

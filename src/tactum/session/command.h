@@ -1,6 +1,6 @@
 #pragma once
-/// What another thread may ask of a running session. Plain data, so that it can pass through a ring; the
-/// session obeys before the next frame.
+/// The commands of another thread to a running session. Plain data, so that it can pass through a ring; the
+/// session carries them out before the next frame.
 
 #include <array>
 #include <cstdint>
@@ -17,7 +17,7 @@ struct SessionCommand {
   };
   Kind kind = Kind::kRest;
   std::uint32_t buttons = 0;     ///< of kAim: bit 0 is the primary button
-  std::array<double, 3> p_WH{};  ///< of kAim: where the hand shall be in the world [m]
+  std::array<double, 3> p_WH{};  ///< of kAim: the wanted place of the hand in the world [m]
   std::array<double, 4> quat_wxyz_WH{1.0, 0.0, 0.0, 0.0};  ///< of kAim: its orientation there
   int setting = -1;                                        ///< of kSet: index in setting_table()
   double value = 0.0;                                      ///< of kSet

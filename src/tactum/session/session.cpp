@@ -36,7 +36,7 @@ Result<std::unique_ptr<Session>> Session::open_with(Scene scene, std::unique_ptr
     if (Result<void> rate = check_rate(rate_Hz); !rate) return rate.error();
     scene.settings.dt_s = 1.0 / rate_Hz;
   }
-  // Scene files cannot say these things; programs that build a scene of their own can.
+  // Scene files exclude these errors; programs that build a scene of their own can make them.
   if (Result<void> sound = check_world(scene.world, scene.settings); !sound) {
     Error error = sound.error();
     if (error.where.empty()) error.where = scene.name;
@@ -119,7 +119,7 @@ void Session::obey(const SessionCommand& command) noexcept {
 }
 
 Wrench Session::run(const DeviceSample& sample, const FrameTick& tick) noexcept {
-  SessionCommand command;  // no more than fit in, however fast another thread asks
+  SessionCommand command;  // no more than fit in, however fast another thread sends
   for (std::size_t n = 0; n < kCommands && commands_.pop(command); ++n) obey(command);
   FrameTick felt = tick;
   felt.stop = tick.stop || wrench_at_zero_.load(std::memory_order_relaxed);
@@ -128,7 +128,7 @@ Wrench Session::run(const DeviceSample& sample, const FrameTick& tick) noexcept 
   if (!tick.stop) record_.add(report_, state_.world);
   goals_.watch(scene_.world, state_.world, state_.hand.grasp.body, state_.response.rows());
   if (feed_ != nullptr) feed_->take({report_, state_, scene_.settings}, stage_clock_);
-  // A full ring means nobody has looked for seconds: the newest glance is then lost, the frame is not.
+  // A full ring means that nothing was polled for seconds: the newest glance is then lost, the frame is not.
   glances_.push({report_.index, report_.shown.f.norm(), report_.shown.t.norm(), report_.contact_points,
                  (report_.X_WH_proxy.p - report_.X_WH.p).norm(), report_.safety});
   return F_D;

@@ -4,7 +4,7 @@
 ///   Scene (or its description) + device or its name --open, open_with--> Session --run_virtual()--> or
 ///   --start(), poll(), stop()--> RunRecord, goals
 ///
-/// The loop's thread owns the frame; other threads see it only through rings of small records, and ask for
+/// The loop's thread owns the frame; other threads see it only through rings of small records, and request
 /// changes through another (command.h), which the loop empties between two frames.
 
 #include <atomic>
@@ -37,7 +37,7 @@ struct SessionStatus {
   double force_N = 0.0;    ///< shown [N]
   double torque_Nm = 0.0;  ///< shown [N m]
   int contact_points = 0;
-  double stretch_m = 0.0;    ///< hand to proxy [m]
+  double stretch_m = 0.0;    ///< probe to proxy [m]
   std::uint32_t safety = 0;  ///< safety_flag
 };
 
@@ -62,18 +62,18 @@ class Session final : private HapticFrame {
   Result<VirtualRun> run_virtual(std::uint64_t frames, LoopObserver* observer);
 
   /// Starts the loop's thread. It stops by itself after `frames` frames and the ramp that follows; 0: when
-  /// told.
+  /// stopped.
   Result<void> start(std::uint64_t frames = 0);
   /// Ramps the wrench to zero, closes the device, ends the thread. Safe to call twice.
   void stop() noexcept { loop_.stop(); }
   LoopStatus loop_status() const noexcept { return loop_.status(); }
   const LoopPrivileges& privileges() const noexcept { return loop_.privileges(); }
-  /// Moves what the loop has published since the last call into frame_times(), and behind `timings` when
-  /// that is given; returns the newest status.
+  /// Moves the records that the loop has published since the last call into frame_times(), and behind
+  /// `timings` when that is given; returns the newest status.
   SessionStatus poll(std::vector<FrameTiming>* timings = nullptr);
 
-  // What one other thread may ask of a running session.
-  /// Done before the next frame; false when so many are waiting that this one was not taken.
+  // Requests of one other thread to a running session.
+  /// Carried out before the next frame; false when so many are waiting that this one was not taken.
   bool ask(const SessionCommand& command) noexcept { return commands_.push(command); }
   /// The big stop: the wrench is led to zero within the stop ramp and stays there, while frames go on, until
   /// taken back; the force then returns by the start ramp.

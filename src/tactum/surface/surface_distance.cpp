@@ -36,9 +36,9 @@ class DistanceQuery {
 
  private:
   static constexpr double kNone = 1e300;
-  static constexpr int kDirections = 6;  // one or two mostly tell
-  /// Of the smaller surface's size, about the place that was nearest last time: where the surfaces have come
-  /// to cross since, they as a rule do so there, and a walk through all of two threads would find it last.
+  static constexpr int kDirections = 6;  // one or two mostly decide
+  /// Of the smaller surface's size, about the place that was nearest last time: surfaces that have begun to
+  /// cross mostly do so there, and a walk through all of two threads would find it last.
   static constexpr double kNearby = 0.02;
   struct Pair {
     std::int32_t a, b;
@@ -46,7 +46,7 @@ class DistanceQuery {
     double apart_sq;  ///< of the centres [m^2]
   };
 
-  /// Depth first, of two children the nearer one first: what is found early leaves out most.
+  /// Depth first, of two children the nearer one first: a short distance found early excludes most.
   void descend() noexcept {
     // Filled as far as it is used: NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init)
     std::array<Pair, 2 * Bvh::kMaxDepth + 2> stack;
@@ -115,9 +115,9 @@ class DistanceQuery {
     return least > 0.0 && least * least > distance * distance * normal.squaredNorm();
   }
 
-  /// Whether a direction shows the triangles to be farther apart than `distance`: those to the point of their
-  /// difference that is nearest to the origin, as far as it is known [Gilbert 1966]. Slivers that fan out
-  /// side by side lie in one plane, which parts nothing.
+  /// Whether a direction shows the triangles to be farther apart than `distance`: that of the point of their
+  /// difference nearest to the origin, as far as it is known [Gilbert 1966]. Slivers that fan out side by
+  /// side lie in one plane, which separates nothing.
   static bool parted(const TrianglePoints& a, const TrianglePoints& b, double distance) noexcept {
     const auto lowest = [](const TrianglePoints& t, const Vec3& along) -> const Vec3& {
       const double h[] = {along.dot(t[0]), along.dot(t[1]), along.dot(t[2])};
@@ -178,7 +178,7 @@ class DistanceQuery {
   const Surface& b_;
   BoxPairFrame frame_;
   double touching_;           ///< distances up to here are rounding [m]
-  Vec3 centre_a_, centre_b_;  ///< of what is looked at, in either frame [m]
+  Vec3 centre_a_, centre_b_;  ///< of the region tested, in either frame [m]
   double radius_ = kNone;     ///< [m]
   SurfaceDistance best_;
 };

@@ -2,10 +2,10 @@
 /// Exact distance of two triangle surfaces at any pose, and how many of their triangles touch.
 ///
 /// Branch and bound over two trees of boxes: nearer boxes first, boxes no nearer than the best pair so far
-/// are left out. The pair that was nearest last time gives the first bound, its neighbourhood is looked at
-/// first, so that along a motion little but the surroundings of the contact is looked at. When surfaces
-/// cross, the distance is zero and a second walk counts the touching pairs. A surface wholly inside another
-/// is free: this asks of surfaces, not of solids.
+/// are left out. The pair that was nearest last time gives the first bound and its neighbourhood is tested
+/// first, so that along a motion little but the surroundings of the contact is tested. When surfaces cross,
+/// the distance is zero and a second walk counts the touching pairs. A surface wholly inside another is free:
+/// the query is one of surfaces, not of solids.
 ///
 /// Queries are noexcept, allocate nothing and give the same bits for the same input.
 
@@ -44,7 +44,7 @@ struct SurfacePairCache {
 
 struct SurfaceDistance {
   double distance = 0.0;    ///< zero when they touch or cross [m]
-  int touching_pairs = 0;   ///< pairs of triangles that share a point; 1 for any when not counted
+  int touching_pairs = 0;   ///< pairs of triangles with a common point; 1 for any when not counted
   Vec3 p_a = Vec3::Zero();  ///< nearest point on A, A's frame [m]
   Vec3 p_b = Vec3::Zero();  ///< nearest point on B, A's frame [m]
   int triangle_a = -1;      ///< the nearest triangles; when touching, the first pair found

@@ -21,15 +21,15 @@
 ///
 /// Cones are inflated by `cone_inflation`, the largest rotation of a step. Without it only the lowest corner
 /// of a flat contact is a minimum, and the contact sticks; with it, all corners of either that face the
-/// other, and the crossings of their outlines. `strict` marks minima that hold without it: validate with
-/// those alone. Outside its true cone the sign of an edge pair means nothing: one that is not strict is a
-/// constraint while it is apart, and none below zero.
+/// other, and the crossings of their outlines. `strict` marks minima that hold without it: only those are for
+/// validation. Outside its true cone the sign of an edge pair means nothing: one that is not strict is a
+/// constraint while it is apart, and is left out below zero.
 ///
 /// Edges parallel to within the inflation touch along an interval: the two ends of it are two minima of the
 /// same features.
 ///
-/// Stateless: the same bits for the same poses whatever was asked before. No allocation, no locks. Cost and
-/// what was tried: docs/algorithms/surface_minima.md.
+/// Stateless: the same bits for the same poses, whatever the queries before. No allocation, no locks. Cost
+/// and what was tried: docs/algorithms/surface_minima.md.
 
 #include <vector>
 
@@ -45,9 +45,9 @@ namespace tactum::inline v0_1 {
 MinimaWork surface_minima(const SurfaceTree& a, const SurfaceTree& b, const Pose& X_AB,
                           const MinimaQuery& query, std::vector<SurfaceMinimum>& minima) noexcept;
 
-/// How far apart the surfaces are at least, not asked beyond `max_distance`: their distance, too short by up
-/// to a tenth, or `max_distance` where that is nearer; 0 where there is a minimum below zero. Each minimum
-/// found narrows the search, so it costs about as much as the minima within the distance.
+/// A lower bound of the surfaces' distance up to `max_distance`: their distance, too short by up to a tenth,
+/// or `max_distance` where that is nearer; 0 where there is a minimum below zero. Each minimum found narrows
+/// the search, so it costs about as much as the minima within the distance.
 double surface_clearance(const SurfaceTree& a, const SurfaceTree& b, const Pose& X_AB,
                          const MinimaQuery& query, MinimaWork& work) noexcept;
 

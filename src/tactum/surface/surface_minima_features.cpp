@@ -139,7 +139,7 @@ void FeatureComparison::edge_edge(std::int32_t a_corner, std::int32_t b_corner) 
   take_edges(a, b, a.from + s * u, b.from + t * w, n, -r.dot(n));
 }
 
-/// The ends of what two nearly parallel edges share.
+/// The ends of the interval that two nearly parallel edges have in common.
 void FeatureComparison::parallel_edges(const Edge& a, const Edge& b) noexcept {
   const Vec3& p = a.from;
   const Vec3& q = b.from;
@@ -154,7 +154,7 @@ void FeatureComparison::parallel_edges(const Edge& a, const Edge& b) noexcept {
     const Vec3 p_a = p + s * u;
     const Vec3 p_b = q + std::clamp(w.dot(p_a - q) / w.squaredNorm(), 0.0, 1.0) * w;
     const double length = (p_a - p_b).norm();
-    // Where they touch, the faces beside them tell the normals.
+    // Where they touch, the faces beside them give the normals.
     if (length > touching_) take_edges(a, b, p_a, p_b, (p_a - p_b) / length, length);
     if (last == first) return;
   }
@@ -181,10 +181,10 @@ InCone FeatureComparison::falls_away(double value, double length_sq) const noexc
 }
 
 /// u is unit and square to the edge, to within the inflation where edges are parallel. The neighbours come
-/// first: they turn most away and cost least.
+/// first: they exclude most and cost least.
 InCone FeatureComparison::in_edge_cone(const Side& side, const Edge& edge, const Vec3& u) const noexcept {
-  // What counts is a face's direction square to the edge. Along it a sliver's other corner may be a hundred
-  // times as far as across, so that the little by which u leans would decide.
+  // The criterion is a face's direction square to the edge. Along it a sliver's other corner may be a hundred
+  // times as far as across, so that a small tilt of u would decide.
   const double per_length_sq = 1.0 / edge.along.squaredNorm();
   const auto face_falls = [&](const Vec3& to_corner) {
     const Vec3 e = to_corner - edge.along * (to_corner.dot(edge.along) * per_length_sq);
@@ -223,8 +223,9 @@ InCone FeatureComparison::in_vertex_cone(const Side& side, std::int32_t corner,
   return worst(cone, falls_away(-side.normal(corner).dot(u), 1.0));
 }
 
-/// What is nearest to u in the cone lies on one of its planes, or where one meets another; of these u lies
-/// before one at least. Where planes meet at a sharp angle, u may be near each but far from both.
+/// The direction of the cone that is nearest to u lies on one of its planes, or where one meets another; of
+/// these u lies before one at least. Where planes meet at a sharp angle, u may be near each but far from
+/// both.
 bool FeatureComparison::near_vertex_cone(const SurfaceTree& tree, int vertex, const Vec3& u) const noexcept {
   const Vec3& p = tree.vertex(vertex);
   const auto around = tree.around(vertex);
@@ -264,7 +265,7 @@ void FeatureComparison::take(const Touch& touch, int triangle_a, int triangle_b)
     minima_.push_back(minimum);
     return;
   }
-  // Full: a heap with the farthest on top, which gives way to what is nearer.
+  // Full: a heap with the farthest on top, which is replaced by a nearer one.
   if (!work.full) std::make_heap(minima_.begin(), minima_.end(), nearer);
   work.full = true;
   if (minima_.empty() || !nearer(minimum, minima_.front())) return;

@@ -9,7 +9,7 @@
 
 namespace tactum::inline v0_1 {
 
-/// Where a direction lies to a normal cone.
+/// Whether a direction is in a normal cone.
 enum class InCone : std::uint8_t { kOutside, kInflated, kStrict };
 
 class FeatureComparison {
@@ -23,8 +23,8 @@ class FeatureComparison {
   void vertex_edge(bool swapped, std::int32_t vertex, std::int32_t edge) noexcept;
   void vertex_vertex(std::int32_t a, std::int32_t b) noexcept;
   void edge_edge(std::int32_t a, std::int32_t b) noexcept;
-  /// From here on what is found is not kept, and only what is nearer than this share of the nearest is looked
-  /// for.
+  /// From here on minima are not stored, and only those nearer than this fraction of the nearest are
+  /// searched.
   void narrow_by(double share) noexcept { share_ = share; }
   double max_distance() const noexcept { return max_distance_; }  ///< up to where minima are looked for [m]
   /// Sorts what was found.
@@ -42,7 +42,7 @@ class FeatureComparison {
     Vec3 position(int vertex) const noexcept {
       return is_a ? tree.vertex(vertex) : Vec3(rotated(R, tree.vertex(vertex)) + p);
     }
-    /// The corner of a triangle that is so many after this one.
+    /// The corner of a triangle that comes `after` places later.
     Vec3 point(std::int32_t corner, std::size_t after) const noexcept {
       return position(tree.triangle(corner / 3)[(std::size_t(corner) % 3 + after) % 3]);
     }
@@ -69,13 +69,13 @@ class FeatureComparison {
                   double distance) noexcept;
   void parallel_edges(const Edge& a, const Edge& b) noexcept;
 
-  /// Of  e . u <= 0,  where `value` is e . u and `length_sq` the square of e's length.
+  /// Judges e . u <= 0, where `value` is e . u and `length_sq` the square of e's length.
   InCone falls_away(double value, double length_sq) const noexcept;
   InCone in_edge_cone(const Side& side, const Edge& edge, const Vec3& u) const noexcept;
   InCone in_vertex_cone(const Side& side, std::int32_t corner, const Vec3& u) const noexcept;
   /// Whether u is within the inflation of the true cone.
   bool near_vertex_cone(const SurfaceTree& tree, int vertex, const Vec3& u) const noexcept;
-  /// What must fall away from a vertex at p, as SurfaceTree::around() names it.
+  /// The direction that must fall away from a vertex at p, for a neighbour `w` of SurfaceTree::around().
   static Vec3 falling(const SurfaceTree& tree, const Vec3& p, std::int32_t w) noexcept;
   void take(const Touch& touch, int triangle_a, int triangle_b) noexcept;
   bool in_range(double distance) const noexcept {

@@ -154,8 +154,8 @@ class KernelsOf {
     return every_lane([&](std::size_t first) { return facing_from(box, node, at, first, q); });
   }
 
-  /// Some of the lanes, from `first` on. The most telling axes come first: often no lane is left before the
-  /// others.
+  /// For some of the lanes, from `first` on. The axes that exclude most come first: often no lane is left
+  /// before the others.
   static std::uint32_t facing_from(const Box& box, const Node& node, const Stand& at, std::size_t first,
                                    const Bounds& q) noexcept {
     const float box_cone = box.node->cone[box.lane];
@@ -172,7 +172,7 @@ class KernelsOf {
     std::memcpy(&child, &node.child[first], sizeof child);
     Int fine = (child != 0) & (2.0F + 2.0F * opposite <= sum * sum + float(tolerances::kSingle));
 
-    // How far the box reaches along an axis of the lanes, and the lanes along one of the box.
+    // The extent of the box along an axis of the lanes, and of the lanes along one of the box.
     const auto box_extent = [&](Float x, Float y, Float z) {
       return absolute(x) * box_half[0] + absolute(y) * box_half[1] + absolute(z) * box_half[2];
     };
@@ -324,7 +324,7 @@ class KernelsOf {
     const Vector off = cross(r, w);
     const Int fine = (at >= -pad) & (at <= dot(w, w) + pad) & near_line(off, w, all(q.max_distance));
     if (bits(fine) == 0) return fine;
-    // Both faces fall away from the way to the point.
+    // Both faces fall away from the vector to the point.
     const Float length_sq = dot(w, w);
     const Float room = lean(q) * lean(q) * dot(off, off);
     const auto falls = [&](const Lanes3& falling) {
@@ -334,8 +334,8 @@ class KernelsOf {
     return fine & falls(many.falling[0]) & falls(many.falling[1]);
   }
 
-  /// How far a face may lean up towards a direction of its edge's cone [rad]: what single precision cannot
-  /// tell comes on top of the inflation.
+  /// How far a face may lean up towards a direction of its edge's cone [rad]: the rounding of single
+  /// precision is added to the inflation.
   static float lean(const Bounds& q) noexcept { return q.inflation + 1e-4F; }
 
   static Int near_vertex(const Vector& p, const FaceLeaf& many, std::size_t first, const Bounds& q) noexcept {
@@ -352,7 +352,7 @@ class KernelsOf {
   };
 
   static std::uint32_t near_edge(const Edge& one, const Edge& other, const Bounds& q) noexcept {
-    // Below this sine single precision cannot tell where lines come nearest; their distance alone is asked.
+    // Below this sine single precision cannot tell where lines come nearest; only their distance is tested.
     const float inflation = 1.01F * q.inflation;
     const float parallel = inflation > 0.01F ? inflation : 0.01F;
     const Vector& u = one.along;
@@ -386,7 +386,7 @@ class KernelsOf {
     return bits(together | (cross_there & faces));
   }
 
-  /// Whether points are within `max_distance` of lines along w; `off`: the cross product of the way from a
+  /// Whether points are within `max_distance` of lines along w; `off`: the cross product of the vector from a
   /// line's start to the point with w.
   static Int near_line(const Vector& off, const Vector& w, Float max_distance) noexcept {
     return dot(off, off) <= max_distance * max_distance * dot(w, w);
@@ -419,7 +419,7 @@ class KernelsOf {
     }
   }
 
-  // ---- leaves, in double precision: single would not tell where a sliver looks ----
+  // ---- leaves, in double precision: single precision would lose the direction of a sliver ----
 
   struct DoubleVector {
     Double x, y, z;

@@ -1,15 +1,15 @@
 #pragma once
-/// The quick half of surface_minima.h: which of eight boxes, or features, may have to do with one. Single
+/// The quick half of surface_minima.h: which of eight boxes, or features, may form a minimum with one. Single
 /// precision, eight lanes at once where the processor has AVX2, else twice four. Every lane is plain IEEE
 /// arithmetic in one order, so the answers are the same bits on every build and processor; they err on the
-/// safe side only, and what they let through is tested exactly.
+/// safe side only, and pairs that they let through are tested exactly.
 ///
 ///     leaf of one        box of the other's leaf         leaf of the other
 ///     eight features ──► which are near it? ──► these against eight: a bit for a pair that may be a minimum
 ///
-/// Everything is in the frame of the other tree, from its center. Nodes and leaves of the one are turned
-/// into it eight lanes at a time. Trees store of a leaf only which features it holds; where they are is laid
-/// out in lanes when a leaf is first asked for.
+/// Everything is in the frame of the other tree, from its center. Nodes and leaves of the one are turned into
+/// it eight lanes at a time. A tree stores only which features a leaf holds; their coordinates are gathered
+/// in lanes when a leaf is first needed.
 
 #include <array>
 #include <cstdint>
@@ -26,7 +26,7 @@ using Lanes3 = SurfaceTree::Lanes3;
 using Corners = SurfaceTree::Corners;
 using Three = std::array<float, 3>;
 
-/// What every quick test needs of the query, grown so that rounding loses nothing.
+/// The input of every quick test, grown so that rounding loses nothing.
 struct Bounds {
   float max_distance, depth, far;  ///< far: the larger of the two [m]
   float inflation;                 ///< of one cone [rad]
@@ -69,7 +69,7 @@ struct FaceLeaf {
   Lanes3 normal;                 ///< unit [-]
   Lanes level;                   ///< [m]
   std::array<Lanes3, 3> inward;  ///< square to side and normal, unit [-]
-  std::array<Lanes, 3> limit;    ///< grown by what rounding may take [m]
+  std::array<Lanes, 3> limit;    ///< grown by the rounding error [m]
   Corners corner;
 };
 /// Points of eight features before they are rounded: along which axis, of which lane [m].

@@ -1,7 +1,7 @@
 #pragma once
-/// Leaves of a SurfaceTree laid out in lanes as surface_minima_lanes.h reads them. A tree stores which
-/// features a leaf holds and nothing else: where they are is looked up in the mesh when a query first asks,
-/// which costs about as much as one comparison of two leaves.
+/// The features of a leaf of a SurfaceTree in lanes, as surface_minima_lanes.h reads them. A tree stores
+/// which features a leaf holds and nothing else: their coordinates are read from the mesh when a query first
+/// needs them, which costs about as much as one comparison of two leaves.
 
 #include "tactum/surface/surface_minima_lanes.h"
 

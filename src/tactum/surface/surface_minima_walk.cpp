@@ -113,7 +113,7 @@ void SurfaceWalk::compare_leaves(const Pair& pair) noexcept {
     return box_one.at->center[axis][box_one.lane] - box_other.at->center[axis][box_other.lane];
   };
   const lanes::Three off = {apart(0), apart(1), apart(2)};
-  // Often nothing of the one leaf is near the other's box, and the other need not be laid out.
+  // Often no feature of the one leaf is near the other's box, and the other need not be gathered.
   const auto& ones = leaf_of_one<One>(box_one);
   lanes::Matches left = 0;
   if constexpr (One == Tree::kEdges) {

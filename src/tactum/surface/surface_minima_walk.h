@@ -1,6 +1,6 @@
 #pragma once
-/// Down the trees of two surfaces at once: a box against eight, then eight features against eight, then what
-/// is left one by one and exactly.
+/// The walk down the trees of two surfaces at once: a box against eight, then eight features against eight,
+/// then the pairs that are left one by one and exactly.
 
 #include <array>
 
@@ -9,8 +9,8 @@
 
 namespace tactum::inline v0_1 {
 
-/// What was turned into the other's frame, kept for the pairs that follow, which mostly ask for the same
-/// again. The room is filled as far as it is used.
+/// Values turned into the other's frame, kept for the pairs that follow, which mostly need the same again.
+/// The room is filled as far as it is used.
 template <class Value, std::size_t Room>
 class Kept {
  public:
@@ -59,7 +59,7 @@ class SurfaceWalk {
     const SurfaceTree::Node& node = node_of(other_, lane);
     return {&node, &node.at, lane % lanes::kLanes};
   }
-  /// Where the boxes of a node of the one stand in the other's frame.
+  /// The boxes of a node of the one in the other's frame.
   const SurfaceTree::Stand& turned(std::uint32_t node) noexcept {
     return stands_.get(
         node, [&](SurfaceTree::Stand& to) { kernels_.turn_stand(one_.nodes()[node].at, frame_, to); });
@@ -67,7 +67,7 @@ class SurfaceWalk {
 
   template <SurfaceTree::Kind One, SurfaceTree::Kind Other>
   void compare_leaves(const Pair& pair) noexcept;
-  /// Leaves laid out, those of the one in the other's frame.
+  /// Gathered leaves, those of the one in the other's frame.
   template <SurfaceTree::Kind Kind>
   const auto& leaf_of_one(const lanes::Box& box) noexcept;
   template <SurfaceTree::Kind Kind>

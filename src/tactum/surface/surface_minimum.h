@@ -1,5 +1,5 @@
 #pragma once
-/// What surface_minima.h is asked and what it answers.
+/// Input and output of surface_minima.h.
 
 #include "tactum/geometry/feature.h"
 #include "tactum/math/types.h"
@@ -12,7 +12,7 @@ struct SurfaceMinimum {
   Vec3 p_a = Vec3::Zero();     ///< on A [m]
   Vec3 p_b = Vec3::Zero();     ///< on B [m]
   Vec3 normal = Vec3::Zero();  ///< n_BA_A, unit [-]
-  Feature a, b;                ///< as SurfaceTree names them: vertex, edge 3 t + k, or triangle
+  Feature a, b;                ///< as in SurfaceTree: vertex, edge 3 t + k, or triangle
   int triangle_a = -1;         ///< the triangle that owns the feature of A, for pictures and group_of()
   int triangle_b = -1;         ///< ... and of B
   bool strict = false;         ///< the normal lies in both true cones, not only in the inflated ones

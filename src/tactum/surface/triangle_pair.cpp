@@ -12,7 +12,7 @@ void keep_nearer(PointPair& best, const Vec3& p_a, const Vec3& p_b) noexcept {
   if (distance_sq < best.distance_sq) best = {distance_sq, p_a, p_b};
 }
 
-/// Where on the segment from `start` along `d` the foot of `point` lies, as a share in [0, 1].
+/// The foot of `point` on the segment from `start` along `d`, as a fraction in [0, 1].
 double foot(const Vec3& point, const Vec3& start, const Vec3& d) noexcept {
   const double length_sq = d.squaredNorm();
   return length_sq > 0.0 ? std::clamp((point - start).dot(d) / length_sq, 0.0, 1.0) : 0.0;
@@ -36,7 +36,7 @@ bool segment_meets(const Vec3& p, const Vec3& q, const TrianglePoints& t) noexce
   return (s0 >= 0.0 && s1 >= 0.0 && s2 >= 0.0) || (s0 <= 0.0 && s1 <= 0.0 && s2 <= 0.0);
 }
 
-/// Corners of `corners` over the inside of `t`; `swapped` tells that `corners` belongs to the second
+/// Corners of `corners` over the inside of `t`; `swapped`: `corners` belongs to the second
 /// triangle.
 void corners_over(const TrianglePoints& corners, const TrianglePoints& t, bool swapped,
                   PointPair& best) noexcept {

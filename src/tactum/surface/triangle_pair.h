@@ -1,6 +1,6 @@
 #pragma once
-/// Two triangles: how far apart, where, and whether they cross. Any triangle is legal, flat to a segment or a
-/// point too.
+/// Two triangles: their distance, its points, and whether they cross. Any triangle is legal, also one flat to
+/// a segment or a point.
 ///
 /// Triangles that do not cross are nearest at a corner of one over the inside of the other, or between two
 /// sides: the distance is the least of 6 corner-inside and 9 side-side cases, each solved in closed form.

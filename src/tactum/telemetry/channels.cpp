@@ -12,7 +12,7 @@ using Source = const FrameSource&;
 
 Wrench from_device_axes(Source frame, const Wrench& F_D) { return rotated(frame.state.hand.X_WD.R, F_D); }
 
-/// The contact forces act at the held part's centre of mass; the hand feels them at the handle.
+/// The contact forces act at the grasped part's centre of mass; the hand feels them at the handle.
 Wrench contact_at_handle(Source frame) noexcept {
   const int grasped = frame.state.hand.grasp.body;
   if (grasped < 0) return {};
@@ -31,7 +31,7 @@ constexpr WrenchStage kStages[] = {
    [](Source f) noexcept -> Wrench { return from_device_axes(f, f.report.shown); }},
 };
 
-// What is no field of the report as it stands, but made from some or from the state.
+// Values that are no field of the report, but made from some or from the state.
 constexpr Channel kMadeChannels[] = {
   {"stretch_m", "Stretch", "m", "stretch", "from the hand to where the held part would have it",
    [](Source f) noexcept { return (f.report.X_WH_proxy.p - f.report.X_WH.p).norm(); }},

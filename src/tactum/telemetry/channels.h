@@ -1,5 +1,5 @@
 #pragma once
-/// What a frame can show of itself, by name: the wrench after every stage that changes it, and single
+/// The displayable values of a frame, by name: the wrench after every stage that changes it, and single
 /// numbers. Displays, charts and exports are made from these two tables alone, so that a stage or a number
 /// that gets a line here appears in all of them. Channels that are fields of the report are made from the
 /// list of its fields (haptics/report_fields.h).
@@ -23,7 +23,7 @@ struct FrameSource {
 struct WrenchStage {
   const char* key;                            ///< "smoothed"
   const char* name;                           ///< "After smoothing"
-  const char* meaning;                        ///< what the stage did
+  const char* meaning;                        ///< the effect of the stage
   Wrench (*of)(const FrameSource&) noexcept;  ///< on the hand, at the handle, axes of W [N, N m]
 };
 
@@ -39,7 +39,7 @@ struct Channel {
 std::span<const WrenchStage> wrench_stages() noexcept;
 std::span<const Channel> channels() noexcept;
 
-/// A bit of FrameReport::flags and what it tells, with the setting to raise.
+/// A bit of FrameReport::flags and its meaning, with the setting to raise.
 struct FlagName {
   std::uint32_t flag;
   const char* name;

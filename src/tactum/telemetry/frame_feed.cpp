@@ -58,7 +58,7 @@ void FrameFeed::draw(const FrameSource& frame, FramePicture& picture) noexcept {
   picture.contacts.clear();
   picture.contacts_left_out = 0;
   const std::span<const ContactPatch> patches = state.contacts.finder.patches();
-  const double rest = frame.settings.dt_s - frame.report.time_of_impact_s;  // what the impulses acted for
+  const double rest = frame.settings.dt_s - frame.report.time_of_impact_s;  // the impulses acted so long
   for (const ContactRow& row : state.response.rows()) {
     if (picture.contacts.size() == kContacts) {
       ++picture.contacts_left_out;

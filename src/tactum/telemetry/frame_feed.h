@@ -1,11 +1,11 @@
 #pragma once
-/// From the loop's thread to whoever watches: every frame's numbers, and now and then the whole picture.
+/// From the loop's thread to a watching thread: every frame's numbers, and now and then the whole picture.
 ///
 ///   loop thread    take(frame) --- every frame ---> ring of FrameSample ---> pop, in order
 ///                              --- at kPictures_Hz ---> newest FramePicture ---> the newest only
 ///
-/// The loop writes plain records whether or not anyone reads: its work does not depend on who watches. It
-/// never waits; when the ring is full the newest sample is lost and counted.
+/// The loop writes plain records whether or not anyone reads: its work does not depend on readers. It never
+/// waits; when the ring is full the newest sample is lost and counted.
 
 #include <atomic>
 #include <cstdint>
@@ -30,7 +30,7 @@ struct FrameSample {
 /// How many of FrameSample::values are used.
 int sample_size() noexcept;
 
-/// What friction does where a contact point pushes.
+/// The state of friction at a contact point that pushes.
 enum class Grip : std::int32_t { kNone, kSticks, kSlips };
 
 /// A contact point that pushes, or would if it were nearer.
@@ -44,10 +44,10 @@ struct ShownContact {
   double force_N = 0.0;      ///< along n on A [N]
   std::int32_t patch = -1;   ///< points of one patch have one number
   Grip grip = Grip::kNone;   ///< of the surfaces it is part of
-  double cone_used = 0.0;    ///< the share of their friction cone in use, 0 to 1 [-]
+  double cone_used = 0.0;    ///< the fraction of their friction cone in use, 0 to 1 [-]
 };
 
-/// Where everything is in one frame.
+/// The poses and contacts of one frame.
 struct FramePicture {
   std::uint64_t index = 0;
   Pose X_WH, X_WH_proxy, X_WD;
@@ -60,7 +60,7 @@ struct FramePicture {
 class FrameFeed {
  public:
   static constexpr double kPictures_Hz = 125.0;      ///< twice what a screen shows [Hz]
-  static constexpr std::size_t kSamples = 1u << 14;  ///< sixteen seconds at 1 kHz until somebody pops
+  static constexpr std::size_t kSamples = 1u << 14;  ///< sixteen seconds at 1 kHz until they are popped
   static constexpr std::size_t kContacts = 256;      ///< contacts of a picture
 
   FrameFeed(std::size_t bodies, double rate_Hz);

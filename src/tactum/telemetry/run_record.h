@@ -1,6 +1,6 @@
 #pragma once
-/// What a whole run amounted to, summed up frame by frame: forces, penetration, counted work, and a hash that
-/// names the run. Trivial to add to from the loop: no allocation, a few dozen additions.
+/// The sums of a whole run, added up frame by frame: forces, penetration, counted work, and a hash of the
+/// run. It is cheap to add to from the loop: no allocation, a few dozen additions.
 
 #include <array>
 #include <chrono>
@@ -21,7 +21,7 @@ class RunRecord {
 
   std::uint64_t frames = 0;
   std::uint64_t colliding_frames = 0;        ///< frames with any patch
-  std::uint64_t grasped_contact_frames = 0;  ///< frames in which something pushed the held part
+  std::uint64_t grasped_contact_frames = 0;  ///< frames in which something pushed the grasped part
   std::uint64_t penetrating_frames = 0;      ///< frames in which pieces overlapped
   double max_penetration_m = 0.0;            ///< deepest overlap [m]
   double max_force_N = 0.0;                  ///< largest shown force [N]
@@ -35,7 +35,7 @@ class RunRecord {
   std::uint64_t non_finite_frames = 0;       ///< frames whose computed wrench was not finite (zero was sent)
   std::uint32_t flags = 0;                   ///< union of all frames' frame_flag
   std::uint32_t safety = 0;                  ///< union of all frames' safety_flag
-  int max_tests = 0;  ///< exact tests in one frame with those of poses on trial: what the budget bounds
+  int max_tests = 0;  ///< exact tests in one frame with those of trial poses, which the budget bounds
 
   /// Of a field that runs sum up (haptics/report_fields.h), by name: sum("work.exact_tests").
   std::uint64_t sum(ReportFieldName field) const noexcept { return sum_[field.place]; }

@@ -2,7 +2,7 @@
 /// Statistics of durations that are recorded in the loop and read afterwards: mean, p50, p99, p99.9, max.
 ///
 /// Durations fall into bins whose width is 1/128 to 1/256 of their value: a power of two, divided in 128
-/// equal parts. A quantile is told as the middle of its bin, so it is right to 0.4 %; mean, min, max and
+/// equal parts. A quantile is given as the middle of its bin, so it is right to 0.4 %; mean, min, max and
 /// count are exact. Counting up to 2^40 ns (18 minutes) takes 35 KB, set aside at construction. `add` is
 /// about 2 ns.
 ///
@@ -15,7 +15,7 @@
 
 namespace tactum::inline v0_1 {
 
-/// What is told of many durations.
+/// A summary of many durations.
 struct Summary {
   std::uint64_t count = 0;
   double mean_ns = 0.0;  ///< [ns]
@@ -33,7 +33,7 @@ class DurationHistogram {
   DurationHistogram();
   /// Negative durations count as zero; above 2^40 ns they fall into the last bin.
   void add(std::int64_t duration_ns) noexcept;
-  /// Everything `other` has seen as well.
+  /// Adds everything that `other` has recorded.
   void merge(const DurationHistogram& other) noexcept;
   void clear() noexcept;
 
@@ -50,8 +50,8 @@ class DurationHistogram {
   std::uint64_t max_ns_ = 0;
 };
 
-/// The fastest time of each frame over identical replays: what the frame itself takes, without what the
-/// machine did meanwhile. Replays must compute the same frames for this to mean anything.
+/// The fastest time of each frame over identical replays: the time of the frame itself, without delays by the
+/// rest of the machine. Replays must compute the same frames for this to mean anything.
 class MinimumOfReplays {
  public:
   explicit MinimumOfReplays(std::size_t frames) : least_ns_(frames, kNever) {}
