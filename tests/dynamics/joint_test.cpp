@@ -39,7 +39,8 @@ Body random_body(Random& random, JointKind kind) {
 /// the impulse, loaded with its size.
 Twist twist_after(const Body& body, const Vec6& impulse) {
   ContactProblem problem(1, 1);
-  problem.add_body(0, body, body.X_WB, body.X_WB.p, inertial_metric(body, body.X_WB, 1.0), Vec6::Zero(), 0.0);
+  problem.add_body({0, body, body.X_WB}, body.X_WB.p, inertial_metric(body, body.X_WB, 1.0), Vec6::Zero(),
+                   0.0);
   problem.begin({});
   problem.add_load(problem.row_of(0, -1, {body.X_WB.p, impulse.head<3>(), impulse.tail<3>()}), 1.0);
   problem.solve_on(1);
@@ -143,8 +144,8 @@ TEST(Joint, APoseThatIsNoNumberStaysNone) {
 Twist joint_alone(const Body& body, const Pose& X_WB, const Twist& V) {
   constexpr double kStep_s = 0.001;
   ContactProblem problem(1, 1);
-  problem.add_body(0, body, X_WB, X_WB.p, inertial_metric(body, X_WB, kStep_s), to_vector(V * kStep_s),
-                   kStep_s);
+  problem.add_body({0, body, X_WB, {joint_position(body, X_WB), joint_position(body, X_WB)}}, X_WB.p,
+                   inertial_metric(body, X_WB, kStep_s), to_vector(V * kStep_s), kStep_s);
   problem.add_joint_rows(false);
   ReservedVector<double> forces;
   forces.reserve(8);
@@ -197,12 +198,17 @@ TEST_P(AfterJoint, EachLimitAloneIsNotOverrun) {
   EXPECT_NEAR(rate_after(1.0), 1.0, 1e-12);
 }
 
-TEST_P(AfterJoint, SpringAndDamperActAtTheEndOfTheStep) {
-  body_.joint.stiffness = 50.0;
+TEST_P(AfterJoint, SpringActsAtTheMeanOfTheStepOrStiffAtItsEnd) {
   body_.joint.rest = 0.01;
+  body_.joint.stiffness = 50.0;
   const double rate = rate_after(0.3);
-  EXPECT_NEAR(rate, 0.3 - 0.001 * 50.0 * (0.02 + 0.001 * rate - 0.01), 1e-12);
-  body_.joint.stiffness = 0.0;
+  EXPECT_NEAR(rate, 0.3 - 0.001 * 50.0 * (0.02 + 0.25 * 0.001 * rate - 0.01), 1e-12);
+  body_.joint.stiffness = 2e6;  // [N/m] more than the inertia over the square of the step
+  const double stiff = rate_after(0.3);
+  EXPECT_NEAR(stiff, 0.3 - 0.001 * 2e6 * (0.02 + 0.001 * stiff - 0.01), 1e-9);
+}
+
+TEST_P(AfterJoint, DamperActsAtTheEndOfTheStep) {
   body_.joint.damping = 2.0;
   EXPECT_NEAR(rate_after(0.3), 0.3 / (1.0 + 0.001 * 2.0), 1e-12);
 }

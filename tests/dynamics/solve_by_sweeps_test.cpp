@@ -54,7 +54,7 @@ struct Pile {
   RowsInProblem set(bool exact) {
     problem.clear();
     for (std::size_t i = 0; i + 1 < bodies.size(); ++i)
-      problem.add_body(static_cast<int>(i), bodies[i], X_WB[i], X_WB[i].p,
+      problem.add_body({static_cast<int>(i), bodies[i], X_WB[i]}, X_WB[i].p,
                        inertial_metric(bodies[i], X_WB[i], kStep), to_vector(V[i] * kStep), kStep);
     problem.add_joint_rows(exact);
     const RowsInProblem contacts{rows, problem.rows()};

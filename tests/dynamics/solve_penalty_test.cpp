@@ -31,7 +31,7 @@ struct Case {
     for (std::size_t i = 0; i < bodies.size(); ++i) {
       const Pose& X_WB = bodies[i].X_WB;
       if (bodies[i].joint.kind != JointKind::kFixed)
-        problem.add_body(static_cast<int>(i), bodies[i], X_WB, X_WB.p,
+        problem.add_body({static_cast<int>(i), bodies[i], X_WB}, X_WB.p,
                          inertial_metric(bodies[i], X_WB, kStep), to_vector(V[i] * kStep), kStep);
     }
     problem.add_joint_rows(false);
@@ -120,7 +120,8 @@ TEST(SolvePenalty, AJointActsOnWhatACouplingPulls) {
       ContactProblem problem(1, 1);
       Vec6 target = Vec6::Zero();
       target[0] = pulled_to - X_WB.p.x();
-      problem.add_body(0, body, X_WB, X_WB.p, {.linear = k, .angular = Mat3::Identity()}, target, kStep);
+      problem.add_body({0, body, X_WB, {joint_position(body, X_WB), joint_position(body, X_WB)}}, X_WB.p,
+                       {.linear = k, .angular = Mat3::Identity()}, target, kStep);
       problem.add_joint_rows(false);
       ReservedVector<double> forces;
       forces.reserve(8);

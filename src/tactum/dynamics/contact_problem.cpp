@@ -53,23 +53,29 @@ Mat3 inverse_factor(const Mat3& A) noexcept {
 }
 
 /// The one unknown of a body on a hinge or slider, whose column is its travel.
-void set_motion(ProblemBody& body, const Vec6& s, const BodyMetric& metric, const Vec6& target,
-                const JointForces& forces, double h) noexcept {
+JointForces set_motion(ProblemBody& body, const PlacedBody& placed, const Vec6& s, const BodyMetric& metric,
+                       const Vec6& target, double h) noexcept {
   Vec6 Ms;
   Ms << metric.linear * s.head<3>(), metric.angular * s.tail<3>();
   double M = s.dot(Ms);
   double pull = Ms.dot(target);
+  JointForces forces;
+  if (h > 0.0)
+    forces = joint_forces(placed.body, placed.X_WB, placed.joint, metric.has_momentum ? M : 0.0, h);
   if (forces.drag > 0.0) {
     M += forces.drag / h;
     pull += forces.drag * forces.free_rate;
   }
   body.target = s * (pull / M);
   body.motions.col(0) = s / std::sqrt(M);
+  return forces;
 }
 
 /// The three unknowns of a body on a ball.
-void set_motions_about_ball(ProblemBody& body, const JointMotions& S, const BodyMetric& metric,
-                            const Vec6& target, const JointForces& forces, double h) noexcept {
+JointForces set_motions_about_ball(ProblemBody& body, const PlacedBody& placed, const JointMotions& S,
+                                   const BodyMetric& metric, const Vec6& target, double h) noexcept {
+  JointForces forces;
+  if (h > 0.0) forces = joint_forces(placed.body, placed.X_WB, placed.joint, 0.0, h);
   const Eigen::Matrix<double, 6, 3> motions = S;
   Eigen::Matrix<double, 6, 3> MS;
   MS.topRows<3>() = metric.linear * motions.topRows<3>();
@@ -80,13 +86,14 @@ void set_motions_about_ball(ProblemBody& body, const JointMotions& S, const Body
   const Vec3 pull = MS.transpose() * target;
   body.motions = motions * factor;
   body.target = body.motions * Vec3(factor.transpose() * pull);
+  return forces;
 }
 
 }  // namespace
 
 BodyMetric inertial_metric(const Body& body, const Pose& X_WB, double h) noexcept {
   const double per_step = 1.0 / (h * h);
-  return {body.mass_kg * per_step, X_WB.R * body.inertia_B * X_WB.R.transpose() * per_step};
+  return {body.mass_kg * per_step, X_WB.R * body.inertia_B * X_WB.R.transpose() * per_step, true};
 }
 
 std::size_t freedom_of(const Joint& joint) noexcept {
@@ -144,15 +151,16 @@ ProblemBody& ContactProblem::next_body(int body, std::size_t rank, const Vec3& o
 
 /// Sets the unknowns of a jointed body: its target is the allowed one nearest to `target` in the metric, with
 /// the joint's spring and damping. All stated at the body's centre.
-void ContactProblem::set_motions(ProblemBody& body, const Body& what, const Pose& X_WB,
-                                 const BodyMetric& metric, const Vec6& target, double h) noexcept {
-  const JointForces forces = h > 0.0 ? joint_forces(what, X_WB, h) : JointForces{};
-  JointMotions S = joint_motions(what.joint, X_WB);
+void ContactProblem::set_motions(ProblemBody& body, const PlacedBody& placed, const BodyMetric& metric,
+                                 const Vec6& target, double h) noexcept {
+  if (body.rank == 0) {
+    body.target.setZero();
+    return;
+  }
+  JointMotions S = joint_motions(placed.body.joint, placed.X_WB);
   for (Eigen::Index i = 0; i < S.cols(); ++i) S.col(i) = at_point(S.col(i), body.centre - body.origin);
-  if (body.rank == 1)
-    set_motion(body, S.col(0), metric, target, forces, h);
-  else if (body.rank == 3)
-    set_motions_about_ball(body, S, metric, target, forces, h);
+  const JointForces forces = body.rank == 1 ? set_motion(body, placed, S.col(0), metric, target, h)
+                                            : set_motions_about_ball(body, placed, S, metric, target, h);
   if (!forces.acts) return;
   const Push along{body.centre, forces.rate.head<3>(), forces.rate.tail<3>()};
   if (forces.friction > 0.0 && body.rank == 1)
@@ -164,11 +172,11 @@ void ContactProblem::set_motions(ProblemBody& body, const Body& what, const Pose
     limits_.push_back({body.body, {along.p_W, -along.force, -along.torque}, std::max(0.0, forces.travel_up)});
 }
 
-void ContactProblem::add_body(int body, const Body& what, const Pose& X_WB, const Vec3& centre_W,
-                              const BodyMetric& metric, const Vec6& target, double h) noexcept {
-  ProblemBody& next = next_body(body, freedom_of(what.joint), X_WB.p, centre_W);
+void ContactProblem::add_body(const PlacedBody& placed, const Vec3& centre_W, const BodyMetric& metric,
+                              const Vec6& target, double h) noexcept {
+  ProblemBody& next = next_body(placed.number, freedom_of(placed.body.joint), placed.X_WB.p, centre_W);
   if (next.rank < 6) {
-    set_motions(next, what, X_WB, metric, target, h);
+    set_motions(next, placed, metric, target, h);
     return;
   }
   next.target = target;

@@ -30,6 +30,7 @@ namespace tactum::inline v0_1 {
 struct BodyMetric {
   double linear = 0.0;          ///< [N/m]
   Mat3 angular = Mat3::Zero();  ///< symmetric positive, axes of W [N m/rad]
+  bool has_momentum = false;    ///< it is an inertia over h^2
 };
 
 /// Mass and inertia over h^2, at the origin.
@@ -78,6 +79,19 @@ inline void push(const QpRow& row, double force, double* z) noexcept {
     for (std::size_t i = 0; i < run.count; ++i) z[run.first + i] += run.g[i] * force;
 }
 
+/// A body of the world as a step begins.
+struct PlacedBody {
+  int number = -1;  ///< index into World::bodies
+  const Body& body;
+  const Pose& X_WB;
+  JointPosition joint = {};
+};
+
+inline PlacedBody placed(const World& world, const WorldState& state, int number) noexcept {
+  const auto i = static_cast<std::size_t>(number);
+  return {number, world.bodies[i], state.X_WB[i], state.joints[i]};
+}
+
 class ContactProblem {
  public:
   static constexpr std::size_t kMostCones = 16;
@@ -92,8 +106,8 @@ class ContactProblem {
   /// `centre_W` is where the metric and the target are stated. The joint acts for `h` seconds; with 0, as in
   /// an impact, it leaves its free motions alone. A fixed body needs no entry: a body that was not added does
   /// not move.
-  void add_body(int body, const Body& what, const Pose& X_WB, const Vec3& centre_W, const BodyMetric& metric,
-                const Vec6& target, double h) noexcept;
+  void add_body(const PlacedBody& placed, const Vec3& centre_W, const BodyMetric& metric, const Vec6& target,
+                double h) noexcept;
   /// Adds a body whose displacement is given: nothing in this problem changes it.
   void add_given(int body, const Vec3& origin_W, const Vec6& displacement) noexcept;
   /// Takes the same bodies, each with the other problem's answer as its target, and the rows of their joints'
@@ -171,8 +185,8 @@ class ContactProblem {
   }
   ProblemBody& next_body(int body, std::size_t rank, const Vec3& origin, const Vec3& centre) noexcept;
   void project(int number, double sign, const Push& push, QpRow::Run& run, QpRow& row) const noexcept;
-  void set_motions(ProblemBody& body, const Body& what, const Pose& X_WB, const BodyMetric& metric,
-                   const Vec6& target, double h) noexcept;
+  void set_motions(ProblemBody& body, const PlacedBody& placed, const BodyMetric& metric, const Vec6& target,
+                   double h) noexcept;
   void add_friction_unknown(const JointFriction& friction) noexcept;
 
   ReservedVector<ProblemBody> bodies_;

@@ -49,7 +49,7 @@ RowsInProblem set_problem(const Corners& corners, const ImpactBodies& bodies, Co
       problem.add_given(body, X_WB.p, to_vector(bodies.V_WB[i]));
       continue;
     }
-    problem.add_body(body, what, X_WB, X_WB.p, inertial_metric(what, X_WB, 1.0), to_vector(bodies.V_WB[i]),
+    problem.add_body({body, what, X_WB}, X_WB.p, inertial_metric(what, X_WB, 1.0), to_vector(bodies.V_WB[i]),
                      0.0);
   }
   const RowsInProblem contacts{{corners.begin(), corners.end()}, problem.rows()};

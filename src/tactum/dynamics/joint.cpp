@@ -105,6 +105,24 @@ Twist constrained_velocity(const Joint& joint, const Pose& X_WB, const Resistanc
   return to_twist(S * SmallMatrix(MS.transpose() * S).llt().solve(MS.transpose() * to_vector(V)));
 }
 
+Twist carried_velocity(const Joint& joint, const Pose& X_WB, const Twist& V) noexcept {
+  switch (joint.kind) {
+    case JointKind::kFixed:
+      return {};
+    case JointKind::kFree:
+      break;
+    case JointKind::kHinge:
+    case JointKind::kSlider: {
+      const Vec6 s = single_motion(joint, X_WB);
+      const double rate = joint.axis_W.dot(joint.kind == JointKind::kHinge ? V.w : V.v);
+      return to_twist(s * rate);
+    }
+    case JointKind::kBall:
+      return {V.w.cross(X_WB.p - joint.anchor_W), V.w};
+  }
+  return V;
+}
+
 Pose constrained_pose(const Body& body, const Pose& X_WB) noexcept {
   const Vec3& anchor = body.joint.anchor_W;
   const auto turned = [&](const Mat3& turn) -> Pose {

@@ -30,6 +30,10 @@ Vec6 joint_rate(const Body& body, const Pose& X_WB) noexcept;
 Twist constrained_velocity(const Joint& joint, const Pose& X_WB, const Resistance& M,
                            const Twist& V) noexcept;
 
+/// The velocity at X_WB of a body that moved with V a step before, at another pose: a joint's rate is kept,
+/// not the direction of the velocity.
+Twist carried_velocity(const Joint& joint, const Pose& X_WB, const Twist& V) noexcept;
+
 /// The pose the joint allows that is nearest to X_WB: constraints applied to poses at the end of the frame.
 Pose constrained_pose(const Body& body, const Pose& X_WB) noexcept;
 

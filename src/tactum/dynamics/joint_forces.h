@@ -3,11 +3,15 @@
 /// once for every solver. All of it acts along one coordinate, the position of the joint (world.h); a ball is
 /// damped about every axis.
 ///
-/// Springs and dampers are stated at the end of the step, so that they are stable however stiff:
+/// With q the position at the start and u = rate . V the mean rate of the step, springs and dampers push with
 ///
-///     force = -(k (q + h u - rest) + c u) = drag (free_rate - u),     drag = c + h k
+///     force = -(k (q' - rest) + c u) = drag (free_rate - u).
 ///
-/// with q the position at the start and u = rate . V the mean rate of the step.
+/// For a body that a coupling pulls q' is the position at the end of the step, q + h u. For a body that has
+/// momentum q' is the mean (q_-1 + 2 q + (q + h u)) / 4 of three positions, with q_-1 the one a step before:
+/// then a spring keeps its energy to rounding, at every step [Newmark 1959]. A spring that is so stiff that
+/// the step has fewer than 2 pi parts of its period is stated at the end of the step all the same, which
+/// damps it: its swing is not resolved.
 
 #include <limits>
 
@@ -29,7 +33,14 @@ struct JointForces {
   bool limited_up() const { return travel_up < std::numeric_limits<double>::infinity(); }
 };
 
-/// For a step of `h` seconds from the pose X_WB. A negative travel means that a limit has been overrun.
-JointForces joint_forces(const Body& body, const Pose& X_WB, double h) noexcept;
+/// For a step of `h` seconds from the pose X_WB and position `at`. `inertia` is that of the body along the
+/// joint over h^2 [N/m or N m/rad]; 0 for one that has no momentum. A negative travel means that a limit has
+/// been overrun.
+JointForces joint_forces(const Body& body, const Pose& X_WB, const JointPosition& at, double inertia,
+                         double h) noexcept;
+
+/// The largest change of velocity that the spring of a joint gives its body in a step of `h` seconds; zero
+/// without a spring.
+Twist most_by_spring(const Body& body, const Pose& X_WB, const JointPosition& at, double h) noexcept;
 
 }  // namespace tactum::inline v0_1

@@ -11,6 +11,7 @@ WorldState initial_state(const World& world) {
   for (const Body& body : world.bodies) {
     state.X_WB.push_back(body.X_WB);
     state.V_WB.push_back(body.V_WB);
+    state.joints.emplace_back();
   }
   return state;
 }
@@ -38,6 +39,18 @@ double joint_position(const Body& body, const Pose& X_WB) {
       return log_rotation(X_WB.R * body.X_WB.R.transpose()).norm();
   }
   return 0.0;
+}
+
+void follow_joints(const World& world, WorldState& state) noexcept {
+  for (std::size_t i = 0; i < world.bodies.size(); ++i) {
+    const Body& body = world.bodies[i];
+    if (!body.moves() || body.joint.kind == JointKind::kFree) continue;
+    JointPosition& joint = state.joints[i];
+    joint.before = joint.now;
+    joint.now = joint_position(body, state.X_WB[i]);
+    if (body.joint.kind == JointKind::kHinge)
+      joint.now += 2.0 * kPi * std::round((joint.before - joint.now) / (2.0 * kPi));
+  }
 }
 
 }  // namespace tactum::inline v0_1

@@ -85,10 +85,17 @@ struct World {
   std::vector<ForceField> fields;  ///< felt by the grasped part
 };
 
+/// The position of a body's joint (see Joint), now and one step before. A hinge is followed over full turns,
+/// which its pose alone does not tell.
+struct JointPosition {
+  double now = 0.0, before = 0.0;  ///< [rad or m]
+};
+
 /// The state that frames change. One entry per body of the World.
 struct WorldState {
   std::vector<Pose> X_WB;
   std::vector<Twist> V_WB;
+  std::vector<JointPosition> joints;
 };
 
 /// Poses and velocities as the world starts.
@@ -97,7 +104,12 @@ WorldState initial_state(const World& world);
 /// Angle by which a hinged body has turned from its pose at the start, in (-pi, pi] [rad].
 double hinge_angle(const Body& body, const Pose& X_WB);
 
-/// The position of the body's joint (see Joint); 0 for a free or fixed body [rad or m].
+/// The position of the body's joint (see Joint), a hinge's in (-pi, pi]; 0 for a free or fixed body
+/// [rad or m].
 double joint_position(const Body& body, const Pose& X_WB);
+
+/// Moves the positions of all joints on to the present poses. Between two calls a hinge may turn by less than
+/// half a turn. Cost: an arc tangent for each hinge.
+void follow_joints(const World& world, WorldState& state) noexcept;
 
 }  // namespace tactum::inline v0_1

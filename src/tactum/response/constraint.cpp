@@ -41,7 +41,8 @@ void add_bodies(bool at_rest, ConstraintStep& step) {
     const Body& body = step.world.bodies[i];
     const Pose& X_WB = step.bodies.X_WB[i];
     const Vec6 on = at_rest ? Vec6(Vec6::Zero()) : to_vector(step.bodies.V_WB[i] * step.dt_s);
-    problem.add_body(b, body, X_WB, X_WB.p, inertial_metric(body, X_WB, step.dt_s), on, step.dt_s);
+    problem.add_body(placed(step.world, step.bodies, b), X_WB.p, inertial_metric(body, X_WB, step.dt_s), on,
+                     step.dt_s);
   }
   problem.add_joint_rows(true);
 }
@@ -320,7 +321,13 @@ void bound_constrained_motion(const MotionInput& input, const WorldState& bodies
     if (!input.world.bodies[i].moves()) continue;
     const Twist& V = bodies.V_WB[i];
     const bool grasped = static_cast<int>(i) == input.grasped.body;
-    if (!grasped) own.motion_bound[i] += (V.v.norm() + pull + V.w.norm() * input.radius_m[i]) * input.dt_s;
+    if (!grasped) {
+      const Twist spring =
+          most_by_spring(input.world.bodies[i], bodies.X_WB[i], bodies.joints[i], input.dt_s);
+      own.motion_bound[i] +=
+          (V.v.norm() + spring.v.norm() + pull + (V.w.norm() + spring.w.norm()) * input.radius_m[i]) *
+          input.dt_s;
+    }
     if (grasped || own.free.near_grasped[i]) own.motion_bound[i] += c.trust.length_m;
   }
 }

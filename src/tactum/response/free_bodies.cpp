@@ -63,6 +63,13 @@ Mat3 turning_inertia(const Body& body) {
   return body.inertia_B + body.mass_kg * (arm.squaredNorm() * Mat3::Identity() - arm * arm.transpose());
 }
 
+/// Adds gravity's change of velocity, as far as the joint lets it act.
+void add_gravity(const Body& body, const Vec3& change_W, const Pose& X_WB, Twist& V_WB) {
+  V_WB.v += change_W;
+  if (body.joint.kind != JointKind::kFree)
+    V_WB = constrained_velocity(body.joint, X_WB, inertial_resistance(body, X_WB), V_WB);
+}
+
 /// The fraction of every island's step that its bodies' motion bounds allow, and how far each would go.
 void limit_shares(ConstraintStep& step) {
   FreeBodies& f = step.own.free;
@@ -194,15 +201,23 @@ void correct(ConstraintStep& step) {
 }  // namespace
 
 void begin_midway(const World& world, double dt_s, WorldState& state) noexcept {
-  for (Index i = 0; i < world.bodies.size(); ++i)
-    if (world.bodies[i].moves()) state.V_WB[i].v -= world.gravity_W * (0.5 * dt_s);
+  for (Index i = 0; i < world.bodies.size(); ++i) {
+    const Body& body = world.bodies[i];
+    if (!body.moves()) continue;
+    JointPosition& joint = state.joints[i];
+    joint.before = joint.now - dt_s * joint_rate(body, state.X_WB[i]).dot(to_vector(state.V_WB[i]));
+    add_gravity(body, world.gravity_W * (-0.5 * dt_s), state.X_WB[i], state.V_WB[i]);
+  }
 }
 
 void pull_free_bodies(const MotionInput& input, WorldState& bodies) noexcept {
   const World& world = input.world;
-  for (Index i = 0; i < world.bodies.size(); ++i)
-    if (world.bodies[i].moves() && static_cast<int>(i) != input.grasped.body)
-      bodies.V_WB[i].v += world.gravity_W * (0.5 * input.dt_s);
+  for (Index i = 0; i < world.bodies.size(); ++i) {
+    const Body& body = world.bodies[i];
+    if (!body.moves() || static_cast<int>(i) == input.grasped.body) continue;
+    bodies.V_WB[i] = carried_velocity(body.joint, bodies.X_WB[i], bodies.V_WB[i]);
+    add_gravity(body, world.gravity_W * (0.5 * input.dt_s), bodies.X_WB[i], bodies.V_WB[i]);
+  }
 }
 
 bool others_move(const World& world, int grasped) noexcept {
@@ -243,9 +258,6 @@ void apply_impacts(ConstraintStep& step) noexcept {
     // The hand decides where the grasped part goes: an impact does not move it, it is felt.
     step.own.free.struck[i] =
         !is_grasped(step, i) && step.own.free.islands.moves(static_cast<int>(i)) ? 1 : 0;
-    if (step.world.bodies[i].joint.kind != JointKind::kFree && !is_grasped(step, i))
-      V_WB[i] = constrained_velocity(step.world.bodies[i].joint, X_WB[i],
-                                     inertial_resistance(step.world.bodies[i], X_WB[i]), V_WB[i]);
   }
   const double energy_J = grasped < 0 ? 0.0 : bodies_energy(step.world, step.bodies, grasped);
   ImpactsOnGrasped impacts(grasped, grasped < 0 ? Vec3::Zero() : X_WB[Index(grasped)] * step.grasped.X_BH.p,
@@ -267,9 +279,7 @@ void apply_impacts(ConstraintStep& step) noexcept {
     if (turns_freely(body)) V_WB[i].w = rate_midway(turning_inertia(body), X_WB[i].R, V_WB[i].w, step.dt_s);
     if (body.joint.kind == JointKind::kBall) V_WB[i].v = V_WB[i].w.cross(X_WB[i].p - body.joint.anchor_W);
     step.own.free.w_free[i] = V_WB[i].w;
-    V_WB[i].v += step.world.gravity_W * (0.5 * step.dt_s);
-    if (body.joint.kind != JointKind::kFree)
-      V_WB[i] = constrained_velocity(body.joint, X_WB[i], inertial_resistance(body, X_WB[i]), V_WB[i]);
+    add_gravity(body, step.world.gravity_W * (0.5 * step.dt_s), X_WB[i], V_WB[i]);
   }
 }
 

@@ -37,7 +37,7 @@ void assemble(bool exact, bool opening, IslandProblem& p) {
     }
     const Body& what = step.world.bodies[i];
     const Pose& X_WB = step.bodies.X_WB[i];
-    p.problem.add_body(body, what, X_WB, X_WB.p, inertial_metric(what, X_WB, step.dt_s),
+    p.problem.add_body(placed(step.world, step.bodies, body), X_WB.p, inertial_metric(what, X_WB, step.dt_s),
                        to_vector(step.own.free.V_free[i] * step.dt_s), step.dt_s);
   }
   p.problem.add_joint_rows(exact);

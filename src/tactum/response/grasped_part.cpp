@@ -28,7 +28,7 @@ Vec6 with_load(const ConstraintStep& step, const Vec6& wanted) noexcept {
 void add_grasped(const Vec6& target, const ConstraintStep& step, ContactProblem& problem) noexcept {
   const Index grasped = Index(step.grasped.body);
   const Pose& X_WB = step.bodies.X_WB[grasped];
-  problem.add_body(step.grasped.body, step.world.bodies[grasped], X_WB, X_WB * step.grasped.X_BH.p,
+  problem.add_body(placed(step.world, step.bodies, step.grasped.body), X_WB * step.grasped.X_BH.p,
                    body_metric(step_metric(step.settings.coupling, step.grasped, step.dt_s)), target,
                    step.dt_s);
 }

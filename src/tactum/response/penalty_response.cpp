@@ -105,11 +105,11 @@ void PenaltyResponse::add_body(const MotionInput& input, int body, double h_s,
   const Body& what = input.world.bodies[Index(body)];
   const Pose& X_WB = bodies.X_WB[Index(body)];
   if (body == input.grasped.body) {
-    problem_.add_body(body, what, X_WB, X_WB * input.grasped.X_BH.p, coupling_metric(input.settings.coupling),
-                      to_hand(input, X_WB), h_s);
+    problem_.add_body(placed(input.world, bodies, body), X_WB * input.grasped.X_BH.p,
+                      coupling_metric(input.settings.coupling), to_hand(input, X_WB), h_s);
     return;
   }
-  problem_.add_body(body, what, X_WB, X_WB.p, inertial_metric(what, X_WB, h_s),
+  problem_.add_body(placed(input.world, bodies, body), X_WB.p, inertial_metric(what, X_WB, h_s),
                     to_vector(bodies.V_WB[Index(body)] * h_s), h_s);
 }
 
@@ -120,7 +120,10 @@ std::span<const double> PenaltyResponse::bound_motion(const MotionInput& input, 
     if (!body.moves()) continue;
     Twist& V_WB = bodies.V_WB[i];
     const int number = static_cast<int>(i);
-    if (number != input.grasped.body) V_WB.v += world.gravity_W * input.dt_s;
+    if (number != input.grasped.body) {
+      V_WB = carried_velocity(body.joint, bodies.X_WB[i], V_WB);
+      V_WB.v += world.gravity_W * input.dt_s;
+    }
     V_before_joints_[i] = V_WB;
     if (number != input.grasped.body && body.joint.kind == JointKind::kFree) continue;
     // First the motion that the joint allows, and where the hand and the joint's forces lead without contact.

@@ -44,6 +44,7 @@ void Response::step(const StepInput& input, GapOracle& gaps, WorldState& bodies,
       },
       model_);
   undo_non_finite(input.X_WB_start, bodies, report);
+  follow_joints(input.world, bodies);
 }
 
 Wrench Response::felt(const StepInput& input, const WorldState& bodies) noexcept {
