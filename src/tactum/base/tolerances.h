@@ -121,13 +121,15 @@ inline constexpr double kRowKept_m = 1e-12;
 /// the tightest fit of engineering.
 inline constexpr double kSkin = 5e-6;
 
-/// A pair overlaps when its depth exceeds this fraction of the pieces' size: a smaller depth is within the
-/// error of the certificate.
+/// A pair overlaps when its depth exceeds this fraction of the sizes of both, of parts in a frame and of
+/// pieces in preparation: a smaller depth is within the error of the certificate.
 inline constexpr double kPenetrating = 1e-9;
 
-/// The normal cones of features are widened by this angle [rad] in the search for contacts, the largest turn
-/// of a part in a step: with the true cones only the lowest corner of a flat contact counts, and sliding over
-/// a plane of many pieces sticks.
+/// The normal cones of features are widened by this angle [rad] in the search for contacts: with the true
+/// cones only the lowest corner of a flat contact counts, and sliding over a plane of many pieces sticks. It
+/// is the largest turn of a part of 7.5 mm radius in a step of Constraint::max_step_on_surfaces_m. A smaller
+/// part may turn farther: then contacts may be missing among the rows, and the tests of the pose on trial
+/// refuse the step.
 inline constexpr double kConeInflation = 0.004;
 
 /// Unit normals that differ by less than this are one: a corner's mean normal is then the face's own, to the

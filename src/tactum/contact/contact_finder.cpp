@@ -143,7 +143,8 @@ int ContactFinder::skip_still_valid(std::span<const Pose> X_WB) noexcept {
   return std::min(tests_left_, grasped + std::max(0, tests_left_ - grasped) / 2);
 }
 
-/// Counts a pair that is not tested in this frame, and blocks its bodies where that is not safe.
+/// Counts a pair that is not tested in this frame, and blocks its bodies where that is not safe: where they
+/// may move by `gap`, a lower bound of their distance [m], in this frame.
 void ContactFinder::skip(int a, int b, double gap, std::int64_t last_checked) noexcept {
   const auto moves_by = [&](int body) {
     return bodies_[Index(body)].moves ? motion_bound_[Index(body)] : 0.0;
@@ -199,7 +200,9 @@ void ContactFinder::add_candidate(Pair& pair, const PairDistance& found, bool in
   candidate.patch = patch;
 }
 
-/// Makes a patch of the answer, when it is within the tolerance.
+/// Makes a patch of the answer, when it is within the tolerance. Of a pair that was not tested in this frame
+/// the points and the normal are those of its last test, in A's frame, and the distance is a bound. Without
+/// room the contact is dropped: nothing then keeps the two pieces apart, and only the flag says so.
 void ContactFinder::emit_patch(Pair& pair, const PairDistance& found, const Pose& X_AB) noexcept {
   const Part& part_a = *bodies_[Index(pair.body_a)].part;
   const Part& part_b = *bodies_[Index(pair.body_b)].part;

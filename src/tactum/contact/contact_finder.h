@@ -94,31 +94,32 @@ class ContactFinder final : public GapOracle {
   std::span<const double> radii() const noexcept { return radius_; }
 
  private:
+  /// What a test found, and the pose of B in A at which it did.
   struct Answer {
     PairDistance found;
-    Pose X_AB;
+    Pose X_AB;               ///< [m]
     bool certified = false;  ///< false: it proves nothing
   };
   struct Pair {
     std::int32_t body_a = -1, body_b = -1, piece_a = -1, piece_b = -1;
     PairCache cache;
-    SteadyContact shown;
+    SteadyContact shown;             ///< the contact as the penalty response had it in the last frame
     Answer last;                     ///< of the last test
     Answer trial;                    ///< of a test at a trial pose, which the pair need not have taken
-    double free_until = -1e300;      ///< accumulated motion at which the distance may have shrunk to zero
+    double free_until = -1e300;      ///< accumulated motion at which the distance may have shrunk to zero [m]
     std::int64_t last_checked = -1;  ///< frame
-    bool in_contact = false;
+    bool in_contact = false;         ///< nearer than its tolerance when it was last looked at
   };
   /// The pieces of two near bodies: pairs_[first, first + count), sorted by piece.
   struct BodyPair {
     std::int32_t body_a = -1, body_b = -1;  ///< whose list it is; a slot is given to another pair when free
     std::int32_t first = 0, count = 0;
-    double accumulated_motion = 0.0;  ///< S0
-    double range = 0.0;               ///< R
+    double accumulated_motion = 0.0;  ///< S0, when it was made [m]
+    double range = 0.0;               ///< R, with which it was made [m]
     bool cut_short = false;           ///< the room was full: pairs are missing
-    std::int64_t renewal = -1;        ///< the renewal it was last part of
-    double free_until = -1e300;       ///< of two surfaces: as in Pair
-    bool apart = false;               ///< ... and nothing was within the tolerance at the last query
+    std::int64_t renewal = -1;   ///< number of the renewal it was last part of: an older one is not in pairs_
+    double free_until = -1e300;  ///< of two surfaces: as in Pair
+    bool apart = false;          ///< ... and nothing was within the tolerance at the last query
   };
 
   void move_boxes(std::span<const Pose> X_WB) noexcept;
@@ -161,16 +162,18 @@ class ContactFinder final : public GapOracle {
   std::vector<Aabb> part_box_;  // of the part, in its own frame
   std::vector<double> radius_;
   std::vector<Aabb> fat_box_;       // in the world, grown
-  std::vector<double> box_growth_;  // how far boxes and lists are grown
-  std::vector<double> travel_;
-  std::vector<Pose> last_X_WB_;
+  std::vector<double> box_growth_;  // how far boxes and lists are grown [m]
+  std::vector<double> travel_;      // accumulated motion of each body [m]
+  std::vector<Pose> last_X_WB_;     // at which travel_ was last added to
   SweepAndPrune sweep_;
   std::vector<BodyPair> lists_;  // by slot of a near pair
   ReservedVector<Pair> pairs_, renewed_;
   ReservedVector<std::pair<std::int32_t, std::int32_t>> near_pieces_;  // of the two bodies being tested
   ReservedVector<DuePair> due_;
-  ReservedVector<std::int32_t> emitted_;   // pairs with an answer, or that had one
-  std::vector<char> blocked_;              // by body
+  // Pairs that may give a patch in this frame: tested, with an answer that still holds, or left unchecked
+  // with one from an earlier frame.
+  ReservedVector<std::int32_t> emitted_;
+  std::vector<char> blocked_;              // by body: see blocked()
   ReservedVector<std::uint8_t> priority_;  // by body; empty: all alike
   bool budget_limited_ = false;
   int tests_left_ = 0;
@@ -179,10 +182,10 @@ class ContactFinder final : public GapOracle {
   ReservedVector<SeamCandidate*> candidate_order_;
   ReservedVector<SurfaceMinimum> minima_;
   ReservedVector<ReductionScratch> reduction_scratch_;
-  std::size_t kept_minima_ = 0;
+  std::size_t kept_minima_ = 0;  // most minima of two bodies that become patches
   SteadyLimits steady_;
-  int head_start_;                       // frames
-  ReservedVector<double> motion_bound_;  // by body
+  int head_start_;                       // kHeadStart_s in frames
+  ReservedVector<double> motion_bound_;  // by body [m]
   PatchPoints points_ = PatchPoints::kQuadrature;
   double min_tolerance_ = 0.0;
   std::int64_t frame_ = 0;

@@ -26,8 +26,8 @@ struct ContactPatch {
   /// this one.
   bool neighbour_face_a = false, neighbour_face_b = false;
   FacetPair facets;
-  double distance = 0.0;   ///< of the pieces, negative when they overlap [m]
-  double tolerance = 0.0;  ///< delta of the pair of bodies [m]
+  double distance = 0.0;   ///< of the pieces, or of the local minimum; negative when they overlap [m]
+  double tolerance = 0.0;  ///< delta, the contact margin of the pair of bodies [m]
   Manifold manifold;
 };
 

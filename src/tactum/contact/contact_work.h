@@ -13,7 +13,8 @@ struct ContactFinderCapacity {
   std::size_t kept_minima = 1024;  ///< ... of which so many become patches (contact_reduction.h)
 };
 
-/// Counted work of one frame: N, K and M of the paper's T_h = N t_s + K t_c + M t_f, and what was left.
+/// Counted work of one frame: N, K and M of the paper's T_h = N t_s + K t_c + M t_f, and what was left. It is
+/// that of the search for patches: tests of trial poses are counted in FrameReport::validation_tests.
 struct ContactWork {
   int broad_phase_runs = 0;       ///< 1 when boxes or lists had to be renewed, else 0 ("N-body tests")
   int bodies = 0;                 ///< N
@@ -28,10 +29,10 @@ struct ContactWork {
   int uncertified = 0;            ///< answers without a certificate
   int due = 0;                    ///< pairs that may be within their tolerance, with no valid answer
   int known = 0;                  ///< ... and those whose last answer holds
-  int unchecked = 0;              ///< due pairs beyond the budget
+  int unchecked = 0;              ///< due pairs beyond the budget, of pieces or of surfaces
   int left_unproven = 0;          ///< ... that no bound proves to stay apart in this frame
   int left_of_grasped = 0;        ///< ... of these, pairs of the grasped part
-  int longest_unchecked = 0;      ///< frames since the last check of a pair that was left unproven
+  int longest_unchecked = 0;      ///< frames since the last check of a pair of pieces that was left unproven
   bool capacity_reached = false;  ///< something was dropped: raise the capacity
 };
 

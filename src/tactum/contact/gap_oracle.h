@@ -14,7 +14,7 @@ namespace tactum::inline v0_1 {
 enum class GapAnswer : std::uint8_t {
   kNotAsked,
   kAsked,
-  kExact,   ///< the distance has been computed
+  kExact,   ///< the distance has been computed; of surfaces, or that it is no less than what was searched for
   kProven,  ///< the motion since the last test proves that it is enough
   kUnknown  ///< the budget was spent
 };
@@ -41,12 +41,14 @@ class GapOracle {
   /// patches: the distance that a step has to keep positive. `distance` has an entry per patch [m]. A
   /// distance that could not be certified counts as zero at most. Between surfaces it is that of every local
   /// minimum there is at the other poses, entered for the patches of the same features; where there is none,
-  /// for the nearest patch.
+  /// for the nearest patch. Only minima within a fraction of the margin are searched there: a patch that has
+  /// none gets that length, which is then a lower bound of its distance, with the answer kExact.
   ///
   /// `asked` has an entry per patch and is answered in place. No test is made, when the budget is not ample,
   /// where the motion since the last one proves that the distance is at least `enough`, nor when only
   /// `keep_back` tests are left: then the distance is the bound. Pairs of the grasped part are tested first.
-  /// Returns how many tests were made.
+  /// The patches of two bodies that meet by their surfaces are answered together, so all of them or none must
+  /// be asked for. Returns how many tests were made.
   virtual int distances_at(std::span<const Pose> X_WB, std::span<double> distance, std::span<GapAnswer> asked,
                            std::span<const double> enough, int keep_back) noexcept = 0;
   /// The depth of an overlapping patch along a motion: how far A must move along unit `direction_W` until the

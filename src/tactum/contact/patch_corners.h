@@ -8,7 +8,7 @@
 /// The four weighted points of a manifold (manifold.h) carry a force as well as the whole area does, but lie
 /// inside it: with gaps kept open there, the corners overlap. Here the polygon is cut only where the gap
 /// exceeds the tolerance, never by how the faces lean. An edge or vertex that touches is replaced by its
-/// reference face. Where no face is nearly square to the normal the manifold's own points are used.
+/// reference face. Where no face is nearly square to the normal there are only the manifold's own points.
 ///
 /// Cost: 0.1 us for boxes.
 
@@ -31,8 +31,9 @@ using PatchCorners = StaticVector<PatchCorner, PatchPolygon::capacity() + 4>;
 /// count.
 int reference_face(const Polytope& P, const Feature& f, const Vec3& n) noexcept;
 
-/// The corners of `patch`, found at distance `distance` [m], whose gap is at most `tolerance` [m]. The least
-/// gap is among them. False when the manifold's own points are used.
+/// The corners of `patch`, found at distance `distance` [m], whose gap is at most `tolerance` [m]. Where none
+/// of them has as small a gap as `distance`, the manifold's own points are added, and the answer is false: so
+/// the least gap is among them, unless the manifold has no points.
 bool patch_corners(const Polytope& A, const Polytope& B, const Pose& X_AB, const Manifold& patch,
                    double distance, double tolerance, PatchCorners& corners) noexcept;
 

@@ -38,7 +38,7 @@ struct SteadyLimits {
   double step_m;        ///< of the centroid [m]
 };
 
-/// The contact of the last frame, as it was displayed. Value-initialised: none.
+/// The contact of the last frame, as its force was computed (`shown` in the finder). Value-initialised: none.
 struct SteadyContact {
   Vec3 normal_A = Vec3::Zero();    ///< from B to A, A's frame; zero: none
   Vec3 centroid_A = Vec3::Zero();  ///< of the patch, as A carries it [m]

@@ -14,7 +14,9 @@ using Index = std::size_t;
 /// part's size. Walls thinner than that may be pushed through; the constraint response lets nothing cross.
 constexpr double kSurfaceDepth = 0.02;
 
-/// At the end of a step only gaps below this fraction of the tolerance are searched: the others are open.
+/// At the end of a step only gaps below this fraction of the tolerance are searched: the others are open. It
+/// must not be below half the skin, which a gap may have to keep (constraint_trial.cpp): a tolerance is four
+/// skins at least (kBoundMargin in constraint.cpp), so it is 0.6 skins at least.
 constexpr double kWatched = 0.15;
 
 /// For surfaces that were apart the first query is how far, up to so many tolerances: until they moved that

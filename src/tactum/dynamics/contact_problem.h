@@ -36,17 +36,17 @@ struct BodyMetric {
 /// Mass and inertia over h^2, at the origin.
 BodyMetric inertial_metric(const Body& body, const Pose& X_WB, double h) noexcept;
 
-/// A body of the problem. Its six unknowns are the displacement of `centre`, each times `per_displacement`,
-/// and the turn, in terms of the columns of `turns`; a jointed body has fewer, in terms of the columns of
-/// `motions`.
+/// A body of the problem. Its six unknowns z [sqrt(N m)] give the displacement of `centre` from the target,
+/// per_displacement * z_0..2, and the turn from it, turns * z_3..5; those of a jointed body, which has fewer,
+/// give both by the columns of `motions`.
 struct ProblemBody {
-  int body = -1;                    ///< index into World::bodies
-  std::size_t first = 0, rank = 0;  ///< its unknowns
-  Vec3 origin = Vec3::Zero();       ///< of the body, in W [m]
-  Vec3 centre = Vec3::Zero();       ///< where its metric is stated, in W [m]
-  Vec6 target = Vec6::Zero();       ///< x* at the centre [m, rad]
-  double per_displacement = 0.0;
-  Mat3 turns = Mat3::Zero();
+  int body = -1;                        ///< index into World::bodies
+  std::size_t first = 0, rank = 0;      ///< its unknowns
+  Vec3 origin = Vec3::Zero();           ///< of the body, in W [m]
+  Vec3 centre = Vec3::Zero();           ///< where its metric is stated, in W [m]
+  Vec6 target = Vec6::Zero();           ///< x* at the centre [m, rad]
+  double per_displacement = 0.0;        ///< 1 / sqrt(linear metric) [sqrt(m/N)]
+  Mat3 turns = Mat3::Zero();            ///< U^-1 of the angular metric U^T U, axes of W
   Eigen::Matrix<double, 6, 3> motions;  ///< the first `rank` columns, of a jointed body
 };
 
@@ -65,7 +65,7 @@ std::size_t freedom_of(const Joint& joint) noexcept;
 /// The same, and one more for the joint's dry friction, as the exact solver needs it.
 std::size_t exact_unknowns_of(const Joint& joint) noexcept;
 
-/// The displacement along a row, as the row measures it, for a unit force along it [m/N].
+/// The displacement along a row, as the row measures it, for a unit force along it: |g|^2 [m/N].
 inline double mobility(const QpRow& row) noexcept {
   double sum = 0.0;
   for (const QpRow::Run& run : row.runs)
@@ -111,7 +111,8 @@ class ContactProblem {
   /// Adds a body whose displacement is given: nothing in this problem changes it.
   void add_given(int body, const Vec3& origin_W, const Vec6& displacement) noexcept;
   /// Takes the same bodies, each with the other problem's answer as its target, and the rows of their joints'
-  /// limits. Joint friction is not added: that answer contains it.
+  /// limits. Joint friction is not added: that answer contains it. This problem should have been made with
+  /// room for as many bodies as the other one: with less, the limits allocate.
   void follow(const ContactProblem& led) noexcept;
   /// Adds the rows of joints. `exact`: dry friction becomes an unknown of its own with two rows, as long as
   /// there is room for it.
@@ -121,7 +122,8 @@ class ContactProblem {
   QpRow row_of(int body_a, int body_b, const Push& push) const noexcept;
   /// The left side of that row in the last answer [m].
   double opening(const QpRow& row) const noexcept { return dot(row, z()) - row.offset; }
-  /// Adds the row  push . (x_a - x_b) >= offset. False when full.
+  /// Adds the row  push . (x_a - x_b) >= offset. False when full: the row is then missing, and the caller's
+  /// numbers of later rows are off, so it reserves the room for all of its rows.
   bool add_row(int body_a, int body_b, const Push& push, double offset) noexcept;
   /// The number of rows; those of cones are not counted.
   std::size_t rows() const noexcept { return rows_.size(); }

@@ -34,12 +34,12 @@ struct ContactRow : SurfacePair {
   int friction_patch = -1;     ///< the caller's number of its friction patch; solvers ignore it
   int state = -1;              ///< number of its state in RowMemory; -1: none is kept
   Vec3 n_BA_W = Vec3::Zero();  ///< unit [-]
-  Vec3 p_W = Vec3::Zero();     ///< where the force acts [m]
+  Vec3 p_W = Vec3::Zero();     ///< where the force acts, halfway between the two surfaces [m]
   double distance = 0.0;       ///< signed, at the start of the step [m]
   double asked = 0.0;          ///< by how much the step has to open it at least; negative: it may close [m]
   double friction = 0.0;       ///< Coulomb's coefficient [-]
   double margin = 0.0;         ///< delta, the contact margin of the pair [m]
-  double stiffness = 0.0;      ///< k of the penalty law, the point's part of it [N/m]
+  double stiffness = 0.0;      ///< k of the penalty law, the point's part of it; for rows that yield [N/m]
   ImpactLaw impact;
   double impulse = 0.0;  ///< along the normal, the answer [N s]
 };

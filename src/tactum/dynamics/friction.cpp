@@ -143,8 +143,8 @@ void Friction::find_last_pushing(const RowsInProblem& contacts, const FrictionAn
   for (Index i = pushing; i < patches_.size(); ++i) patches_[i].place.n_BA_W.normalize();
 }
 
-/// How fast the turn in the bodies' targets takes the patch apart, about the middle of all patches on the
-/// body; negative: the turn squeezes it.
+/// How far the turn in the bodies' targets takes the patch apart over the step, about the middle of all
+/// patches on the body [m]; negative: the turn squeezes it.
 double Friction::taken_off(const FrictionPatch& patch, const ContactProblem& problem) const noexcept {
   double off = 0.0;
   for (const int body : {patch.surfaces.body_a, patch.surfaces.body_b}) {
@@ -163,7 +163,8 @@ double Friction::taken_off(const FrictionPatch& patch, const ContactProblem& pro
   return off;
 }
 
-/// Removes patches that only pushed in the last frame and that no turn squeezes.
+/// Removes the patches that only pushed in the last frame and that the turn in the targets takes apart.
+/// Without a turn they stay.
 void Friction::drop_unsqueezed(const ContactProblem& problem) noexcept {
   std::array<bool, kMostPatches> stays{};
   for (Index i = 0; i < patches_.size(); ++i)
@@ -300,7 +301,8 @@ void Friction::refuse_load(FrictionPatch& patch, ContactProblem& problem) noexce
 }
 
 /// How stiffly a patch's bodies resist its friction: the smaller of the stiffnesses along the surface and, at
-/// the patch's radius, about its normal [N/m].
+/// the patch's radius, about its normal [N/m]; zero where nothing gives way. (In the solvers `give` is the
+/// inverse of it, a compliance.)
 double Friction::give_of(const FrictionPatch& patch) noexcept {
   const double along = std::max(mobility(patch.motion.along), mobility(patch.motion.across));
   const double about = patch.place.radius_m * patch.place.radius_m * mobility(patch.motion.about);

@@ -44,7 +44,8 @@ class Friction {
   static constexpr std::size_t kRowsAPatch = QpCone::kEdges;
 
   /// Finds the patches that push in the last answer, and those that pushed in the last frame; adds their rows
-  /// to the problem. False when there are none.
+  /// to the problem. False when there are none. There is room for kMostPatches: all further ones have no
+  /// friction in this frame, and nothing reports it.
   bool begin(const RowsInProblem& contacts, std::span<const Pose> X_WB, const ContactScale& scale,
              const FrictionAnchors& anchors, ContactProblem& problem) noexcept;
   /// Appends the rows that pushed in the last frame while the patches stuck.
@@ -87,11 +88,12 @@ class Friction {
   void clear() noexcept { patches_.clear(); }
 
  private:
+  /// The forces at one patch, on A: of its cone, and of its corners along their normals.
   struct Loads {
-    double cone_N = 0.0, corners_N = 0.0;
-    Vec3 corners_moment = Vec3::Zero();  // about the world's origin [N m]
-    Vec3 cone_force = Vec3::Zero();      // in the surface [N]
-    Vec3 cone_torque = Vec3::Zero();     // about the normal [N m]
+    double cone_N = 0.0, corners_N = 0.0;  // along the normal [N]
+    Vec3 corners_moment = Vec3::Zero();    // about the world's origin [N m]
+    Vec3 cone_force = Vec3::Zero();        // in the surface [N]
+    Vec3 cone_torque = Vec3::Zero();       // about the normal [N m]
   };
   static Loads loads_of(const FrictionPatch& patch, const RowsInProblem& contacts,
                         const ContactProblem& problem) noexcept;

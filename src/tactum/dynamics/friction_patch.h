@@ -17,8 +17,9 @@ struct PatchMotion {
 /// The point of either body at which a sticking patch was anchored, and the displacement between the two.
 struct PatchAnchor {
   Vec3 on_A = Vec3::Zero(), on_B = Vec3::Zero();  ///< in either body's frame [m]
-  Vec3 apart_W = Vec3::Zero();  ///< a, in the surface; zero where it is too small to count [m]
-  bool used = true;             ///< false: the anchor was given up in this frame
+  /// a: where the anchor on A is from the one on B, in the surface; zero where it is too small to count [m].
+  Vec3 apart_W = Vec3::Zero();
+  bool used = true;  ///< false: the anchor was given up in this frame
 };
 
 /// How far a patch slides in this step.
@@ -48,7 +49,9 @@ struct PatchPlace {
   Vec3 n_BA_W = Vec3::Zero();    ///< [-]
   Vec3 centre_W = Vec3::Zero();  ///< c, of the forces [m]
   double radius_m = 0.0;         ///< r, of the forces about their centre [m]
-  double gap_m = 0.0;  ///< by how much its centre may close; none where it is too small to count [m]
+  /// By how much its centre may close; zero where that is too small to count, negative where it has to open
+  /// [m].
+  double gap_m = 0.0;
 };
 
 /// A patch that pushes, in this frame.
@@ -73,7 +76,7 @@ struct FrictionPatch {
 struct Slide {
   Vec3 displacement = Vec3::Zero();  ///< [m]
   double turn = 0.0;                 ///< [rad]
-  double lift = 0.0;                 ///< off the other surface [m]
+  double lift = 0.0;                 ///< its centre's gap beyond the skin after the step [m]
 };
 
 /// The force along edge k of the cone: directions around the normal, then the two senses of turning.

@@ -1,5 +1,7 @@
 #pragma once
-/// The memory of contact rows from frame to frame for the sweeps: the last force of each, by the row's name.
+/// The memory of contact rows from frame to frame, by the rows' names: the last force of each in an island
+/// that moves by itself. The exact solver begins with the rows that had one, the sweeps with the forces
+/// themselves.
 
 #include <algorithm>
 #include <cstdint>
@@ -9,9 +11,9 @@
 namespace tactum::inline v0_1 {
 
 struct RowState {
-  std::uint64_t name = 0;
-  double force_N = 0.0;   ///< along the normal; not negative [N]
-  int closed_frames = 0;  ///< in so many more frames its gap need not open
+  std::uint64_t name = 0;  ///< given by the caller; 0 is that of no row
+  double force_N = 0.0;    ///< along the normal; not negative [N]
+  int closed_frames = 0;   ///< in so many more frames its gap need not open
 };
 
 class RowMemory {
@@ -26,9 +28,10 @@ class RowMemory {
     now_.clear();
     next_ = 0;
   }
-  /// The number of the next row of this frame, with the state of the row of the same name in the last one; -1
-  /// when there is no room. Rows come in the same order from frame to frame but for those that come and go;
-  /// so many may do so at once before a force is lost.
+  /// Gives the next row of this frame the state that the row of the same name had in the last frame, or an
+  /// empty one, and returns its number; -1 when there is no room. Rows come in the same order from frame to
+  /// frame but for those that come and go. Only the next kLookAhead rows of the last frame are searched: when
+  /// more than that go at once, those behind them begin without their forces.
   int recall(std::uint64_t name) noexcept {
     if (now_.size() == now_.capacity()) return -1;
     RowState state{.name = name};

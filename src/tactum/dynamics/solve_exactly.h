@@ -30,7 +30,8 @@ struct FrictionInput {
 
 /// Solves the problem, whose contact rows are `contacts`. Friction is that of the rows' coefficients. Where
 /// no answer satisfies the anchors' rows, the anchors are given up; where there is no answer at all,
-/// friction.
+/// friction. With friction there are several solutions, one after the other (each round of slip and of
+/// sliding is one), and each of them may take `max_iterations`.
 ExactResult solve_exactly(const RowsInProblem& contacts, const FrictionInput& input, int max_iterations,
                           ExactStart& start, Friction& friction, ContactProblem& problem) noexcept;
 

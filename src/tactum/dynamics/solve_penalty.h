@@ -29,6 +29,7 @@ namespace tactum::inline v0_1 {
 
 /// Solves the problem. `stiffness` is that of its contact rows, which are the last ones [N/m]. `forces`
 /// becomes the force of every row, and of every joint's dry friction behind them [N]; it has the room.
+/// `max_sweeps` bounds the sweeps; Newton's method has a bound of its own.
 SolverResult solve_penalty(std::span<const double> stiffness, int max_sweeps, ReservedVector<double>& forces,
                            ContactProblem& problem) noexcept;
 

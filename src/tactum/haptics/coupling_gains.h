@@ -18,6 +18,9 @@
 /// On a device that cannot turn the handle there is no loop around the turning spring, so no bound. It is
 /// never felt and only determines how far the proxy yields: chosen stiff, so that the rotation follows the
 /// hand and a contact that resists it is felt as force, the only thing that can be.
+///
+/// All bounds are those for a workspace scale of one. With a scale s the device meets the stiffness s K and
+/// the damping s B (hand.h); no function here is given the scale.
 
 #include <string>
 

@@ -47,7 +47,7 @@ Wrench haptic_frame(const World& world, const FrameSettings& settings, const Dev
     add_field_work(bodies.X_WB, state.hand.field);
     state.ended(Stage::kResponse);
 
-    // The wrench that the hand feels.
+    // The wrench that the hand feels, at the handle, world axes.
     report_grasp(grasped, bodies, report);
     felt = state.response.felt(step, bodies);
   }
@@ -55,7 +55,7 @@ Wrench haptic_frame(const World& world, const FrameSettings& settings, const Dev
   report.smoothed =
       smooth_wrench(settings.smoothing, settings.dt_s, state.smoothing, to_device(state.hand, felt));
 
-  // The caller's own wrench, then passivity, then safety.
+  // The caller's own wrench, then passivity, then safety: all at the handle, device axes.
   PortInput port{.wanted = report.smoothed, .sent = state.safety.sent, .dt_s = settings.dt_s};
   const double pending_J = state.response.pending_J();
   add_stored_energy(world, settings.coupling, bodies, report, state.hand.field.given_J, pending_J, port);

@@ -13,7 +13,8 @@
 
 namespace tactum::inline v0_1 {
 
-/// The parts of a frame whose ends are reported to a stage observer.
+/// The parts of a frame whose ends are reported to a stage observer. kVelocities ends with the motion bounds,
+/// kExactTests with the contact patches, and kShow is everything from the felt wrench to the commanded one.
 enum class Stage { kHand, kVelocities, kNearPairs, kExactTests, kResponse, kShow };
 inline constexpr int kStageCount = 6;
 
@@ -28,7 +29,7 @@ class StageObserver {
 struct FrameState {
   FrameState(const World& world, const FrameSettings& settings, StageObserver* observer = nullptr);
 
-  WorldState world;              ///< poses and twists of the bodies
+  WorldState world;              ///< poses and twists of the bodies, an entry for each body of the World
   std::vector<Pose> X_WB_start;  ///< poses at the start of the frame [m]
   HandStage hand;
   ContactStage contacts;

@@ -17,7 +17,8 @@ struct HandStage : HandTracking {
 HandStage begin_hand(const FrameSettings& settings);
 
 /// Takes a sample in. The first time the probe is known, the device is mapped so that the handle is at the
-/// tool's grasp point and the part is grasped in the orientation it has: nothing is pulled.
+/// tool's grasp point and the part is grasped in the orientation it has: nothing is pulled. The button counts
+/// in every valid sample, also in one whose pose is implausible and leaves the probe where it was.
 GraspedPart track_hand(const World& world, const FrameSettings& settings, const DeviceSample& sample,
                        std::span<const Pose> X_WB, HandStage& hand) noexcept;
 

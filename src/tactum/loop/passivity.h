@@ -20,6 +20,11 @@
 /// it must. Where torque is driven too, a balance below zero is paid from the other: a nut that is turned
 /// pulls the hand along its axis, and that energy was not generated.
 ///
+/// Three things are coarser than that. The energy that bodies gave up is credited to both balances, to each
+/// in full. The energies of spring and bodies are those of the world, which a workspace scale other than one
+/// makes larger or smaller than the hand's work at the device by that factor. And after samples that were
+/// left out the displacement of all these frames is taken with the wrench sent last, as if made in one dt.
+///
 /// A handle whose rotation is sensed but cannot be driven gets no torque; its balance of rotation never sinks
 /// below zero. Cost: one rotation vector and two dozen products. No clock, no allocation; the device's
 /// samples are its only input from the hand.
@@ -60,7 +65,7 @@ struct PortState {
 struct PortInput {
   Wrench wanted;                  ///< axes of D, at the handle [N, N m]
   Wrench sent;                    ///< in the last frame, after safety [N, N m]
-  double spring_J = 0.0;          ///< stored in the coupling's stretch [J]
+  double spring_J = 0.0;          ///< stored in the coupling's stretch, and in impacts still to be felt [J]
   double spring_turning_J = 0.0;  ///< ... and its twist [J]
   double bodies_J = 0.0;          ///< energy of the scene's moving bodies, from any zero [J]
   double dt_s = 0.001;            ///< time from frame to frame [s]

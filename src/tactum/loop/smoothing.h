@@ -24,7 +24,7 @@ struct SmoothingSettings {
 };
 
 struct SmoothingState {
-  Wrench shown;  ///< at the last frame [N, N m]
+  Wrench shown;  ///< what was returned in the last frame: FrameReport::smoothed, not ::shown [N, N m]
 };
 
 /// The scheme for one vector: what to show after `F0` when `F1` was computed.

@@ -18,7 +18,7 @@ namespace {
 
 using Index = std::size_t;
 
-/// The growth of the trust region radius: the next one, in lengths of the last step.
+/// The growth of the trust region radius: the next radius is so many times as long as the last step.
 constexpr double kTrustGrowth = 2.0;
 /// By how much motion bounds exceed the trust region radius, in skins.
 constexpr double kBoundMargin = 4.0;
@@ -26,7 +26,9 @@ constexpr double kBoundMargin = 4.0;
 /// not where the forces would have it: that one would be the same however far the hand goes away.
 constexpr double kStands_s = 0.002;
 
-/// Adds the bodies and their targets: to the hand, on along their motion; or, `at_rest`, where they are.
+/// Adds the bodies of the island and their targets: the grasped part's leads to the hand, the others' on
+/// along their motion; `at_rest` all targets are where the bodies are. The grasped part comes first, which
+/// keep_forces() and report_rows() rely on.
 void add_bodies(bool at_rest, ConstraintStep& step) {
   ContactProblem& problem = step.own.constraint.problem;
   problem.clear();
@@ -85,7 +87,8 @@ bool solve_frictionless(Index first_row, ContactProblem& problem, ConstraintStep
   return solved(solve_once(step.settings.budget.solver_iterations, problem), step.report);
 }
 
-/// Keeps the forces of the answer: impulses, the rows that push, the wrench at the handle.
+/// Keeps the forces of the answer: impulses, the rows that push, the wrench at the handle. They are those of
+/// the whole step, however much of it is then taken.
 void keep_forces(ConstraintStep& step) {
   ConstraintState& c = step.own.constraint;
   RowNumbers pushing;
@@ -105,7 +108,10 @@ double travel_of(const ConstraintStep& step, const ProblemBody& problem_body) {
   return x.head<3>().norm() + x.tail<3>().norm() * step.radius_m[Index(problem_body.body)];
 }
 
-/// The fraction of the answer's step that is trusted.
+/// The fraction of the answer's step that is trusted: with it no body of the island goes beyond its motion
+/// bound less kBoundMargin skins, and the grasped part turns no farther than it may. The step of restore()
+/// has the same bound for itself. Zero where nothing of a bound is left, as of a body at rest, without
+/// gravity, that the part has just met.
 double trusted_share(const ConstraintStep& step) {
   const ConstraintState& c = step.own.constraint;
   double share = 1.0;
@@ -145,7 +151,8 @@ void take_trial(ConstraintStep& step) {
     if (step.own.free.patch_asked[p]) c.trial.gap_now[p] = c.trial.gap[p];
 }
 
-/// Opens contacts nearer than half the skin first, as far as there is room.
+/// Opens contacts nearer than half the skin first, as far as there is room. The rows' distances are then
+/// those of the new pose; their points and normals stay those of the old one, as a rule a few skins away.
 void restore(ConstraintStep& step) {
   ConstraintState& c = step.own.constraint;
   bool tight = false;
@@ -197,8 +204,8 @@ bool find_again(ConstraintStep& step) {
   return found;
 }
 
-/// Goes where the hand wants as far as everything stays open; returns the fraction of the answer that was
-/// taken.
+/// Looks for a step towards where the hand wants the part, as far as everything stays open; returns the
+/// fraction of the answer that may be taken, whose pose is then the trial. Zero: none was found.
 double advance(ConstraintStep& step) {
   if (!find_forces(step)) return 0.0;
   if (step.gaps.blocked(step.grasped.body)) return 0.0;
@@ -242,12 +249,14 @@ double move_grasped_island(ConstraintStep& step) {
   return share;
 }
 
-/// The trust region radius of the next frame, from the motion of the grasped part's island in this one.
+/// The trust region radius of the next frame, from the velocities of the grasped part's island. Where
+/// constraint.h moved it these are what the bodies did; an island that was moved as a free one has those that
+/// its forces led to, also where its step was cut.
 void update_trust_length(ConstraintStep& step) {
   double travel = 0.0;
   for (Index i = 0; i < step.own.free.near_grasped.size(); ++i) {
     if (!step.own.free.near_grasped[i]) continue;
-    const Twist& V_WB = step.bodies.V_WB[i];  // what it did, see move_grasped_island()
+    const Twist& V_WB = step.bodies.V_WB[i];
     travel = std::max(travel, step.dt_s * (V_WB.v.norm() + V_WB.w.norm() * step.radius_m[i]));
   }
   const Constraint& limits = step.settings.constraint;

@@ -18,8 +18,8 @@ class ConstraintResponse {
   std::span<const double> bound_motion(const MotionInput& input, WorldState& bodies) noexcept;
   /// Moves everything that moves, the grasped part's island last. Fills the report's response fields.
   void step(const StepInput& input, GapOracle& gaps, WorldState& bodies, FrameReport& report) noexcept;
-  /// The sum of the contact forces on the grasped part and the pulses of its impacts, at the handle, world
-  /// axes [N, N m]. Once a frame.
+  /// The sum of the contact forces on the grasped part, its weight, the load of force fields and the pulses
+  /// of its impacts, at the handle, world axes [N, N m]. Once a frame.
   Wrench felt(const StepInput& input, const WorldState& bodies) noexcept;
 
   /// The contacts of the last step, and the friction at those that have it.

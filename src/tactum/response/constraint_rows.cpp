@@ -11,7 +11,10 @@ namespace {
 
 using Index = std::size_t;
 
-/// A name that a row keeps from frame to frame while the pair's patch has as many corners.
+/// A name that a row keeps from frame to frame while the pair's patch has as many corners. It is not always
+/// the only one: bodies numbered from 64 on may share it with others, and so may the same features of several
+/// pairs of bodies that meet by their surfaces. A row that is taken for another one makes a solution
+/// begin less well, and may keep a gap below the skin for some frames longer.
 std::uint64_t name_of(const ContactPatch& patch, Index corner) {
   if (patch.of_surfaces) return patch.manifold.points[0].id;
   const auto pieces =
@@ -58,7 +61,8 @@ Vec3 bend(const ShadingNormals& a, const ShadingNormals& b, const Pose& X_AB, co
   return 0.5 * (rotated(X_AB.R, by_b) - by_a);
 }
 
-/// The rows of a patch: one per corner.
+/// Makes the rows of a patch: one per corner. `number` is that of the patch, `own` whether it belongs to the
+/// grasped part's island.
 struct RowMaker {
   ConstraintStep& step;
 

@@ -19,9 +19,9 @@ void make_corner_rows(ConstraintStep& step) noexcept;
 /// The rows of the constraint problem.
 std::span<ContactRow> own_rows(ConstraintStep& step) noexcept;
 
-/// Adds them to the problem and returns the number of the first there. Where a gap is below the skin,
+/// Adds the own rows to the problem and returns the number of the first there. Where a gap is below the skin,
 /// `opening` asks for the skin, for which there may be no room; without it the row only asks that the gap
-/// closes no further, which a displacement of zero satisfies.
+/// closes no further, which a displacement of zero satisfies. Sets ContactRow::asked, and feedback to zero.
 std::size_t add_contact_rows(bool opening, ContactProblem& problem, ConstraintStep& step) noexcept;
 
 /// Exchanges the rows' true normals for their shaded ones, or back.
@@ -37,11 +37,13 @@ inline constexpr int kBacktracks = 3;
 double gap_at_trial(const ContactRow& row, const ConstraintStep& step) noexcept;
 
 /// By how much the rows of one patch overstate its gap at the trial: the normal of two edges turns with both
-/// bodies, and then the exact distance is taken for all of the rows [m].
+/// bodies, and then the exact distance is taken for all of the rows [m]. Zero where the gap is not known
+/// exactly. Of surfaces GapAnswer::kExact may stand for a lower bound only, see GapOracle::distances_at().
 double overstated_at_trial(std::span<const ContactRow> rows_of_patch, const ConstraintStep& step) noexcept;
 
-/// Second-order correction: adds to the rows the difference between their linear gaps and the gaps at the
-/// trial.
+/// Second-order correction: adds to the own rows of the step's problem the difference between their linear
+/// gaps and the gaps at the trial, which is the pose at the fraction `share` of the answer's step. A row is
+/// stated for the whole step, so the difference is divided by `share`, which must be above zero.
 void correct_rows(double share, ConstraintStep& step) noexcept;
 
 }  // namespace tactum::inline v0_1

@@ -27,33 +27,37 @@ struct WarmStart {
   StaticVector<std::uint64_t, kMostUnknowns> sticking;          ///< while every patch stuck
 };
 
-/// The contact rows of the island as rows of its problem; scratch of one frame.
+/// The contact rows of the frame, and those of the grasped part's island as rows of its problem; scratch of
+/// one frame but for the memory.
 struct CornerRows {
-  std::size_t count = 0;               ///< contact rows, before friction's are appended
-  std::size_t own = 0;                 ///< the first so many of them are the island's
-  std::size_t first = 0;               ///< the first of them in the problem of the forces
+  std::size_t count = 0;               ///< contact rows of all islands, before friction's are appended
+  std::size_t own = 0;                 ///< the first so many of them are those of the grasped part's island
+  std::size_t first = 0;               ///< number of the first own row in the problem of the forces
   std::size_t first_of_positions = 0;  ///< ... and in the position problem, without rows of joint friction
   bool bent = false;                   ///< some normal is bent by shading
   bool shades = false;                 ///< ... so the step is the answer of the position problem
-  ReservedVector<Vec3> shaded;         ///< normals of the own rows; empty without shading [-]
-  RowMemory memory;                    ///< what rows keep from frame to frame, by their names
-  ReservedVector<double> feedback;     ///< the corrections by exact gaps so far [m]
+  ReservedVector<Vec3> shaded;      ///< the own rows' other normals (exchange_normals); empty without shading
+  RowMemory memory;                 ///< what rows keep from frame to frame, by their names
+  ReservedVector<double> feedback;  ///< of each own row, what exact gaps have added to its offset so far [m]
 
   explicit CornerRows(std::size_t most_rows) : memory(most_rows) {
     shaded.reserve(most_rows);
     feedback.reserve(most_rows);
   }
-  /// The name that a row keeps from frame to frame; 0 when it has none.
+  /// The name that a row keeps from frame to frame; 0 when it has none. Two rows may have the same name, see
+  /// constraint_rows.cpp.
   std::uint64_t name_of(const ContactRow& row) const noexcept {
     return row.state < 0 ? 0 : memory[row.state].name;
   }
 };
 
-/// A pose on trial, and the gaps of the patches there; scratch of one frame, an entry per body or patch.
+/// A pose on trial, and the gaps of the patches there; scratch of one frame, an entry per body or patch. Both
+/// the grasped part's island and the free ones use it, one after the other; FreeBodies::patch_asked names the
+/// patches whose gaps are looked at.
 struct TrialPose {
-  std::vector<Pose> X_WB;                ///< where the bodies would be [m]
-  ReservedVector<double> gap_now;        ///< before the step [m]
-  ReservedVector<double> gap;            ///< at the trial [m]
+  std::vector<Pose> X_WB;          ///< where the bodies would be; after a step was taken, where they were [m]
+  ReservedVector<double> gap_now;  ///< before the step; after one was taken, as it was found there [m]
+  ReservedVector<double> gap;      ///< at the trial [m]
   ReservedVector<double> gap_least;      ///< the least gap that is accepted at the trial [m]
   ReservedVector<GapAnswer> gap_answer;  ///< how the gap at the trial is known
 };
@@ -64,7 +68,9 @@ struct StepTrust {
   int consecutive_rejections = 0;  ///< frames in a row in which no step could be taken [-]
 };
 
-/// Of the grasped part's island (constraint.h).
+/// Of the grasped part's island (constraint.h). The free islands, which are solved before it in every frame,
+/// use its `problem`, `friction` and `trial` as scratch, and its anchors, row memory and lengths as their
+/// own.
 struct ConstraintState {
   ConstraintState(const World& world, const FrameSettings& settings);
 
@@ -76,8 +82,8 @@ struct ConstraintState {
   double skin_m;               ///< the gap contacts are held at [m]
   ContactScale scale;          ///< the same and the other lengths that contacts are kept to
   StepTrust trust;
-  Vec6 wanted;  ///< displacement of the handle that the coupling asked for [m, rad]
-  Wrench felt;  ///< of the contact forces, at the handle, world axes [N, N m]
+  Vec6 wanted;  ///< displacement of the handle that the coupling asked for, world axes [m, rad]
+  Wrench felt;  ///< of contacts, weight and fields on the grasped part, at the handle, world axes [N, N m]
   WarmStart warm_start;
   CornerMemory corner_memory;
   CornerRows rows;
@@ -120,7 +126,9 @@ struct FreeBodies {
   Vec3 grasped_torque = Vec3::Zero();  ///< of friction about normals on the grasped part, found here [N m]
   bool others = false;                 ///< some body moves by itself
   bool alone = true;                   ///< nothing but the grasped part's island moves
-  std::vector<char> near_grasped;      ///< of each body: in the grasped part's island in the last frame
+  /// Of each body, whether it is in the grasped part's island, the grasped part included: that of the last
+  /// frame until find_islands(), of this frame from then on.
+  std::vector<char> near_grasped;
 
   /// Whether a patch belongs to the island that constraint.h moves.
   bool of_grasped(const ContactPatch& patch) const noexcept {
@@ -138,7 +146,7 @@ struct FreeBodies {
   std::vector<double> share;            ///< fraction of a body's step that is taken [-]
   std::vector<char> cut;                ///< its fraction was just reduced
   std::vector<char> settled;            ///< an island's step has been found open
-  ReservedVector<char> patch_asked;     ///< patches whose gap is asked for
+  ReservedVector<char> patch_asked;     ///< patches whose gap is asked for, in either kind of island
   ReservedVector<char> patch_closed;    ///< ... and is not open
 };
 
@@ -153,7 +161,7 @@ struct Waiting {
   std::vector<int> rested;            ///< frames that it moved in since [-]
   std::vector<int> contacts_at_rest;  ///< of those that sleep; 0: awake [-]
   int rounds = 2;                     ///< tests that a gap on trial is expected to take [-]
-  bool ran_out = false;               ///< tests did not suffice for the poses on trial in this frame
+  bool ran_out = false;               ///< some gap of a pose on trial stayed unknown in this frame
 
   // Scratch of one frame.
   std::vector<Twist> V_kept;  ///< velocities of the deferred bodies [m/s, rad/s]

@@ -49,12 +49,14 @@ void make_contact_rows(std::span<const Pose> X_WB, std::span<const ContactPatch>
                        const std::vector<ShadingNormals>& shading, double stiffness_N_per_m,
                        std::span<const double> depth_scale, ContactRows& out) noexcept;
 
-/// Appends the friction force on A of a patch as a contact row, as far as there is room.
+/// Appends the friction force on A of a patch [N] as a contact row, whose normal is the direction of the
+/// force and whose impulse is that of `h` seconds, as far as there is room. `number` is
+/// ContactRow::friction_patch.
 void append_friction(const FrictionPatch& patch, int number, const Vec3& force_W, double h,
                      std::vector<ContactRow>& rows) noexcept;
 
-/// The sum of the contact forces on `body` at its origin, T = sum R_i x F_i [Gregory 2000, 5.1], from solved
-/// rows.
+/// The sum of the contact forces on `body`, stated at `p_WB`, axes of W, T = sum R_i x F_i [Gregory 2000,
+/// 5.1], from rows whose impulses were given over `h` seconds; zero where `h` is.
 Wrench contact_wrench(std::span<const ContactRow> rows, int body, const Vec3& p_WB, double h) noexcept;
 
 }  // namespace tactum::inline v0_1

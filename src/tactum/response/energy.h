@@ -7,13 +7,14 @@
 
 namespace tactum::inline v0_1 {
 
-/// Kinetic energy of the bodies that move, and their height against gravity from the world's origin [J]. For
-/// the grasped part neither is counted.
+/// Kinetic energy of the bodies that move, and their height against gravity from the world's origin [J]. Of
+/// the grasped part only the height is counted: it has weight, but no inertia that the hand could feel.
 double bodies_energy(const World& world, const WorldState& bodies, int grasped) noexcept;
 
 /// Fills the energies of the port's input, after the response: of the bodies, of the coupling's stretch
 /// between the hand and the grasped part, as the report has them, and of the impulses that are still to be
-/// felt (`pending_J`). `field_work_J` is the work of force fields on the grasped part.
+/// felt (`pending_J`). `field_work_J` is the work of force fields on the grasped part. All are energies in
+/// the world, also where a workspace scale makes the hand's work at the device another one (hand.h).
 void add_stored_energy(const World& world, const Coupling& coupling, const WorldState& bodies,
                        const FrameReport& report, double field_work_J, double pending_J,
                        PortInput& port) noexcept;

@@ -11,7 +11,8 @@
 
 namespace tactum::inline v0_1 {
 
-/// The limits that a frame ran into, each with the setting to raise. A frame never stops for these.
+/// The limits that a frame ran into, each with the setting to raise. A frame never stops for these. What the
+/// tests of trial poses run into sets none of them.
 namespace frame_flag {
 inline constexpr std::uint32_t kBudgetShort = 1u << 0;  ///< pairs left unchecked: WorkBudget::max_exact_tests
 inline constexpr std::uint32_t kCapacityReached = 1u << 1;  ///< pairs or patches dropped: WorkBudget
@@ -39,20 +40,25 @@ struct FrameReport {
   std::uint32_t safety = 0;  ///< safety_flag
   int grasped_body = -1;     ///< the body that is grasped; -1: none
   Pose X_WH;                 ///< pose of the probe [m]
-  Pose X_WH_proxy;           ///< pose of the handle on the grasped part [m]
+  Pose X_WH_proxy;           ///< pose of the handle on the grasped part; identity when nothing is grasped [m]
   Wrench restoring;  ///< contact forces on the grasped part, at its centre of mass, world axes [N, N m]
   Wrench field;      ///< of force fields on the grasped part, at its centre of mass, world axes [N, N m]
-  Wrench coupling;   ///< wrench that the response lets the hand feel, at the handle, world axes: raw [N, N m]
-  Wrench smoothed;   ///< after smoothing, device axes [N, N m]
-  PortReport port;   ///< energy that passed between hand and scene, and what the passivity controller did
-  Wrench shown;      ///< after safety, device axes: the wrench that was sent [N, N m]
+  /// The wrench that the response lets the hand feel, before all other stages, at the handle, world axes: in
+  /// the penalty response that of the coupling, in the constraint response Response::felt() [N, N m].
+  Wrench coupling;
+  Wrench smoothed;  ///< the same after smoothing, at the handle, device axes [N, N m]
+  PortReport port;  ///< energy that passed between hand and scene, and what the passivity controller did
+  Wrench shown;     ///< after safety, at the handle, device axes: the wrench that was sent [N, N m]
   double tolerance_m = 0.0;     ///< largest delta of a pair in contact; 0 without contact [m]
   double min_distance_m = 0.0;  ///< smallest signed distance of the pairs in contact; 0 without contact [m]
-  bool penetrating = false;     ///< some pair overlaps by more than its error bound
-  double time_of_impact_s =
-      0.0;                 ///< smallest, from the start of the frame; the whole step without impact [s]
-  int contact_points = 0;  ///< rows of the contact problem
-  int grasped_contact_points = 0;  ///< ... that push the grasped part
+  bool penetrating = false;     ///< some pair overlaps by more than kPenetrating of both parts' sizes
+  /// When the first contact closes, from the start of the frame; the whole step when none does. It is always
+  /// zero in the constraint response, whose forces act over the whole step.
+  double time_of_impact_s = 0.0;  ///< [s]
+  int contact_points = 0;         ///< rows of the contact problem, whether they push or not
+  /// In the constraint response, how many of these push the grasped part; in the penalty response, how many
+  /// are at the grasped part, also without force.
+  int grasped_contact_points = 0;
   int impacts = 0;  ///< pairs of bodies that hit each other, each impact counted (constraint response)
   int solver_iterations = 0;
   int solvers = 0;             ///< which solvers were at work: bits of ContactSolver (solver_choice.h)
@@ -61,12 +67,12 @@ struct FrameReport {
   int validation_retries = 0;  ///< steps that were not taken as they came
   int waiting = 0;             ///< bodies that were deferred for want of budget (waiting.h)
   int asleep = 0;              ///< bodies that rest, and were not tested
-  int longest_wait = 0;        ///< ... of the deferred ones, the most frames in a row
+  int longest_wait = 0;        ///< frames in a row for which a body has been deferred, at most
   int cut_short = 0;           ///< bodies that stayed, because no step of theirs was found open
   /// By how much the momentum of the bodies that move freely differs from what they were given (momentum.h)
   /// [N s].
   double momentum_off_Ns = 0.0;
-  bool forced_short = false;  ///< ... because some step was cut short of where the forces would have it
+  bool forced_short = false;  ///< momentum_off_Ns says nothing: some step was cut short of where forces led
   FrictionReport friction;    ///< friction over all patches
   ContactWork work;
 

@@ -26,6 +26,7 @@ bool is_idle(const IslandProblem& p) {
 }
 
 /// Adds the bodies of the island, and its rows; with `opening` the rows ask gaps below the skin to open.
+/// Without it the copies of the rows lose what they asked for, also for a later call with it.
 void assemble(bool exact, bool opening, IslandProblem& p) {
   const ConstraintStep& step = p.step;
   p.problem.clear();

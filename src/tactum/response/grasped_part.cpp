@@ -34,8 +34,9 @@ void add_grasped(const Vec6& target, const ConstraintStep& step, ContactProblem&
 }
 
 void feel(const Vec6& displacement, ConstraintStep& step) noexcept {
-  // M (x - x*) at the handle: with a free grasped part, exactly the sum of the contact forces, its weight and
-  // the load of fields.
+  // M (x - x*) at the handle, x* without weight and fields: with a free grasped part, exactly the sum of the
+  // contact forces, its weight and the load of fields. Where fields are so steep that the step was made with
+  // a stiffer metric, it is that sum only when the part stands.
   const GraspMetric metric = grasp_metric(step.settings.coupling, step.dt_s);
   const Vec6 off = displacement - step.own.constraint.wanted;
   step.own.constraint.felt = {metric.stiffness_N_per_m * off.head<3>(),

@@ -7,14 +7,15 @@
 
 namespace tactum::inline v0_1 {
 
-/// The displacement of the handle that the coupling asks for, (m, rad).
+/// The displacement of the handle that the coupling asks for in this frame, world axes, (m, rad).
 Vec6 wanted_by_hand(const ConstraintStep& step) noexcept;
 /// The displacement that `wanted` becomes when weight and force fields load the grasped part, (m, rad).
 Vec6 with_load(const ConstraintStep& step, const Vec6& wanted) noexcept;
 /// Adds the grasped part to a contact problem: its coupling over one frame is its metric, stated at the
 /// handle, `target` its displacement there.
 void add_grasped(const Vec6& target, const ConstraintStep& step, ContactProblem& problem) noexcept;
-/// Sets ConstraintState::felt to the wrench that the hand feels when the handle moves by `displacement`.
+/// Sets ConstraintState::felt to the wrench that the hand feels when the handle moves by `displacement` (m,
+/// rad) from where it is, in place of ConstraintState::wanted.
 void feel(const Vec6& displacement, ConstraintStep& step) noexcept;
 
 }  // namespace tactum::inline v0_1

@@ -5,7 +5,8 @@
 ///
 ///     F(t) = J a (1 - cos(2 pi t / T)) / T,    0 < t < T,     integral of F = a J
 ///
-/// with the expansion T and the amplification a as settings. Pulses of several impacts add up.
+/// with the expansion T and the amplification a as settings; T is cut to kMostFrames frames. Pulses of
+/// several impacts add up.
 
 #include <array>
 
@@ -20,7 +21,7 @@ class ImpulseDisplay {
   /// Adds an impulse [N s, N m s] on the hand, at the handle, world axes; `energy_J` is what the bodies lost
   /// by it.
   void add(const Impacts& impacts, double dt_s, const Wrench& impulse, double energy_J) noexcept;
-  /// The wrench of all pulses in this frame; the next call is the next frame's.
+  /// The wrench of all pulses in this frame [N, N m]; the next call is the next frame's.
   Wrench next() noexcept;
   /// The energy of impacts that is still to be felt [J].
   double pending_J() const noexcept { return pending_J_; }

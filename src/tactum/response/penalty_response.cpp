@@ -99,7 +99,9 @@ Vec6 PenaltyResponse::to_hand(const MotionInput& input, const Pose& X_WB) noexce
   return to_vector(twist_between(X_WB * input.grasped.X_BH, X_WH, 1.0));
 }
 
-/// Adds a body with its target over a step of h seconds.
+/// Adds a body with its target over a step of `h_s` seconds. The grasped part's target is the whole
+/// displacement to the hand however short the step: it weighs nothing, so nothing but its coupling holds it
+/// back.
 void PenaltyResponse::add_body(const MotionInput& input, int body, double h_s,
                                const WorldState& bodies) noexcept {
   const Body& what = input.world.bodies[Index(body)];

@@ -57,12 +57,12 @@ class PenaltyResponse {
   // Scratch of one frame.
   Islands islands_;
   GroupedIndices bodies_, rows_;      // by island
-  ReservedVector<double> stiffness_;  // of the rows of the island in work
-  ReservedVector<double> forces_;     // of these and its joints
+  ReservedVector<double> stiffness_;  // of the contact rows of the island in work [N/m]
+  ReservedVector<double> forces_;     // of all rows of its problem, and of its joints' dry friction [N]
   ContactProblem problem_;
-  std::vector<char> all_move_;          // no body is deferred
-  std::vector<Twist> V_before_joints_;  // by body
-  std::vector<double> motion_bound_;
+  std::vector<char> all_move_;          // by body, all zero: none is deferred
+  std::vector<Twist> V_before_joints_;  // by body: before joints and the hand change it [m/s, rad/s]
+  std::vector<double> motion_bound_;    // by body [m]
   ReservedVector<double> depth_scale_;  // by patch
 };
 

@@ -21,8 +21,10 @@ class Response {
   std::span<const double> bound_motion(const MotionInput& input, WorldState& bodies) noexcept;
   /// Moves everything that moves. Fills the report's response fields.
   void step(const StepInput& input, GapOracle& gaps, WorldState& bodies, FrameReport& report) noexcept;
-  /// The wrench that the hand feels, at the handle, world axes; zero while nothing is grasped [N, N m]. Call
-  /// it once a frame: it moves the pulses of impacts on.
+  /// The wrench that the hand feels, at the handle, world axes; zero while nothing is grasped [N, N m]. In
+  /// the penalty response it is the wrench of the coupling; in the constraint response the contact forces,
+  /// the weight and the load of fields on the grasped part, and the pulses of its impacts. Call it once a
+  /// frame: it moves the pulses on.
   Wrench felt(const StepInput& input, const WorldState& bodies) noexcept;
 
   /// The contacts of the last step, for displays.

@@ -13,7 +13,7 @@
 
 namespace tactum::inline v0_1 {
 
-/// How the device's handle H maps into the world.
+/// How the device's handle H maps into the world (hand.h).
 struct Workspace {
   Pose X_WD;               ///< device frame in the world [m]
   double scale = 1.0;      ///< world metres per device metre; rotation is never scaled [-]
@@ -50,7 +50,9 @@ enum class ResponseModel {
 
 /// The constraint response. The hand feels its coupling's stiffness and nothing else.
 struct Constraint {
-  double max_step_m = 1e-3;    ///< farthest that a point of the grasped part goes in a frame [m]
+  /// Farthest that a point of the grasped part goes in a step; the opening of gaps below the skin comes
+  /// before it [m].
+  double max_step_m = 1e-3;
   double least_step_m = 5e-5;  ///< the least that the limit sinks to; from there it doubles [m]
   /// ... while surfaces without pieces touch: the number of contacts within a step, and the time to find
   /// them, grow with the step.
@@ -73,8 +75,9 @@ struct PairCoefficients {
 /// 6.2.
 struct Impacts {
   PairCoefficients restitution;  ///< fraction of the speed of approach that is left [-]
-  double expansion_s = 0.02;     ///< an impact is felt as a pulse of the same momentum, this long [s]
-  double amplification = 1.0;    ///< ... times this [-]
+  /// An impact is felt as a pulse of the same momentum, this long, but at most 1024 frames [s].
+  double expansion_s = 0.02;
+  double amplification = 1.0;  ///< the momentum of that pulse is multiplied by it [-]
 };
 
 /// Which part is grasped, and where.
@@ -96,8 +99,10 @@ struct WorkBudget {
   int max_exact_tests = 4096;      ///< exact tests a frame (paper 4.2: the array of fixed length) [-]
   int max_contact_points = 2048;   ///< contact points a frame [-]
   ContactFinderCapacity capacity;  ///< near pairs and patches there is memory for
-  int solver_iterations = 120;     ///< sweeps of the contact solver, or rows added and dropped, at most [-]
-  bool sleep = true;               ///< bodies at rest are not tested, where nothing could show (sleep.h)
+  /// Sweeps of the contact solver, or rows added and dropped, at most in each solution; a frame has several
+  /// [-].
+  int solver_iterations = 120;
+  bool sleep = true;  ///< bodies at rest are not tested, where nothing could show (sleep.h)
 };
 
 /// All of it.

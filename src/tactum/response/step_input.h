@@ -12,7 +12,8 @@
 
 namespace tactum::inline v0_1 {
 
-/// The part that the hand holds, the pose of the probe, and the load of force fields on the part.
+/// The part that the hand holds, the pose of the probe, and the load of force fields on the part: what the
+/// hand stage found in this frame. The functions of grasped_part.h work on it.
 struct GraspedPart {
   bool hand_known = false;  ///< false until the first valid sample: nothing may move
   int body = -1;            ///< index into World::bodies; -1: nothing is grasped
@@ -33,7 +34,7 @@ struct MotionInput {
 };
 
 struct StepInput : MotionInput {
-  std::span<const ContactPatch> patches;
+  std::span<const ContactPatch> patches;       ///< found with the bodies at X_WB_start
   std::span<const std::uint8_t> priority;      ///< of each body (contact/schedule.h)
   const ContactWork& work;                     ///< what was tested, and what was left
   const std::vector<ShadingNormals>& shading;  ///< one per body; empty when shading is off
