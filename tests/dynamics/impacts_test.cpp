@@ -70,7 +70,7 @@ struct Meeting {
   ImpactResult resolve(int most = 8) {
     ImpactScratch scratch(2);
     const std::vector<char> moves{1, 1};
-    return resolve_impacts(rows, {world, X_WB, moves, V, 0.0}, 1e-3, most, scratch, nullptr);
+    return resolve_impacts(rows, {world, X_WB, moves, V}, 1e-3, most, scratch, nullptr);
   }
 };
 
@@ -148,7 +148,7 @@ TEST(Impacts, ABallOnAWallSlidesOrRolls) {
       ImpactScratch scratch(2);
       const std::vector<char> moves{1, 0};
       std::vector<ContactRow> rows{row};
-      EXPECT_TRUE(resolve_impacts(rows, {world, X_WB, moves, V, 0.0}, 1e-3, 8, scratch, nullptr).converged);
+      EXPECT_TRUE(resolve_impacts(rows, {world, X_WB, moves, V}, 1e-3, 8, scratch, nullptr).converged);
       const double normal = 0.1 * 0.8 * 1.5;
       const double to_roll = 0.1 * 1.0 * 2.0 / 7.0;
       const double across = std::min(mu * normal, to_roll);

@@ -137,6 +137,7 @@ struct Hand {
                                 .X_BH = {},
                                 .X_WH = X_WH,
                                 .V_WH = {},
+                                .turned_W = {},
                                 .in_field = false,
                                 .field = {}};
       const MotionInput motion{world, settings, grasped, radius, settings.dt_s};
@@ -244,6 +245,7 @@ TEST(Response, NothingIsFeltOfAPartThatIsNotHeld) {
                               .X_BH = {},
                               .X_WH = hand_at(0, 0, -1),
                               .V_WH = {},
+                              .turned_W = {},
                               .in_field = false,
                               .field = {}};
     const MotionInput motion{hand.world, hand.settings, nothing, radius, hand.settings.dt_s};

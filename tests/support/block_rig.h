@@ -19,7 +19,7 @@ struct BlockRig : Rig {
     settings.response = ResponseModel::kConstraint;
     if (mu > 0.0) settings.friction = {{0.0, mu, mu, 0.0}, 2};
   }
-  double skin() { return begun().response.constraint()->memory().constraint.skin_m; }
+  double skin() { return begun().response.constraint()->memory().constraint.skin_m[0]; }
   /// The sum of the contact forces at the handle less the wrench that is felt.
   Wrench unaccounted() const {
     const auto& grasped =

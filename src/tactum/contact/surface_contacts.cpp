@@ -115,7 +115,7 @@ void ContactFinder::add_surface_patch(int a, int b, const SurfaceMinimum& minimu
 void ContactFinder::surface_distances_at(std::span<const ContactPatch> patches, std::span<const Pose> X_WB,
                                          std::span<double> distance, std::span<GapAnswer> asked,
                                          int keep_back) noexcept {
-  std::fill(asked.begin(), asked.end(), tests_left_ > keep_back ? GapAnswer::kExact : GapAnswer::kUnknown);
+  std::fill(asked.begin(), asked.end(), tests_left_ > keep_back ? GapAnswer::kProven : GapAnswer::kUnknown);
   if (tests_left_ <= keep_back) return;
   --tests_left_;
   const ContactPatch& first = patches.front();
@@ -137,7 +137,9 @@ void ContactFinder::surface_distances_at(std::span<const ContactPatch> patches, 
       return patch.manifold.a == minimum.a && patch.manifold.b == minimum.b;
     });
     if (same == patches.end()) same = nearest;
-    double& d = distance[Index(same - patches.begin())];
+    const Index number = Index(same - patches.begin());
+    asked[number] = GapAnswer::kExact;
+    double& d = distance[number];
     d = std::min(d, minimum.distance);
   }
 }

@@ -197,7 +197,7 @@ void ContactProblem::follow(const ContactProblem& led) noexcept {
     body.turns = other.turns;
     body.motions = other.motions;
   }
-  limits_ = led.limits_;
+  limits_.assign(led.limits_.begin(), led.limits_.end());  // within the room: an assignment would reserve
   add_joint_rows(true);
 }
 

@@ -36,6 +36,7 @@ struct ContactRow : SurfacePair {
   Vec3 n_BA_W = Vec3::Zero();  ///< unit [-]
   Vec3 p_W = Vec3::Zero();     ///< where the force acts, halfway between the two surfaces [m]
   double distance = 0.0;       ///< signed, at the start of the step [m]
+  double skin_m = 0.0;         ///< the gap at which the pair's contacts are kept [m]
   double asked = 0.0;          ///< by how much the step has to open it at least; negative: it may close [m]
   double friction = 0.0;       ///< Coulomb's coefficient [-]
   double margin = 0.0;         ///< delta, the contact margin of the pair [m]
@@ -56,12 +57,9 @@ struct RowsInProblem {
   }
 };
 
-/// The lengths by which contacts are judged.
-struct ContactScale {
-  double skin_m = 0.0;         ///< the gap at which contacts are kept [m]
-  double settled_m = 0.0;      ///< a lift, or a gap beyond the skin, below this counts as zero [m]
-  double opening_share = 0.0;  ///< fraction of the depth below the skin that is opened in a step [-]
-};
+/// A lift, or a gap beyond the skin, below this many skins counts as zero.
+inline constexpr double kSettledSkins = 0.25;
+inline double settled_length(double skin_m) noexcept { return kSettledSkins * skin_m; }
 
 /// The fraction that opens in a step of h seconds: a tenth in a millisecond.
 inline double opening_share(double h) noexcept {
@@ -70,9 +68,9 @@ inline double opening_share(double h) noexcept {
 }
 
 /// By how much a step has to open a row: its gap may close to the skin, or must open towards it [m].
-inline double asked_of(const ContactRow& row, const ContactScale& scale) noexcept {
-  const double missing = scale.skin_m - row.distance;
-  return missing > 0.0 ? scale.opening_share * missing : missing;
+inline double asked_of(const ContactRow& row, double opening_share) noexcept {
+  const double missing = row.skin_m - row.distance;
+  return missing > 0.0 ? opening_share * missing : missing;
 }
 
 /// The outcome of a search for forces.

@@ -26,17 +26,17 @@ Vec3 apart(const FrictionPatch& patch, const Pose& X_WA, const Pose& X_W_B) {
 }
 
 /// How far a distance is beyond the skin; zero where that is too little to count.
-double gap_beyond(double distance_m, const ContactScale& scale) {
-  return distance_m - scale.skin_m > scale.settled_m ? distance_m - scale.skin_m : 0.0;
+double gap_beyond(double distance_m, double skin_m) {
+  return distance_m - skin_m > settled_length(skin_m) ? distance_m - skin_m : 0.0;
 }
 
 }  // namespace
 
 const FrictionAnchor* take_anchor(const FrictionAnchors& anchors, std::span<const Pose> X_WB,
-                                  const ContactScale& scale, FrictionPatch& patch) noexcept {
+                                  FrictionPatch& patch) noexcept {
   const Pose& X_WA = X_WB[Index(patch.surfaces.body_a)];
   const Pose& X_W_B = X_WB[Index(patch.surfaces.body_b)];
-  const FrictionAnchor* const last = anchors.find(patch, X_WB, kSamePlaneSkins * scale.skin_m);
+  const FrictionAnchor* const last = anchors.find(patch, X_WB, kSamePlaneSkins * patch.place.skin_m);
   if (last == nullptr) {
     patch.anchor.on_A = X_WA.inverse() * patch.place.centre_W;
     patch.anchor.on_B = X_W_B.inverse() * patch.place.centre_W;
@@ -52,7 +52,7 @@ const FrictionAnchor* take_anchor(const FrictionAnchors& anchors, std::span<cons
   patch.anchor.on_A = last->on_A;
   patch.anchor.on_B = last->on_B;
   patch.anchor.apart_W = apart(patch, X_WA, X_W_B);
-  if (patch.anchor.apart_W.norm() <= scale.settled_m) patch.anchor.apart_W.setZero();
+  if (patch.anchor.apart_W.norm() <= settled_length(patch.place.skin_m)) patch.anchor.apart_W.setZero();
   return last;
 }
 
@@ -92,6 +92,7 @@ void Friction::find_pushing(const RowsInProblem& contacts, const ContactProblem&
         next.surfaces = row->surfaces();
         next.source_patch = row->patch;
         next.coefficient = row->friction;
+        next.place.skin_m = row->skin_m;
         if (!patches_.push_back(next)) continue;
         found = &patches_.back();
       }
@@ -109,7 +110,8 @@ void Friction::find_pushing(const RowsInProblem& contacts, const ContactProblem&
   for (FrictionPatch& patch : patches_) {
     patch.place.centre_W /= patch.load_N;
     const double opens = opening[static_cast<Index>(&patch - patches_.begin())] / patch.load_N;
-    patch.place.gap_m = opens > 0.0 ? -opens : gap_beyond(patch.place.gap_m / patch.load_N, scale_);
+    patch.place.gap_m =
+        opens > 0.0 ? -opens : gap_beyond(patch.place.gap_m / patch.load_N, patch.place.skin_m);
     patch.place.n_BA_W.normalize();
   }
   for_pushing_rows([](FrictionPatch& patch, const ContactRow& row, double force) {
@@ -122,7 +124,7 @@ void Friction::find_last_pushing(const RowsInProblem& contacts, const FrictionAn
                                  std::span<const Pose> X_WB) noexcept {
   const Index pushing = patches_.size();
   for (const ContactRow& row : contacts.rows) {
-    if (!(row.friction > 0.0) || gap_beyond(row.distance, scale_) > 0.0) continue;
+    if (!(row.friction > 0.0) || gap_beyond(row.distance, row.skin_m) > 0.0) continue;
     FrictionPatch* found = patch_of(row);
     if (found == nullptr) {
       const FrictionAnchor* const last = anchors.find(row);
@@ -130,6 +132,7 @@ void Friction::find_last_pushing(const RowsInProblem& contacts, const FrictionAn
       FrictionPatch patch;
       patch.surfaces = row.surfaces();
       patch.coefficient = row.friction;
+      patch.place.skin_m = row.skin_m;
       patch.place.centre_W = X_WB[Index(row.body_a)] * last->centre_A;
       patch.place.radius_m = last->radius_m;
       if (!patches_.push_back(patch)) break;
@@ -175,15 +178,14 @@ void Friction::drop_unsqueezed(const ContactProblem& problem) noexcept {
   while (patches_.size() > kept) patches_.pop_back();
 }
 
-bool Friction::begin(const RowsInProblem& contacts, std::span<const Pose> X_WB, const ContactScale& scale,
+bool Friction::begin(const RowsInProblem& contacts, std::span<const Pose> X_WB,
                      const FrictionAnchors& anchors, ContactProblem& problem) noexcept {
   patches_.clear();
-  scale_ = scale;
   find_pushing(contacts, problem);
   find_last_pushing(contacts, anchors, X_WB);
   drop_unsqueezed(problem);
   for (FrictionPatch& patch : patches_) {
-    if (const FrictionAnchor* const last = take_anchor(anchors, X_WB, scale, patch))
+    if (const FrictionAnchor* const last = take_anchor(anchors, X_WB, patch))
       patch.rows.sticking = last->sticking;
     patch.motion = motion_of(patch, any_orthogonal(patch.place.n_BA_W), problem);
     const Vec3 displacement = slide_of(patch, problem).displacement;
@@ -271,8 +273,8 @@ bool Friction::update_slip(ContactProblem& problem) noexcept {
     double further =
         std::min(slide.lift, patch.coefficient * (slide.displacement.norm() - patch.slip.displacement_m));
     double turned = std::min(slide.lift, arm * (std::abs(slide.turn) - patch.slip.turn_rad));
-    if (further <= scale_.settled_m) further = 0.0;
-    if (turned <= scale_.settled_m) turned = 0.0;
+    if (further <= settled_length(patch.place.skin_m)) further = 0.0;
+    if (turned <= settled_length(patch.place.skin_m)) turned = 0.0;
     if (further == 0.0 && turned == 0.0) continue;
     changed = true;
     if (patch.load_N == 0.0) {
@@ -324,7 +326,8 @@ SlidingForce Friction::next_force(const FrictionPatch& patch, const SlidingForce
   next.torque_Nm = last.torque_Nm - give * r * r * slide.turn;
   const double size = r > 0.0 ? std::hypot(next.force_W.norm(), next.torque_Nm / r) : next.force_W.norm();
   // At the bound the patch may still be coming to rest: a slide too small to count is none.
-  next.sticks = size < most_N || slide.displacement.norm() + r * std::abs(slide.turn) <= scale_.settled_m;
+  next.sticks = size < most_N ||
+                slide.displacement.norm() + r * std::abs(slide.turn) <= settled_length(patch.place.skin_m);
   if (size > most_N) {
     const double share = size > 0.0 ? most_N / size : 0.0;
     next.force_W *= share;

@@ -46,8 +46,8 @@ class Friction {
   /// Finds the patches that push in the last answer, and those that pushed in the last frame; adds their rows
   /// to the problem. False when there are none. There is room for kMostPatches: all further ones have no
   /// friction in this frame, and nothing reports it.
-  bool begin(const RowsInProblem& contacts, std::span<const Pose> X_WB, const ContactScale& scale,
-             const FrictionAnchors& anchors, ContactProblem& problem) noexcept;
+  bool begin(const RowsInProblem& contacts, std::span<const Pose> X_WB, const FrictionAnchors& anchors,
+             ContactProblem& problem) noexcept;
   /// Appends the rows that pushed in the last frame while the patches stuck.
   void rows_that_stuck(StaticVector<int, kMostUnknowns>& rows) const noexcept;
   /// Stores which rows push: the last answer is that of patches that stick.
@@ -114,13 +114,12 @@ class Friction {
   void release(FrictionPatch& patch, ContactProblem& problem) noexcept;
 
   StaticVector<FrictionPatch, kMostPatches> patches_;
-  ContactScale scale_;
 };
 
 /// Sets the anchor of a patch, and its centre in the patch's plane, to the last frame's; a patch that had
 /// none is anchored at its centre. Returns the last frame's anchor, or null.
 const FrictionAnchor* take_anchor(const FrictionAnchors& anchors, std::span<const Pose> X_WB,
-                                  const ContactScale& scale, FrictionPatch& patch) noexcept;
+                                  FrictionPatch& patch) noexcept;
 
 /// The anchor of a patch for the next frame, when its forces had their centre at `centre_W` and the step
 /// began at X_WB: that of a patch that stuck goes with the centre, that of one that slid is set anew.

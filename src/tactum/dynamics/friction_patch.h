@@ -51,6 +51,7 @@ struct PatchPlace {
   double radius_m = 0.0;         ///< r, of the forces about their centre [m]
   /// By how much its centre may close; zero where that is too small to count, negative where it has to open
   /// [m].
+  double skin_m = 0.0;  ///< of the pair [m]
   double gap_m = 0.0;
 };
 

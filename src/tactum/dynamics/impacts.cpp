@@ -27,13 +27,14 @@ double approach(const ContactRow& row, const ImpactBodies& bodies) {
 /// Finds all corners of the pair of `first` that close within h, or are as near as that one: where two faces
 /// meet flat, rounding must not leave corners out.
 void find_corners(std::span<const ContactRow> rows, const ContactRow& first, const ImpactBodies& bodies,
-                  double h, Corners& corners) {
+                  double fastest, double h, Corners& corners) {
   for (const ContactRow& row : rows) {
     if (row.body_a != first.body_a || row.body_b != first.body_b) continue;
     const double speed = approach(row, bodies);
-    const double closes_m = std::max(std::max(0.0, speed) * h, first.distance + bodies.same_distance_m);
+    const double closes_m = std::max(std::max(0.0, speed) * h, first.distance + first.skin_m);
     if (row.distance > closes_m || !corners.push_back(row)) continue;
     corners.back().distance = 0.0;
+    corners.back().skin_m = tolerances::kImpactSettled * fastest / kSettledSkins;  // lengths are speeds here
     corners.back().asked = speed > kImpactSpeed ? row.impact.restitution * speed : 0.0;
   }
 }
@@ -77,11 +78,8 @@ using PairTwists = std::array<Twist, 2>;
 /// The impact of one pair.
 class PairImpact {
  public:
-  PairImpact(const Corners& corners, double speed, const ImpactBodies& bodies, ImpactScratch& scratch)
-      : corners_(corners),
-        input_{bodies.X_WB, {.settled_m = tolerances::kImpactSettled * speed}, scratch.no_anchors},
-        bodies_(bodies),
-        scratch_(scratch) {}
+  PairImpact(const Corners& corners, const ImpactBodies& bodies, ImpactScratch& scratch)
+      : corners_(corners), input_{bodies.X_WB, scratch.no_anchors}, bodies_(bodies), scratch_(scratch) {}
 
   /// Solves for the velocities after the impact, each corner leaving with `asked`, or, plastic, with zero.
   bool solve(bool plastic) {
@@ -149,8 +147,8 @@ PairTwists mixed(double share, const PairTwists& one, const PairTwists& other) {
 bool hit(std::span<const ContactRow> rows, const ContactRow& first, const ImpactBodies& bodies, double speed,
          double h, ImpactScratch& scratch, ImpactObserver* observer) {
   Corners corners;
-  find_corners(rows, first, bodies, h, corners);
-  PairImpact impact(corners, speed, bodies, scratch);
+  find_corners(rows, first, bodies, speed, h, corners);
+  PairImpact impact(corners, bodies, scratch);
   const PairTwists before = impact.now();
   if (!impact.solve(false)) {  // a body without room to bounce, hit from both sides, stays
     const bool solved = impact.solve(true);

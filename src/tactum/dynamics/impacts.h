@@ -34,7 +34,6 @@ struct ImpactBodies {
   std::span<const Pose> X_WB;
   std::span<const char> moves;
   std::span<Twist> V_WB;
-  double same_distance_m = 0.0;  ///< distances that differ by less are the same [m]
 };
 
 struct ImpactResult {

@@ -42,9 +42,8 @@ Sweeps::Sweeps(std::size_t most_rows, std::size_t bodies) {
 }
 
 /// Makes a patch for each pair of surfaces with friction, at the last frame's centre of pressure.
-void Sweeps::make_patches(const RowsInProblem& contacts, const ContactScale& scale,
-                          std::span<const Pose> X_WB, const FrictionAnchors& anchors,
-                          ContactProblem& problem) noexcept {
+void Sweeps::make_patches(const RowsInProblem& contacts, std::span<const Pose> X_WB,
+                          const FrictionAnchors& anchors, ContactProblem& problem) noexcept {
   patches_.clear();
   frictions_.clear();
   order_.clear();
@@ -59,6 +58,7 @@ void Sweeps::make_patches(const RowsInProblem& contacts, const ContactScale& sca
     patch.surfaces = row(*first).surfaces();
     patch.source_patch = row(*first).patch;
     patch.coefficient = row(*first).friction;
+    patch.place.skin_m = row(*first).skin_m;
     const double share = 1.0 / static_cast<double>(last - first);
     std::for_each(first, last, [&](int i) {
       patch.place.centre_W += share * row(i).p_W;
@@ -66,7 +66,7 @@ void Sweeps::make_patches(const RowsInProblem& contacts, const ContactScale& sca
       rows_[contacts.first + Index(i)].patch = static_cast<int>(patches_.size()) - 1;
     });
     patch.place.n_BA_W.normalize();
-    const FrictionAnchor* const anchor = take_anchor(anchors, X_WB, scale, patch);
+    const FrictionAnchor* const anchor = take_anchor(anchors, X_WB, patch);
     std::for_each(first, last,
                   [&](int i) { patch.place.radius_m += share * (row(i).p_W - patch.place.centre_W).norm(); });
     patch.motion = motion_of(patch, any_orthogonal(patch.place.n_BA_W), problem);
@@ -79,9 +79,8 @@ void Sweeps::make_patches(const RowsInProblem& contacts, const ContactScale& sca
   }
 }
 
-void Sweeps::begin(const RowsInProblem& contacts, const ContactScale& scale, std::span<const Pose> X_WB,
-                   const FrictionAnchors& anchors, RowMemory& memory, double h,
-                   ContactProblem& problem) noexcept {
+void Sweeps::begin(const RowsInProblem& contacts, std::span<const Pose> X_WB, const FrictionAnchors& anchors,
+                   RowMemory& memory, double h, ContactProblem& problem) noexcept {
   h_ = h;
   first_contact_ = contacts.first;
   const std::span<const QpRow> rows = problem.row_list();
@@ -99,7 +98,7 @@ void Sweeps::begin(const RowsInProblem& contacts, const ContactScale& scale, std
     row.opening = 0.0;
   }
   joints_.assign(problem.joint_frictions().size(), Force{});
-  make_patches(contacts, scale, X_WB, anchors, problem);
+  make_patches(contacts, X_WB, anchors, problem);
   problem.begin_values();
   for_each_force(problem, [&](Force& force, const auto& apply) { apply(force.now); });
 }

@@ -26,8 +26,8 @@ class Sweeps {
 
   /// Takes a problem whose contact rows are `contacts`; their states are in `memory`. The step takes `h`
   /// seconds.
-  void begin(const RowsInProblem& contacts, const ContactScale& scale, std::span<const Pose> X_WB,
-             const FrictionAnchors& anchors, RowMemory& memory, double h, ContactProblem& problem) noexcept;
+  void begin(const RowsInProblem& contacts, std::span<const Pose> X_WB, const FrictionAnchors& anchors,
+             RowMemory& memory, double h, ContactProblem& problem) noexcept;
   /// Makes a contact close by `by_m` less.
   void tighten(std::size_t contact, double by_m, ContactProblem& problem) noexcept;
   /// Makes at most `max_sweeps` sweeps; may be called again after tighten(). They have converged when the
@@ -69,8 +69,8 @@ class Sweeps {
     double last_change = 0.0;  // of the forces, squared
   };
 
-  void make_patches(const RowsInProblem& contacts, const ContactScale& scale, std::span<const Pose> X_WB,
-                    const FrictionAnchors& anchors, ContactProblem& problem) noexcept;
+  void make_patches(const RowsInProblem& contacts, std::span<const Pose> X_WB, const FrictionAnchors& anchors,
+                    ContactProblem& problem) noexcept;
   double sweep(ContactProblem& problem) noexcept;
   double relax_joint(std::size_t joint, ContactProblem& problem) noexcept;
   double relax_friction(std::size_t number, ContactProblem& problem) noexcept;

@@ -90,7 +90,7 @@ ExactResult solve_exactly(const RowsInProblem& contacts, const FrictionInput& in
   problem.begin({start.without_friction.begin(), start.without_friction.end()});
   const bool found = solve_on(max_iterations, problem, result);
   list_pushing(contacts, problem, start.without_friction);
-  if (!found || !friction.begin(contacts, input.X_WB, input.scale, input.anchors, problem)) return result;
+  if (!found || !friction.begin(contacts, input.X_WB, input.anchors, problem)) return result;
   begin_sticking(start.sticking, friction, problem);
   solve_with_friction(contacts, max_iterations, start, friction, problem, result);
   return result;

@@ -24,7 +24,6 @@ struct ExactResult {
 /// The input of friction in the exact solver, beside the contacts.
 struct FrictionInput {
   std::span<const Pose> X_WB;  ///< of all bodies of the world, at the start of the step
-  ContactScale scale;
   const FrictionAnchors& anchors;
 };
 

@@ -58,7 +58,7 @@ Wrench haptic_frame(const World& world, const FrameSettings& settings, const Dev
   // The caller's own wrench, then passivity, then safety: all at the handle, device axes.
   PortInput port{.wanted = report.smoothed, .sent = state.safety.sent, .dt_s = settings.dt_s};
   const double pending_J = state.response.pending_J();
-  add_stored_energy(world, settings.coupling, bodies, report, state.hand.field.given_J, pending_J, port);
+  add_stored_energy(world, settings.coupling, bodies, grasped, state.hand.field.given_J, pending_J, port);
   if (state.force_stage != nullptr) port.wanted = state.force_stage->apply(port.wanted, sample, report);
   const Wrench passive = passive_wrench(settings.port, state.port, sample, port, report.port);
   SafetyReport safety;

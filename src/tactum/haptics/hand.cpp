@@ -23,6 +23,8 @@ void follow_hand(const Workspace& workspace, const DeviceSample& sample, double 
   const Pose X_WH = hand.X_WD * scaled;
   if (sample.has_velocity && sample.V_DH.finite() && !pressed) {
     hand.V_WH = {hand.X_WD.R * (workspace.scale * sample.V_DH.v), hand.X_WD.R * sample.V_DH.w};
+  } else if (hand.known && sample.time_s == hand.time_s && X_WH.p == hand.X_WH.p && X_WH.R == hand.X_WH.R) {
+    // The device was read again before it had measured: the hand goes on as it did.
   } else {
     const double since_s = std::max(dt_s, sample.time_s - hand.time_s);
     hand.V_WH = hand.known ? twist_between(hand.X_WH, X_WH, since_s) : Twist{};

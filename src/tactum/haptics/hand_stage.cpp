@@ -30,14 +30,22 @@ GraspedPart track_hand(const World& world, const FrameSettings& settings, const 
   const bool was_known = hand.known;
   follow_hand(settings.workspace, sample, settings.dt_s, hand);
   if (!was_known && hand.known) take_first(settings.tool.X_BH.p, X_WB, hand);
-  if (sample.valid) pick_or_release(world, X_WB, settings.tool, hand.X_WH, sample.buttons, hand.grasp);
+  const int was_grasped = hand.grasp.body;
+  if (sample.valid && hand.known)
+    pick_or_release(world, X_WB, settings.tool, hand.X_WH, sample.buttons, hand.grasp);
+  if (hand.grasp.body != was_grasped) hand.turned_W = {};
   GraspedPart grasped{.hand_known = hand.known,
                       .body = hand.grasp.body,
                       .X_BH = hand.grasp.X_BH,
                       .X_WH = hand.X_WH,
                       .V_WH = hand.V_WH,
+                      .turned_W = hand.turned_W,
                       .in_field = false,
                       .field = {}};
+  if (grasped.hand_known && grasped.body >= 0) {
+    follow(hand.X_WH.R * (X_WB[Index(grasped.body)].R * grasped.X_BH.R).transpose(), hand.turned_W);
+    grasped.turned_W = hand.turned_W;
+  }
   if (grasped.hand_known) find_field_load(world, X_WB, grasped, hand.field);
   return grasped;
 }

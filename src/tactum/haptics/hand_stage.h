@@ -10,6 +10,7 @@ namespace tactum::inline v0_1 {
 /// The state of the stage, from frame to frame.
 struct HandStage : HandTracking {
   Grasp grasp;
+  FollowedTurn turned_W;  ///< from the handle on the grasped part to the probe
   FieldPull field;
 };
 

@@ -50,6 +50,40 @@ inline Twist twist_between(const Pose& X_WB, const Pose& X_WC, double dt) {
   return {(X_WC.p - X_WB.p) / dt, log_rotation(X_WC.R * X_WB.R.transpose()) / dt};
 }
 
+/// A turn that is followed over half a turn and full turns.
+struct FollowedTurn {
+  Vec3 turn = Vec3::Zero();  ///< [rad]
+  Vec3 axis = Vec3::Zero();  ///< its direction when it was last below kLong; unit, or zero at first [-]
+
+  static constexpr double kShort = 2.0, kLong = 2.8;  // [rad]
+};
+
+/// The turn of R, near that of a moment before. Below 2 rad it is the rotation vector. That one has no way
+/// past half a turn, and beyond it a turn aside would grow instead of being undone; so from 2.8 rad on the
+/// turn is that about the axis, with its full turns, and beside it the shortest turn that is made before it.
+/// Between, the one passes into the other.
+inline Vec3 followed_turn(const Mat3& R, const FollowedTurn& before) {
+  const Vec3 shortest = log_rotation(R);
+  const double angle = before.turn.norm();
+  if (angle <= FollowedTurn::kShort) return shortest;
+  const Vec3& axis = before.axis;
+  const Quat q(R);
+  const double about = 2.0 * std::atan2(q.vec().dot(axis), q.w());
+  const Vec3 aside = log_rotation(exp_rotation(axis * -about) * R);
+  const double turns = std::round((before.turn.dot(axis) - about) / (2.0 * kPi));
+  const Vec3 followed = aside + axis * (about + 2.0 * kPi * turns);
+  const double share =
+      std::min(1.0, (angle - FollowedTurn::kShort) / (FollowedTurn::kLong - FollowedTurn::kShort));
+  return share * followed + (1.0 - share) * shortest;
+}
+
+/// Follows the turn of R.
+inline void follow(const Mat3& R, FollowedTurn& followed) {
+  followed.turn = followed_turn(R, followed);
+  const double angle = followed.turn.norm();
+  if (angle > 0.0 && angle <= FollowedTurn::kLong) followed.axis = followed.turn / angle;
+}
+
 /// The pose at the fraction `s` in [0, 1] of the motion from X_WB (0) to X_WC (1).
 inline Pose interpolated(const Pose& X_WB, const Pose& X_WC, double s) {
   return advanced(X_WB, twist_between(X_WB, X_WC, 1.0), s);

@@ -117,7 +117,8 @@ double trusted_share(const ConstraintStep& step) {
   double share = 1.0;
   for (const ProblemBody& problem_body : c.step_problem().bodies()) {
     const double travel = travel_of(step, problem_body);
-    const double trusted = step.own.motion_bound[Index(problem_body.body)] - kBoundMargin * c.skin_m;
+    const double trusted =
+        step.own.motion_bound[Index(problem_body.body)] - kBoundMargin * c.skin_m[Index(problem_body.body)];
     if (travel * share > trusted) share = trusted / travel;
     if (problem_body.body != step.grasped.body) continue;
     const double turn = c.step_problem().displacement(problem_body.body).tail<3>().norm();
@@ -157,7 +158,7 @@ void restore(ConstraintStep& step) {
   ConstraintState& c = step.own.constraint;
   bool tight = false;
   for (Index p = 0; p < c.trial.gap_now.size(); ++p)
-    tight |= step.own.free.patch_asked[p] && c.trial.gap_now[p] < 0.5 * c.skin_m;
+    tight |= step.own.free.patch_asked[p] && c.trial.gap_now[p] < 0.5 * c.skin_of(step.patches[p]);
   if (!tight || step.gaps.blocked(step.grasped.body)) return;
   add_bodies(true, step);
   c.rows.first = add_contact_rows(true, c.problem, step);
@@ -179,7 +180,7 @@ bool find_forces(ConstraintStep& step) {
   ExactStart start{.without_friction = rows_of(c.warm_start.without_friction, c.rows.first, step),
                    .sticking = rows_of(c.warm_start.sticking, c.rows.first, step)};
   const bool found =
-      solved(solve_exactly(contacts_of(step), {step.bodies.X_WB, c.scale, c.anchors},
+      solved(solve_exactly(contacts_of(step), {step.bodies.X_WB, c.anchors},
                            step.settings.budget.solver_iterations, start, c.friction, c.problem),
              step.report);
   c.warm_start.without_friction = names_of(start.without_friction, step);
@@ -220,6 +221,7 @@ double advance(ConstraintStep& step) {
     share = trusted_share(step);
     if (open_after(share, step)) return share;
   }
+  share = std::min(share, trusted_share(step));  // a correction that failed has left another answer
   for (int halving = 0; halving < kBacktracks; ++halving) {
     ++step.report.validation_retries;
     share *= 0.5;
@@ -326,7 +328,7 @@ void bound_constrained_motion(const MotionInput& input, const WorldState& bodies
   const ConstraintState& c = own.constraint;
   const double pull = input.world.gravity_W.norm() * input.dt_s;
   for (Index i = 0; i < own.motion_bound.size(); ++i) {
-    own.motion_bound[i] = kBoundMargin * c.skin_m;
+    own.motion_bound[i] = kBoundMargin * c.skin_m[i];
     if (!input.world.bodies[i].moves()) continue;
     const Twist& V = bodies.V_WB[i];
     const bool grasped = static_cast<int>(i) == input.grasped.body;

@@ -22,6 +22,7 @@ void ConstraintResponse::step(const StepInput& input, GapOracle& gaps, WorldStat
   if (input.grasped.body != grasped_last_) {
     memory_.constraint.felt = {};
     memory_.impulses = {};
+    memory_.constraint.trust.consecutive_rejections = 0;
   }
   grasped_last_ = input.grasped.body;
   ConstraintStep step{input, gaps, bodies, memory_, report};

@@ -110,7 +110,8 @@ struct RowMaker {
       row.p_W = X_WA * corners[i].p_A;
       row.distance = corners[i].distance;
       row.margin = patch.tolerance;
-      row.asked = asked_of(row, c.scale);
+      row.skin_m = c.skin_of(patch);
+      row.asked = asked_of(row, c.opening_share);
       row.friction = friction;
       row.impact = {.restitution = restitution, .enabled = struck};
       row.state = c.rows.memory.recall(name_of(patch, i));
@@ -148,14 +149,14 @@ std::span<ContactRow> own_rows(ConstraintStep& step) noexcept {
 }
 
 std::size_t add_contact_rows(bool opening, ContactProblem& problem, ConstraintStep& step) noexcept {
-  ConstraintState& c = step.own.constraint;
   const Index first = problem.rows();
   for (ContactRow& row : own_rows(step)) {
-    const double offset = c.skin_m - row.distance;
+    const double offset = row.skin_m - row.distance;
     row.asked = opening ? offset : std::min(0.0, offset);
     problem.add_row(row.body_a, row.body_b, push_of(row), row.asked);
   }
-  c.rows.feedback.assign(c.rows.own, 0.0);
+  CornerRows& corners = step.own.constraint.rows;
+  corners.feedback.assign(corners.own, 0.0);
   return first;
 }
 

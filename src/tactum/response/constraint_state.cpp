@@ -13,16 +13,12 @@ ConstraintState::ConstraintState(const World& world, const FrameSettings& settin
       position_problem(Index(settings.budget.max_contact_points), world.bodies.size(),
                        std::min(kMostUnknowns, world.bodies.size())),
       anchors(Index(settings.budget.max_contact_points)),
+      opening_share(tactum::opening_share(settings.dt_s)),
       trust{.length_m = settings.constraint.least_step_m},
       corner_memory(settings.budget.capacity.patches / 4 + 1),
       rows(Index(settings.budget.max_contact_points)) {
-  double size = 0.0;
   for (const Body& body : world.bodies)
-    if (body.moves()) size = std::max(size, body.part->size);
-  constexpr double kSettledSkins = 0.25;
-  skin_m = tolerances::kSkin * size;
-  scale = {
-      .skin_m = skin_m, .settled_m = kSettledSkins * skin_m, .opening_share = opening_share(settings.dt_s)};
+    skin_m.push_back(body.moves() ? tolerances::kSkin * body.part->size : 0.0);
   const Index most_patches = settings.budget.capacity.patches;
   trial.X_WB.resize(world.bodies.size());
   trial.gap_now.reserve(most_patches);

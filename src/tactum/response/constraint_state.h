@@ -79,8 +79,8 @@ struct ConstraintState {
   Friction friction;
   FrictionAnchors anchors;
   FrictionUses friction_uses;  ///< friction at each patch, for displays
-  double skin_m;               ///< the gap contacts are held at [m]
-  ContactScale scale;          ///< the same and the other lengths that contacts are kept to
+  std::vector<double> skin_m;  ///< of each body that moves, by its size; see skin_of() [m]
+  double opening_share;        ///< fraction of the depth below the skin that is opened in a step [-]
   StepTrust trust;
   Vec6 wanted;  ///< displacement of the handle that the coupling asked for, world axes [m, rad]
   Wrench felt;  ///< of contacts, weight and fields on the grasped part, at the handle, world axes [N, N m]
@@ -89,6 +89,11 @@ struct ConstraintState {
   CornerRows rows;
   TrialPose trial;
 
+  /// The gap at which the contacts of a pair are kept: by the larger of the two that move [m].
+  double skin_of(const ContactPatch& patch) const noexcept {
+    return std::max(skin_m[static_cast<std::size_t>(patch.body_a)],
+                    skin_m[static_cast<std::size_t>(patch.body_b)]);
+  }
   /// The problem whose answer is the step.
   ContactProblem& step_problem() { return rows.shades ? position_problem : problem; }
   const ContactProblem& step_problem() const { return rows.shades ? position_problem : problem; }

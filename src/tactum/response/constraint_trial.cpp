@@ -27,7 +27,7 @@ void look_at_trial(int keep_back, ConstraintStep& step) noexcept {
   ConstraintState& c = step.own.constraint;
   for (Index p = 0; p < c.trial.gap_now.size(); ++p) {
     c.trial.gap_answer[p] = step.own.free.patch_asked[p] ? GapAnswer::kAsked : GapAnswer::kNotAsked;
-    c.trial.gap_least[p] = least_gap(c.trial.gap_now[p], c.skin_m);
+    c.trial.gap_least[p] = least_gap(c.trial.gap_now[p], c.skin_of(step.patches[p]));
   }
   step.report.validation_tests +=
       step.gaps.distances_at(c.trial.X_WB, c.trial.gap, c.trial.gap_answer, c.trial.gap_least, keep_back);

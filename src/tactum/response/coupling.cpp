@@ -1,15 +1,12 @@
 #include "tactum/response/coupling.h"
 
-#include "tactum/math/screw.h"
-
 namespace tactum::inline v0_1 {
 
-Wrench coupling_wrench(const Coupling& coupling, const Pose& X_WH, const Twist& V_WH, const Pose& X_WH_proxy,
+Wrench coupling_wrench(const Coupling& coupling, const Twist& to_hand, const Twist& V_WH,
                        const Twist& V_WH_proxy) noexcept {
-  const Twist stretch = twist_between(X_WH, X_WH_proxy, 1.0);  // as a displacement
   const Twist rate = V_WH_proxy - V_WH;
-  return {coupling.stiffness_N_per_m * stretch.v + coupling.damping_Ns_per_m * rate.v,
-          coupling.stiffness_Nm_per_rad * stretch.w + coupling.damping_Nms_per_rad * rate.w};
+  return {coupling.damping_Ns_per_m * rate.v - coupling.stiffness_N_per_m * to_hand.v,
+          coupling.damping_Nms_per_rad * rate.w - coupling.stiffness_Nm_per_rad * to_hand.w};
 }
 
 GraspMetric grasp_metric(const Coupling& coupling, double dt_s) noexcept {
@@ -17,11 +14,9 @@ GraspMetric grasp_metric(const Coupling& coupling, double dt_s) noexcept {
           coupling.stiffness_Nm_per_rad + coupling.damping_Nms_per_rad / dt_s};
 }
 
-Vec6 balanced_step(const Coupling& coupling, double dt_s, const Pose& X_WH_proxy, const Pose& X_WH,
-                   const Twist& V_WH) noexcept {
+Vec6 balanced_step(const Coupling& coupling, double dt_s, const Twist& to_hand, const Twist& V_WH) noexcept {
   // k (x - d) + b (x / dt - v) = 0, with d the displacement to the hand.
   const GraspMetric metric = grasp_metric(coupling, dt_s);
-  const Twist to_hand = twist_between(X_WH_proxy, X_WH, 1.0);
   Vec6 x;
   x.head<3>() = (coupling.stiffness_N_per_m * to_hand.v + coupling.damping_Ns_per_m * V_WH.v) /
                 metric.stiffness_N_per_m;

@@ -8,8 +8,9 @@
 
 namespace tactum::inline v0_1 {
 
-/// The wrench that the hand feels, at the handle, world axes: it pulls and turns towards the proxy.
-Wrench coupling_wrench(const Coupling& coupling, const Pose& X_WH, const Twist& V_WH, const Pose& X_WH_proxy,
+/// The wrench that the hand feels, at the handle, world axes: it pulls and turns towards the proxy, which is
+/// the displacement `to_hand` away from the hand (step_input.h).
+Wrench coupling_wrench(const Coupling& coupling, const Twist& to_hand, const Twist& V_WH,
                        const Twist& V_WH_proxy) noexcept;
 
 /// The stiffness of the coupling over one frame, at the handle: F = K (x - x*), spring and damper together.
@@ -25,8 +26,8 @@ inline BodyMetric body_metric(const GraspMetric& metric) noexcept {
   return {metric.stiffness_N_per_m, metric.stiffness_Nm_per_rad * Mat3::Identity()};
 }
 
-/// The displacement of the handle, (m, rad), at which the coupling's spring and damper are in balance.
-Vec6 balanced_step(const Coupling& coupling, double dt_s, const Pose& X_WH_proxy, const Pose& X_WH,
-                   const Twist& V_WH) noexcept;
+/// The displacement of the handle, (m, rad), at which the coupling's spring and damper are in balance, when
+/// the hand is the displacement `to_hand` away.
+Vec6 balanced_step(const Coupling& coupling, double dt_s, const Twist& to_hand, const Twist& V_WH) noexcept;
 
 }  // namespace tactum::inline v0_1

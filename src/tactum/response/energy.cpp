@@ -23,13 +23,13 @@ double bodies_energy(const World& world, const WorldState& bodies, int grasped) 
 }
 
 void add_stored_energy(const World& world, const Coupling& coupling, const WorldState& bodies,
-                       const FrameReport& report, double field_work_J, double pending_J,
+                       const GraspedPart& grasped, double field_work_J, double pending_J,
                        PortInput& port) noexcept {
   // The work of a field on the grasped part is taken from the field, as that on a falling weight is from
   // gravity; a vortex does work without end.
-  port.bodies_J = bodies_energy(world, bodies, report.grasped_body) - field_work_J;
-  if (report.grasped_body < 0) return;
-  const Twist stretch = twist_between(report.X_WH, report.X_WH_proxy, 1.0);
+  port.bodies_J = bodies_energy(world, bodies, grasped.body) - field_work_J;
+  if (grasped.body < 0) return;
+  const Twist stretch = to_hand(grasped, bodies.X_WB[static_cast<std::size_t>(grasped.body)]);
   port.spring_J = 0.5 * coupling.stiffness_N_per_m * stretch.v.squaredNorm();
   port.spring_J += pending_J;
   port.spring_turning_J = 0.5 * coupling.stiffness_Nm_per_rad * stretch.w.squaredNorm();

@@ -62,15 +62,13 @@ GraspMetric step_metric(const Coupling& coupling, const GraspedPart& grasped, do
           std::max(metric.stiffness_Nm_per_rad, coupling.stiffness_Nm_per_rad * needed)};
 }
 
-Pose equilibrium_pose(const Coupling& coupling, const GraspedPart& grasped, const Pose& X_WB) noexcept {
-  if (!grasped.in_field) return grasped.X_WH;
+Twist equilibrium_step(const Coupling& coupling, const GraspedPart& grasped, const Pose& X_WB) noexcept {
+  const Twist missing = to_hand(grasped, X_WB);
+  if (!grasped.in_field) return missing;
   const double stiffer = std::max(1.0, (1.0 + stiffness_beside(coupling, grasped.field)) / kOvershoot);
-  const Pose X_WH_proxy = X_WB * grasped.X_BH;
-  const Twist missing = twist_between(X_WH_proxy, grasped.X_WH, 1.0);
   const Wrench load = moved(grasped.field.at_centre, X_WB.R * grasped.X_BH.p);
-  const Twist step{(missing.v + load.f / coupling.stiffness_N_per_m) / stiffer,
-                   (missing.w + load.t / coupling.stiffness_Nm_per_rad) / stiffer};
-  return advanced(X_WH_proxy, step, 1.0);
+  return {(missing.v + load.f / coupling.stiffness_N_per_m) / stiffer,
+          (missing.w + load.t / coupling.stiffness_Nm_per_rad) / stiffer};
 }
 
 std::string field_sentence(const World& world, const Coupling& coupling) {

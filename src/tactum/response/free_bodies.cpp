@@ -263,8 +263,8 @@ void apply_impacts(ConstraintStep& step) noexcept {
   ImpactsOnGrasped impacts(grasped, grasped < 0 ? Vec3::Zero() : X_WB[Index(grasped)] * step.grasped.X_BH.p,
                            step.own.free.momentum);
   const ImpactResult result = resolve_impacts(
-      step.own.contact_rows.rows, {step.world, X_WB, step.own.free.struck, V_WB, step.own.constraint.skin_m},
-      step.dt_s, std::min(kMostImpacts, kImpactsAPoint * static_cast<int>(step.own.contact_rows.rows.size())),
+      step.own.contact_rows.rows, {step.world, X_WB, step.own.free.struck, V_WB}, step.dt_s,
+      std::min(kMostImpacts, kImpactsAPoint * static_cast<int>(step.own.contact_rows.rows.size())),
       step.own.impact_scratch, &impacts);
   step.report.impacts = result.hits;
   if (!result.converged) step.report.flags |= frame_flag::kSolverBounded;
@@ -317,6 +317,9 @@ void move_free_bodies(ConstraintStep& step) noexcept {
   for (Index i = 0; i < step.world.bodies.size(); ++i) {
     if (!moves_here(step, i)) continue;
     step.bodies.X_WB[i] = c.trial.X_WB[i];
+    // The answer leads the grasped part to the hand, however far; its velocity is what it did.
+    if (is_grasped(step, i))
+      step.bodies.V_WB[i] = twist_between(step.X_WB_start[i], step.bodies.X_WB[i], step.dt_s);
     if (f.share[i] > 0.0 || is_grasped(step, i)) continue;
     // A body that stays loses its velocity: kept, it would grow under gravity meanwhile.
     step.bodies.V_WB[i] = {};

@@ -1,6 +1,7 @@
 #include "tactum/response/free_islands.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "tactum/response/grasped_part.h"
 
@@ -65,10 +66,19 @@ void report_friction(const FrictionPatch& patch, const Vec3& force_W, const Vec3
   p.step.own.free.grasped_torque += patch.surfaces.body_a == grasped ? torque_W : Vec3(-torque_W);
 }
 
+/// The smallest skin of the island's contacts, or of its bodies where nothing touches [m].
+double least_skin(const IslandProblem& p) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const ContactRow& row : p.contacts) least = std::min(least, row.skin_m);
+  if (p.contacts.empty())
+    for (const int body : p.bodies) least = std::min(least, p.step.own.constraint.skin_m[Index(body)]);
+  return least;
+}
+
 /// The exact solution; false when there is none, or the iterations ran out.
 bool solve_exact(IslandProblem& p) {
   ConstraintState& c = p.step.own.constraint;
-  const FrictionInput input{p.step.bodies.X_WB, c.scale, c.anchors};
+  const FrictionInput input{p.step.bodies.X_WB, c.anchors};
   ExactResult result;
   for (const bool opening : {true, false}) {
     assemble(true, opening, p);
@@ -84,7 +94,11 @@ bool solve_exact(IslandProblem& p) {
     p.step.report.solver_iterations += result.iterations;
     if (result.solved) break;
   }
-  if (!result.solved) return false;
+  if (!result.solved) {  // the sweeps that follow are to open what is too near
+    for (Index i = 0; i < p.contacts.size(); ++i)
+      p.contacts[i].asked = p.step.own.contact_rows.rows[Index(p.rows[i])].asked;
+    return false;
+  }
   p.step.report.solvers |= static_cast<int>(ContactSolver::kExact);
   for (ContactRow& row : p.contacts) row.impulse = 0.0;
   for (const QpActive& active : p.problem.answer().active)
@@ -103,9 +117,10 @@ void solve_swept(IslandProblem& p) {
   ConstraintState& c = p.step.own.constraint;
   Sweeps& sweeps = p.step.own.free.sweeps;
   assemble(false, true, p);
-  sweeps.begin(p.in_problem, c.scale, p.step.bodies.X_WB, c.anchors, c.rows.memory, p.step.dt_s, p.problem);
+  sweeps.begin(p.in_problem, p.step.bodies.X_WB, c.anchors, c.rows.memory, p.step.dt_s, p.problem);
   // The error that is left moves nothing by more than the skin, and every step is tested before it is taken.
-  const SolverResult solved = sweeps.solve(p.step.settings.budget.solver_iterations, c.skin_m, p.problem);
+  const SolverResult solved =
+      sweeps.solve(p.step.settings.budget.solver_iterations, least_skin(p), p.problem);
   p.step.report.solvers |= static_cast<int>(ContactSolver::kSweeps);
   p.step.report.solver_iterations += solved.iterations;
   if (!solved.converged) p.step.report.flags |= frame_flag::kSolverBounded;

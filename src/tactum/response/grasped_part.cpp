@@ -6,8 +6,8 @@ namespace tactum::inline v0_1 {
 using Index = std::size_t;
 
 Vec6 wanted_by_hand(const ConstraintStep& step) noexcept {
-  const Pose X_WH_proxy = step.bodies.X_WB[Index(step.grasped.body)] * step.grasped.X_BH;
-  return balanced_step(step.settings.coupling, step.dt_s, X_WH_proxy, step.grasped.X_WH, step.grasped.V_WH);
+  const Twist missing = to_hand(step.grasped, step.bodies.X_WB[Index(step.grasped.body)]);
+  return balanced_step(step.settings.coupling, step.dt_s, missing, step.grasped.V_WH);
 }
 
 Vec6 with_load(const ConstraintStep& step, const Vec6& wanted) noexcept {

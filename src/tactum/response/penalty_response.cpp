@@ -93,12 +93,6 @@ PenaltyResponse::PenaltyResponse(const World& world, const FrameSettings& settin
   forces_.reserve(Index(settings.budget.max_contact_points) + 4 * world.bodies.size());
 }
 
-/// The displacement of the grasped part's handle that its coupling asks for.
-Vec6 PenaltyResponse::to_hand(const MotionInput& input, const Pose& X_WB) noexcept {
-  const Pose X_WH = equilibrium_pose(input.settings.coupling, input.grasped, X_WB);
-  return to_vector(twist_between(X_WB * input.grasped.X_BH, X_WH, 1.0));
-}
-
 /// Adds a body with its target over a step of `h_s` seconds. The grasped part's target is the whole
 /// displacement to the hand however short the step: it weighs nothing, so nothing but its coupling holds it
 /// back.
@@ -108,7 +102,8 @@ void PenaltyResponse::add_body(const MotionInput& input, int body, double h_s,
   const Pose& X_WB = bodies.X_WB[Index(body)];
   if (body == input.grasped.body) {
     problem_.add_body(placed(input.world, bodies, body), X_WB * input.grasped.X_BH.p,
-                      coupling_metric(input.settings.coupling), to_hand(input, X_WB), h_s);
+                      coupling_metric(input.settings.coupling),
+                      to_vector(equilibrium_step(input.settings.coupling, input.grasped, X_WB)), h_s);
     return;
   }
   problem_.add_body(placed(input.world, bodies, body), X_WB.p, inertial_metric(what, X_WB, h_s),
@@ -246,7 +241,8 @@ Wrench PenaltyResponse::felt(const StepInput& input, const WorldState& bodies) c
   const Pose X_WH_before = input.X_WB_start[Index(grasped.body)] * grasped.X_BH;
   const Pose X_WH_proxy = bodies.X_WB[Index(grasped.body)] * grasped.X_BH;
   const Twist V_WH_proxy = twist_between(X_WH_before, X_WH_proxy, input.dt_s);
-  return coupling_wrench(input.settings.coupling, grasped.X_WH, grasped.V_WH, X_WH_proxy, V_WH_proxy);
+  const Twist missing = to_hand(grasped, bodies.X_WB[Index(grasped.body)]);
+  return coupling_wrench(input.settings.coupling, missing, grasped.V_WH, V_WH_proxy);
 }
 
 }  // namespace tactum::inline v0_1

@@ -47,7 +47,6 @@ class PenaltyResponse {
   /// Of each patch, the factor for its depth; empty where the shortest depth is wanted.
   std::span<const double> scale_depths(const StepInput& input, GapOracle& gaps,
                                        std::span<const Twist> V_WB) noexcept;
-  static Vec6 to_hand(const MotionInput& input, const Pose& X_WB) noexcept;
   void add_body(const MotionInput& input, int body, double h_s, const WorldState& bodies) noexcept;
   void solve_island(const StepInput& input, std::size_t island, double rest_s, WorldState& bodies,
                     FrameReport& report) noexcept;

@@ -29,7 +29,7 @@ void count_touches(ConstraintStep& step) {
 bool is_still(const ConstraintStep& step, Index body) {
   const Sleep& s = step.own.sleep;
   if (s.touches[body] != s.touched[body] || static_cast<int>(body) == step.grasped.body) return false;
-  const double most = kStillShare * step.own.constraint.skin_m;
+  const double most = kStillShare * step.own.constraint.skin_m[body];
   const Pose& was = s.X_still[body];
   const Pose& is = step.bodies.X_WB[body];
   const double distance = (is.p - was.p).norm();

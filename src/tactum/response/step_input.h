@@ -8,6 +8,7 @@
 #include "tactum/contact/contact_finder.h"
 #include "tactum/contact/shading.h"
 #include "tactum/dynamics/world.h"
+#include "tactum/math/screw.h"
 #include "tactum/response/settings.h"
 
 namespace tactum::inline v0_1 {
@@ -20,9 +21,18 @@ struct GraspedPart {
   Pose X_BH;                ///< the handle in the grasped body's frame [m]
   Pose X_WH;                ///< the probe in the world [m]
   Twist V_WH;               ///< its velocity [m/s, rad/s]
+  FollowedTurn turned_W;    ///< from the handle on the part to the hand, world axes
   bool in_field = false;    ///< force fields act on the grasped part
   FieldLoad field;          ///< their load at the pose the frame starts with
 };
+
+/// The displacement from the handle on the part, with the part at X_WB, to the hand; its turn is followed
+/// over full turns.
+inline Twist to_hand(const GraspedPart& grasped, const Pose& X_WB) {
+  const Pose X_WH_proxy = X_WB * grasped.X_BH;
+  return {grasped.X_WH.p - X_WH_proxy.p,
+          followed_turn(grasped.X_WH.R * X_WH_proxy.R.transpose(), grasped.turned_W)};
+}
 
 /// The input of a motion bound: everything that is known before contacts are looked for.
 struct MotionInput {
