@@ -53,8 +53,8 @@ class Ours final : public FeelEngine {
   void step(const Pose& X_WH) override { simulation_->step(Pose{X_WH.R, X_WH.p - X_start_.p}); }
   Pose X_WB() const override { return simulation_->bodies().X_WB[0]; }
   Wrench felt() const override { return simulation_->report().coupling; }
-  double skin_m() const override {
-    return simulation_->state().response.constraint()->memory().constraint.skin_m;
+  double skin_m() const override {  // of body 0, the only one that moves
+    return simulation_->state().response.constraint()->memory().constraint.skin_m[0];
   }
 
  private:
