@@ -18,7 +18,7 @@ def instructions(program, test, folder):
     """Instructions inside Session::run and what it calls, while the test runs."""
     out = pathlib.Path(folder) / test
     command = ["valgrind", "--tool=callgrind", f"--callgrind-out-file={out}", "--collect-atstart=no",
-               "--toggle-collect=tactum::Session::run(*", program, f"--gtest_filter=ViewerRun.{test}"]
+               "--toggle-collect=*Session::run(*", program, f"--gtest_filter=ViewerRun.{test}"]
     done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode != 0:
         sys.exit(f"{' '.join(command)}\n{done.stdout}{done.stderr}")
