@@ -78,6 +78,41 @@ TEST(HandStage, NothingIsKnownBeforeAValidSampleAndABadOneIsIgnored) {
   EXPECT_EQ(kept.V_WH.v.norm(), 0.0);
 }
 
+/// A device that is slower than the loop is read twice: the hand goes on with its velocity, at any ratio.
+TEST(HandStage, ASampleReadAgainKeepsTheVelocity) {
+  const World world = two_boxes(0.001);
+  FrameSettings settings;
+  settings.tool.body = 0;
+  const WorldState bodies = initial_state(world);
+  for (const int repeats : {1, 2, 3, 10}) {
+    HandStage hand = begin_hand(settings);
+    for (int i = 0; i < 20; ++i) {
+      const double time_s = 0.001 * repeats * i;
+      const Pose X{exp_rotation({0.2 * time_s, 0, 0}), {0.1 * time_s, 0, 0}};
+      for (int k = 0; k < repeats; ++k) {
+        const GraspedPart grasped = track_hand(world, settings, sample_at(X, time_s), bodies.X_WB, hand);
+        if (i == 0) continue;
+        EXPECT_NEAR(grasped.V_WH.v.x(), 0.1, 1e-12) << repeats << " " << i << " " << k;
+        EXPECT_NEAR(grasped.V_WH.w.x(), 0.2, 1e-9);
+      }
+    }
+  }
+}
+
+/// A button in a sample whose pose cannot be used grasps nothing before the hand is known.
+TEST(HandStage, NothingIsGraspedBeforeTheHandIsKnown) {
+  const World world = two_boxes(0.001);
+  FrameSettings settings;
+  settings.tool.picks = true;
+  settings.tool.pick_distance_m = 1.0;
+  const WorldState bodies = initial_state(world);
+  HandStage hand = begin_hand(settings);
+  DeviceSample sample = sample_at({Mat3::Identity(), {std::nan(""), 0, 0}}, 0.0);
+  sample.buttons = 1;
+  EXPECT_EQ(track_hand(world, settings, sample, bodies.X_WB, hand).body, -1);
+  EXPECT_FALSE(hand.known);
+}
+
 /// A patch is found where the gap is below the sum of the motion bounds, with the exact distance.
 TEST(ContactStage, FindsTheGapWithinTheMotionBound) {
   for (const double gap : {-0.0001, 0.0, 2e-5, 0.0009, 0.0011, 0.01}) {
