@@ -78,6 +78,37 @@ TEST(Sleep, WhatSwingsSlidesOrFliesStaysAwake) {
   EXPECT_EQ(most, 0.0);
 }
 
+/// What gains speed slowly goes where closed forms say: an arm next to upright, by cosh, and a box in next to
+/// no gravity, by g t^2 / 2. In balance both sleep.
+TEST(Sleep, WhatGainsSpeedSlowlyStaysAwake) {
+  for (const double off : {1e-2, 1e-5, 1e-8})
+    for (const double size : {0.02, 0.2, 2.0}) {
+      SCOPED_TRACE(testing::Message() << off << " rad, " << size << " m");
+      Sandbox box;
+      box.world.gravity_W = kGravity;
+      box.settings.budget.sleep = true;
+      const Joint hinge{.kind = JointKind::kHinge, .axis_W = Vec3::UnitY(), .anchor_W = Vec3::Zero()};
+      const Mat3 turn = exp_rotation({0, off, 0});
+      const int arm =
+          box.add(make_box({0.1 * size, 0.1 * size, size}), {turn, turn * Vec3(0, 0, size)}, {}, hinge);
+      const double inertia = (0.01 + 1.0) / 3.0 + 1.0;  // times m size^2
+      const double rate = std::sqrt(9.81 / (inertia * size));
+      const double time_s = std::min(2.0, std::acosh(0.05 / off) / rate);
+      box.run(time_s);
+      EXPECT_NEAR(log_rotation(box.X(arm).R).y(), off * std::cosh(rate * time_s),
+                  0.02 * off * std::cosh(rate * time_s));
+    }
+  for (const double gravity : {1e-5, 1e-8, 0.0}) {
+    Sandbox box;
+    box.world.gravity_W = {0, 0, -gravity};
+    box.settings.budget.sleep = true;
+    const int free = box.add(make_box({1, 1, 1}), at(0, 0, 0));
+    box.run(2.0);
+    EXPECT_NEAR(box.X(free).p.z(), -2.0 * gravity, 0.01 * gravity) << gravity;
+    EXPECT_EQ(box.report.asleep, gravity > 0.0 ? 0 : 1);
+  }
+}
+
 TEST(Sleep, ABlowWakesWhatItStrikesAndWhatThatTouches) {
   Twins twins([](Sandbox& box) {
     lay_floor(box);

@@ -1,6 +1,7 @@
 #include "tactum/response/sleep.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "tactum/base/frame_rate.h"
 #include "tactum/math/screw.h"
@@ -14,6 +15,10 @@ constexpr double kStill_s = 0.06;
 /// No point has moved farther in that time than this fraction of the skin: some nanometres.
 constexpr double kStillShare = 0.01;
 
+/// A body that touches nothing is in balance when gravity gives it less than this fraction of the speed of
+/// free fall: a hundred times what rounding leaves of an arm that hangs.
+constexpr double kBalanced = 100.0 * std::numeric_limits<double>::epsilon();
+
 void count_touches(ConstraintStep& step) {
   Sleep& s = step.own.sleep;
   s.touches.swap(s.touched);
@@ -25,10 +30,20 @@ void count_touches(ConstraintStep& step) {
   }
 }
 
-/// Whether the body is where it was, with as many contacts.
+/// Whether a body that touches nothing is in balance: the velocities of a frame have half a frame's gravity
+/// so far. What gains speed slowly has hardly moved in the time that decides about sleep.
+bool is_balanced(const ConstraintStep& step, Index body) {
+  if (step.world.bodies[body].joint.friction > 0.0) return true;  // that holds it, or it would have moved
+  const Twist& V = step.bodies.V_WB[body];
+  const double gained = step.world.gravity_W.norm() * step.dt_s;
+  return V.v.norm() + V.w.norm() * step.radius_m[body] <= kBalanced * gained;
+}
+
+/// Whether the body is where it was, with as many contacts, or, without any, in balance.
 bool is_still(const ConstraintStep& step, Index body) {
   const Sleep& s = step.own.sleep;
   if (s.touches[body] != s.touched[body] || static_cast<int>(body) == step.grasped.body) return false;
+  if (s.touches[body] == 0 && !is_balanced(step, body)) return false;
   const double most = kStillShare * step.own.constraint.skin_m[body];
   const Pose& was = s.X_still[body];
   const Pose& is = step.bodies.X_WB[body];
