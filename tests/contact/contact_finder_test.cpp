@@ -129,7 +129,7 @@ TEST(ContactFinder, FindsEveryPatchThatTestingAllPairsFinds) {
       SCOPED_TRACE("seed " + std::to_string(seed) + ", frame " + std::to_string(frame));
       all.steer(frame, finder);
       finder.find_near_pairs(all.X, all.motion_bound, kMinTolerance);
-      finder.find_patches(all.X, 1 << 20);
+      finder.find_patches(all.X, 1 << 20, PatchPoints::kClosest);
       runs += finder.work().broad_phase_runs;
       const PatchDistances found = distances_of(finder.patches());
       patches += static_cast<int>(found.size());
@@ -235,12 +235,12 @@ TEST(ContactFinder, PairsOfTheHeldPartAreTestedBeforeAllOthers) {
   ContactFinder finder(bodies, X);
   ContactFinder all(bodies, X);
   for (ContactFinder* each : {&finder, &all}) each->find_near_pairs(X, motion_bound, 1e-4);
-  all.find_patches(X, 1 << 20);
+  all.find_patches(X, 1 << 20, PatchPoints::kClosest);
   int of_grasped = 0;
   for (const ContactPatch& patch : all.patches())
     of_grasped += patch.body_a == 3 || patch.body_b == 3 ? 1 : 0;
   const int budget = all.work().exact_tests / 2;
-  finder.find_patches(X, budget, PatchPoints::kQuadrature, priority);
+  finder.find_patches(X, budget, PatchPoints::kClosest, priority);
   int found = 0;
   for (const ContactPatch& patch : finder.patches()) found += patch.body_a == 3 || patch.body_b == 3 ? 1 : 0;
   EXPECT_GT(of_grasped, 5);

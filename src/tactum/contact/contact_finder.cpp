@@ -89,6 +89,11 @@ void ContactFinder::find_patches(std::span<const Pose> X_WB, int budget, PatchPo
     for (SeamCandidate& candidate : candidates_) candidate_order_.push_back(&candidate);
     work_.capacity_reached |= !settle_seams(candidate_order_, X_WB, steady_, patches_);
   }
+  flush_bodies_.mark_implied(bodies_, X_WB, patches_);
+  if (points_ == PatchPoints::kQuadrature)
+    patches_.erase(std::remove_if(patches_.begin(), patches_.end(),
+                                  [](const ContactPatch& patch) { return patch.implied; }),
+                   patches_.end());
   for (const bool grasped : {true, false})
     for (const SweepAndPrune::Pair& near : sweep_.pairs())
       if (meet_by_surfaces(near.a, near.b) && of_grasped(near.a, near.b) == grasped)

@@ -22,7 +22,8 @@
 ///   else                                       left unproven: neither body may move, see blocked()
 ///
 /// Pieces of one part share walls that nobody can touch, and true faces that were cut; the contacts of pairs
-/// of pieces are settled between them before patches are emitted (seam_settler.h).
+/// of pieces are settled between them before patches are emitted (seam_settler.h), and those with bodies that
+/// lie side by side after that (flush_bodies.h).
 ///
 /// Emitted patches move from frame to frame without a step (steady_contact.h): the normal of an overlap and
 /// the centroid of a patch follow the exact ones at a bounded rate.
@@ -35,24 +36,19 @@
 #include "tactum/base/frame_rate.h"
 #include "tactum/base/reserved_vector.h"
 #include "tactum/collision/contact.h"
+#include "tactum/contact/collision_body.h"
 #include "tactum/contact/contact_patch.h"
 #include "tactum/contact/contact_reduction.h"
 #include "tactum/contact/contact_work.h"
+#include "tactum/contact/flush_bodies.h"
 #include "tactum/contact/gap_oracle.h"
 #include "tactum/contact/schedule.h"
 #include "tactum/contact/seam_settler.h"
 #include "tactum/contact/steady_contact.h"
 #include "tactum/contact/sweep_and_prune.h"
-#include "tactum/geometry/part.h"
 #include "tactum/surface/surface_minima.h"
 
 namespace tactum::inline v0_1 {
-
-/// A body as the finder sees it. The part must outlive the finder.
-struct CollisionBody {
-  const Part* part = nullptr;
-  bool moves = true;  ///< two bodies that do not move are never tested
-};
 
 /// The kind of points in a patch's manifold.
 enum class PatchPoints {
@@ -180,6 +176,7 @@ class ContactFinder final : public GapOracle {
   ReservedVector<ContactPatch> patches_;
   ReservedVector<SeamCandidate> candidates_;
   ReservedVector<SeamCandidate*> candidate_order_;
+  FlushBodies flush_bodies_;
   ReservedVector<SurfaceMinimum> minima_;
   ReservedVector<ReductionScratch> reduction_scratch_;
   std::size_t kept_minima_ = 0;  // most minima of two bodies that become patches

@@ -25,6 +25,7 @@ struct ContactPatch {
   /// An edge or corner of A (of B) touches on another piece; the feature, if any, is the face beside it on
   /// this one.
   bool neighbour_face_a = false, neighbour_face_b = false;
+  bool implied = false;  ///< by a contact with another body (flush_bodies.h): it has no force of its own
   FacetPair facets;
   double distance = 0.0;   ///< of the pieces, or of the local minimum; negative when they overlap [m]
   double tolerance = 0.0;  ///< delta, the contact margin of the pair of bodies [m]

@@ -49,6 +49,7 @@ ContactFinder::ContactFinder(std::vector<CollisionBody> bodies, std::span<const 
         }
         return SweepAndPrune(fat_box_);
       }()),
+      flush_bodies_(bodies_.size(), capacity.patches),
       steady_(dt_s),
       head_start_(frames_in(kHeadStart_s, dt_s)) {
   travel_.assign(bodies_.size(), 0.0);

@@ -14,10 +14,17 @@ namespace tactum::inline v0_1 {
 /// they belong to: kAnyGroup.
 struct SurfacePair {
   int body_a = -1, body_b = -1, group_a = -1, group_b = -1;
+  bool fixed_a = false, fixed_b = false;  ///< the body does not move: all that do not are one, the world
   bool operator==(const SurfacePair&) const = default;
 };
 
 inline constexpr int kAnyGroup = -1;
+
+/// Whether the same bodies touch, in the same order; all fixed bodies are the same.
+inline bool same_bodies(const SurfacePair& p, const SurfacePair& q) noexcept {
+  return p.fixed_a == q.fixed_a && p.fixed_b == q.fixed_b && (p.fixed_a || p.body_a == q.body_a) &&
+         (p.fixed_b || p.body_b == q.body_b);
+}
 
 /// The parameters of an impact at a point.
 struct ImpactLaw {
@@ -29,7 +36,11 @@ struct ImpactLaw {
 /// One contact point between two bodies: normal from B to A, as in collision/contact.h, in world axes.
 struct ContactRow : SurfacePair {
   const SurfacePair& surfaces() const noexcept { return *this; }
+  /// The surfaces whose friction patch it belongs to.
+  const SurfacePair& friction_surfaces() const noexcept { return plane.body_a < 0 ? *this : plane; }
 
+  /// The surfaces that stand for all in this row's plane (friction_planes.h); without bodies: its own.
+  SurfacePair plane;
   int patch = -1;              ///< the caller's number of its patch; solvers ignore it
   int friction_patch = -1;     ///< the caller's number of its friction patch; solvers ignore it
   int state = -1;              ///< number of its state in RowMemory; -1: none is kept
@@ -38,6 +49,7 @@ struct ContactRow : SurfacePair {
   double distance = 0.0;       ///< signed, at the start of the step [m]
   double skin_m = 0.0;         ///< the gap at which the pair's contacts are kept [m]
   double asked = 0.0;          ///< by how much the step has to open it at least; negative: it may close [m]
+  bool idle = false;           ///< implied by others (flush_bodies.h): asks nothing until a trial closes it
   double friction = 0.0;       ///< Coulomb's coefficient [-]
   double margin = 0.0;         ///< delta, the contact margin of the pair [m]
   double stiffness = 0.0;      ///< k of the penalty law, the point's part of it; for rows that yield [N/m]
@@ -67,8 +79,12 @@ inline double opening_share(double h) noexcept {
   return 1.0 - std::exp(-h / kOpening_s);
 }
 
+/// What an idle row asks: less than every step has to give [m].
+inline constexpr double kAsksNothing_m = -1e3;
+
 /// By how much a step has to open a row: its gap may close to the skin, or must open towards it [m].
 inline double asked_of(const ContactRow& row, double opening_share) noexcept {
+  if (row.idle) return kAsksNothing_m;
   const double missing = row.skin_m - row.distance;
   return missing > 0.0 ? opening_share * missing : missing;
 }

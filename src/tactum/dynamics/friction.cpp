@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "tactum/base/tolerances.h"
+#include "tactum/dynamics/even_loads.h"
 
 namespace tactum::inline v0_1 {
 namespace {
@@ -25,6 +26,11 @@ Vec3 apart(const FrictionPatch& patch, const Pose& X_WA, const Pose& X_W_B) {
   return difference - patch.place.n_BA_W * patch.place.n_BA_W.dot(difference);
 }
 
+/// The point of one body in the frame of another.
+Vec3 carried(const Vec3& p, const Pose& X_W_from, const Pose& X_W_to) {
+  return &X_W_from == &X_W_to ? p : Vec3(X_W_to.inverse() * (X_W_from * p));
+}
+
 /// How far a distance is beyond the skin; zero where that is too little to count.
 double gap_beyond(double distance_m, double skin_m) {
   return distance_m - skin_m > settled_length(skin_m) ? distance_m - skin_m : 0.0;
@@ -42,15 +48,16 @@ const FrictionAnchor* take_anchor(const FrictionAnchors& anchors, std::span<cons
     patch.anchor.on_B = X_W_B.inverse() * patch.place.centre_W;
     return nullptr;
   }
-  const Vec3 centre = X_WA * last->centre_A;
+  const Pose& X_WA_last = X_WB[Index(last->surfaces.body_a)];
+  const Vec3 centre = X_WA_last * last->centre_A;
   patch.place.centre_W = centre + patch.place.n_BA_W * patch.place.n_BA_W.dot(patch.place.centre_W - centre);
   if (last->slid) {
-    patch.anchor.on_A = last->centre_A;
+    patch.anchor.on_A = carried(last->centre_A, X_WA_last, X_WA);
     patch.anchor.on_B = X_W_B.inverse() * centre;
     return last;
   }
-  patch.anchor.on_A = last->on_A;
-  patch.anchor.on_B = last->on_B;
+  patch.anchor.on_A = carried(last->on_A, X_WA_last, X_WA);
+  patch.anchor.on_B = carried(last->on_B, X_WB[Index(last->surfaces.body_b)], X_W_B);
   patch.anchor.apart_W = apart(patch, X_WA, X_W_B);
   if (patch.anchor.apart_W.norm() <= settled_length(patch.place.skin_m)) patch.anchor.apart_W.setZero();
   return last;
@@ -82,21 +89,23 @@ FrictionPatch* Friction::patch_of(const SurfacePair& surfaces) noexcept {
 
 /// Finds the patches that push in the last answer.
 void Friction::find_pushing(const RowsInProblem& contacts, const ContactProblem& problem) noexcept {
+  EvenLoads loads;
+  find_even_loads(contacts, problem, {}, loads);
   const auto for_pushing_rows = [&](const auto& visit) {
-    for (const QpActive& active : problem.answer().active) {
-      const ContactRow* const row = contacts.row(active.row);
-      if (row == nullptr || !(active.multiplier > 0.0) || !(row->friction > 0.0)) continue;
-      FrictionPatch* found = patch_of(*row);
+    for (Index i = 0; i < loads.rows.size(); ++i) {
+      const ContactRow& row = contacts.rows[Index(loads.rows[i])];
+      if (!(loads.force_N[i] > 0.0) || !(row.friction > 0.0)) continue;
+      FrictionPatch* found = patch_of(row.friction_surfaces());
       if (found == nullptr) {
         FrictionPatch next;
-        next.surfaces = row->surfaces();
-        next.source_patch = row->patch;
-        next.coefficient = row->friction;
-        next.place.skin_m = row->skin_m;
+        next.surfaces = row.friction_surfaces();
+        next.source_patch = row.patch;
+        next.coefficient = row.friction;
+        next.place.skin_m = row.skin_m;
         if (!patches_.push_back(next)) continue;
         found = &patches_.back();
       }
-      visit(*found, *row, active.multiplier);
+      visit(*found, row, loads.force_N[i]);
     }
   };
   std::array<double, kMostPatches> opening{};  // by how much the rows have to open
@@ -125,15 +134,15 @@ void Friction::find_last_pushing(const RowsInProblem& contacts, const FrictionAn
   const Index pushing = patches_.size();
   for (const ContactRow& row : contacts.rows) {
     if (!(row.friction > 0.0) || gap_beyond(row.distance, row.skin_m) > 0.0) continue;
-    FrictionPatch* found = patch_of(row);
+    FrictionPatch* found = patch_of(row.friction_surfaces());
     if (found == nullptr) {
-      const FrictionAnchor* const last = anchors.find(row);
+      const FrictionAnchor* const last = anchors.find(row.friction_surfaces());
       if (last == nullptr || !last->pushed) continue;
       FrictionPatch patch;
-      patch.surfaces = row.surfaces();
+      patch.surfaces = row.friction_surfaces();
       patch.coefficient = row.friction;
       patch.place.skin_m = row.skin_m;
-      patch.place.centre_W = X_WB[Index(row.body_a)] * last->centre_A;
+      patch.place.centre_W = X_WB[Index(last->surfaces.body_a)] * last->centre_A;
       patch.place.radius_m = last->radius_m;
       if (!patches_.push_back(patch)) break;
       found = &patches_.back();
@@ -253,9 +262,8 @@ Friction::Loads Friction::loads_of(const FrictionPatch& patch, const RowsInProbl
       loads.cone_N += active.multiplier;
       loads.cone_force += active.multiplier * (push.force - patch.place.n_BA_W);
       loads.cone_torque += active.multiplier * push.torque;
-    } else if (contact != nullptr && *contact == patch.surfaces) {
+    } else if (contact != nullptr && contact->friction_surfaces() == patch.surfaces) {
       loads.corners_N += active.multiplier;
-      loads.corners_moment += active.multiplier * contact->p_W;
     }
   }
   return loads;
@@ -375,15 +383,51 @@ void Friction::forget_anchors(ContactProblem& problem) noexcept {
 
 void Friction::end(const RowsInProblem& contacts, const ContactProblem& problem, std::span<const Pose> X_WB,
                    FrictionAnchors& anchors) const noexcept {
+  UnknownChange cones{};  // by the normal forces of the cones
+  for (const FrictionPatch& patch : patches_)
+    push(patch.motion.off, loads_of(patch, contacts, problem).cone_N, cones.data());
+  EvenLoads even;
+  const bool all = find_even_loads(contacts, problem, cones, even);
   for (const FrictionPatch& patch : patches_) {
     if (!patch.acts) continue;
     // The centre of all forces of the patch: its corners', and the cone's at the centre so far.
     const Loads loads = loads_of(patch, contacts, problem);
     const double load = loads.cone_N + loads.corners_N;
-    const Vec3 centre = load > 0.0 ? Vec3((loads.corners_moment + loads.cone_N * patch.place.centre_W) / load)
-                                   : patch.place.centre_W;
+    double sum_N = all ? 0.0 : loads.cone_N;
+    Vec3 moment = sum_N * patch.place.centre_W;
+    for (Index i = 0; i < even.rows.size(); ++i) {
+      const ContactRow& row = contacts.rows[Index(even.rows[i])];
+      if (!(row.friction_surfaces() == patch.surfaces)) continue;
+      sum_N += even.force_N[i];
+      moment += even.force_N[i] * row.p_W;
+    }
+    const Vec3 centre = sum_N > 0.0 ? Vec3(moment / sum_N) : patch.place.centre_W;
     const bool pushed = loads.cone_N > 0.0 || (patch.sliding.acts && load > 0.0);
     anchors.add(next_anchor(patch, centre, pushed, X_WB));
+  }
+  note_pressed(contacts, problem, X_WB, anchors);
+}
+
+/// Anchors the planes that push in the last answer only because there was friction elsewhere, as a ladder's
+/// wall does: they have a patch from the next frame on.
+void Friction::note_pressed(const RowsInProblem& contacts, const ContactProblem& problem,
+                            std::span<const Pose> X_WB, FrictionAnchors& anchors) const noexcept {
+  for (const QpActive& active : problem.answer().active) {
+    const ContactRow* const row = contacts.row(active.row);
+    if (row == nullptr || !(active.multiplier > 0.0) || !(row->friction > 0.0)) continue;
+    const SurfacePair& on = row->friction_surfaces();
+    if (std::any_of(patches_.begin(), patches_.end(),
+                    [&](const FrictionPatch& patch) { return patch.surfaces == on; }))
+      continue;
+    const Pose& X_WA = X_WB[Index(on.body_a)];
+    const Vec3 at_A = X_WA.inverse() * row->p_W;
+    anchors.add({.surfaces = on,
+                 .n_A = rotated_back(X_WA.R, row->n_BA_W),
+                 .on_A = at_A,
+                 .on_B = X_WB[Index(on.body_b)].inverse() * row->p_W,
+                 .centre_A = at_A,
+                 .pushed = true,
+                 .slid = true});
   }
 }
 

@@ -91,7 +91,6 @@ class Friction {
   /// The forces at one patch, on A: of its cone, and of its corners along their normals.
   struct Loads {
     double cone_N = 0.0, corners_N = 0.0;  // along the normal [N]
-    Vec3 corners_moment = Vec3::Zero();    // about the world's origin [N m]
     Vec3 cone_force = Vec3::Zero();        // in the surface [N]
     Vec3 cone_torque = Vec3::Zero();       // about the normal [N m]
   };
@@ -107,6 +106,8 @@ class Friction {
   void find_last_pushing(const RowsInProblem& contacts, const FrictionAnchors& anchors,
                          std::span<const Pose> X_WB) noexcept;
   double taken_off(const FrictionPatch& patch, const ContactProblem& problem) const noexcept;
+  void note_pressed(const RowsInProblem& contacts, const ContactProblem& problem, std::span<const Pose> X_WB,
+                    FrictionAnchors& anchors) const noexcept;
   void drop_unsqueezed(const ContactProblem& problem) noexcept;
   FrictionPatch* patch_of(const SurfacePair& surfaces) noexcept;
   FrictionPatch* patch_of_row(std::size_t row) noexcept;

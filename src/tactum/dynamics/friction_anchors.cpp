@@ -27,17 +27,14 @@ const FrictionAnchor* FrictionAnchors::find(const SurfacePair& surfaces) const n
 const FrictionAnchor* FrictionAnchors::find(const FrictionPatch& patch, std::span<const Pose> X_WB,
                                             double same_plane_m) const noexcept {
   if (const FrictionAnchor* const same = find(patch.surfaces)) return same;
-  const int body_a = patch.surfaces.body_a;
-  const int body_b = patch.surfaces.body_b;
-  const Pose& X_WA = X_WB[Index(body_a)];
   const FrictionAnchor* nearest = nullptr;
   double most_alike = kSameDirection;
-  auto anchor = std::lower_bound(last_.begin(), last_.end(), std::pair(body_a, body_b),
-                                 [](const FrictionAnchor& a, const std::pair<int, int>& bodies) {
-                                   return std::pair(a.surfaces.body_a, a.surfaces.body_b) < bodies;
-                                 });
-  for (; anchor != last_.end() && anchor->surfaces.body_a == body_a && anchor->surfaces.body_b == body_b;
-       ++anchor) {
+  const int body_a = patch.surfaces.fixed_a ? -1 : patch.surfaces.body_a;  // -1: any that is fixed
+  auto anchor = std::lower_bound(last_.begin(), last_.end(), body_a,
+                                 [](const FrictionAnchor& a, int body) { return a.surfaces.body_a < body; });
+  for (; anchor != last_.end() && (body_a < 0 || anchor->surfaces.body_a == body_a); ++anchor) {
+    if (!same_bodies(anchor->surfaces, patch.surfaces)) continue;
+    const Pose& X_WA = X_WB[Index(anchor->surfaces.body_a)];
     const double alike = patch.place.n_BA_W.dot(X_WA.R * anchor->n_A);
     const double off_plane = patch.place.n_BA_W.dot(X_WA * anchor->centre_A - patch.place.centre_W);
     if (!(alike > most_alike) || std::abs(off_plane) > same_plane_m) continue;

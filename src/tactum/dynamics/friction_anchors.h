@@ -32,7 +32,8 @@ class FrictionAnchors {
   }
   /// The last frame's anchor of a patch; null when it had none. It is that of the same surfaces; where there
   /// is none, as when a body slides from one piece of a floor on to the next, that of the same bodies in the
-  /// same plane, no farther off it than `same_plane_m`.
+  /// same plane, no farther off it than `same_plane_m`. All fixed bodies are the same there: the anchor is in
+  /// the frames of the bodies that its own surfaces name.
   const FrictionAnchor* find(const FrictionPatch& patch, std::span<const Pose> X_WB,
                              double same_plane_m) const noexcept;
   /// The last frame's anchor of the same surfaces, null when there is none.

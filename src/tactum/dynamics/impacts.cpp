@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "tactum/base/static_vector.h"
 #include "tactum/base/tolerances.h"
@@ -13,8 +14,8 @@ using Index = std::size_t;
 
 constexpr int kMostIterations = 200;
 
-/// The corners of one pair that are solved together, each with its least normal velocity after the impact
-/// [m/s].
+/// The corners of one impact, which are solved together, each with its least normal velocity after it [m/s].
+/// They are those of two bodies; all fixed bodies count as one, the world.
 using Corners = StaticVector<ContactRow, ImpactScratch::kMostCorners>;
 
 double approach(const ContactRow& row, const ImpactBodies& bodies) {
@@ -24,12 +25,20 @@ double approach(const ContactRow& row, const ImpactBodies& bodies) {
                          velocity_at(bodies.V_WB[b], row.p_W - bodies.X_WB[b].p));
 }
 
-/// Finds all corners of the pair of `first` that close within h, or are as near as that one: where two faces
-/// meet flat, rounding must not leave corners out.
+constexpr int kWorld = -1;
+
+/// The two bodies that meet at a row, the fixed ones as the world, the smaller number first.
+std::pair<int, int> met_at(const ContactRow& row, const World& world) {
+  const auto who = [&](int body) { return world.bodies[Index(body)].moves() ? body : kWorld; };
+  return std::minmax({who(row.body_a), who(row.body_b)});
+}
+
+/// Finds all corners of the impact of `first` that close within h, or are as near as that one: where two
+/// faces meet flat, rounding must not leave corners out.
 void find_corners(std::span<const ContactRow> rows, const ContactRow& first, const ImpactBodies& bodies,
                   double fastest, double h, Corners& corners) {
   for (const ContactRow& row : rows) {
-    if (row.body_a != first.body_a || row.body_b != first.body_b) continue;
+    if (row.idle || met_at(row, bodies.world) != met_at(first, bodies.world)) continue;
     const double speed = approach(row, bodies);
     const double closes_m = std::max(std::max(0.0, speed) * h, first.distance + first.skin_m);
     if (row.distance > closes_m || !corners.push_back(row)) continue;
@@ -39,10 +48,12 @@ void find_corners(std::span<const ContactRow> rows, const ContactRow& first, con
   }
 }
 
-/// Sets up the problem of the pair: velocities for displacements, impulses for forces.
+/// Sets up the problem of the impact: velocities for displacements, impulses for forces.
 RowsInProblem set_problem(const Corners& corners, const ImpactBodies& bodies, ContactProblem& problem) {
   problem.clear();
-  for (const int body : {corners[0].body_a, corners[0].body_b}) {
+  const auto [one, other] = met_at(corners[0], bodies.world);
+  for (const int body : {one, other}) {
+    if (body == kWorld) continue;
     const Index i = Index(body);
     const Body& what = bodies.world.bodies[i];
     const Pose& X_WB = bodies.X_WB[i];
@@ -62,24 +73,29 @@ RowsInProblem set_problem(const Corners& corners, const ImpactBodies& bodies, Co
 void report(const RowsInProblem& contacts, const Friction& friction, const ContactProblem& problem,
             double share, ImpactObserver* observer) {
   if (observer == nullptr || !(share > 0.0)) return;
-  const int a = contacts.rows[0].body_a;
-  const int b = contacts.rows[0].body_b;
   for (const QpActive& active : problem.answer().active)
     if (const ContactRow* const row = contacts.row(active.row))
-      observer->hit(a, b, share * active.multiplier * row->n_BA_W, Vec3::Zero(), row->p_W);
-  friction.for_each_force(problem, [&](Index, const Push& push, double multiplier) {
-    observer->hit(a, b, share * multiplier * push.force, share * multiplier * push.torque, push.p_W);
+      observer->hit(row->body_a, row->body_b, share * active.multiplier * row->n_BA_W, Vec3::Zero(),
+                    row->p_W);
+  friction.for_each_force(problem, [&](Index patch, const Push& push, double multiplier) {
+    const SurfacePair& on = friction.patches()[patch].surfaces;
+    observer->hit(on.body_a, on.body_b, share * multiplier * push.force, share * multiplier * push.torque,
+                  push.p_W);
   });
 }
 
-/// Twists of the two bodies of a pair.
+/// Twists of the two bodies that meet; of the world, zero.
 using PairTwists = std::array<Twist, 2>;
 
 /// The impact of one pair.
 class PairImpact {
  public:
   PairImpact(const Corners& corners, const ImpactBodies& bodies, ImpactScratch& scratch)
-      : corners_(corners), input_{bodies.X_WB, scratch.no_anchors}, bodies_(bodies), scratch_(scratch) {}
+      : corners_(corners),
+        met_(met_at(corners[0], bodies.world)),
+        input_{bodies.X_WB, scratch.no_anchors},
+        bodies_(bodies),
+        scratch_(scratch) {}
 
   /// Solves for the velocities after the impact, each corner leaving with `asked`, or, plastic, with zero.
   bool solve(bool plastic) {
@@ -93,40 +109,53 @@ class PairImpact {
   }
   PairTwists answer() const {
     PairTwists V;
-    for (Index i = 0; i < 2; ++i) V[i] = to_twist(scratch_.problem.displacement(body(i)));
+    for_each_body([&](Index i, int body) { V[i] = to_twist(scratch_.problem.displacement(body)); });
     return V;
   }
-  PairTwists now() const { return {bodies_.V_WB[Index(body(0))], bodies_.V_WB[Index(body(1))]}; }
+  PairTwists now() const {
+    PairTwists V;
+    for_each_body([&](Index i, int body) { V[i] = bodies_.V_WB[Index(body)]; });
+    return V;
+  }
   /// Kinetic energy of the bodies of the pair that an impact moves [J].
   double energy(const PairTwists& V) const {
     double energy_J = 0.0;
-    for (Index i = 0; i < 2; ++i) {
-      if (bodies_.moves[Index(body(i))] == 0) continue;
-      const Body& what = bodies_.world.bodies[Index(body(i))];
-      const Vec3 w_B = bodies_.X_WB[Index(body(i))].R.transpose() * V[i].w;
+    for_each_body([&](Index i, int body) {
+      if (bodies_.moves[Index(body)] == 0) return;
+      const Body& what = bodies_.world.bodies[Index(body)];
+      const Vec3 w_B = bodies_.X_WB[Index(body)].R.transpose() * V[i].w;
       energy_J += 0.5 * what.mass_kg * V[i].v.squaredNorm() + 0.5 * w_B.dot(what.inertia_B * w_B);
-    }
+    });
     return energy_J;
   }
   /// Whether no body with a given velocity does work on the pair.
   bool is_closed() const {
-    const PairTwists V = now();
-    for (Index i = 0; i < 2; ++i)
-      if (bodies_.moves[Index(body(i))] == 0 && !(V[i].v.isZero(0.0) && V[i].w.isZero(0.0))) return false;
-    return true;
+    bool closed = true;
+    for_each_body([&](Index, int body) {
+      const Twist& V = bodies_.V_WB[Index(body)];
+      closed &= bodies_.moves[Index(body)] != 0 || (V.v.isZero(0.0) && V.w.isZero(0.0));
+    });
+    return closed;
   }
   void give(double share, ImpactObserver* observer) const {
     report(contacts_, scratch_.friction, scratch_.problem, share, observer);
   }
   void set(const PairTwists& V) const {
-    for (Index i = 0; i < 2; ++i)
-      if (bodies_.moves[Index(body(i))] != 0) bodies_.V_WB[Index(body(i))] = V[i];
+    for_each_body([&](Index i, int body) {
+      if (bodies_.moves[Index(body)] != 0) bodies_.V_WB[Index(body)] = V[i];
+    });
   }
 
  private:
-  int body(Index i) const { return i == 0 ? corners_[0].body_a : corners_[0].body_b; }
+  /// Calls visit(0 or 1, number) for those of the two that are bodies, not the world.
+  template <class Visit>
+  void for_each_body(const Visit& visit) const {
+    if (met_.first != kWorld) visit(Index(0), met_.first);
+    if (met_.second != kWorld) visit(Index(1), met_.second);
+  }
 
   const Corners& corners_;
+  std::pair<int, int> met_;
   Corners corners_now_;
   RowsInProblem contacts_;
   FrictionInput input_;

@@ -5,9 +5,9 @@
 /// divide it among them.
 ///
 /// Within a pair all its corners are solved together: vn after >= -e vn before, impulses >= 0, with Coulomb's
-/// friction for each pair of surfaces; a box that falls flat on its face leaves flat. It is the contact
-/// problem of two bodies with velocities for displacements, and is solved exactly: the order of corners has
-/// no effect.
+/// friction for each pair of surfaces; a box that falls flat on its face leaves flat. All fixed bodies are
+/// one, the world: on two rails a box leaves as flat as on one floor. It is the contact problem of two bodies
+/// with velocities for displacements, and is solved exactly: the order of corners has no effect.
 
 #include <span>
 

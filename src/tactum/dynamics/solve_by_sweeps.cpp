@@ -29,7 +29,10 @@ constexpr int kLimitedShare = 6;
 /// from contact to contact at a steady rate, the changes stay about the same, and there momentum helps most.
 constexpr double kMoreToChange = 1.01;
 
-auto key(const ContactRow& row) { return std::tuple(row.body_a, row.body_b, row.group_a, row.group_b); }
+auto key(const ContactRow& row) {
+  const SurfacePair& on = row.friction_surfaces();
+  return std::tuple(on.body_a, on.body_b, on.group_a, on.group_b);
+}
 
 }  // namespace
 
@@ -55,7 +58,7 @@ void Sweeps::make_patches(const RowsInProblem& contacts, std::span<const Pose> X
   for (auto first = order_.begin(), last = first; first != order_.end(); first = last) {
     last = std::find_if(first, order_.end(), [&](int i) { return key(row(i)) != key(row(*first)); });
     FrictionPatch& patch = patches_.emplace_back();
-    patch.surfaces = row(*first).surfaces();
+    patch.surfaces = row(*first).friction_surfaces();
     patch.source_patch = row(*first).patch;
     patch.coefficient = row(*first).friction;
     patch.place.skin_m = row(*first).skin_m;

@@ -141,7 +141,7 @@ bool open_after(double share, ConstraintStep& step) {
   }
   look_at_trial(0, step);
   for (Index p = 0; p < c.trial.gap_now.size(); ++p)
-    if (step.own.free.patch_asked[p] && !open_at_trial(p, c)) return false;
+    if (closed_at_trial(p, step)) return false;
   return true;
 }
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "tactum/contact/patch_corners.h"
+#include "tactum/response/constraint_trial.h"
 
 namespace tactum::inline v0_1 {
 namespace {
@@ -77,9 +78,9 @@ struct RowMaker {
     const Pose& X_WA = step.bodies.X_WB[Index(patch.body_a)];
     const Pose X_AB = relative_pose(X_WA, step.bodies.X_WB[Index(patch.body_b)]);
     PatchCorners corners;
-    if (patch.of_surfaces) {
-      const ContactPoint& point = patch.manifold.points[0];
-      corners.push_back({0.5 * (point.p_a + point.p_b), point.distance});
+    if (patch.of_surfaces || patch.implied) {
+      for (const ContactPoint& point : patch.manifold.points)
+        corners.push_back({0.5 * (point.p_a + point.p_b), point.distance});
     } else {
       const Polytope& A = step.world.bodies[Index(patch.body_a)].part->pieces[Index(patch.piece_a)];
       const Polytope& B = step.world.bodies[Index(patch.body_b)].part->pieces[Index(patch.piece_b)];
@@ -90,13 +91,15 @@ struct RowMaker {
       }
     }
     const Vec3 normal_W = X_WA.R * patch.manifold.normal;
-    const SurfacePair surfaces = surfaces_of(step.world, patch);
+    SurfacePair surfaces = surfaces_of(step.world, patch);
+    surfaces.fixed_a = !step.world.bodies[Index(patch.body_a)].moves();
+    surfaces.fixed_b = !step.world.bodies[Index(patch.body_b)].moves();
     const double friction = step.settings.friction.between(patch.body_a, patch.body_b);
     const double restitution = step.settings.impacts.restitution.between(patch.body_a, patch.body_b);
     // The grasped part has no impacts with bodies that are fixed or jointed: there its coupling is what
     // bounces.
     const Islands& islands = step.own.free.islands;
-    const bool struck = (islands.moves(patch.body_a) || islands.moves(patch.body_b)) &&
+    const bool struck = !patch.implied && (islands.moves(patch.body_a) || islands.moves(patch.body_b)) &&
                         (other < 0 || step.world.bodies[Index(other)].joint.kind == JointKind::kFree);
     for (Index i = 0; i < corners.size(); ++i) {
       if (out.rows.size() == out.rows.capacity()) {
@@ -111,6 +114,7 @@ struct RowMaker {
       row.distance = corners[i].distance;
       row.margin = patch.tolerance;
       row.skin_m = c.skin_of(patch);
+      row.idle = patch.implied;
       row.asked = asked_of(row, c.opening_share);
       row.friction = friction;
       row.impact = {.restitution = restitution, .enabled = struck};
@@ -142,6 +146,7 @@ void make_corner_rows(ConstraintStep& step) noexcept {
   for (Index p = 0; p < patches.size() && !out.full; ++p)
     if (!step.own.free.of_grasped(patches[p])) maker.add(patches[p], static_cast<int>(p), false);
   c.rows.count = out.rows.size();
+  c.planes.find(out.rows);
 }
 
 std::span<ContactRow> own_rows(ConstraintStep& step) noexcept {
@@ -151,7 +156,7 @@ std::span<ContactRow> own_rows(ConstraintStep& step) noexcept {
 std::size_t add_contact_rows(bool opening, ContactProblem& problem, ConstraintStep& step) noexcept {
   const Index first = problem.rows();
   for (ContactRow& row : own_rows(step)) {
-    const double offset = row.skin_m - row.distance;
+    const double offset = row.idle ? kAsksNothing_m : row.skin_m - row.distance;
     row.asked = opening ? offset : std::min(0.0, offset);
     problem.add_row(row.body_a, row.body_b, push_of(row), row.asked);
   }
@@ -199,6 +204,13 @@ void correct_rows(double share, ConstraintStep& step) noexcept {
     for (end = first + 1; end < rows.size() && rows[end].patch == rows[first].patch;) ++end;
     const double too_much = overstated_at_trial(rows.subspan(first, end - first), step);
     for (Index r = first; r < end; ++r) {
+      if (rows[r].idle) {
+        if (!closed_at_trial(Index(rows[r].patch), step)) continue;
+        const double missing = lift_of(rows[r], share) - kAsksNothing_m;
+        problem.tighten(first_row + r, missing - c.rows.feedback[r]);
+        c.rows.feedback[r] = missing;
+        continue;
+      }
       const double linear = problem.opening(problem.row_of(rows[r].body_a, rows[r].body_b, push_of(rows[r])));
       const double gap = gap_at_trial(rows[r], step) - too_much;
       const double missing = (rows[r].distance + share * linear - gap) / share;

@@ -41,6 +41,12 @@ double gap_at_trial(const ContactRow& row, const ConstraintStep& step) noexcept;
 /// exactly. Of surfaces GapAnswer::kExact may stand for a lower bound only, see GapOracle::distances_at().
 double overstated_at_trial(std::span<const ContactRow> rows_of_patch, const ConstraintStep& step) noexcept;
 
+/// What an idle row asks of a step, of which `share` is taken, once a trial has closed its gap: that its body
+/// is lifted to the skin over the step that it met [m].
+inline double lift_of(const ContactRow& row, double share) noexcept {
+  return (row.skin_m - row.distance) / share;
+}
+
 /// Second-order correction: adds to the own rows of the step's problem the difference between their linear
 /// gaps and the gaps at the trial, which is the pose at the fraction `share` of the answer's step. A row is
 /// stated for the whole step, so the difference is divided by `share`, which must be above zero.

@@ -13,6 +13,7 @@ ConstraintState::ConstraintState(const World& world, const FrameSettings& settin
       position_problem(Index(settings.budget.max_contact_points), world.bodies.size(),
                        std::min(kMostUnknowns, world.bodies.size())),
       anchors(Index(settings.budget.max_contact_points)),
+      planes(world.bodies.size(), Index(settings.budget.max_contact_points)),
       opening_share(tactum::opening_share(settings.dt_s)),
       trust{.length_m = settings.constraint.least_step_m},
       corner_memory(settings.budget.capacity.patches / 4 + 1),

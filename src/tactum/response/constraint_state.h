@@ -8,6 +8,7 @@
 #include "tactum/base/reserved_vector.h"
 #include "tactum/contact/gap_oracle.h"
 #include "tactum/contact/patch_corners.h"
+#include "tactum/dynamics/friction_planes.h"
 #include "tactum/dynamics/impacts.h"
 #include "tactum/dynamics/islands.h"
 #include "tactum/dynamics/solve_by_sweeps.h"
@@ -78,6 +79,7 @@ struct ConstraintState {
   ContactProblem position_problem;  ///< with true normals: to where the forces would have the bodies
   Friction friction;
   FrictionAnchors anchors;
+  FrictionPlanes planes;
   FrictionUses friction_uses;  ///< friction at each patch, for displays
   std::vector<double> skin_m;  ///< of each body that moves, by its size; see skin_of() [m]
   double opening_share;        ///< fraction of the depth below the skin that is opened in a step [-]

@@ -35,9 +35,11 @@ void look_at_trial(int keep_back, ConstraintStep& step) noexcept {
                                         GapAnswer::kUnknown) != c.trial.gap_answer.end();
 }
 
-bool open_at_trial(std::size_t patch, const ConstraintState& c) noexcept {
-  if (c.trial.gap_answer[patch] == GapAnswer::kExact) return c.trial.gap[patch] >= c.trial.gap_least[patch];
-  return c.trial.gap_answer[patch] == GapAnswer::kProven;
+bool closed_at_trial(std::size_t patch, const ConstraintStep& step) noexcept {
+  const TrialPose& trial = step.own.constraint.trial;
+  if (!step.own.free.patch_asked[patch]) return false;
+  if (trial.gap_answer[patch] == GapAnswer::kExact) return !(trial.gap[patch] >= trial.gap_least[patch]);
+  return trial.gap_answer[patch] != GapAnswer::kProven;
 }
 
 }  // namespace tactum::inline v0_1

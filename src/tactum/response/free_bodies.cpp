@@ -126,7 +126,7 @@ bool look(bool all, int keep_back, ConstraintStep& step) {
   std::fill(f.settled.begin(), f.settled.end(), 1);
   bool all_open = true;
   for (Index p = 0; p < patches.size(); ++p) {
-    const bool closed = f.patch_asked[p] && !open_at_trial(p, step.own.constraint);
+    const bool closed = closed_at_trial(p, step);
     f.patch_closed.push_back(closed ? 1 : 0);
     if (!closed) continue;
     f.settled[Index(f.islands.of_contact(patches[p].body_a, patches[p].body_b))] = 0;
@@ -189,6 +189,10 @@ void correct(ConstraintStep& step) {
     const double share = f.share[Index(of_contact)];
     if (!(share > 0.0)) continue;  // it stays, and its rows are not corrected
     for (Index r = first; r < end; ++r) {
+      if (rows[r].idle) {
+        if (closed_at_trial(Index(rows[r].patch), step)) rows[r].asked = lift_of(rows[r], share);
+        continue;
+      }
       const double speed = rows[r].n_BA_W.dot(velocity_at(V_WB[a], rows[r].p_W - X_WB[a].p) -
                                               velocity_at(V_WB[b], rows[r].p_W - X_WB[b].p));
       const double gap = gap_at_trial(rows[r], step) - too_much;

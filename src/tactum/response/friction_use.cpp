@@ -39,7 +39,7 @@ void use_of_friction(const Friction& friction, const ContactProblem& problem, In
     const Index row = Index(active.row) - first;
     if (Index(active.row) < first || row >= rows.size() || !(active.multiplier > 0.0)) continue;
     for (Index i = 0; i < patches.size(); ++i) {
-      if (!patches[i].acts || !(rows[row] == patches[i].surfaces)) continue;
+      if (!patches[i].acts || !(rows[row].friction_surfaces() == patches[i].surfaces)) continue;
       rows[row].friction_patch = static_cast<int>(i);
       forces[i].load_N += active.multiplier;
     }
