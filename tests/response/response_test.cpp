@@ -89,6 +89,9 @@ class OverPlane final : public GapOracle {
                            double dt_s) noexcept override {
     return {dt_s, true};
   }
+  bool passes(int, std::span<const Pose>, std::span<const Twist>, double, double) noexcept override {
+    return false;
+  }
   int tests_left() const noexcept override { return 1000; }
   bool budget_limited() const noexcept override { return false; }
   bool blocked(int /*body*/) const noexcept override { return false; }

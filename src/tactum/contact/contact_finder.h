@@ -83,6 +83,8 @@ class ContactFinder final : public GapOracle {
   double depth_along(int patch, std::span<const Pose> X_WB, const Vec3& direction_W) noexcept override;
   FirstImpact first_impact(std::span<const Pose> X_WB, std::span<const Twist> V_WB,
                            double dt_s) noexcept override;
+  bool passes(int patch, std::span<const Pose> X_WB, std::span<const Twist> V_WB, double dt_s,
+              double gap_m) noexcept override;
   const ContactWork& work() const noexcept { return work_; }
   /// Largest distance of a point of body i from its origin [m].
   double radius(int i) const noexcept { return radius_[static_cast<std::size_t>(i)]; }

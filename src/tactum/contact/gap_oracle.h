@@ -65,6 +65,11 @@ class GapOracle {
   /// the tests of time_of_impact.h for pairs that may touch in that time, and nothing for others.
   virtual FirstImpact first_impact(std::span<const Pose> X_WB, std::span<const Twist> V_WB,
                                    double dt_s) noexcept = 0;
+  /// Whether the two pieces of a patch stay farther apart than `gap_m` while their bodies move for `dt_s` as
+  /// advanced(X_WB, V_WB, t), from the poses where the patch was found; false where that is not known, as of
+  /// surfaces without pieces, or where no test is left. Costs the tests of time_of_impact.h.
+  virtual bool passes(int patch, std::span<const Pose> X_WB, std::span<const Twist> V_WB, double dt_s,
+                      double gap_m) noexcept = 0;
   /// Exact tests that are left of the frame's budget.
   virtual int tests_left() const noexcept = 0;
   /// Whether the budget was not ample in this frame.

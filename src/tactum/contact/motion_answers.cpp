@@ -94,4 +94,18 @@ FirstImpact ContactFinder::first_impact(std::span<const Pose> X_WB, std::span<co
   return first;
 }
 
+bool ContactFinder::passes(int patch, std::span<const Pose> X_WB, std::span<const Twist> V_WB, double dt_s,
+                           double gap_m) noexcept {
+  const ContactPatch& at = patches_[Index(patch)];
+  if (at.of_surfaces || tests_left_ <= 0) return false;
+  const Index a = Index(at.body_a);
+  const Index b = Index(at.body_b);
+  const TimeOfImpact impact =
+      time_of_impact(bodies_[a].part->pieces[Index(at.piece_a)], X_WB[a], V_WB[a],
+                     bodies_[b].part->pieces[Index(at.piece_b)], X_WB[b], V_WB[b], dt_s, gap_m,
+                     pairs_[Index(at.pair)].cache, std::min(tests_left_, kMostSteps));
+  tests_left_ -= impact.steps;
+  return impact.status == ImpactStatus::kMiss;
+}
+
 }  // namespace tactum::inline v0_1

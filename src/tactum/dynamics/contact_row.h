@@ -49,7 +49,7 @@ struct ContactRow : SurfacePair {
   double distance = 0.0;       ///< signed, at the start of the step [m]
   double skin_m = 0.0;         ///< the gap at which the pair's contacts are kept [m]
   double asked = 0.0;          ///< by how much the step has to open it at least; negative: it may close [m]
-  bool idle = false;           ///< implied by others (flush_bodies.h): asks nothing until a trial closes it
+  bool idle = false;           ///< implied by others, or passed by: asks nothing until a trial closes it
   double friction = 0.0;       ///< Coulomb's coefficient [-]
   double margin = 0.0;         ///< delta, the contact margin of the pair [m]
   double stiffness = 0.0;      ///< k of the penalty law, the point's part of it; for rows that yield [N/m]

@@ -202,6 +202,39 @@ void correct(ConstraintStep& step) {
   }
 }
 
+/// Leaves out the contacts that bodies pass by: a row states a gap along one normal, which turns as a ball
+/// falls past an edge, and would stop it where it never touches. They ask nothing until a trial closes them.
+void leave_out_passed(ConstraintStep& step) {
+  FreeBodies& f = step.own.free;
+  const std::vector<Pose>& X_WB = step.bodies.X_WB;
+  const double h = step.dt_s;
+  const std::span<ContactRow> rows(step.own.contact_rows.rows.data(), step.own.constraint.rows.count);
+  f.V_free = step.bodies.V_WB;  // same size: nothing is allocated
+  for (Index i = 0; i < f.V_free.size(); ++i)
+    if (f.struck[i])
+      add_gravity(step.world.bodies[i], step.world.gravity_W * (0.5 * h), X_WB[i], f.V_free[i]);
+  for (Index first = 0, end = 0; first < rows.size(); first = end) {
+    for (end = first + 1; end < rows.size() && rows[end].patch == rows[first].patch;) ++end;
+    const std::span<ContactRow> own = rows.subspan(first, end - first);
+    const Index a = Index(own[0].body_a);
+    const Index b = Index(own[0].body_b);
+    const bool free = (f.struck[a] || f.struck[b]) && !is_grasped(step, a) && !is_grasped(step, b);
+    const auto meets = [&](const ContactRow& row) {
+      const double closing = row.n_BA_W.dot(velocity_at(f.V_free[b], row.p_W - X_WB[b].p) -
+                                            velocity_at(f.V_free[a], row.p_W - X_WB[a].p));
+      return closing > kImpactSpeed && row.distance > 2.0 * row.skin_m &&
+             row.distance - closing * h < row.skin_m;
+    };
+    if (!free || own[0].idle || std::none_of(own.begin(), own.end(), meets)) continue;
+    if (!step.gaps.passes(own[0].patch, X_WB, f.V_free, h, 0.5 * own[0].skin_m)) continue;
+    for (ContactRow& row : own) {
+      row.idle = true;
+      row.asked = kAsksNothing_m;
+      row.impact.enabled = false;
+    }
+  }
+}
+
 }  // namespace
 
 void begin_midway(const World& world, double dt_s, WorldState& state) noexcept {
@@ -263,6 +296,7 @@ void apply_impacts(ConstraintStep& step) noexcept {
     step.own.free.struck[i] =
         !is_grasped(step, i) && step.own.free.islands.moves(static_cast<int>(i)) ? 1 : 0;
   }
+  leave_out_passed(step);
   const double energy_J = grasped < 0 ? 0.0 : bodies_energy(step.world, step.bodies, grasped);
   ImpactsOnGrasped impacts(grasped, grasped < 0 ? Vec3::Zero() : X_WB[Index(grasped)] * step.grasped.X_BH.p,
                            step.own.free.momentum);
