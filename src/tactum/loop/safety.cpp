@@ -32,10 +32,9 @@ bool limit_step(const Vec3& from, Vec3& v, double step) noexcept {
   return true;
 }
 
-/// The faults in the motion of the pose; stores the pose.
+/// The faults in the motion of a plausible pose; stores the pose.
 std::uint32_t faults_of_motion(const SafetyLimits& limits, SafetyState& state,
                                const SafetyInput& input) noexcept {
-  if (!input.sample_valid || !plausible(input.X_DH)) return 0;
   const double time_s = input.now_s - input.sample_age_s;
   std::uint32_t flags = 0;
   if (state.measured) {
@@ -61,7 +60,8 @@ std::uint32_t faults(const SafetyLimits& limits, SafetyState& state, const Safet
   std::uint32_t flags = 0;
   if (!input.wanted.finite() || !std::isfinite(input.period_s) || input.period_s <= 0.0)
     flags |= kNonFiniteWrench;
-  if (!plausible(input.X_DH)) flags |= kImplausiblePose;
+  const bool pose_is_plausible = plausible(input.X_DH);
+  if (!pose_is_plausible) flags |= kImplausiblePose;
   // Written so that a NaN is stale; a sample from the future comes from a broken clock.
   if (!(std::abs(input.sample_age_s) <= limits.max_sample_age_s)) flags |= kStaleSample;
   state.invalid_s = input.sample_valid ? 0.0 : state.invalid_s + input.period_s;
@@ -71,7 +71,8 @@ std::uint32_t faults(const SafetyLimits& limits, SafetyState& state, const Safet
   if (input.late) flags |= kMissedDeadline;
   if (input.refused) flags |= kWrenchRefused;
   if (!input.motors_on) flags |= kMotorsOff;
-  return flags | faults_of_motion(limits, state, input);
+  if (input.sample_valid && pose_is_plausible) flags |= faults_of_motion(limits, state, input);
+  return flags;
 }
 
 /// Moves the gain along its ramp. A ramp of no length is a step.
