@@ -53,15 +53,16 @@ Mat3 inverse_factor(const Mat3& A) noexcept {
 }
 
 /// The one unknown of a body on a hinge or slider, whose column is its travel.
-JointForces set_motion(ProblemBody& body, const PlacedBody& placed, const Vec6& s, const BodyMetric& metric,
+JointForces set_motion(ProblemBody& body, const PlacedBody& placed, const BodyMetric& metric,
                        const Vec6& target, double h) noexcept {
+  const Vec6 s = at_point(single_motion(placed.body.joint, placed.X_WB), body.centre - body.origin);
   Vec6 Ms;
   Ms << metric.linear * s.head<3>(), metric.angular * s.tail<3>();
   double M = s.dot(Ms);
   double pull = Ms.dot(target);
-  JointForces forces;
-  if (h > 0.0)
-    forces = joint_forces(placed.body, placed.X_WB, placed.joint, metric.has_momentum ? M : 0.0, h);
+  const double inertia = metric.has_momentum ? M : 0.0;
+  const JointForces forces =
+      h > 0.0 ? joint_forces(placed.body, placed.X_WB, placed.joint, inertia, h) : JointForces{};
   if (forces.drag > 0.0) {
     M += forces.drag / h;
     pull += forces.drag * forces.free_rate;
@@ -72,11 +73,12 @@ JointForces set_motion(ProblemBody& body, const PlacedBody& placed, const Vec6& 
 }
 
 /// The three unknowns of a body on a ball.
-JointForces set_motions_about_ball(ProblemBody& body, const PlacedBody& placed, const JointMotions& S,
-                                   const BodyMetric& metric, const Vec6& target, double h) noexcept {
-  JointForces forces;
-  if (h > 0.0) forces = joint_forces(placed.body, placed.X_WB, placed.joint, 0.0, h);
-  const Eigen::Matrix<double, 6, 3> motions = S;
+JointForces set_motions_about_ball(ProblemBody& body, const PlacedBody& placed, const BodyMetric& metric,
+                                   const Vec6& target, double h) noexcept {
+  const JointForces forces =
+      h > 0.0 ? joint_forces(placed.body, placed.X_WB, placed.joint, 0.0, h) : JointForces{};
+  Eigen::Matrix<double, 6, 3> motions = joint_motions(placed.body.joint, placed.X_WB);
+  for (int i = 0; i < 3; ++i) motions.col(i) = at_point(motions.col(i), body.centre - body.origin);
   Eigen::Matrix<double, 6, 3> MS;
   MS.topRows<3>() = metric.linear * motions.topRows<3>();
   MS.bottomRows<3>() = metric.angular * motions.bottomRows<3>();
@@ -157,10 +159,8 @@ void ContactProblem::set_motions(ProblemBody& body, const PlacedBody& placed, co
     body.target.setZero();
     return;
   }
-  JointMotions S = joint_motions(placed.body.joint, placed.X_WB);
-  for (Eigen::Index i = 0; i < S.cols(); ++i) S.col(i) = at_point(S.col(i), body.centre - body.origin);
-  const JointForces forces = body.rank == 1 ? set_motion(body, placed, S.col(0), metric, target, h)
-                                            : set_motions_about_ball(body, placed, S, metric, target, h);
+  const JointForces forces = body.rank == 1 ? set_motion(body, placed, metric, target, h)
+                                            : set_motions_about_ball(body, placed, metric, target, h);
   if (!forces.acts) return;
   const Push along{body.centre, forces.rate.head<3>(), forces.rate.tail<3>()};
   if (forces.friction > 0.0 && body.rank == 1)
@@ -224,33 +224,36 @@ void ContactProblem::add_joint_rows(bool exact) noexcept {
   for (const Limit& limit : limits_) add_row(limit.body, -1, limit.push, -limit.travel);
 }
 
-/// Sets what a push does to one body, on the side of its `sign`.
-void ContactProblem::project(int number, double sign, const Push& push, QpRow::Run& run,
-                             QpRow& row) const noexcept {
-  const ProblemBody* const body = number < 0 ? nullptr : find(number);
-  if (body == nullptr) return;
-  run.first = static_cast<std::uint32_t>(body->first);
-  run.count = static_cast<std::uint32_t>(body->rank);
-  const Vec3 force = sign * push.force;
-  const Vec3 torque = sign * (push.torque + (push.p_W - body->centre).cross(push.force));
-  const auto work = [&](const auto& x) {
-    return force.dot(x.template head<3>()) + torque.dot(x.template tail<3>());
-  };
-  row.offset -= work(body->target);
-  if (body->rank < 6) {
-    for (Index i = 0; i < body->rank; ++i) run.g[i] = work(body->motions.col(Eigen::Index(i)));
-    return;
-  }
-  for (int i = 0; i < 3; ++i) {
-    run.g[Index(i)] = body->per_displacement * force[i];
-    run.g[Index(3 + i)] = torque.dot(body->turns.col(i));
+/// Sets what a push on the first body does, and its opposite on the other one.
+void ContactProblem::project(int body_a, int body_b, const Push& push, QpRow& row) const noexcept {
+  for (Index side = 0; side < 2; ++side) {
+    const int number = side == 0 ? body_a : body_b;
+    const ProblemBody* const body = number < 0 ? nullptr : find(number);
+    if (body == nullptr) continue;
+    QpRow::Run& run = row.runs[side];
+    run.first = static_cast<std::uint32_t>(body->first);
+    run.count = static_cast<std::uint32_t>(body->rank);
+    const double sign = side == 0 ? 1.0 : -1.0;
+    const Vec3 force = sign * push.force;
+    const Vec3 torque = sign * (push.torque + (push.p_W - body->centre).cross(push.force));
+    const auto work = [&](const auto& x) {
+      return force.dot(x.template head<3>()) + torque.dot(x.template tail<3>());
+    };
+    row.offset -= work(body->target);
+    if (body->rank < 6) {
+      for (Index i = 0; i < body->rank; ++i) run.g[i] = work(body->motions.col(Eigen::Index(i)));
+      continue;
+    }
+    for (int i = 0; i < 3; ++i) {
+      run.g[Index(i)] = body->per_displacement * force[i];
+      run.g[Index(3 + i)] = torque.dot(body->turns.col(i));
+    }
   }
 }
 
 QpRow ContactProblem::row_of(int body_a, int body_b, const Push& push) const noexcept {
   QpRow row;
-  project(body_a, 1.0, push, row.runs[0], row);
-  project(body_b, -1.0, push, row.runs[1], row);
+  project(body_a, body_b, push, row);
   return row;
 }
 
@@ -258,8 +261,7 @@ bool ContactProblem::add_row(int body_a, int body_b, const Push& push, double of
   if (rows_.size() == rows_.capacity()) return false;
   QpRow& row = rows_.emplace_back();
   row.offset = offset;
-  project(body_a, 1.0, push, row.runs[0], row);
-  project(body_b, -1.0, push, row.runs[1], row);
+  project(body_a, body_b, push, row);
   return true;
 }
 

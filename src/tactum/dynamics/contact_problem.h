@@ -40,13 +40,17 @@ BodyMetric inertial_metric(const Body& body, const Pose& X_WB, double h) noexcep
 /// per_displacement * z_0..2, and the turn from it, turns * z_3..5; those of a jointed body, which has fewer,
 /// give both by the columns of `motions`.
 struct ProblemBody {
+  // Not filled: next_body() and add_body() write what is read.
+  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init,modernize-use-equals-default)
+  ProblemBody() noexcept {}
+
   int body = -1;                        ///< index into World::bodies
   std::size_t first = 0, rank = 0;      ///< its unknowns
-  Vec3 origin = Vec3::Zero();           ///< of the body, in W [m]
-  Vec3 centre = Vec3::Zero();           ///< where its metric is stated, in W [m]
-  Vec6 target = Vec6::Zero();           ///< x* at the centre [m, rad]
+  Vec3 origin;                          ///< of the body, in W [m]
+  Vec3 centre;                          ///< where its metric is stated, in W [m]
+  Vec6 target;                          ///< x* at the centre [m, rad]
   double per_displacement = 0.0;        ///< 1 / sqrt(linear metric) [sqrt(m/N)]
-  Mat3 turns = Mat3::Zero();            ///< U^-1 of the angular metric U^T U, axes of W
+  Mat3 turns;                           ///< U^-1 of the angular metric U^T U, axes of W; of a free body
   Eigen::Matrix<double, 6, 3> motions;  ///< the first `rank` columns, of a jointed body
 };
 
@@ -186,7 +190,7 @@ class ContactProblem {
     return at < 0 ? nullptr : &bodies_[static_cast<std::size_t>(at)];
   }
   ProblemBody& next_body(int body, std::size_t rank, const Vec3& origin, const Vec3& centre) noexcept;
-  void project(int number, double sign, const Push& push, QpRow::Run& run, QpRow& row) const noexcept;
+  void project(int body_a, int body_b, const Push& push, QpRow& row) const noexcept;
   void set_motions(ProblemBody& body, const PlacedBody& placed, const BodyMetric& metric, const Vec6& target,
                    double h) noexcept;
   void add_friction_unknown(const JointFriction& friction) noexcept;

@@ -13,16 +13,6 @@ namespace {
 /// One or three unknowns, without allocation.
 using SmallMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 3, 3>;
 
-/// The one motion that a hinge or slider leaves free.
-Vec6 single_motion(const Joint& joint, const Pose& X_WB) noexcept {
-  Vec6 s;
-  if (joint.kind == JointKind::kHinge)
-    s << joint.axis_W.cross(X_WB.p - joint.anchor_W), joint.axis_W;
-  else
-    s << joint.axis_W, Vec3::Zero();
-  return s;
-}
-
 bool has_single_motion(const Joint& joint) noexcept {
   return joint.kind == JointKind::kHinge || joint.kind == JointKind::kSlider;
 }
@@ -48,6 +38,15 @@ Resistance inertial_resistance(const Body& body, const Pose& X_WB) noexcept {
   M.topLeftCorner<3, 3>() = body.mass_kg * Mat3::Identity();
   M.bottomRightCorner<3, 3>() = X_WB.R * body.inertia_B * X_WB.R.transpose();
   return M;
+}
+
+Vec6 single_motion(const Joint& joint, const Pose& X_WB) noexcept {
+  Vec6 s;
+  if (joint.kind == JointKind::kHinge)
+    s << joint.axis_W.cross(X_WB.p - joint.anchor_W), joint.axis_W;
+  else
+    s << joint.axis_W, Vec3::Zero();
+  return s;
 }
 
 JointMotions joint_motions(const Joint& joint, const Pose& X_WB) noexcept {

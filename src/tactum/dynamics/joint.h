@@ -21,6 +21,9 @@ Resistance inertial_resistance(const Body& body, const Pose& X_WB) noexcept;
 using JointMotions = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, 3>;
 JointMotions joint_motions(const Joint& joint, const Pose& X_WB) noexcept;
 
+/// The one column of a hinge or slider.
+Vec6 single_motion(const Joint& joint, const Pose& X_WB) noexcept;
+
 /// The row that gives the rate of the joint's position from a twist: position' = rate . V. Zero where there
 /// is none. For a ball it is along the axis about which the ball has turned.
 Vec6 joint_rate(const Body& body, const Pose& X_WB) noexcept;

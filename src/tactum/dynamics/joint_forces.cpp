@@ -32,7 +32,7 @@ Twist most_by_spring(const Body& body, const Pose& X_WB, const JointPosition& at
   const Joint& joint = body.joint;
   if (joint.stiffness == 0.0 || (joint.kind != JointKind::kHinge && joint.kind != JointKind::kSlider))
     return {};
-  const Vec6 s = joint_motions(joint, X_WB).col(0);
+  const Vec6 s = single_motion(joint, X_WB);
   const double inertia = s.dot(inertial_resistance(body, X_WB) * s);
   const double stretch = std::max(std::abs(at.now - joint.rest), std::abs(at.before - joint.rest));
   return to_twist(s * (h * joint.stiffness * stretch / inertia));
