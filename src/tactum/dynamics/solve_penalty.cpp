@@ -63,16 +63,14 @@ class Newton {
 
   void add(const QpRow& next, const ForceLaw& law) {
     Row& row = rows_[n_++];
-    row.size = 0;
-    // In the order of the unknowns, for H is kept below its diagonal.
+    // In the order of the unknowns, for H is kept below its diagonal. Runs are copied whole, which takes less
+    // than to copy as much of them as there is: the second one overwrites what the first has too much.
     const bool swapped = next.runs[1].first < next.runs[0].first;
-    for (const Index r : {Index(swapped ? 1 : 0), Index(swapped ? 0 : 1)}) {
-      const QpRow::Run& run = next.runs[r];
-      for (Index i = 0; i < run.count; ++i) {
-        row.column[row.size] = static_cast<std::uint8_t>(run.first + i);
-        row.g[row.size++] = run.g[i];
-      }
-    }
+    const QpRow::Run& first = next.runs[swapped ? 1 : 0];
+    const QpRow::Run& second = next.runs[swapped ? 0 : 1];
+    row.place(first, 0);
+    row.place(second, first.count);
+    row.size = first.count + second.count;
     row.stiffness = law.stiffness;
     row.wanted = next.offset;
     row.least = law.least;
@@ -95,14 +93,15 @@ class Newton {
       Index wrong = 0;
       for (Index i = 0; i < n_; ++i) {
         rows_[i].missing = missing(rows_[i]);
-        wrong += is_wrong(rows_[i]) ? 1 : 0;
+        rows_[i].wrong = is_wrong(rows_[i]);
+        wrong += rows_[i].wrong ? 1 : 0;
       }
       if (wrong == 0) return round;
       if (guarded) shorten_step();
       guarded |= wrong >= fewest;
       fewest = wrong;
       for (Index i = 0; i < n_; ++i)
-        if (guarded || is_wrong(rows_[i])) change(rows_[i], wanted_state(rows_[i]));
+        if (guarded || rows_[i].wrong) change(rows_[i], wanted_state(rows_[i]));
     }
     return 0;
   }
@@ -131,6 +130,14 @@ class Newton {
     double missing;         // offset - g z, since the last step
     double missing_before;  // before it, where the step is guarded
     State state;
+    bool wrong;  // the state, after the last step
+
+    void place(const QpRow::Run& run, Index at) {
+      for (Index i = 0; i < QpRow::kLongestRun; ++i) {
+        column[at + i] = static_cast<std::uint8_t>(run.first + i);
+        g[at + i] = run.g[i];
+      }
+    }
   };
 
   /// Adds the terms of a row in this state to H and to the right side, or removes them.
