@@ -159,7 +159,7 @@ struct Hand {
         EXPECT_LE(moved, bound[std::size_t(body)] * (1 + 1e-9) + 1e-15) << "frame " << i << " body " << body;
       }
       least_gap_m = std::min(least_gap_m, OverPlane::gap(bodies.X_WB[0]));
-      felt = response.felt(step, bodies);
+      felt = response.felt(step, handle_at(grasped, bodies.X_WB[0]));
     }
     return felt;
   }
@@ -259,7 +259,7 @@ TEST(Response, NothingIsFeltOfAPartThatIsNotHeld) {
     const StepInput step{motion, {}, priority, work, hand.no_shading, start};
     OverPlane plane(hand.world, response.points());
     response.step(step, plane, hand.bodies, hand.report);
-    const Wrench felt = response.felt(step, hand.bodies);
+    const Wrench felt = response.felt(step, {});
     EXPECT_EQ(felt.f.norm() + felt.t.norm(), 0.0);
   }
 }

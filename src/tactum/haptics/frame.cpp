@@ -5,11 +5,14 @@
 namespace tactum::inline v0_1 {
 namespace {
 
-void report_grasp(const GraspedPart& grasped, const WorldState& bodies, FrameReport& report) {
+/// The handle where the step has left it; none while nothing is grasped.
+PlacedHandle report_grasp(const GraspedPart& grasped, const WorldState& bodies, FrameReport& report) {
   report.X_WH = grasped.X_WH;
-  if (grasped.body < 0) return;
-  report.X_WH_proxy = bodies.X_WB[static_cast<std::size_t>(grasped.body)] * grasped.X_BH;
+  if (grasped.body < 0) return {};
+  const PlacedHandle handle = handle_at(grasped, bodies.X_WB[static_cast<std::size_t>(grasped.body)]);
+  report.X_WH_proxy = handle.X_WH_proxy;
   report.field = grasped.field.at_centre;
+  return handle;
 }
 
 }  // namespace
@@ -20,6 +23,7 @@ Wrench haptic_frame(const World& world, const FrameSettings& settings, const Dev
   report.index = tick.index;
   WorldState& bodies = state.world;
   ContactStage& contacts = state.contacts;
+  PlacedHandle handle;
   Wrench felt;
   // The pose of the probe, the grasped part, and the load of force fields on it.
   const GraspedPart grasped = track_hand(world, settings, sample, bodies.X_WB, state.hand);
@@ -48,8 +52,8 @@ Wrench haptic_frame(const World& world, const FrameSettings& settings, const Dev
     state.ended(Stage::kResponse);
 
     // The wrench that the hand feels, at the handle, world axes.
-    report_grasp(grasped, bodies, report);
-    felt = state.response.felt(step, bodies);
+    handle = report_grasp(grasped, bodies, report);
+    felt = state.response.felt(step, handle);
   }
   report.coupling = felt;
   report.smoothed =
@@ -58,7 +62,8 @@ Wrench haptic_frame(const World& world, const FrameSettings& settings, const Dev
   // The caller's own wrench, then passivity, then safety: all at the handle, device axes.
   PortInput port{.wanted = report.smoothed, .sent = state.safety.sent, .dt_s = settings.dt_s};
   const double pending_J = state.response.pending_J();
-  add_stored_energy(world, settings.coupling, bodies, grasped, state.hand.field.given_J, pending_J, port);
+  add_stored_energy(world, settings.coupling, bodies, grasped.body, handle.to_hand, state.hand.field.given_J,
+                    pending_J, port);
   if (state.force_stage != nullptr) port.wanted = state.force_stage->apply(port.wanted, sample, report);
   const Wrench passive = passive_wrench(settings.port, state.port, sample, port, report.port);
   SafetyReport safety;

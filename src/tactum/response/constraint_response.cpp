@@ -29,7 +29,7 @@ void ConstraintResponse::step(const StepInput& input, GapOracle& gaps, WorldStat
   respond_constrained(step);
 }
 
-Wrench ConstraintResponse::felt(const StepInput& input, const WorldState& /*bodies*/) noexcept {
+Wrench ConstraintResponse::felt(const StepInput& input, const PlacedHandle& /*handle*/) noexcept {
   const Wrench pulses = memory_.impulses.next();
   return input.grasped.body < 0 ? Wrench{} : memory_.constraint.felt + pulses;
 }

@@ -20,7 +20,7 @@ class ConstraintResponse {
   void step(const StepInput& input, GapOracle& gaps, WorldState& bodies, FrameReport& report) noexcept;
   /// The sum of the contact forces on the grasped part, its weight, the load of force fields and the pulses
   /// of its impacts, at the handle, world axes [N, N m]. Once a frame.
-  Wrench felt(const StepInput& input, const WorldState& bodies) noexcept;
+  Wrench felt(const StepInput& input, const PlacedHandle& handle) noexcept;
 
   /// The contacts of the last step, and the friction at those that have it.
   std::span<const ContactRow> rows() const noexcept { return memory_.contact_rows.rows; }

@@ -22,17 +22,16 @@ double bodies_energy(const World& world, const WorldState& bodies, int grasped) 
   return energy_J;
 }
 
-void add_stored_energy(const World& world, const Coupling& coupling, const WorldState& bodies,
-                       const GraspedPart& grasped, double field_work_J, double pending_J,
+void add_stored_energy(const World& world, const Coupling& coupling, const WorldState& bodies, int grasped,
+                       const Twist& to_hand, double field_work_J, double pending_J,
                        PortInput& port) noexcept {
   // The work of a field on the grasped part is taken from the field, as that on a falling weight is from
   // gravity; a vortex does work without end.
-  port.bodies_J = bodies_energy(world, bodies, grasped.body) - field_work_J;
-  if (grasped.body < 0) return;
-  const Twist stretch = to_hand(grasped, bodies.X_WB[static_cast<std::size_t>(grasped.body)]);
-  port.spring_J = 0.5 * coupling.stiffness_N_per_m * stretch.v.squaredNorm();
+  port.bodies_J = bodies_energy(world, bodies, grasped) - field_work_J;
+  if (grasped < 0) return;
+  port.spring_J = 0.5 * coupling.stiffness_N_per_m * to_hand.v.squaredNorm();
   port.spring_J += pending_J;
-  port.spring_turning_J = 0.5 * coupling.stiffness_Nm_per_rad * stretch.w.squaredNorm();
+  port.spring_turning_J = 0.5 * coupling.stiffness_Nm_per_rad * to_hand.w.squaredNorm();
 }
 
 }  // namespace tactum::inline v0_1

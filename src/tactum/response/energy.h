@@ -12,11 +12,10 @@ namespace tactum::inline v0_1 {
 double bodies_energy(const World& world, const WorldState& bodies, int grasped) noexcept;
 
 /// Fills the energies of the port's input, after the response: of the bodies, of the coupling's stretch
-/// between the hand and the grasped part, and of the impulses that are still to be
+/// between the handle on the grasped part and the hand (`to_hand`), and of the impulses that are still to be
 /// felt (`pending_J`). `field_work_J` is the work of force fields on the grasped part. All are energies in
 /// the world, also where a workspace scale makes the hand's work at the device another one (hand.h).
-void add_stored_energy(const World& world, const Coupling& coupling, const WorldState& bodies,
-                       const GraspedPart& grasped, double field_work_J, double pending_J,
-                       PortInput& port) noexcept;
+void add_stored_energy(const World& world, const Coupling& coupling, const WorldState& bodies, int grasped,
+                       const Twist& to_hand, double field_work_J, double pending_J, PortInput& port) noexcept;
 
 }  // namespace tactum::inline v0_1

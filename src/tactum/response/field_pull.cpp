@@ -63,7 +63,7 @@ GraspMetric step_metric(const Coupling& coupling, const GraspedPart& grasped, do
 }
 
 Twist equilibrium_step(const Coupling& coupling, const GraspedPart& grasped, const Pose& X_WB) noexcept {
-  const Twist missing = to_hand(grasped, X_WB);
+  const Twist missing = handle_at(grasped, X_WB).to_hand;
   if (!grasped.in_field) return missing;
   const double stiffer = std::max(1.0, (1.0 + stiffness_beside(coupling, grasped.field)) / kOvershoot);
   const Wrench load = moved(grasped.field.at_centre, X_WB.R * grasped.X_BH.p);

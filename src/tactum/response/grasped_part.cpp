@@ -6,7 +6,7 @@ namespace tactum::inline v0_1 {
 using Index = std::size_t;
 
 Vec6 wanted_by_hand(const ConstraintStep& step) noexcept {
-  const Twist missing = to_hand(step.grasped, step.bodies.X_WB[Index(step.grasped.body)]);
+  const Twist missing = handle_at(step.grasped, step.bodies.X_WB[Index(step.grasped.body)]).to_hand;
   return balanced_step(step.settings.coupling, step.dt_s, missing, step.grasped.V_WH);
 }
 

@@ -234,15 +234,13 @@ void PenaltyResponse::step(const StepInput& input, GapOracle& gaps, WorldState& 
   report.validation_tests = tests_before - gaps.tests_left();
 }
 
-Wrench PenaltyResponse::felt(const StepInput& input, const WorldState& bodies) const noexcept {
+Wrench PenaltyResponse::felt(const StepInput& input, const PlacedHandle& handle) const noexcept {
   const GraspedPart& grasped = input.grasped;
   if (grasped.body < 0) return {};
   // The velocity is that of the whole frame's displacement, not of the last part after an impact.
   const Pose X_WH_before = input.X_WB_start[Index(grasped.body)] * grasped.X_BH;
-  const Pose X_WH_proxy = bodies.X_WB[Index(grasped.body)] * grasped.X_BH;
-  const Twist V_WH_proxy = twist_between(X_WH_before, X_WH_proxy, input.dt_s);
-  const Twist missing = to_hand(grasped, bodies.X_WB[Index(grasped.body)]);
-  return coupling_wrench(input.settings.coupling, missing, grasped.V_WH, V_WH_proxy);
+  const Twist V_WH_proxy = twist_between(X_WH_before, handle.X_WH_proxy, input.dt_s);
+  return coupling_wrench(input.settings.coupling, handle.to_hand, grasped.V_WH, V_WH_proxy);
 }
 
 }  // namespace tactum::inline v0_1

@@ -36,7 +36,7 @@ class PenaltyResponse {
   /// Moves everything that moves, and puts every pose back on its joint. Fills the report's response fields.
   void step(const StepInput& input, GapOracle& gaps, WorldState& bodies, FrameReport& report) noexcept;
   /// The wrench of the coupling from the hand to the grasped part, at the handle, world axes [N, N m].
-  Wrench felt(const StepInput& input, const WorldState& bodies) const noexcept;
+  Wrench felt(const StepInput& input, const PlacedHandle& handle) const noexcept;
 
   /// The contacts of the last step.
   std::span<const ContactRow> rows() const noexcept { return contacts_.rows; }

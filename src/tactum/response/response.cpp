@@ -47,8 +47,8 @@ void Response::step(const StepInput& input, GapOracle& gaps, WorldState& bodies,
   follow_joints(input.world, bodies);
 }
 
-Wrench Response::felt(const StepInput& input, const WorldState& bodies) noexcept {
-  return std::visit([&](auto& model) { return model.felt(input, bodies); }, model_);
+Wrench Response::felt(const StepInput& input, const PlacedHandle& handle) noexcept {
+  return std::visit([&](auto& model) { return model.felt(input, handle); }, model_);
 }
 
 std::span<const ContactRow> Response::rows() const noexcept {

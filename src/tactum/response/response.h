@@ -23,9 +23,9 @@ class Response {
   void step(const StepInput& input, GapOracle& gaps, WorldState& bodies, FrameReport& report) noexcept;
   /// The wrench that the hand feels, at the handle, world axes; zero while nothing is grasped [N, N m]. In
   /// the penalty response it is the wrench of the coupling; in the constraint response the contact forces,
-  /// the weight and the load of fields on the grasped part, and the pulses of its impacts. Call it once a
-  /// frame: it moves the pulses on.
-  Wrench felt(const StepInput& input, const WorldState& bodies) noexcept;
+  /// the weight and the load of fields on the grasped part, and the pulses of its impacts. `handle` is where
+  /// the step has left the grasped part's. Call it once a frame: it moves the pulses on.
+  Wrench felt(const StepInput& input, const PlacedHandle& handle) noexcept;
 
   /// The contacts of the last step, for displays.
   std::span<const ContactRow> rows() const noexcept;

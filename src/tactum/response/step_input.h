@@ -26,12 +26,18 @@ struct GraspedPart {
   FieldLoad field;          ///< their load at the pose the frame starts with
 };
 
-/// The displacement from the handle on the part, with the part at X_WB, to the hand; its turn is followed
-/// over full turns.
-inline Twist to_hand(const GraspedPart& grasped, const Pose& X_WB) {
+/// The handle on the grasped part.
+struct PlacedHandle {
+  Pose X_WH_proxy;  ///< where it is [m]
+  Twist to_hand;    ///< displacement from there to the hand; its turn is followed over full turns [m, rad]
+};
+
+/// The handle with the part at X_WB.
+inline PlacedHandle handle_at(const GraspedPart& grasped, const Pose& X_WB) {
   const Pose X_WH_proxy = X_WB * grasped.X_BH;
-  return {grasped.X_WH.p - X_WH_proxy.p,
-          followed_turn(grasped.X_WH.R * X_WH_proxy.R.transpose(), grasped.turned_W)};
+  return {X_WH_proxy,
+          {grasped.X_WH.p - X_WH_proxy.p,
+           followed_turn(grasped.X_WH.R * X_WH_proxy.R.transpose(), grasped.turned_W)}};
 }
 
 /// The input of a motion bound: everything that is known before contacts are looked for.
