@@ -65,7 +65,8 @@ RowsInProblem contacts_of(ConstraintStep& step) { return {own_rows(step), step.o
 /// The names of contact rows.
 RowNames names_of(const RowNumbers& rows, ConstraintStep& step) {
   RowNames names;
-  for (const int row : rows) names.push_back(step.own.constraint.rows.name_of(*contacts_of(step).row(row)));
+  const RowsInProblem contacts = contacts_of(step);
+  for (const int row : rows) names.push_back(step.own.constraint.rows.name_of(*contacts.row(row)));
   return names;
 }
 
@@ -102,12 +103,6 @@ void keep_forces(ConstraintStep& step) {
   feel(c.problem.displacement_at_centre(c.problem.bodies().front()), step);
 }
 
-/// The farthest that a point of the body travels in the last answer [m].
-double travel_of(const ConstraintStep& step, const ProblemBody& problem_body) {
-  const Vec6 x = step.own.constraint.step_problem().displacement(problem_body.body);
-  return x.head<3>().norm() + x.tail<3>().norm() * step.radius_m[Index(problem_body.body)];
-}
-
 /// The fraction of the answer's step that is trusted: with it no body of the island goes beyond its motion
 /// bound less kBoundMargin skins, and the grasped part turns no farther than it may. The step of restore()
 /// has the same bound for itself. Zero where nothing of a bound is left, as of a body at rest, without
@@ -116,13 +111,14 @@ double trusted_share(const ConstraintStep& step) {
   const ConstraintState& c = step.own.constraint;
   double share = 1.0;
   for (const ProblemBody& problem_body : c.step_problem().bodies()) {
-    const double travel = travel_of(step, problem_body);
+    const Vec6 x = c.step_problem().displacement(problem_body.body);
+    const double turn = x.tail<3>().norm();
+    // The farthest that a point of the body travels.
+    const double travel = x.head<3>().norm() + turn * step.radius_m[Index(problem_body.body)];
     const double trusted =
         step.own.motion_bound[Index(problem_body.body)] - kBoundMargin * c.skin_m[Index(problem_body.body)];
     if (travel * share > trusted) share = trusted / travel;
-    if (problem_body.body != step.grasped.body) continue;
-    const double turn = c.step_problem().displacement(problem_body.body).tail<3>().norm();
-    if (turn * share > step.settings.constraint.max_turn_rad)
+    if (problem_body.body == step.grasped.body && turn * share > step.settings.constraint.max_turn_rad)
       share = step.settings.constraint.max_turn_rad / turn;
   }
   return share;

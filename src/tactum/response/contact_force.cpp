@@ -169,7 +169,7 @@ Wrench contact_wrench(std::span<const ContactRow> rows, int body, const Vec3& p_
   Wrench sum;
   if (h <= 0.0) return sum;
   for (const ContactRow& row : rows) {
-    if (row.body_a != body && row.body_b != body) continue;
+    if ((row.body_a != body && row.body_b != body) || row.impulse == 0.0) continue;
     const Vec3 force = (row.body_a == body ? row.impulse : -row.impulse) / h * row.n_BA_W;
     sum.f += force;
     sum.t += (row.p_W - p_WB).cross(force);

@@ -193,7 +193,9 @@ void PenaltyResponse::solve(const StepInput& input, double rest_s, WorldState& b
     if (world.bodies[i].moves())
       bodies.V_WB[i] = V_before_joints_[i] + (bodies.V_WB[i] - V_before_joints_[i]) * before_impact;
   islands_.clear(world, all_move_);
-  for (const ContactRow& row : rows) islands_.join(row.body_a, row.body_b);
+  for (Index r = 0; r < rows.size(); ++r)  // many rows in turn are of the same two bodies
+    if (r == 0 || rows[r].body_a != rows[r - 1].body_a || rows[r].body_b != rows[r - 1].body_b)
+      islands_.join(rows[r].body_a, rows[r].body_b);
   bodies_.set(world.bodies.size(), world.bodies.size(),
               [&](Index i) { return world.bodies[i].moves() ? islands_.of(static_cast<int>(i)) : -1; });
   rows_.set(world.bodies.size(), rows.size(),

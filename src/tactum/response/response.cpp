@@ -13,9 +13,10 @@ Model make_model(const World& world, const FrameSettings& settings, WorldState& 
 
 /// A body whose motion is not a number stays where it was, at rest: one bad frame must not be the last good
 /// one.
-void undo_non_finite(std::span<const Pose> X_WB_start, WorldState& bodies, FrameReport& report) {
+void undo_non_finite(const World& world, std::span<const Pose> X_WB_start, WorldState& bodies,
+                     FrameReport& report) {
   for (std::size_t i = 0; i < bodies.X_WB.size(); ++i) {
-    if (bodies.X_WB[i].finite() && bodies.V_WB[i].finite()) continue;
+    if (!world.bodies[i].moves() || (bodies.X_WB[i].finite() && bodies.V_WB[i].finite())) continue;
     bodies.X_WB[i] = X_WB_start[i];
     bodies.V_WB[i] = {};
     report.flags |= frame_flag::kMotionUndone;
@@ -43,7 +44,7 @@ void Response::step(const StepInput& input, GapOracle& gaps, WorldState& bodies,
         if (model.rows_full()) report.flags |= frame_flag::kPointsFull;
       },
       model_);
-  undo_non_finite(input.X_WB_start, bodies, report);
+  undo_non_finite(input.world, input.X_WB_start, bodies, report);
   follow_joints(input.world, bodies);
 }
 
