@@ -63,8 +63,8 @@ class Newton {
 
   void add(const QpRow& next, const ForceLaw& law) {
     Row& row = rows_[n_++];
-    // In the order of the unknowns, for H is kept below its diagonal. Runs are copied whole, which takes less
-    // than to copy as much of them as there is: the second one overwrites what the first has too much.
+    // In the order of the unknowns, for H is kept below its diagonal. The numbers of a run are copied whole,
+    // which takes less than a loop over as many as there are; those of the second run overwrite the rest.
     const bool swapped = next.runs[1].first < next.runs[0].first;
     const QpRow::Run& first = next.runs[swapped ? 1 : 0];
     const QpRow::Run& second = next.runs[swapped ? 0 : 1];
@@ -133,10 +133,8 @@ class Newton {
     bool wrong;  // the state, after the last step
 
     void place(const QpRow::Run& run, Index at) {
-      for (Index i = 0; i < QpRow::kLongestRun; ++i) {
-        column[at + i] = static_cast<std::uint8_t>(run.first + i);
-        g[at + i] = run.g[i];
-      }
+      std::copy_n(run.g.begin(), QpRow::kLongestRun, g.begin() + at);
+      for (Index i = 0; i < run.count; ++i) column[at + i] = static_cast<std::uint8_t>(run.first + i);
     }
   };
 
@@ -216,16 +214,16 @@ class Newton {
       return sum;
     };
     if (slope(1.0) <= 0.0) return;
-    const double flat = kFlat * std::abs(slope(0.0));
     double falls = 0.0;
     double rises = 1.0;
     double t = 0.0;
-    for (int i = 0; i < kMostSlopes; ++i) {
-      const double now = slope(t);
-      if (std::abs(now) <= flat) break;
+    double now = slope(t);
+    const double flat = kFlat * std::abs(now);
+    for (int i = 0; i < kMostSlopes && std::abs(now) > flat; ++i) {
       (now < 0.0 ? falls : rises) = t;
       t -= now / rate;
       if (!(t > falls && t < rises)) t = 0.5 * (falls + rises);
+      now = slope(t);
     }
     for (Index i = 0; i < unknowns_; ++i) z_[i] = z_before_[i] + t * (z_[i] - z_before_[i]);
     for (Index i = 0; i < n_; ++i) {
