@@ -9,6 +9,8 @@ ReplayDevice::ReplayDevice(std::string name, std::shared_ptr<const HandMotion> m
     : motion_(std::move(motion)), settings_(settings) {
   info_.name = "replay of " + std::move(name);
   info_.senses_rotation = true;
+  info_.actuates_force = settings.max_force_N > 0.0;
+  info_.actuates_torque = settings.max_torque_Nm > 0.0;
   info_.max_force_N = settings.max_force_N;
   info_.max_torque_Nm = settings.max_torque_Nm;
   info_.workspace_radius_m = settings.workspace_radius_m;

@@ -1,7 +1,7 @@
 #pragma once
-/// A device that plays a motion: the hand of a recording that no wrench can move. It senses only; the wrench
-/// that it is sent is limited and counted, so that a run against it meets the same limits as one against a
-/// device of its class, and nothing is felt.
+/// A device that plays a motion: the hand of a recording that no wrench can move. It takes force and torque
+/// as a device of its class does, so that a run against it computes, limits and reports the same wrench; the
+/// wrench is counted, and nobody feels it.
 
 #include <memory>
 #include <string>
