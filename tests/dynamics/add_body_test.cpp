@@ -121,6 +121,14 @@ TEST(AddBody, NonsenseIsToldAndChangesNothing) {
   expect_error({.part = part, .joint = {.kind = JointKind::kSlider, .axis_W = Vec3::Zero()}}, "no direction");
   expect_error({.part = part, .joint = {.kind = JointKind::kHinge, .friction = -0.1}}, "negative");
   expect_error({.part = part, .joint = {.kind = JointKind::kHinge, .lower = 0.1, .upper = 0.2}}, "limits");
+  expect_error({.part = part, .load = {.constant = {Vec3(none, 0, 0), Vec3::Zero()}}},
+               "constant force or torque is not finite");
+  for (const double bad : {-1.0, none, std::numeric_limits<double>::infinity()}) {
+    expect_error({.part = part, .load = {.constant = {}, .damping_Ns_per_m = bad}}, "damping is negative");
+    expect_error({.part = part, .load = {.constant = {}, .damping_Nms_per_rad = bad}}, "damping is negative");
+  }
+  const BodyLoad drag{.constant = {}, .damping_Ns_per_m = 1.0};
+  expect_error({.part = part, .joint = {.kind = JointKind::kFixed}, .load = drag}, "a fixed body has a load");
 }
 
 }  // namespace

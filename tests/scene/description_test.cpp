@@ -106,6 +106,65 @@ TEST(DescriptionErrors, NameBodiesAndTheirPartsByPath) {
       "body[0].velocity_m_per_s", "a fixed body has a velocity");
 }
 
+TEST(DescriptionErrors, NameLoadsByPath) {
+  expect_error([](auto& s) { s.bodies[1].load.constant.f.y() = kNoNumber; }, "body[1].force_N",
+               "finite numbers");
+  expect_error([](auto& s) { s.bodies[1].load.constant.t.y() = kNoNumber; }, "body[1].torque_Nm",
+               "finite numbers");
+  expect_error([](auto& s) { s.bodies[1].load.damping_Ns_per_m = -2.0; }, "body[1].damping_Ns_per_m",
+               "found -2, expected at least 0");
+  expect_error([](auto& s) { s.bodies[1].load.damping_Nms_per_rad = kNoNumber; },
+               "body[1].angular_damping_Nms_per_rad", "expected at least 0");
+  const char* const fixed = "a fixed body has a load: found \"plate\", expected a body that moves";
+  expect_error([](auto& s) { s.bodies[0].load.constant.f.x() = 1.0; }, "body[0].force_N", fixed);
+  expect_error([](auto& s) { s.bodies[0].load.constant.t.x() = 1.0; }, "body[0].torque_Nm", fixed);
+  expect_error([](auto& s) { s.bodies[0].load.damping_Ns_per_m = 1.0; }, "body[0].damping_Ns_per_m", fixed);
+  expect_error([](auto& s) { s.bodies[0].load.damping_Nms_per_rad = 1.0; },
+               "body[0].angular_damping_Nms_per_rad", fixed);
+}
+
+TEST(Description, LoadsOfAFileComeIntoTheWorld) {
+  const std::string text = R"(schema = 1
+[[body]]
+name = "vane"
+part = { box = { size_m = [0.02, 0.03, 0.01] } }
+force_N = [0.1, -0.2, 0.3]
+torque_Nm = [0.01, 0, -0.02]
+damping_Ns_per_m = 0.5
+angular_damping_Nms_per_rad = 0.002
+joint = { kind = "slider", axis = [1, 0, 0], damping_Ns_per_m = 4 }
+)";
+  const Result<SceneDescription> scene = parse_description(text, "vane", "vane.toml", {});
+  ASSERT_TRUE(scene) << scene.error().message();
+  const Result<Scene> built = build_scene(*scene);
+  ASSERT_TRUE(built) << built.error().message();
+  const Body& body = built->world.bodies[0];
+  EXPECT_EQ(body.load.constant.f, Vec3(0.1, -0.2, 0.3));
+  EXPECT_EQ(body.load.constant.t, Vec3(0.01, 0, -0.02));
+  EXPECT_EQ(body.load.damping_Ns_per_m, 0.5);
+  EXPECT_EQ(body.load.damping_Nms_per_rad, 0.002);
+  EXPECT_EQ(body.joint.damping, 4.0);
+}
+
+/// Joints lead to the world; one to another body is refused, and said so.
+TEST(Description, AJointToAnotherBodyIsRefused) {
+  const std::string text = R"(schema = 1
+[[body]]
+name = "arm"
+part = { box = { size_m = [0.1, 0.01, 0.01] } }
+[[body]]
+name = "finger"
+part = { box = { size_m = [0.1, 0.01, 0.01] } }
+joint = { kind = "hinge", parent = "arm", axis = [0, 0, 1] }
+)";
+  const Result<SceneDescription> scene = parse_description(text, "arm", "arm.toml", {});
+  ASSERT_FALSE(scene);
+  const std::string message = scene.error().message();
+  EXPECT_NE(message.find("arm.toml:8:36: a joint between two bodies that move is not supported"),
+            std::string::npos)
+      << message;
+}
+
 TEST(DescriptionErrors, NameJointsAndFieldsByPath) {
   expect_error([](auto& s) { s.bodies[2].joint = SliderJoint{}; }, "body[2].joint.axis", "no direction");
   expect_error(

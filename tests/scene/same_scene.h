@@ -21,6 +21,10 @@ inline void expect_equal_body(const Body& x, const Body& y) {
   EXPECT_EQ(x.joint.anchor_W, y.joint.anchor_W);
   EXPECT_EQ(x.joint.lower, y.joint.lower);
   EXPECT_EQ(x.joint.upper, y.joint.upper);
+  EXPECT_EQ(x.load.constant.f, y.load.constant.f);
+  EXPECT_EQ(x.load.constant.t, y.load.constant.t);
+  EXPECT_EQ(x.load.damping_Ns_per_m, y.load.damping_Ns_per_m);
+  EXPECT_EQ(x.load.damping_Nms_per_rad, y.load.damping_Nms_per_rad);
   EXPECT_EQ(x.field_points.size(), y.field_points.size());
   EXPECT_EQ(x.part->surface.vertices, y.part->surface.vertices);
   ASSERT_EQ(x.part->pieces.size(), y.part->pieces.size());

@@ -53,6 +53,19 @@ Result<void> check_joint(const Joint& joint, const std::string& name) {
   return {};
 }
 
+Result<void> check_load(const BodySpec& spec) {
+  const BodyLoad& load = spec.load;
+  if (!load.constant.finite())
+    return Error{"the body's constant force or torque is not finite", "", "numbers", spec.name};
+  if (!not_negative(load.damping_Ns_per_m) || !not_negative(load.damping_Nms_per_rad))
+    return Error{"the body's damping is negative or not finite",
+                 fmt::format("{} N s/m, {} N m s/rad", load.damping_Ns_per_m, load.damping_Nms_per_rad),
+                 "0 or more", spec.name};
+  if (spec.joint.kind == JointKind::kFixed && load.acts())
+    return Error{"a fixed body has a load", "a force, a torque or damping", "a body that moves", spec.name};
+  return {};
+}
+
 /// The factor of the part's mass and inertia.
 Result<double> mass_factor(const BodySpec& spec) {
   if (spec.mass_kg && spec.density_kg_per_m3)
@@ -74,6 +87,7 @@ Result<int> World::add(const BodySpec& spec) {
   if (Result<void> sound = check_part(spec); !sound) return sound.error();
   if (Result<void> sound = check_place(spec); !sound) return sound.error();
   if (Result<void> sound = check_joint(spec.joint, spec.name); !sound) return sound.error();
+  if (Result<void> sound = check_load(spec); !sound) return sound.error();
   const Result<double> factor = mass_factor(spec);
   if (!factor) return factor.error();
 
@@ -90,6 +104,7 @@ Result<int> World::add(const BodySpec& spec) {
   body.joint = spec.joint;
   const double length = body.joint.axis_W.norm();
   if (std::abs(length - 1.0) > tolerances::kRotationExact) body.joint.axis_W /= length;
+  body.load = spec.load;
   body.field_points = spec.field_points;
   bodies.push_back(std::move(body));
   return static_cast<int>(bodies.size()) - 1;

@@ -326,6 +326,11 @@ Vec6 ContactProblem::displacement_at_centre(const ProblemBody& body) const noexc
   return body.target + column(body.per_displacement * along, body.turns * about);
 }
 
+Vec6 ContactProblem::displacement_at(int body, const Vec3& p_W) const noexcept {
+  const ProblemBody& found = *find(body);
+  return at_point(displacement_at_centre(found), p_W - found.centre);
+}
+
 Vec3 ContactProblem::target_turn(int body) const noexcept {
   const ProblemBody* const found = find(body);
   return found != nullptr ? Vec3(found->target.tail<3>()) : Vec3::Zero();

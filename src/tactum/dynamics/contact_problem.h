@@ -171,6 +171,8 @@ class ContactProblem {
   std::span<const ProblemBody> bodies() const noexcept { return bodies_; }
   /// Displacement of a body's origin in the last answer; zero when it was not added [m, rad].
   Vec6 displacement(int body) const noexcept;
+  /// Displacement of a point of a body that was added [m, rad].
+  Vec6 displacement_at(int body, const Vec3& p_W) const noexcept;
   /// The turn of a body's target; zero when it was not added [rad].
   Vec3 target_turn(int body) const noexcept;
   /// The displacement at the body's centre.

@@ -44,6 +44,17 @@ struct Joint {
   bool limited() const { return std::isfinite(lower) || std::isfinite(upper); }
 };
 
+/// What acts on a body beside weight, contacts, its joint and the hand. All of it is stated at the centre of
+/// mass; damping acts against the velocity there. A fixed body has none.
+struct BodyLoad {
+  Wrench constant;                   ///< force and torque that never change, axes of W [N, N m]
+  double damping_Ns_per_m = 0.0;     ///< viscous, against the motion [N s/m]
+  double damping_Nms_per_rad = 0.0;  ///< viscous, against the rotation about any axis [N m s/rad]
+
+  bool damps() const { return damping_Ns_per_m > 0.0 || damping_Nms_per_rad > 0.0; }
+  bool acts() const { return damps() || !constant.f.isZero(0.0) || !constant.t.isZero(0.0); }
+};
+
 /// A rigid body; its part's pieces are stated in B.
 struct Body {
   std::string name;
@@ -54,6 +65,7 @@ struct Body {
   Pose X_WB;                      ///< at the start [m]
   Twist V_WB;                     ///< at the start [m/s, rad/s]
   Joint joint;
+  BodyLoad load;
   std::vector<FieldPoint> field_points;  ///< where force fields act while it is grasped
 
   bool moves() const { return joint.kind != JointKind::kFixed; }
@@ -68,6 +80,7 @@ struct BodySpec {
   Pose X_WP = {};             ///< at the start: the frame P of the part's input (its file, its points) [m]
   Twist V_WB = {};            ///< at the start, of the centre of mass, world axes [m/s, rad/s]
   Joint joint = {};           ///< its axis may have any length but zero
+  BodyLoad load = {};         ///< finite, damping at least 0; none for a fixed body
   std::string material = {};  ///< see Body::material
   std::vector<FieldPoint> field_points = {};  ///< see Body::field_points
 };
@@ -76,8 +89,8 @@ struct BodySpec {
 struct World {
   /// Adds a body and returns its index. An error states why there can be no such body: no part, a part that
   /// is not about its centre of mass, a mass or density that is not positive (or both), a pose or velocity
-  /// that is not finite, an axis of length zero, limits that exclude the pose at the start, a name that is
-  /// taken. The world is then unchanged. Cost: linear in the number of bodies.
+  /// that is not finite, an axis of length zero, limits that leave out the pose at the start, a bad load, a
+  /// name that is taken. The world is then unchanged. Cost: linear in the number of bodies.
   Result<int> add(const BodySpec& spec);
 
   std::vector<Body> bodies;

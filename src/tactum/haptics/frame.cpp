@@ -1,5 +1,6 @@
 #include "tactum/haptics/frame.h"
 
+#include "tactum/dynamics/body_load.h"
 #include "tactum/response/energy.h"
 
 namespace tactum::inline v0_1 {
@@ -49,6 +50,7 @@ Wrench haptic_frame(const World& world, const FrameSettings& settings, const Dev
     const StepInput step{motion, patches, contacts.priority, report.work, contacts.shading, state.X_WB_start};
     state.response.step(step, contacts.finder, bodies, report);
     add_field_work(bodies.X_WB, state.hand.field);
+    state.load_work_J += work_of_loads(world, state.X_WB_start, bodies.X_WB, settings.dt_s);
     state.ended(Stage::kResponse);
 
     // The wrench that the hand feels, at the handle, world axes.
@@ -61,9 +63,9 @@ Wrench haptic_frame(const World& world, const FrameSettings& settings, const Dev
 
   // The caller's own wrench, then passivity, then safety: all at the handle, device axes.
   PortInput port{.wanted = report.smoothed, .sent = state.safety.sent, .dt_s = settings.dt_s};
-  const double pending_J = state.response.pending_J();
-  add_stored_energy(world, settings.coupling, bodies, grasped.body, handle.to_hand, state.hand.field.given_J,
-                    pending_J, port);
+  const double outside_work_J = state.hand.field.given_J + state.load_work_J;
+  add_stored_energy(world, settings.coupling, bodies, grasped.body, handle.to_hand, outside_work_J,
+                    state.response.pending_J(), port);
   if (state.force_stage != nullptr) port.wanted = state.force_stage->apply(port.wanted, sample, report);
   const Wrench passive = passive_wrench(settings.port, state.port, sample, port, report.port);
   SafetyReport safety;

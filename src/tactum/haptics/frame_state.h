@@ -31,6 +31,7 @@ struct FrameState {
 
   WorldState world;              ///< poses and twists of the bodies, an entry for each body of the World
   std::vector<Pose> X_WB_start;  ///< poses at the start of the frame [m]
+  double load_work_J = 0.0;      ///< work of the bodies' loads since the start [J]
   HandStage hand;
   ContactStage contacts;
   Response response;

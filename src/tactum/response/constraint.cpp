@@ -4,6 +4,7 @@
 
 #include "tactum/base/frame_rate.h"
 #include "tactum/base/tolerances.h"
+#include "tactum/dynamics/body_load.h"
 #include "tactum/math/screw.h"
 #include "tactum/response/constraint_rows.h"
 #include "tactum/response/constraint_trial.h"
@@ -43,7 +44,7 @@ void add_bodies(bool at_rest, ConstraintStep& step) {
     const Body& body = step.world.bodies[i];
     const Pose& X_WB = step.bodies.X_WB[i];
     const Vec6 on = at_rest ? Vec6(Vec6::Zero()) : to_vector(step.bodies.V_WB[i] * step.dt_s);
-    problem.add_body(placed(step.world, step.bodies, b), X_WB.p, inertial_metric(body, X_WB, step.dt_s), on,
+    problem.add_body(placed(step.world, step.bodies, b), X_WB.p, damped_metric(body, X_WB, step.dt_s), on,
                      step.dt_s);
   }
   problem.add_joint_rows(true);
@@ -100,7 +101,7 @@ void keep_forces(ConstraintStep& step) {
     if (contacts_of(step).row(active.row) != nullptr)
       own_rows(step)[Index(active.row) - c.rows.first].impulse = active.multiplier * step.dt_s;
   step.report.active_constraints = static_cast<int>(pushing.size());
-  feel(c.problem.displacement_at_centre(c.problem.bodies().front()), step);
+  feel(displacement_of_handle(c.problem, step), step);
 }
 
 /// The fraction of the answer's step that is trusted: with it no body of the island goes beyond its motion
@@ -329,11 +330,12 @@ void bound_constrained_motion(const MotionInput& input, const WorldState& bodies
     const Twist& V = bodies.V_WB[i];
     const bool grasped = static_cast<int>(i) == input.grasped.body;
     if (!grasped) {
-      const Twist spring =
-          most_by_spring(input.world.bodies[i], bodies.X_WB[i], bodies.joints[i], input.dt_s);
-      own.motion_bound[i] +=
-          (V.v.norm() + spring.v.norm() + pull + (V.w.norm() + spring.w.norm()) * input.radius_m[i]) *
-          input.dt_s;
+      const Body& body = input.world.bodies[i];
+      const Twist spring = most_by_spring(body, bodies.X_WB[i], bodies.joints[i], input.dt_s);
+      const Twist load = most_by_load(body, bodies.X_WB[i], input.dt_s);
+      own.motion_bound[i] += (V.v.norm() + spring.v.norm() + load.v.norm() + pull +
+                              (V.w.norm() + spring.w.norm() + load.w.norm()) * input.radius_m[i]) *
+                             input.dt_s;
     }
     if (grasped || own.free.near_grasped[i]) own.motion_bound[i] += c.trust.length_m;
   }

@@ -12,6 +12,7 @@ ConstraintResponse::ConstraintResponse(const World& world, const FrameSettings& 
 
 std::span<const double> ConstraintResponse::bound_motion(const MotionInput& input,
                                                          WorldState& bodies) noexcept {
+  memory_.waiting.V_kept = bodies.V_WB;  // same size: nothing is allocated
   pull_free_bodies(input, bodies);
   bound_constrained_motion(input, bodies, memory_);
   return memory_.motion_bound;

@@ -117,7 +117,7 @@ struct Momentum {
     return a ? impulse : Vec3(-impulse);
   }
 
-  std::vector<char> counts;    ///< bodies that are free, awake and not grasped
+  std::vector<char> counts;    ///< bodies that are free, awake, not damped and not grasped
   Vec3 due_Ns = Vec3::Zero();  ///< momentum that they should have at the end of the frame
 };
 
@@ -171,7 +171,7 @@ struct Waiting {
   bool ran_out = false;               ///< some gap of a pose on trial stayed unknown in this frame
 
   // Scratch of one frame.
-  std::vector<Twist> V_kept;  ///< velocities of the deferred bodies [m/s, rad/s]
+  std::vector<Twist> V_kept;  ///< velocities at the end of the last frame [m/s, rad/s]
   ReservedVector<int> order, first_patch, next_patch, patch_of;
   ReservedVector<char> counted;  ///< of each patch
   std::vector<int> contacts;     ///< patches of each body

@@ -1,5 +1,7 @@
 #include "tactum/response/coupling.h"
 
+#include <Eigen/LU>
+
 namespace tactum::inline v0_1 {
 
 Wrench coupling_wrench(const Coupling& coupling, const Twist& to_hand, const Twist& V_WH,
@@ -12,6 +14,27 @@ Wrench coupling_wrench(const Coupling& coupling, const Twist& to_hand, const Twi
 GraspMetric grasp_metric(const Coupling& coupling, double dt_s) noexcept {
   return {coupling.stiffness_N_per_m + coupling.damping_Ns_per_m / dt_s,
           coupling.stiffness_Nm_per_rad + coupling.damping_Nms_per_rad / dt_s};
+}
+
+GraspedBody grasped_body_of(const BodyLoad& load, const GraspedPart& grasped, const Pose& X_WB,
+                            const GraspMetric& metric, const Vec6& target, double dt_s) noexcept {
+  const Vec3 handle = X_WB * grasped.X_BH.p;
+  GraspedBody as_body{handle, body_metric(metric), target};
+  if (!load.damps()) return as_body;
+  const double k = metric.stiffness_N_per_m;
+  const double k_turning = metric.stiffness_Nm_per_rad;
+  const double drag = load.damping_Ns_per_m / dt_s;
+  const Vec3 arm = X_WB.p - handle;
+  const Vec3 shift = drag / (k + drag) * arm;
+  as_body.centre_W = handle + shift;
+  as_body.metric.linear = k + drag;
+  as_body.metric.angular +=
+      load.damping_Nms_per_rad / dt_s * Mat3::Identity() +
+      k * drag / (k + drag) * (arm.squaredNorm() * Mat3::Identity() - arm * arm.transpose());
+  const Vec3 force = k * target.head<3>();
+  const Vec3 torque = k_turning * target.tail<3>() - shift.cross(force);
+  as_body.target << force / as_body.metric.linear, as_body.metric.angular.inverse() * torque;
+  return as_body;
 }
 
 Vec6 balanced_step(const Coupling& coupling, double dt_s, const Twist& to_hand, const Twist& V_WH) noexcept {

@@ -5,6 +5,7 @@
 
 #include "tactum/dynamics/contact_problem.h"
 #include "tactum/response/settings.h"
+#include "tactum/response/step_input.h"
 
 namespace tactum::inline v0_1 {
 
@@ -25,6 +26,19 @@ GraspMetric grasp_metric(const Coupling& coupling, double dt_s) noexcept;
 inline BodyMetric body_metric(const GraspMetric& metric) noexcept {
   return {metric.stiffness_N_per_m, metric.stiffness_Nm_per_rad * Mat3::Identity()};
 }
+
+/// A grasped part as a body of the contact problem: where its metric is stated, its metric and its target.
+struct GraspedBody {
+  Vec3 centre_W;      ///< [m]
+  BodyMetric metric;  ///< of coupling and damping
+  Vec6 target;        ///< at the centre [m, rad]
+};
+
+/// That of a part at X_WB whose handle a coupling of this metric would move by `target`. The coupling acts at
+/// the handle, the part's damping over `dt_s` at its centre of mass; both together resist displacements and
+/// turns apart from each other at a point between the two.
+GraspedBody grasped_body_of(const BodyLoad& load, const GraspedPart& grasped, const Pose& X_WB,
+                            const GraspMetric& metric, const Vec6& target, double dt_s) noexcept;
 
 /// The displacement of the handle, (m, rad), at which the coupling's spring and damper are in balance, when
 /// the hand is the displacement `to_hand` away.

@@ -23,11 +23,11 @@ double bodies_energy(const World& world, const WorldState& bodies, int grasped) 
 }
 
 void add_stored_energy(const World& world, const Coupling& coupling, const WorldState& bodies, int grasped,
-                       const Twist& to_hand, double field_work_J, double pending_J,
+                       const Twist& to_hand, double outside_work_J, double pending_J,
                        PortInput& port) noexcept {
   // The work of a field on the grasped part is taken from the field, as that on a falling weight is from
-  // gravity; a vortex does work without end.
-  port.bodies_J = bodies_energy(world, bodies, grasped) - field_work_J;
+  // gravity; a vortex does work without end. So does a constant torque, and damping takes it.
+  port.bodies_J = bodies_energy(world, bodies, grasped) - outside_work_J;
   if (grasped < 0) return;
   port.spring_J = 0.5 * coupling.stiffness_N_per_m * to_hand.v.squaredNorm();
   port.spring_J += pending_J;

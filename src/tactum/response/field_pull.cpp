@@ -62,11 +62,12 @@ GraspMetric step_metric(const Coupling& coupling, const GraspedPart& grasped, do
           std::max(metric.stiffness_Nm_per_rad, coupling.stiffness_Nm_per_rad * needed)};
 }
 
-Twist equilibrium_step(const Coupling& coupling, const GraspedPart& grasped, const Pose& X_WB) noexcept {
+Twist equilibrium_step(const Coupling& coupling, const GraspedPart& grasped, const Wrench& constant,
+                       const Pose& X_WB) noexcept {
   const Twist missing = handle_at(grasped, X_WB).to_hand;
-  if (!grasped.in_field) return missing;
+  if (!grasped.in_field && constant.f.isZero(0.0) && constant.t.isZero(0.0)) return missing;
   const double stiffer = std::max(1.0, (1.0 + stiffness_beside(coupling, grasped.field)) / kOvershoot);
-  const Wrench load = moved(grasped.field.at_centre, X_WB.R * grasped.X_BH.p);
+  const Wrench load = moved(grasped.field.at_centre + constant, X_WB.R * grasped.X_BH.p);
   return {(missing.v + load.f / coupling.stiffness_N_per_m) / stiffer,
           (missing.w + load.t / coupling.stiffness_Nm_per_rad) / stiffer};
 }

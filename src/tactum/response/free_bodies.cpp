@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "tactum/base/tolerances.h"
+#include "tactum/dynamics/body_load.h"
 #include "tactum/dynamics/spin.h"
 #include "tactum/response/constraint_rows.h"
 #include "tactum/response/constraint_trial.h"
@@ -63,11 +64,15 @@ Mat3 turning_inertia(const Body& body) {
   return body.inertia_B + body.mass_kg * (arm.squaredNorm() * Mat3::Identity() - arm * arm.transpose());
 }
 
-/// Adds gravity's change of velocity, as far as the joint lets it act.
-void add_gravity(const Body& body, const Vec3& change_W, const Pose& X_WB, Twist& V_WB) {
-  V_WB.v += change_W;
+/// Half a frame is gone back at the start by at most so many times the time in which the body's motion fades
+/// by e: farther back its velocity has no digits left.
+constexpr double kFarthestBack = 10.0;
+
+/// Drives the velocity by weight and load for `h` seconds, as far as the joint lets them act.
+void drive(const Body& body, const Vec3& gravity_W, double h, const Pose& X_WB, Twist& V_WB) {
+  V_WB = driven_velocity(body, gravity_W, X_WB, V_WB, h);
   if (body.joint.kind != JointKind::kFree)
-    V_WB = constrained_velocity(body.joint, X_WB, inertial_resistance(body, X_WB), V_WB);
+    V_WB = constrained_velocity(body.joint, X_WB, damped_resistance(body, X_WB, h), V_WB);
 }
 
 /// The fraction of every island's step that its bodies' motion bounds allow, and how far each would go.
@@ -212,7 +217,7 @@ void leave_out_passed(ConstraintStep& step) {
   f.V_free = step.bodies.V_WB;  // same size: nothing is allocated
   for (Index i = 0; i < f.V_free.size(); ++i)
     if (f.struck[i])
-      add_gravity(step.world.bodies[i], step.world.gravity_W * (0.5 * h), X_WB[i], f.V_free[i]);
+      drive(step.world.bodies[i], step.world.gravity_W, 0.5 * h, X_WB[i], f.V_free[i]);
   for (Index first = 0, end = 0; first < rows.size(); first = end) {
     for (end = first + 1; end < rows.size() && rows[end].patch == rows[first].patch;) ++end;
     const std::span<ContactRow> own = rows.subspan(first, end - first);
@@ -243,7 +248,9 @@ void begin_midway(const World& world, double dt_s, WorldState& state) noexcept {
     if (!body.moves()) continue;
     JointPosition& joint = state.joints[i];
     joint.before = joint.now - dt_s * joint_rate(body, state.X_WB[i]).dot(to_vector(state.V_WB[i]));
-    add_gravity(body, world.gravity_W * (-0.5 * dt_s), state.X_WB[i], state.V_WB[i]);
+    double back_s = 0.5 * dt_s;
+    if (body.load.damps()) back_s = std::min(back_s, kFarthestBack / fastest_fading(body, state.X_WB[i]));
+    drive(body, world.gravity_W, -back_s, state.X_WB[i], state.V_WB[i]);
   }
 }
 
@@ -253,7 +260,7 @@ void pull_free_bodies(const MotionInput& input, WorldState& bodies) noexcept {
     const Body& body = world.bodies[i];
     if (!body.moves() || static_cast<int>(i) == input.grasped.body) continue;
     bodies.V_WB[i] = carried_velocity(body.joint, bodies.X_WB[i], bodies.V_WB[i]);
-    add_gravity(body, world.gravity_W * (0.5 * input.dt_s), bodies.X_WB[i], bodies.V_WB[i]);
+    drive(body, world.gravity_W, 0.5 * input.dt_s, bodies.X_WB[i], bodies.V_WB[i]);
   }
 }
 
@@ -317,7 +324,7 @@ void apply_impacts(ConstraintStep& step) noexcept {
     if (turns_freely(body)) V_WB[i].w = rate_midway(turning_inertia(body), X_WB[i].R, V_WB[i].w, step.dt_s);
     if (body.joint.kind == JointKind::kBall) V_WB[i].v = V_WB[i].w.cross(X_WB[i].p - body.joint.anchor_W);
     step.own.free.w_free[i] = V_WB[i].w;
-    add_gravity(body, step.world.gravity_W * (0.5 * step.dt_s), X_WB[i], V_WB[i]);
+    drive(body, step.world.gravity_W, 0.5 * step.dt_s, X_WB[i], V_WB[i]);
   }
 }
 

@@ -2,9 +2,9 @@
 /// The bodies that move by themselves, in the constraint response: they fall, hit, slide and rest, and
 /// penetrate nothing.
 ///
-///     half of gravity -> impacts -> the other half -> resting contact -> step on trial -> exact gaps
-///                                                             ^                                 |
-///                                                             '---- corrected, or halved <------'
+///     half of weight and load -> impacts -> the other half -> resting contact -> step on trial -> exact gaps
+///                                                                    ^                                 |
+///                                                                    '---- corrected, or halved <------'
 ///
 /// A body's velocity is that of the middle of the frame, so that it falls on the exact parabola and a ball
 /// that bounces without loss keeps its energy; impacts are solved with the velocity at the beginning of the
@@ -16,10 +16,10 @@
 
 namespace tactum::inline v0_1 {
 
-/// Takes half a frame of gravity from the initial velocities of a world.
+/// Takes half a frame of weight and load (body_load.h) from the initial velocities of a world.
 void begin_midway(const World& world, double dt_s, WorldState& state) noexcept;
 
-/// Adds gravity up to the beginning of the frame.
+/// Adds the effect of weight and load up to the beginning of the frame.
 void pull_free_bodies(const MotionInput& input, WorldState& bodies) noexcept;
 
 /// Whether any body but the grasped one moves.
@@ -28,8 +28,8 @@ bool others_move(const World& world, int grasped) noexcept;
 /// Finds the islands, from the patches of the frame.
 void find_islands(ConstraintStep& step) noexcept;
 
-/// Applies impacts, and adds the other half of gravity: afterwards every body that is not grasped has the
-/// velocity that it keeps when no contact holds it.
+/// Applies impacts, and adds the other half of weight and load: afterwards every body that is not grasped has
+/// the velocity that it keeps when no contact holds it.
 void apply_impacts(ConstraintStep& step) noexcept;
 
 /// Moves all islands but `grasped_island`.

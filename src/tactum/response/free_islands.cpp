@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "tactum/dynamics/body_load.h"
 #include "tactum/response/grasped_part.h"
 
 namespace tactum::inline v0_1 {
@@ -39,7 +40,7 @@ void assemble(bool exact, bool opening, IslandProblem& p) {
     }
     const Body& what = step.world.bodies[i];
     const Pose& X_WB = step.bodies.X_WB[i];
-    p.problem.add_body(placed(step.world, step.bodies, body), X_WB.p, inertial_metric(what, X_WB, step.dt_s),
+    p.problem.add_body(placed(step.world, step.bodies, body), X_WB.p, damped_metric(what, X_WB, step.dt_s),
                        to_vector(step.own.free.V_free[i] * step.dt_s), step.dt_s);
   }
   p.problem.add_joint_rows(exact);
@@ -143,7 +144,7 @@ void solve_island(IslandProblem& p) {
   if (!exact) solve_swept(p);
   for (const ContactRow& row : p.contacts) give(row, row.impulse / step.dt_s * row.n_BA_W, p);
   for (const ProblemBody& body : p.problem.bodies()) {
-    if (body.body == step.grasped.body) feel(p.problem.displacement_at_centre(body), p.step);
+    if (body.body == step.grasped.body) feel(displacement_of_handle(p.problem, step), p.step);
     step.bodies.V_WB[Index(body.body)] = to_twist(p.problem.displacement(body.body) / step.dt_s);
   }
 }

@@ -12,7 +12,8 @@ Vec6 wanted_by_hand(const ConstraintStep& step) noexcept {
 
 Vec6 with_load(const ConstraintStep& step, const Vec6& wanted) noexcept {
   const Index grasped = Index(step.grasped.body);
-  const Vec3 weight = step.world.bodies[grasped].mass_kg * step.world.gravity_W;
+  const Wrench& constant = step.world.bodies[grasped].load.constant;
+  const Vec3 weight = step.world.bodies[grasped].mass_kg * step.world.gravity_W + constant.f;
   const Vec3 lever = -(step.bodies.X_WB[grasped].R * step.grasped.X_BH.p);  // from the handle
   const Wrench field = field_at_handle(step.grasped, step.bodies.X_WB);
   const GraspMetric metric = grasp_metric(step.settings.coupling, step.dt_s);
@@ -21,16 +22,23 @@ Vec6 with_load(const ConstraintStep& step, const Vec6& wanted) noexcept {
   sunk.head<3>() = wanted.head<3>() * (metric.stiffness_N_per_m / over_step.stiffness_N_per_m) +
                    (weight + field.f) / over_step.stiffness_N_per_m;
   sunk.tail<3>() = wanted.tail<3>() * (metric.stiffness_Nm_per_rad / over_step.stiffness_Nm_per_rad) +
-                   (lever.cross(weight) + field.t) / over_step.stiffness_Nm_per_rad;
+                   (lever.cross(weight) + field.t + constant.t) / over_step.stiffness_Nm_per_rad;
   return sunk;
 }
 
 void add_grasped(const Vec6& target, const ConstraintStep& step, ContactProblem& problem) noexcept {
   const Index grasped = Index(step.grasped.body);
   const Pose& X_WB = step.bodies.X_WB[grasped];
-  problem.add_body(placed(step.world, step.bodies, step.grasped.body), X_WB * step.grasped.X_BH.p,
-                   body_metric(step_metric(step.settings.coupling, step.grasped, step.dt_s)), target,
-                   step.dt_s);
+  const GraspedBody as_body =
+      grasped_body_of(step.world.bodies[grasped].load, step.grasped, X_WB,
+                      step_metric(step.settings.coupling, step.grasped, step.dt_s), target, step.dt_s);
+  problem.add_body(placed(step.world, step.bodies, step.grasped.body), as_body.centre_W, as_body.metric,
+                   as_body.target, step.dt_s);
+}
+
+Vec6 displacement_of_handle(const ContactProblem& problem, const ConstraintStep& step) noexcept {
+  const Vec3 handle = step.bodies.X_WB[Index(step.grasped.body)] * step.grasped.X_BH.p;
+  return problem.displacement_at(step.grasped.body, handle);
 }
 
 void feel(const Vec6& displacement, ConstraintStep& step) noexcept {

@@ -1,9 +1,10 @@
 #pragma once
 /// The balance of momentum of the bodies that move freely in the constraint response: in every frame it must
-/// change by the impulses of gravity, impacts and contacts, and by nothing else.
+/// change by the impulses of weight, constant forces, impacts and contacts, and by nothing else.
 ///
-///     after - before = m g h + sum of impulses from bodies that are grasped, jointed, asleep or fixed
+///     after - before = (m g + F) h + sum of impulses from bodies that do not count
 ///
+/// Those that count are free, and neither grasped, damped nor asleep.
 /// Impulses between the free bodies cancel, so only those from outside are summed, and an error anywhere
 /// shows. A body whose step was cut short has not gone where the forces would have had it, and forces along
 /// normals that shading bends are not those that kept its gaps open; such frames are marked, and their
@@ -13,7 +14,8 @@
 
 namespace tactum::inline v0_1 {
 
-/// Call it when it is known which bodies move, and the first half of gravity is added (free_bodies.h).
+/// Call it when it is known which bodies move, and the first half of weight and load is added
+/// (free_bodies.h).
 void begin_balance(ConstraintStep& step) noexcept;
 
 /// Call it when all have moved. `as_forced`: the grasped part's island went where its contact forces would

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "tactum/base/tolerances.h"
+#include "tactum/dynamics/body_load.h"
 #include "tactum/dynamics/solver_choice.h"
 #include "tactum/dynamics/step.h"
 #include "tactum/math/screw.h"
@@ -15,8 +16,8 @@ namespace {
 using Index = std::size_t;
 
 /// The grasped part weighs nothing: it resists as its coupling does, at the handle.
-BodyMetric coupling_metric(const Coupling& coupling) {
-  return body_metric({coupling.stiffness_N_per_m, coupling.stiffness_Nm_per_rad});
+GraspMetric coupling_stiffness(const Coupling& coupling) {
+  return {coupling.stiffness_N_per_m, coupling.stiffness_Nm_per_rad};
 }
 
 /// V scaled down so that no point within `radius_m` of the body's origin moves more than `max_step_m` in
@@ -101,12 +102,15 @@ void PenaltyResponse::add_body(const MotionInput& input, int body, double h_s,
   const Body& what = input.world.bodies[Index(body)];
   const Pose& X_WB = bodies.X_WB[Index(body)];
   if (body == input.grasped.body) {
-    problem_.add_body(placed(input.world, bodies, body), X_WB * input.grasped.X_BH.p,
-                      coupling_metric(input.settings.coupling),
-                      to_vector(equilibrium_step(input.settings.coupling, input.grasped, X_WB)), h_s);
+    const Twist target = equilibrium_step(input.settings.coupling, input.grasped, what.load.constant, X_WB);
+    const GraspedBody as_body =
+        grasped_body_of(what.load, input.grasped, X_WB, coupling_stiffness(input.settings.coupling),
+                        to_vector(target), input.dt_s);
+    problem_.add_body(placed(input.world, bodies, body), as_body.centre_W, as_body.metric, as_body.target,
+                      h_s);
     return;
   }
-  problem_.add_body(placed(input.world, bodies, body), X_WB.p, inertial_metric(what, X_WB, h_s),
+  problem_.add_body(placed(input.world, bodies, body), X_WB.p, damped_metric(what, X_WB, h_s),
                     to_vector(bodies.V_WB[Index(body)] * h_s), h_s);
 }
 
@@ -119,7 +123,7 @@ std::span<const double> PenaltyResponse::bound_motion(const MotionInput& input, 
     const int number = static_cast<int>(i);
     if (number != input.grasped.body) {
       V_WB = carried_velocity(body.joint, bodies.X_WB[i], V_WB);
-      V_WB.v += world.gravity_W * input.dt_s;
+      V_WB = driven_velocity(body, world.gravity_W, bodies.X_WB[i], V_WB, input.dt_s);
     }
     V_before_joints_[i] = V_WB;
     if (number != input.grasped.body && body.joint.kind == JointKind::kFree) continue;

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "tactum/base/frame_rate.h"
+#include "tactum/dynamics/body_load.h"
 #include "tactum/math/screw.h"
 
 namespace tactum::inline v0_1 {
@@ -15,8 +16,8 @@ constexpr double kStill_s = 0.06;
 /// No point has moved farther in that time than this fraction of the skin: some nanometres.
 constexpr double kStillShare = 0.01;
 
-/// A body that touches nothing is in balance when gravity gives it less than this fraction of the speed of
-/// free fall: a hundred times what rounding leaves of an arm that hangs.
+/// A body that touches nothing is in balance when weight and load give it less than this fraction of the
+/// speed of free fall: a hundred times what rounding leaves of an arm that hangs.
 constexpr double kBalanced = 100.0 * std::numeric_limits<double>::epsilon();
 
 void count_touches(ConstraintStep& step) {
@@ -30,12 +31,13 @@ void count_touches(ConstraintStep& step) {
   }
 }
 
-/// Whether a body that touches nothing is in balance: the velocities of a frame have half a frame's gravity
-/// so far. What gains speed slowly has hardly moved in the time that decides about sleep.
+/// Whether a body that touches nothing is in balance: the velocities of a frame have half a frame's weight
+/// and load so far. What gains speed slowly has hardly moved in the time that decides about sleep.
 bool is_balanced(const ConstraintStep& step, Index body) {
   if (step.world.bodies[body].joint.friction > 0.0) return true;  // that holds it, or it would have moved
   const Twist& V = step.bodies.V_WB[body];
-  const double gained = step.world.gravity_W.norm() * step.dt_s;
+  const Twist by_load = most_by_load(step.world.bodies[body], step.bodies.X_WB[body], step.dt_s);
+  const double gained = step.world.gravity_W.norm() * step.dt_s + by_load.v.norm();
   return V.v.norm() + V.w.norm() * step.radius_m[body] <= kBalanced * gained;
 }
 

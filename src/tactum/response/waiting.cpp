@@ -154,10 +154,7 @@ void defer_bodies(ConstraintStep& step) noexcept {
     ++step.report.waiting;
     step.report.flags |= frame_flag::kBudgetShort;
     step.report.longest_wait = std::max(step.report.longest_wait, w.waited[i]);
-    // Gravity's first half has been given already.
-    w.V_kept[i] = step.bodies.V_WB[i];
-    w.V_kept[i].v -= step.world.gravity_W * (0.5 * step.dt_s);
-    step.bodies.V_WB[i] = {};
+    step.bodies.V_WB[i] = {};  // go_on() gives it back what it had before weight and load
   }
 }
 

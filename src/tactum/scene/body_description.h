@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "tactum/dynamics/world.h"
 #include "tactum/math/spatial.h"
 #include "tactum/scene/part_description.h"
 
@@ -80,6 +81,7 @@ struct BodyDescription {
   std::optional<double> mass_kg = {};            ///< either this [kg]
   std::optional<double> density_kg_per_m3 = {};  ///< ... or this; 1000 when both are absent [kg/m^3]
   JointDescription joint = FreeJoint{};
+  BodyLoad load = {};                         ///< at the centre of mass; none for a fixed body
   std::string material = {};                  ///< for friction and restitution; may be empty
   std::optional<int> field_points = {};       ///< so many points feel fields, spread over the surface [-]
   std::vector<SamplePoint> field_point = {};  ///< ... or these

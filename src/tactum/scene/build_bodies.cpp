@@ -70,17 +70,30 @@ std::vector<FieldPoint> field_points(const BodyDescription& body, const Part& pa
   return points;
 }
 
-/// Checks names and velocity.
+/// The first key that only a body that moves may have; null when there is none.
+const char* key_of_moving_body(const BodyDescription& body) {
+  if (!body.V_WB.v.isZero(0.0)) return "velocity_m_per_s";
+  if (!body.V_WB.w.isZero(0.0)) return "angular_velocity_rad_per_s";
+  if (!body.load.constant.f.isZero(0.0)) return "force_N";
+  if (!body.load.constant.t.isZero(0.0)) return "torque_Nm";
+  if (body.load.damping_Ns_per_m != 0.0) return "damping_Ns_per_m";
+  if (body.load.damping_Nms_per_rad != 0.0) return "angular_damping_Nms_per_rad";
+  return nullptr;
+}
+
+/// Checks names, velocity and load.
 void check_body(SceneBuilder& builder, const std::string& path, const BodyDescription& body,
                 const World& world) {
   for (const Body& other : world.bodies)
     if (other.name == body.name)
       builder.fail(item_path(path, "name"), "two bodies of one name", fmt::format("\"{}\"", body.name),
                    "a name of its own");
-  const bool linear = !body.V_WB.v.isZero(0.0);
-  if (std::holds_alternative<FixedJoint>(body.joint) && (linear || !body.V_WB.w.isZero(0.0)))
-    builder.fail(item_path(path, linear ? "velocity_m_per_s" : "angular_velocity_rad_per_s"),
-                 "a fixed body has a velocity", fmt::format("\"{}\"", body.name), "a body that moves");
+  const char* const moving = key_of_moving_body(body);
+  if (moving != nullptr && std::holds_alternative<FixedJoint>(body.joint))
+    builder.fail(item_path(path, moving),
+                 body.V_WB.v.isZero(0.0) && body.V_WB.w.isZero(0.0) ? "a fixed body has a load"
+                                                                    : "a fixed body has a velocity",
+                 fmt::format("\"{}\"", body.name), "a body that moves");
 }
 
 void build_body(SceneBuilder& builder, const std::string& path, const BodyDescription& body, Scene& scene) {
@@ -97,6 +110,7 @@ void build_body(SceneBuilder& builder, const std::string& path, const BodyDescri
   }
   spec.V_WB = body.V_WB;
   spec.joint = std::visit(JointMaker(spec.X_WP), body.joint);
+  spec.load = body.load;
   spec.material = body.material;
   const std::string item = item_path(path, "part");
   const Shape shape =

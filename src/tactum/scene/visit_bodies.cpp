@@ -50,6 +50,12 @@ void visit_items(ItemVisitor& visitor, BallJoint& joint) {
 
 void visit_items(ItemVisitor& visitor, JointDescription& joint) {
   visitor.kinds("kind", "joint", joint, Need::kRequired);
+  // A key of its own, so that a file that asks for it is told what cannot be, not that the key is unknown.
+  std::string parent;
+  visitor.text("parent", parent);
+  if (!parent.empty())
+    visitor.fail("parent", "a joint between two bodies that move is not supported",
+                 fmt::format("\"{}\"", parent), "a joint to the world, without parent");
 }
 
 void visit_items(ItemVisitor& visitor, ComponentDescription& component) {
@@ -74,6 +80,10 @@ void visit_items(ItemVisitor& visitor, BodyDescription& body) {
   visitor.vector("velocity_m_per_s", body.V_WB.v);
   visitor.vector("angular_velocity_rad_per_s", body.V_WB.w);
   if (visitor.present("joint", true)) visitor.table("joint", body.joint);
+  visitor.vector("force_N", body.load.constant.f);
+  visitor.vector("torque_Nm", body.load.constant.t);
+  visitor.number("damping_Ns_per_m", body.load.damping_Ns_per_m, kNotNegative);
+  visitor.number("angular_damping_Nms_per_rad", body.load.damping_Nms_per_rad, kNotNegative);
   visitor.text("material", body.material);
 
   visitor.optional("part", body.part, [&](PartDescription& part) { visitor.table("part", part); });
