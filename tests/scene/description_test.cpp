@@ -121,6 +121,8 @@ TEST(DescriptionErrors, NameLoadsByPath) {
   expect_error([](auto& s) { s.bodies[0].load.damping_Ns_per_m = 1.0; }, "body[0].damping_Ns_per_m", fixed);
   expect_error([](auto& s) { s.bodies[0].load.damping_Nms_per_rad = 1.0; },
                "body[0].angular_damping_Nms_per_rad", fixed);
+  expect_error([](auto& s) { s.tool = PickingTool{.centre_fraction = 1.5}; }, "tool.centre_fraction",
+               "found 1.5, expected 0 to 1");
 }
 
 TEST(Description, LoadsOfAFileComeIntoTheWorld) {
@@ -133,6 +135,9 @@ torque_Nm = [0.01, 0, -0.02]
 damping_Ns_per_m = 0.5
 angular_damping_Nms_per_rad = 0.002
 joint = { kind = "slider", axis = [1, 0, 0], damping_Ns_per_m = 4 }
+[tool]
+picks = true
+centre_fraction = 0.4
 )";
   const Result<SceneDescription> scene = parse_description(text, "vane", "vane.toml", {});
   ASSERT_TRUE(scene) << scene.error().message();
@@ -144,6 +149,7 @@ joint = { kind = "slider", axis = [1, 0, 0], damping_Ns_per_m = 4 }
   EXPECT_EQ(body.load.damping_Ns_per_m, 0.5);
   EXPECT_EQ(body.load.damping_Nms_per_rad, 0.002);
   EXPECT_EQ(body.joint.damping, 4.0);
+  EXPECT_EQ(built->settings.tool.centre_fraction, 0.4);
 }
 
 /// Joints lead to the world; one to another body is refused, and said so.

@@ -45,6 +45,7 @@ inline void expect_equal(const Scene& a, const Scene& b) {
   EXPECT_EQ(a.settings.impacts.restitution.coefficients, b.settings.impacts.restitution.coefficients);
   EXPECT_EQ(a.settings.tool.body, b.settings.tool.body);
   EXPECT_EQ(a.settings.tool.X_BH.p, b.settings.tool.X_BH.p);
+  EXPECT_EQ(a.settings.tool.centre_fraction, b.settings.tool.centre_fraction);
   EXPECT_EQ(a.settings.workspace.X_WD.p, b.settings.workspace.X_WD.p);
   for (double t = 0.0; t < a.hand->duration_s(); t += 0.37) {
     EXPECT_EQ(a.hand->at(t).X_DH.p, b.hand->at(t).X_DH.p);

@@ -24,6 +24,12 @@ JointMotions joint_motions(const Joint& joint, const Pose& X_WB) noexcept;
 /// The one column of a hinge or slider.
 Vec6 single_motion(const Joint& joint, const Pose& X_WB) noexcept;
 
+/// From the nearest point of a hinge's axis to a point of the world [m].
+inline Vec3 beside_axis(const Joint& hinge, const Vec3& p_W) noexcept {
+  const Vec3 from_anchor = p_W - hinge.anchor_W;
+  return from_anchor - hinge.axis_W * hinge.axis_W.dot(from_anchor);
+}
+
 /// The row that gives the rate of the joint's position from a twist: position' = rate . V. Zero where there
 /// is none. For a ball it is along the axis about which the ball has turned.
 Vec6 joint_rate(const Body& body, const Pose& X_WB) noexcept;

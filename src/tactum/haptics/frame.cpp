@@ -12,6 +12,7 @@ PlacedHandle report_grasp(const GraspedPart& grasped, const WorldState& bodies, 
   if (grasped.body < 0) return {};
   const PlacedHandle handle = handle_at(grasped, bodies.X_WB[static_cast<std::size_t>(grasped.body)]);
   report.X_WH_proxy = handle.X_WH_proxy;
+  report.X_WH_proxy.p += grasped.beside_W;
   report.field = grasped.field.at_centre;
   return handle;
 }

@@ -1,5 +1,7 @@
 #include "tactum/haptics/hand_stage.h"
 
+#include "tactum/dynamics/joint.h"
+
 namespace tactum::inline v0_1 {
 namespace {
 
@@ -37,6 +39,10 @@ GraspedPart track_hand(const World& world, const FrameSettings& settings, const 
   GraspedPart grasped{.hand_known = hand.known,
                       .body = hand.grasp.body,
                       .X_BH = hand.grasp.X_BH,
+                      .hold = hand.grasp.hold,
+                      .axis_W = Vec3::Zero(),
+                      .arm_W = Vec3::Zero(),
+                      .beside_W = hand.grasp.beside_W,
                       .X_WH = hand.X_WH,
                       .V_WH = hand.V_WH,
                       .turned_W = hand.turned_W,
@@ -45,6 +51,11 @@ GraspedPart track_hand(const World& world, const FrameSettings& settings, const 
   if (grasped.hand_known && grasped.body >= 0) {
     follow(hand.X_WH.R * (X_WB[Index(grasped.body)].R * grasped.X_BH.R).transpose(), hand.turned_W);
     grasped.turned_W = hand.turned_W;
+    if (grasped.hold == Hold::kRod) {
+      const Joint& hinge = world.bodies[Index(grasped.body)].joint;
+      grasped.axis_W = hinge.axis_W;
+      grasped.arm_W = beside_axis(hinge, X_WB[Index(grasped.body)] * grasped.X_BH.p);
+    }
   }
   if (grasped.hand_known) find_field_load(world, X_WB, grasped, hand.field);
   return grasped;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "tactum/dynamics/joint.h"
+
 namespace tactum::inline v0_1 {
 namespace {
 
@@ -27,6 +29,30 @@ double outside(const Part& part, const Vec3& p) {
   double least = std::numeric_limits<double>::infinity();
   for (const Polytope& piece : part.pieces) least = std::min(least, outside(piece, p));
   return least;
+}
+
+/// The farthest that the part reaches from the axis of its hinge.
+double radius_about_axis(const Body& body) {
+  const Vec3 axis_B = rotated_back(body.X_WB.R, body.joint.axis_W);
+  const Vec3 anchor_B = rotated_back(body.X_WB.R, body.joint.anchor_W - body.X_WB.p);
+  double most_sq = 0.0;
+  for (const Vec3& vertex : body.part->surface.vertices)
+    most_sq = std::max(most_sq, (vertex - anchor_B).cross(axis_B).squaredNorm());
+  return std::sqrt(most_sq);
+}
+
+/// Takes the body where the hand is: where, and how.
+void take(const Body& body, const Pose& X_WB, double centre_fraction, const Pose& X_WH, Grasp& grasp) {
+  grasp.X_BH = relative_pose(X_WB, X_WH);
+  grasp.hold = Hold::kFirm;
+  grasp.beside_W.setZero();
+  if (body.joint.kind != JointKind::kHinge) return;
+  const Vec3 beside = beside_axis(body.joint, X_WH.p);
+  const bool near_axis = beside.norm() <= centre_fraction * radius_about_axis(body);
+  grasp.hold = near_axis ? Hold::kCentre : Hold::kRod;
+  if (!near_axis) return;
+  grasp.beside_W = beside;
+  grasp.X_BH.p = rotated_back(X_WB.R, X_WH.p - beside - X_WB.p);
 }
 
 }  // namespace
@@ -58,8 +84,8 @@ void pick_or_release(const World& world, std::span<const Pose> X_WB, const Tool&
   }
   const int body = nearest_body(world, X_WB, X_WH.p, tool.pick_distance_m);
   if (body < 0) return;
+  take(world.bodies[Index(body)], X_WB[Index(body)], tool.centre_fraction, X_WH, grasp);
   grasp.body = body;
-  grasp.X_BH = relative_pose(X_WB[Index(body)], X_WH);
 }
 
 }  // namespace tactum::inline v0_1

@@ -1,14 +1,20 @@
 #pragma once
 /// Grasping and releasing with the device's primary button. While it is pressed, the hand holds the body that
 /// was nearest to the handle when it was pressed; where in the body, and in which orientation, stays as it
-/// was in that moment, so nothing is pulled and no force steps. A hinged gear grasped at its rim is so turned
-/// like a wheel by its spoke, grasped at its middle by the torque of the wrist alone [Gregory 2000, 6.2]. A
-/// body that is released keeps the velocity it had: it is thrown.
+/// was in that moment, so nothing is pulled and no force steps. A body that is released keeps the velocity it
+/// had: it is thrown.
+///
+/// A hinged body can be held in two ways, and the place decides [Gregory 2000, 6.2]. Near its axis the probe
+/// becomes the body: the body turns with the hand about the axis, is felt by its torque alone, and wherever
+/// the hand is led it turns nothing. Elsewhere the hand holds it as a rod in a wheel: it turns as the hand is
+/// led round the axis, and is felt by force; the turn of the hand itself about the axis makes no difference.
+/// In both ways the coupling holds the hand where the body allows no motion.
 
 #include <span>
 
 #include "tactum/dynamics/world.h"
 #include "tactum/response/settings.h"
+#include "tactum/response/step_input.h"
 
 namespace tactum::inline v0_1 {
 
@@ -20,9 +26,11 @@ int nearest_body(const World& world, std::span<const Pose> X_WB, const Vec3& p_W
 
 /// The grasp of the hand.
 struct Grasp {
-  int body = -1;         ///< index into World::bodies; -1: nothing
-  Pose X_BH;             ///< the handle in the grasped body's frame [m]
-  bool pressed = false;  ///< the primary button was pressed in the last frame
+  int body = -1;  ///< index into World::bodies; -1: nothing
+  Pose X_BH;      ///< the handle in the grasped body's frame; on the axis for Hold::kCentre [m]
+  Hold hold = Hold::kFirm;
+  Vec3 beside_W = Vec3::Zero();  ///< from the handle to where the hand took it, for Hold::kCentre [m]
+  bool pressed = false;          ///< the primary button was pressed in the last frame
 };
 
 /// Grasps or releases when the button has been pressed or released since the last frame. `X_WH` is the probe.

@@ -50,6 +50,18 @@ inline Twist twist_between(const Pose& X_WB, const Pose& X_WC, double dt) {
   return {(X_WC.p - X_WB.p) / dt, log_rotation(X_WC.R * X_WB.R.transpose()) / dt};
 }
 
+/// The angle of R about a unit axis, in (-2 pi, 2 pi): that of the turn about it which leaves the shortest
+/// turn to be made before it.
+inline double turn_about(const Mat3& R, const Vec3& axis) {
+  const Quat q(R);
+  return 2.0 * std::atan2(q.vec().dot(axis), q.w());
+}
+
+/// The turn of R before its turn about a unit axis; it is square to the axis.
+inline Vec3 turn_aside(const Mat3& R, const Vec3& axis) {
+  return log_rotation(exp_rotation(axis * -turn_about(R, axis)) * R);
+}
+
 /// A turn that is followed over half a turn and full turns.
 struct FollowedTurn {
   Vec3 turn = Vec3::Zero();  ///< [rad]
@@ -67,9 +79,8 @@ inline Vec3 followed_turn(const Mat3& R, const FollowedTurn& before) {
   const double angle = before.turn.norm();
   if (angle <= FollowedTurn::kShort) return shortest;
   const Vec3& axis = before.axis;
-  const Quat q(R);
-  const double about = 2.0 * std::atan2(q.vec().dot(axis), q.w());
-  const Vec3 aside = log_rotation(exp_rotation(axis * -about) * R);
+  const double about = turn_about(R, axis);
+  const Vec3 aside = turn_aside(R, axis);
   const double turns = std::round((before.turn.dot(axis) - about) / (2.0 * kPi));
   const Vec3 followed = aside + axis * (about + 2.0 * kPi * turns);
   const double share =

@@ -1,14 +1,24 @@
 #include "tactum/response/coupling.h"
 
 #include <Eigen/LU>
+#include <algorithm>
 
 namespace tactum::inline v0_1 {
+namespace {
 
-Wrench coupling_wrench(const Coupling& coupling, const Twist& to_hand, const Twist& V_WH,
+/// The fraction of the coupling's stiffness that is left about the axis of a rod, because a metric must be
+/// positive. It shortens the steps to where the force of the coupling turns the body, and changes nothing of
+/// where they end.
+constexpr double kRodStiffness = 1e-3;
+
+}  // namespace
+
+Wrench coupling_wrench(const Coupling& coupling, const GraspedPart& grasped, const Twist& to_hand,
                        const Twist& V_WH_proxy) noexcept {
-  const Twist rate = V_WH_proxy - V_WH;
-  return {coupling.damping_Ns_per_m * rate.v - coupling.stiffness_N_per_m * to_hand.v,
-          coupling.damping_Nms_per_rad * rate.w - coupling.stiffness_Nm_per_rad * to_hand.w};
+  const Twist rate = V_WH_proxy - grasped.V_WH;
+  return {
+      coupling.damping_Ns_per_m * rate.v - coupling.stiffness_N_per_m * to_hand.v,
+      coupling.damping_Nms_per_rad * passed_on(grasped, rate.w) - coupling.stiffness_Nm_per_rad * to_hand.w};
 }
 
 GraspMetric grasp_metric(const Coupling& coupling, double dt_s) noexcept {
@@ -20,7 +30,7 @@ GraspedBody grasped_body_of(const BodyLoad& load, const GraspedPart& grasped, co
                             const GraspMetric& metric, const Vec6& target, double dt_s) noexcept {
   const Vec3 handle = X_WB * grasped.X_BH.p;
   GraspedBody as_body{handle, body_metric(metric), target};
-  if (!load.damps()) return as_body;
+  if (!load.damps() && grasped.hold != Hold::kRod) return as_body;
   const double k = metric.stiffness_N_per_m;
   const double k_turning = metric.stiffness_Nm_per_rad;
   const double drag = load.damping_Ns_per_m / dt_s;
@@ -31,6 +41,11 @@ GraspedBody grasped_body_of(const BodyLoad& load, const GraspedPart& grasped, co
   as_body.metric.angular +=
       load.damping_Nms_per_rad / dt_s * Mat3::Identity() +
       k * drag / (k + drag) * (arm.squaredNorm() * Mat3::Identity() - arm * arm.transpose());
+  // A spring that pulls a rod outwards holds it the harder the farther it is stretched: without that a hand
+  // twice as far out as the rod would be overshot in every step.
+  const double pulled_out = std::max(0.0, k * grasped.arm_W.dot(target.head<3>()));
+  as_body.metric.angular +=
+      (pulled_out - (1.0 - kRodStiffness) * k_turning) * grasped.axis_W * grasped.axis_W.transpose();
   const Vec3 force = k * target.head<3>();
   const Vec3 torque = k_turning * target.tail<3>() - shift.cross(force);
   as_body.target << force / as_body.metric.linear, as_body.metric.angular.inverse() * torque;

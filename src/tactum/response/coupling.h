@@ -9,9 +9,9 @@
 
 namespace tactum::inline v0_1 {
 
-/// The wrench that the hand feels, at the handle, world axes: it pulls and turns towards the proxy, which is
-/// the displacement `to_hand` away from the hand (step_input.h).
-Wrench coupling_wrench(const Coupling& coupling, const Twist& to_hand, const Twist& V_WH,
+/// The wrench that the hand feels, at the handle, world axes: it pulls and turns towards the proxy, the
+/// handle on the part, from which the hand is `to_hand` away (handle_at) and which moves with V_WH_proxy.
+Wrench coupling_wrench(const Coupling& coupling, const GraspedPart& grasped, const Twist& to_hand,
                        const Twist& V_WH_proxy) noexcept;
 
 /// The stiffness of the coupling over one frame, at the handle: F = K (x - x*), spring and damper together.
@@ -36,7 +36,8 @@ struct GraspedBody {
 
 /// That of a part at X_WB whose handle a coupling of this metric would move by `target`. The coupling acts at
 /// the handle, the part's damping over `dt_s` at its centre of mass; both together resist displacements and
-/// turns apart from each other at a point between the two.
+/// turns apart from each other at a point between the two. About the axis of a rod the coupling resists no
+/// turn.
 GraspedBody grasped_body_of(const BodyLoad& load, const GraspedPart& grasped, const Pose& X_WB,
                             const GraspMetric& metric, const Vec6& target, double dt_s) noexcept;
 

@@ -7,7 +7,8 @@ using Index = std::size_t;
 
 Vec6 wanted_by_hand(const ConstraintStep& step) noexcept {
   const Twist missing = handle_at(step.grasped, step.bodies.X_WB[Index(step.grasped.body)]).to_hand;
-  return balanced_step(step.settings.coupling, step.dt_s, missing, step.grasped.V_WH);
+  const Twist& V_WH = step.grasped.V_WH;
+  return balanced_step(step.settings.coupling, step.dt_s, missing, {V_WH.v, passed_on(step.grasped, V_WH.w)});
 }
 
 Vec6 with_load(const ConstraintStep& step, const Vec6& wanted) noexcept {
@@ -48,7 +49,7 @@ void feel(const Vec6& displacement, ConstraintStep& step) noexcept {
   const GraspMetric metric = grasp_metric(step.settings.coupling, step.dt_s);
   const Vec6 off = displacement - step.own.constraint.wanted;
   step.own.constraint.felt = {metric.stiffness_N_per_m * off.head<3>(),
-                              metric.stiffness_Nm_per_rad * off.tail<3>()};
+                              metric.stiffness_Nm_per_rad * passed_on(step.grasped, off.tail<3>())};
 }
 
 }  // namespace tactum::inline v0_1

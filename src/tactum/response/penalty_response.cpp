@@ -246,7 +246,7 @@ Wrench PenaltyResponse::felt(const StepInput& input, const PlacedHandle& handle)
   // The velocity is that of the whole frame's displacement, not of the last part after an impact.
   const Pose X_WH_before = input.X_WB_start[Index(grasped.body)] * grasped.X_BH;
   const Twist V_WH_proxy = twist_between(X_WH_before, handle.X_WH_proxy, input.dt_s);
-  return coupling_wrench(input.settings.coupling, handle.to_hand, grasped.V_WH, V_WH_proxy);
+  return coupling_wrench(input.settings.coupling, grasped, handle.to_hand, V_WH_proxy);
 }
 
 }  // namespace tactum::inline v0_1

@@ -13,31 +13,51 @@
 
 namespace tactum::inline v0_1 {
 
+/// How the hand holds the grasped part.
+enum class Hold {
+  kFirm,    ///< every displacement and turn of the hand is passed on
+  kCentre,  ///< of a hinged body, near its axis: the hand's place turns nothing, its turn about the axis does
+  kRod  ///< of a hinged body, beside its axis: the hand's way round it turns it, its turn about it does not
+};
+
 /// The part that the hand holds, the pose of the probe, and the load of force fields on the part: what the
 /// hand stage found in this frame. The functions of grasped_part.h work on it.
 struct GraspedPart {
   bool hand_known = false;  ///< false until the first valid sample: nothing may move
   int body = -1;            ///< index into World::bodies; -1: nothing is grasped
-  Pose X_BH;                ///< the handle in the grasped body's frame [m]
-  Pose X_WH;                ///< the probe in the world [m]
-  Twist V_WH;               ///< its velocity [m/s, rad/s]
-  FollowedTurn turned_W;    ///< from the handle on the part to the hand, world axes
-  bool in_field = false;    ///< force fields act on the grasped part
-  FieldLoad field;          ///< their load at the pose the frame starts with
+  Pose X_BH;                ///< the handle in the grasped body's frame; on the axis for Hold::kCentre [m]
+  Hold hold = Hold::kFirm;
+  Vec3 axis_W = Vec3::Zero();    ///< of the hinge, for Hold::kRod; zero otherwise [-]
+  Vec3 arm_W = Vec3::Zero();     ///< from that axis to the handle; zero otherwise [m]
+  Vec3 beside_W = Vec3::Zero();  ///< from the handle to where the hand took it, for Hold::kCentre [m]
+  Pose X_WH;                     ///< the probe in the world [m]
+  Twist V_WH;                    ///< its velocity [m/s, rad/s]
+  FollowedTurn turned_W;         ///< from the handle on the part to the hand, world axes
+  bool in_field = false;         ///< force fields act on the grasped part
+  FieldLoad field;               ///< their load at the pose the frame starts with
 };
+
+/// The part of a turn or torque that the coupling passes on: none about the axis of a rod.
+inline Vec3 passed_on(const GraspedPart& grasped, const Vec3& about_W) {
+  return about_W - grasped.axis_W * grasped.axis_W.dot(about_W);
+}
 
 /// The handle on the grasped part.
 struct PlacedHandle {
   Pose X_WH_proxy;  ///< where it is [m]
-  Twist to_hand;    ///< displacement from there to the hand; its turn is followed over full turns [m, rad]
+  /// The displacement that the coupling sees, from there to the hand. Its turn is followed over full turns;
+  /// that of a rod is what is left without the turn about the axis [m, rad].
+  Twist to_hand;
 };
 
 /// The handle with the part at X_WB.
 inline PlacedHandle handle_at(const GraspedPart& grasped, const Pose& X_WB) {
   const Pose X_WH_proxy = X_WB * grasped.X_BH;
+  const Mat3 turn = grasped.X_WH.R * X_WH_proxy.R.transpose();
   return {X_WH_proxy,
-          {grasped.X_WH.p - X_WH_proxy.p,
-           followed_turn(grasped.X_WH.R * X_WH_proxy.R.transpose(), grasped.turned_W)}};
+          {grasped.X_WH.p - grasped.beside_W - X_WH_proxy.p,
+           grasped.hold == Hold::kRod ? turn_aside(turn, grasped.axis_W)
+                                      : followed_turn(turn, grasped.turned_W)}};
 }
 
 /// The input of a motion bound: everything that is known before contacts are looked for.

@@ -85,6 +85,7 @@ void build_settings(SceneBuilder& builder, Scene& scene) {
     if (const auto* picking = std::get_if<PickingTool>(&*description.tool)) {
       scene.settings.tool.picks = true;
       scene.settings.tool.pick_distance_m = picking->pick_distance_m;
+      scene.settings.tool.centre_fraction = picking->centre_fraction;
     } else {
       handle_W = grasp_body(builder, std::get<BodyTool>(*description.tool), scene);
     }

@@ -38,6 +38,7 @@ struct BodyTool {
 /// The hand begins empty; while the primary button is pressed it grasps the body that was nearest.
 struct PickingTool {
   double pick_distance_m = Tool{}.pick_distance_m;  ///< how far from the handle [m]
+  double centre_fraction = Tool{}.centre_fraction;  ///< see Tool::centre_fraction, 0 to 1 [-]
 };
 
 using ToolDescription = std::variant<BodyTool, PickingTool>;

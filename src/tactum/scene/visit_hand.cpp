@@ -20,6 +20,7 @@ void visit_items(ItemVisitor& visitor, BodyTool& tool) {
 
 void visit_items(ItemVisitor& visitor, PickingTool& tool) {
   visitor.number("pick_distance_m", tool.pick_distance_m, kPositive);
+  visitor.number("centre_fraction", tool.centre_fraction, {0.0, 1.0});
 }
 
 void visit_items(ItemVisitor& visitor, ToolDescription& tool) {
