@@ -12,6 +12,7 @@
 #include "output.h"
 #include "tactum/haptics/coupling_gains.h"
 #include "tactum/response/field_pull.h"
+#include "tactum/response/workspace_scale.h"
 #include "tactum/scene/builtin_scenes.h"
 #include "tactum/session/session.h"
 #include "tactum/telemetry/statistics.h"
@@ -142,11 +143,13 @@ void report_what_is_felt(std::FILE* out, const Session& session, const std::stri
   fmt::print(out, "{}: {}\n{} at {:.0f} Hz, hand {}, response {}\n", scene.name, scene.description,
              session.device().name, session.rate_Hz(), grip.empty() ? scene.grip : grip,
              scene.settings.response == ResponseModel::kPenalty ? "penalty" : "constraint");
-  fmt::print(out, "{}{}\n",
-             margin_sentence(session.scene().settings.coupling, session.device(), session.rate_Hz()),
-             session.scene().coupling_by_device ? "; chosen for this device and rate" : "");
-  const std::string fields = field_sentence(scene.world, scene.settings.coupling);
-  if (!fields.empty()) fmt::print(out, "{}\n", fields);
+  const Coupling& coupling = scene.settings.coupling;
+  const double scale = scene.settings.workspace.scale;
+  fmt::print(out, "{}{}\n", margin_sentence(coupling, session.device(), session.rate_Hz()),
+             scene.coupling_by_device ? "; chosen for this device and rate" : "");
+  for (const std::string& sentence :
+       {scale_sentence(coupling, scale), field_sentence(scene.world, in_scene(coupling, scale))})
+    if (!sentence.empty()) fmt::print(out, "{}\n", sentence);
   std::fflush(out);
 }
 

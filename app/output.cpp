@@ -1,6 +1,7 @@
 #include "output.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cstdio>
 
@@ -9,8 +10,19 @@ namespace {
 
 double mean(double sum, std::uint64_t count) { return count == 0 ? 0.0 : sum / static_cast<double>(count); }
 
+/// The settings that kept the held part behind the hand.
+std::string limits_of(std::uint32_t flags, ResponseModel response) {
+  std::vector<const char*> limits;
+  if (flags & frame_flag::kStepLimited)
+    limits.push_back(response == ResponseModel::kPenalty ? "penalty.max_step_m" : "constraint.max_step_m");
+  if (flags & frame_flag::kSurfaceStepLimited) limits.push_back("constraint.max_step_on_surfaces_m");
+  if (flags & frame_flag::kTurnLimited) limits.push_back("constraint.max_turn_deg");
+  return fmt::format("{}", fmt::join(limits, " and "));
+}
+
 /// Frame flags as sentences that name the setting to raise.
-std::vector<std::string> frame_notes(const RunRecord& record) {
+std::vector<std::string> frame_notes(const Session& session) {
+  const RunRecord& record = session.record();
   std::vector<std::string> notes;
   if (record.flags & frame_flag::kBudgetShort)
     notes.push_back(fmt::format(
@@ -25,6 +37,10 @@ std::vector<std::string> frame_notes(const RunRecord& record) {
     notes.emplace_back("the contact solver did not always converge: raise solver_iterations");
   if (record.flags & frame_flag::kUncertified)
     notes.push_back(fmt::format("{} distances had no certificate", record.sum("work.uncertified")));
+  if (record.lagging_frames > 0)
+    notes.push_back(fmt::format(
+        "in {} of {} frames the held part lagged behind a hand that was faster than it may follow: raise {}",
+        record.lagging_frames, record.frames, limits_of(record.flags, session.scene().settings.response)));
   return notes;
 }
 
@@ -98,7 +114,7 @@ void print_summary(std::FILE* out, const Session& session, const Summary& times,
   if (record.non_finite_frames > 0)
     fmt::print(out, "WRONG            {} frames computed a wrench that is not finite\n",
                record.non_finite_frames);
-  for (const std::string& note : frame_notes(record)) fmt::print(out, "note             {}\n", note);
+  for (const std::string& note : frame_notes(session)) fmt::print(out, "note             {}\n", note);
   for (std::size_t i = 0; i < session.scene().goals.size(); ++i)
     fmt::print(out, "goal             {}\n", session.goals().describe(session.scene().world, i));
   if (loop.frames == 0)
@@ -129,12 +145,13 @@ nlohmann::ordered_json summary_json(const Session& session, const Summary& times
                                  {"max_torque_step_Nm", record.max_torque_step_Nm},
                                  {"max_momentum_off_Ns", record.max_momentum_off_Ns},
                                  {"forced_short_frames", record.forced_short_frames},
+                                 {"lagging_frames", record.lagging_frames},
                                  {"non_finite_frames", record.non_finite_frames},
                                  {"max_tests", record.max_tests},
                                  {"missed_deadlines", loop.missed_deadlines},
                                  {"frame_us", summary_us(times)},
                                  {"stages_us", stages_us},
-                                 {"notes", frame_notes(record)},
+                                 {"notes", frame_notes(session)},
                                  {"goals", goals},
                                  {"goal_met", session.goals().all_met()},
                                  {"frame_hash", hash_text(record.hash())}};

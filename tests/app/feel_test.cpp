@@ -80,6 +80,46 @@ TEST(FeelCommand, TheResponseCanBeChosen) {
   EXPECT_EQ(run_tactum(feel + " --response rubber").exit_code, 2);
 }
 
+/// Scenes whose hand goes 80 mm, or turns by a radian, in `duration_s`.
+std::string free_block(const char* response, const char* motion, double duration_s) {
+  return std::string("schema = 1\nresponse = \"") + response +
+         "\"\n[[body]]\nname = \"block\"\npart = { box = { size_m = [0.04, 0.03, 0.02] } }\n" +
+         "[tool]\nbody = \"block\"\ngrasp = \"centre\"\n[workspace]\nscale = 1\n" +
+         "[hand]\n[[hand.step]]\nhold_s = 0.2\n[[hand.step]]\n" + motion +
+         "\nduration_s = " + std::to_string(duration_s) + "\n";
+}
+
+TEST(FeelCommand, AHandThatThePartCannotFollowIsToldWithTheSetting) {
+  const ScratchFolder folder;
+  const char* const there = "offset_m = [0.08, 0, 0]";
+  const char* const round = "rpy_deg = [0, 0, 60]";
+  struct Case {
+    const char* response;
+    const char* motion;
+    double duration_s;
+    const char* setting;  // empty: nothing is said
+  };
+  for (const Case& c : {Case{"constraint", there, 0.02, "raise constraint.max_step_m"},
+                        Case{"constraint", round, 0.01, "raise constraint.max_turn_deg"},
+                        Case{"penalty", there, 0.02, "raise penalty.max_step_m"},
+                        Case{"constraint", there, 0.5, ""}, Case{"penalty", there, 0.5, ""}}) {
+    testing::write(folder / "scene.toml", free_block(c.response, c.motion, c.duration_s));
+    const ProgramRun run =
+        run_tactum("feel " + (folder / "scene.toml") + " --hand firm --virtual-clock --updates 900 --json -");
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    const Json summary = Json::parse(run.out);
+    const std::string notes = summary["notes"].dump();
+    if (*c.setting == '\0') {
+      EXPECT_EQ(summary["lagging_frames"], 0);
+      EXPECT_EQ(notes, "[]");
+    } else {
+      EXPECT_GT(summary["lagging_frames"], 0);
+      EXPECT_NE(notes.find(c.setting), std::string::npos) << notes;
+      EXPECT_NE(run.err.find(c.setting), std::string::npos) << "printed: " << run.err;
+    }
+  }
+}
+
 TEST(FeelCommand, InterruptedItEndsCleanlyWithItsSummary) {
   const ScratchFolder folder;
   const std::string said = folder / "said";

@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "support/longest_step.h"
 #include "support/solid_box.h"
 #include "tactum/haptics/simulation.h"
 #include "tactum/math/screw.h"
@@ -69,7 +70,7 @@ struct Swing {
     settings.dt_s = at.dt_s;
     if (at.grasped) {
       settings.tool.body = 0;
-      settings.penalty.max_step_m = at.turn_rad * half().norm();
+      settings.penalty.max_step_m = longest_step_setting(at.turn_rad * half().norm(), at.dt_s);
     }
     simulation = std::move(*Simulation::make(std::move(world), settings));
   }

@@ -57,7 +57,7 @@ TEST(FullTurns, TheTorqueGrowsWithTheTurnBeyondAStop) {
           SCOPED_TRACE(testing::Message() << int(response) << " " << rate_Hz << " Hz, to " << to << " rad");
           Knob knob(response, rate_Hz, axis, false);
           const double k = knob.simulation->settings().coupling.stiffness_Nm_per_rad;
-          const int frames = int(to * 200);
+          const int frames = int(to * 200 * std::max(1.0, rate_Hz / 1000.0));  // 5 rad/s at most
           for (int i = 0; i <= frames; ++i) {
             const double angle = to * i / frames;
             const double torque = knob.torque_at(angle);

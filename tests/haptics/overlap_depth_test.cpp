@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "support/longest_step.h"
 #include "support/solid_box.h"
 #include "tactum/haptics/simulation.h"
 #include "tactum/math/screw.h"
@@ -64,7 +65,7 @@ struct Oblique {
     FrameSettings settings;
     settings.response = ResponseModel::kPenalty;
     settings.dt_s = at.dt_s;
-    settings.penalty.max_step_m = step_m();
+    settings.penalty.max_step_m = longest_step_setting(step_m(), at.dt_s);
     settings.penalty.depth = depth;
     settings.tool.body = static_cast<int>(block);
     settings.coupling.damping_Ns_per_m = 0.0;

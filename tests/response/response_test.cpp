@@ -143,7 +143,7 @@ struct Hand {
                                 .turned_W = {},
                                 .in_field = false,
                                 .field = {}};
-      const MotionInput motion{world, settings, grasped, radius, settings.dt_s};
+      const MotionInput motion = motion_input(world, settings, grasped, radius);
       const std::span<const double> bound = response.bound_motion(motion, bodies);
       const double margin = std::max(bound[0] + bound[1], settings.penalty.min_tolerance_m);
       margin_m = margin;
@@ -251,7 +251,7 @@ TEST(Response, NothingIsFeltOfAPartThatIsNotHeld) {
                               .turned_W = {},
                               .in_field = false,
                               .field = {}};
-    const MotionInput motion{hand.world, hand.settings, nothing, radius, hand.settings.dt_s};
+    const MotionInput motion = motion_input(hand.world, hand.settings, nothing, radius);
     response.bound_motion(motion, hand.bodies);
     const std::vector<Pose> start = hand.bodies.X_WB;
     const ContactWork work;

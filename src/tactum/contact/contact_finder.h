@@ -58,9 +58,11 @@ enum class PatchPoints {
 
 class ContactFinder final : public GapOracle {
  public:
-  /// `dt_s` is the time from frame to frame [s].
+  /// `dt_s` is the time from frame to frame [s], `scale` how many times as large as a hand's the scene is: so
+  /// much faster may the points of PatchPoints::kQuadrature move.
   ContactFinder(std::vector<CollisionBody> bodies, std::span<const Pose> X_WB,
-                const ContactFinderCapacity& capacity = {}, double dt_s = kReferenceStep_s);
+                const ContactFinderCapacity& capacity = {}, double dt_s = kReferenceStep_s,
+                double scale = 1.0);
 
   /// Renews the boxes and lists that the motion since the last frame has made stale. `motion_bound[i]` [m]
   /// bounds how far any point of body i moves in this frame; the tolerance of a pair is the sum of both

@@ -30,7 +30,7 @@ bool inside(const Aabb& small, const Aabb& large) {
 }  // namespace
 
 ContactFinder::ContactFinder(std::vector<CollisionBody> bodies, std::span<const Pose> X_WB,
-                             const ContactFinderCapacity& capacity, double dt_s)
+                             const ContactFinderCapacity& capacity, double dt_s, double scale)
     : bodies_(std::move(bodies)),
       last_X_WB_(X_WB.begin(), X_WB.end()),
       sweep_([&] {
@@ -50,7 +50,7 @@ ContactFinder::ContactFinder(std::vector<CollisionBody> bodies, std::span<const 
         return SweepAndPrune(fat_box_);
       }()),
       flush_bodies_(bodies_.size(), capacity.patches),
-      steady_(dt_s),
+      steady_(dt_s, scale),
       head_start_(frames_in(kHeadStart_s, dt_s)) {
   travel_.assign(bodies_.size(), 0.0);
   lists_.resize(sweep_.room());

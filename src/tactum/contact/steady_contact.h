@@ -8,7 +8,8 @@
 ///     normal     turns by at most kNormalTurnRate, on the great circle, so it arrives within
 ///                pi / kNormalTurnRate = 63 ms; the depth along it is that of true support planes, so moving
 ///                A by it separates the pieces in every frame meanwhile
-///     centroid   stays where both bodies carry it, and moves from there at kCentroidSpeed at most
+///     centroid   stays where both bodies carry it, and moves from there at kCentroidSpeed at most, times
+///                the scale of the scene
 ///
 /// For a thin piece pushed right through another there is no such path: every normal between is far deeper
 /// than both. Then the normal switches at once. Cost: 40 ns while nothing is limited.
@@ -26,12 +27,12 @@ inline constexpr double kDeepestDetour = 2.0;    ///< how many times as deep a n
 
 /// How far a contact may move in one frame.
 struct SteadyLimits {
-  /// With `dt_s` from frame to frame [s].
-  explicit SteadyLimits(double dt_s)
+  /// With `dt_s` from frame to frame [s], in a scene `scale` times as large as a hand's.
+  explicit SteadyLimits(double dt_s, double scale = 1.0)
       : turn_rad(kNormalTurnRate * dt_s),
         cosine(std::cos(turn_rad)),
         sine(std::sin(turn_rad)),
-        step_m(kCentroidSpeed * dt_s) {}
+        step_m(kCentroidSpeed * dt_s * scale) {}
 
   double turn_rad;      ///< of the normal [rad]
   double cosine, sine;  ///< of that angle [-]

@@ -47,7 +47,8 @@ std::uint32_t flags_of(const ContactWork& work) {
 }  // namespace
 
 ContactStage::ContactStage(const World& world, const FrameSettings& settings, std::span<const Pose> X_WB)
-    : finder(collision_bodies(world), X_WB, settings.budget.capacity, settings.dt_s),
+    : finder(collision_bodies(world), X_WB, settings.budget.capacity, settings.dt_s,
+             settings.workspace.scale),
       priority(world.bodies.size(), priority::kOther) {
   if (!settings.shading.on) return;
   bool some_bend = false;
@@ -59,7 +60,8 @@ ContactStage::ContactStage(const World& world, const FrameSettings& settings, st
 void find_near_pairs(const FrameSettings& settings, std::span<const Pose> X_WB,
                      std::span<const double> motion_bound, int grasped, ContactStage& stage) noexcept {
   find_priorities(grasped, stage);
-  stage.finder.find_near_pairs(X_WB, motion_bound, settings.penalty.min_tolerance_m);
+  stage.finder.find_near_pairs(X_WB, motion_bound,
+                               settings.penalty.min_tolerance_m * settings.workspace.scale);
 }
 
 std::span<const ContactPatch> find_patches(const World& world, const FrameSettings& settings,

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "tactum/devices/hand_model.h"
+#include "tactum/response/workspace_scale.h"
 
 namespace tactum::inline v0_1 {
 namespace {
@@ -107,6 +108,15 @@ PortSettings port_settings(const DeviceInfo& info, double rate_Hz) {
       injected(handle.inertia_kg_m2 > 0.0 ? handle.inertia_kg_m2 : kLightest_kg_m2, info.max_torque_Nm,
                handle.encoder_step_rad, period_s);
   return port;
+}
+
+std::string scale_sentence(const Coupling& coupling, double scale) {
+  if (scale == 1.0) return "";
+  const Coupling scaled = in_scene(coupling, scale);
+  return fmt::format(
+      "workspace scale {:.3g}: that coupling is {:.3g} N/m and {:.3g} N m/rad in the scene, whose forces are "
+      "felt as they are, and whose torques divided by the scale",
+      scale, scaled.stiffness_N_per_m, scaled.stiffness_Nm_per_rad);
 }
 
 std::string margin_sentence(const Coupling& coupling, const DeviceInfo& info, double rate_Hz) {

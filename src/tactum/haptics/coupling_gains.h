@@ -19,8 +19,7 @@
 /// never felt and only determines how far the proxy yields: chosen stiff, so that the rotation follows the
 /// hand and a contact that resists it is felt as force, the only thing that can be.
 ///
-/// All bounds are those for a workspace scale of one. With a scale s the device meets the stiffness s K and
-/// the damping s B (hand.h); no function here is given the scale.
+/// A coupling is stated at the device, so the bounds hold at every workspace scale (workspace_scale.h).
 
 #include <string>
 
@@ -54,6 +53,10 @@ CouplingGains coupling_gains(const DeviceInfo& info, double rate_Hz);
 
 /// The settings of the passivity stage for this device.
 PortSettings port_settings(const DeviceInfo& info, double rate_Hz);
+
+/// What a workspace scale other than one makes of a coupling in the scene, in a sentence for people; else
+/// empty.
+std::string scale_sentence(const Coupling& coupling, double scale);
 
 /// Which fraction of the bounds a coupling uses, in a sentence for people.
 std::string margin_sentence(const Coupling& coupling, const DeviceInfo& info, double rate_Hz);

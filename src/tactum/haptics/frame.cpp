@@ -35,7 +35,7 @@ Wrench haptic_frame(const World& world, const FrameSettings& settings, const Dev
 
   if (grasped.hand_known) {
     // The motion bounds of this frame.
-    const MotionInput motion{world, settings, grasped, contacts.finder.radii(), settings.dt_s};
+    const MotionInput motion = motion_input(world, settings, grasped, contacts.finder.radii());
     const std::span<const double> motion_bound = state.response.bound_motion(motion, bodies);
     state.ended(Stage::kVelocities);
 
@@ -59,13 +59,13 @@ Wrench haptic_frame(const World& world, const FrameSettings& settings, const Dev
     felt = state.response.felt(step, handle);
   }
   report.coupling = felt;
-  report.smoothed =
-      smooth_wrench(settings.smoothing, settings.dt_s, state.smoothing, to_device(state.hand, felt));
+  report.smoothed = smooth_wrench(settings.smoothing, settings.dt_s, state.smoothing,
+                                  to_device(settings.workspace, state.hand, felt));
 
   // The caller's own wrench, then passivity, then safety: all at the handle, device axes.
   PortInput port{.wanted = report.smoothed, .sent = state.safety.sent, .dt_s = settings.dt_s};
   const double outside_work_J = state.hand.field.given_J + state.load_work_J;
-  add_stored_energy(world, settings.coupling, bodies, grasped.body, handle.to_hand, outside_work_J,
+  add_stored_energy(world, settings, bodies, grasped.body, handle.to_hand, outside_work_J,
                     state.response.pending_J(), port);
   if (state.force_stage != nullptr) port.wanted = state.force_stage->apply(port.wanted, sample, report);
   const Wrench passive = passive_wrench(settings.port, state.port, sample, port, report.port);

@@ -12,7 +12,7 @@ FrameState::FrameState(const World& constant_world, const FrameSettings& setting
       observer(stage_observer) {
   // The first frame begins with the near pairs, as every other does.
   const std::vector<double> at_rest(constant_world.bodies.size(), 0.0);
-  contacts.finder.find_near_pairs(world.X_WB, at_rest, settings.penalty.min_tolerance_m);
+  find_near_pairs(settings, world.X_WB, at_rest, -1, contacts);
   contacts.finder.find_patches(world.X_WB, settings.budget.max_exact_tests, response.points(),
                                contacts.priority);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "tactum/math/screw.h"
+#include "tactum/response/workspace_scale.h"
 
 namespace tactum::inline v0_1 {
 
@@ -35,8 +36,8 @@ void follow_hand(const Workspace& workspace, const DeviceSample& sample, double 
   hand.known = true;
 }
 
-Wrench to_device(const HandTracking& hand, const Wrench& F_W) noexcept {
-  return rotated(hand.X_WD.R.transpose(), F_W);
+Wrench to_device(const Workspace& workspace, const HandTracking& hand, const Wrench& F_W) noexcept {
+  return at_device(rotated(hand.X_WD.R.transpose(), F_W), workspace.scale);
 }
 
 }  // namespace tactum::inline v0_1

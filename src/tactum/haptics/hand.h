@@ -1,10 +1,10 @@
 #pragma once
 /// The pose of the probe in the world: the device's handle, mapped by workspace scale and clutch.
 ///
-///   X_WH.p = X_WD (scale p_DH)     X_WH.R = R_WD R_DH     a force in the world acts unscaled on the hand
+///   X_WH.p = X_WD (scale p_DH)     f_D = R_DW f_W
+///   X_WH.R = R_WD R_DH             t_D = R_DW t_W / scale
 ///
-/// So with a scale other than one a stiffness K of the world is scale * K at the device, and the work of the
-/// hand at the device is 1 / scale of the work that its force does in the world.
+/// What follows for stiffness and energy stands in workspace_scale.h.
 ///
 /// While the clutch button is pressed the handle may be moved back to the middle of the device: the probe
 /// keeps its place in the world, and the mapping X_WD follows.
@@ -28,7 +28,7 @@ struct HandTracking {
 void follow_hand(const Workspace& workspace, const DeviceSample& sample, double dt_s,
                  HandTracking& hand) noexcept;
 
-/// The wrench `F_W` at the handle, turned from world axes into the device's. Its size is not scaled.
-Wrench to_device(const HandTracking& hand, const Wrench& F_W) noexcept;
+/// The wrench `F_W` at the handle, of the scene and in world axes, as the device has it, in its axes.
+Wrench to_device(const Workspace& workspace, const HandTracking& hand, const Wrench& F_W) noexcept;
 
 }  // namespace tactum::inline v0_1

@@ -71,7 +71,7 @@ inline constexpr std::tuple kFields{
   Of<&R::X_WH_proxy>{{"X_WH_proxy", "m", "where the held part would have the hand, in the world"}},
   Of<&R::restoring>{{"restoring", "N, N m", "contact forces on the held part, at its centre of mass, axes of the world"}},
   Of<&R::field>{{"field", "N, N m", "force fields on the held part, at its centre of mass, axes of the world"}},
-  Of<&R::coupling>{{"coupling", "N, N m", "the raw wrench of the coupling, at the handle, axes of the world"}},
+  Of<&R::coupling>{{"coupling", "N, N m", "the raw wrench of the coupling in the scene, at the handle, axes of the world"}},
   Of<&R::smoothed>{{"smoothed", "N, N m", "the wrench after smoothing, at the handle, axes of the device"}},
   Of<&R::port, &P::energy_balance_J>{{"port.energy_balance_J", "J", "taken in by the scene, within the credit; negative: energy was made",
     kNothing, {"port_energy_balance_J", "Energy balance now", "energy"}}},

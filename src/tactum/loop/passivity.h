@@ -20,10 +20,10 @@
 /// it must. Where torque is driven too, a balance below zero is paid from the other: a nut that is turned
 /// pulls the hand along its axis, and that energy was not generated.
 ///
-/// Three things are coarser than that. The energy that bodies gave up is credited to both balances, to each
-/// in full. The energies of spring and bodies are those of the world, which a workspace scale other than one
-/// makes larger or smaller than the hand's work at the device by that factor. And after samples that were
-/// left out the displacement of all these frames is taken with the wrench sent last, as if made in one dt.
+/// Two things are coarser than that. The energy that bodies gave up is credited to both balances, to each
+/// in full. And after samples that were left out the displacement of all these frames is taken with the
+/// wrench sent last, as if made in one dt. All energies are those at the device; the caller divides those of
+/// the scene by the workspace scale (response/energy.h).
 ///
 /// A handle whose rotation is sensed but cannot be driven gets no torque; its balance of rotation never sinks
 /// below zero. Cost: one rotation vector and two dozen products. No clock, no allocation; the device's

@@ -104,25 +104,44 @@ void keep_forces(ConstraintStep& step) {
   feel(displacement_of_handle(c.problem, step), step);
 }
 
+/// How far a body goes in the answer's step.
+struct Extent {
+  double travel_m = 0.0;   // of its farthest point
+  double trusted_m = 0.0;  // ... that is within its motion bound
+  double turn_rad = 0.0;
+};
+Extent extent_of(const ConstraintStep& step, const ProblemBody& problem_body) {
+  const ConstraintState& c = step.own.constraint;
+  const Index body = Index(problem_body.body);
+  const Vec6 x = c.step_problem().displacement(problem_body.body);
+  const double turn = x.tail<3>().norm();
+  return {x.head<3>().norm() + turn * step.radius_m[body],
+          step.own.motion_bound[body] - kBoundMargin * c.skin_m[body], turn};
+}
+
 /// The fraction of the answer's step that is trusted: with it no body of the island goes beyond its motion
 /// bound less kBoundMargin skins, and the grasped part turns no farther than it may. The step of restore()
 /// has the same bound for itself. Zero where nothing of a bound is left, as of a body at rest, without
 /// gravity, that the part has just met.
 double trusted_share(const ConstraintStep& step) {
-  const ConstraintState& c = step.own.constraint;
   double share = 1.0;
-  for (const ProblemBody& problem_body : c.step_problem().bodies()) {
-    const Vec6 x = c.step_problem().displacement(problem_body.body);
-    const double turn = x.tail<3>().norm();
-    // The farthest that a point of the body travels.
-    const double travel = x.head<3>().norm() + turn * step.radius_m[Index(problem_body.body)];
-    const double trusted =
-        step.own.motion_bound[Index(problem_body.body)] - kBoundMargin * c.skin_m[Index(problem_body.body)];
-    if (travel * share > trusted) share = trusted / travel;
-    if (problem_body.body == step.grasped.body && turn * share > step.settings.constraint.max_turn_rad)
-      share = step.settings.constraint.max_turn_rad / turn;
+  for (const ProblemBody& problem_body : step.own.constraint.step_problem().bodies()) {
+    const Extent extent = extent_of(step, problem_body);
+    if (extent.travel_m * share > extent.trusted_m) share = extent.trusted_m / extent.travel_m;
+    if (problem_body.body == step.grasped.body && extent.turn_rad * share > step.limits.turn_rad)
+      share = step.limits.turn_rad / extent.turn_rad;
   }
   return share;
+}
+
+/// Flag of the limit that cuts the answer's step of the grasped part, where that limit will not grow.
+std::uint32_t limit_of_step(const ConstraintStep& step) {
+  const ConstraintState& c = step.own.constraint;
+  const Extent extent = extent_of(step, c.step_problem().bodies().front());
+  const double turns = extent.turn_rad / step.limits.turn_rad;
+  const double travels = extent.travel_m / extent.trusted_m;
+  if (!(std::max(turns, travels) > 1.0)) return 0;
+  return turns > travels ? frame_flag::kTurnLimited : c.trust.limit;
 }
 
 /// Moves everything by the fraction `share` of the answer's step, on trial, and checks every gap there.
@@ -239,6 +258,7 @@ double move_grasped_island(ConstraintStep& step) {
   const double share = advance(step);
   c.friction.end(contacts_of(step), c.problem, step.bodies.X_WB, c.anchors);
   c.trust.consecutive_rejections = share > 0.0 ? 0 : c.trust.consecutive_rejections + 1;
+  if (share > 0.0 && share < 1.0) step.report.flags |= limit_of_step(step);
   if (share > 0.0) take_trial(step);
   if (c.trust.consecutive_rejections >= frames_in(kStands_s, step.dt_s)) feel(Vec6::Zero(), step);
   const std::vector<Pose>& before = share > 0.0 ? c.trial.X_WB : step.bodies.X_WB;  // take_trial swaps them
@@ -258,10 +278,13 @@ void update_trust_length(ConstraintStep& step) {
     const Twist& V_WB = step.bodies.V_WB[i];
     travel = std::max(travel, step.dt_s * (V_WB.v.norm() + V_WB.w.norm() * step.radius_m[i]));
   }
-  const Constraint& limits = step.settings.constraint;
-  const double most = step.work.minima > 0 ? limits.max_step_on_surfaces_m : limits.max_step_m;
-  step.own.constraint.trust.length_m =
-      std::clamp(kTrustGrowth * travel, std::min(limits.least_step_m, most), most);
+  const bool on_surfaces = step.work.minima > 0;
+  const double most = on_surfaces ? step.limits.step_on_surfaces_m : step.limits.step_m;
+  StepTrust& trust = step.own.constraint.trust;
+  trust.length_m = std::clamp(kTrustGrowth * travel, std::min(step.limits.least_step_m, most), most);
+  trust.limit = trust.length_m < most ? 0
+                : on_surfaces         ? frame_flag::kSurfaceStepLimited
+                                      : frame_flag::kStepLimited;
 }
 
 /// The number of points at which something pushes the body: corners, and the centre of a patch whose load is

@@ -66,6 +66,7 @@ struct TrialPose {
 /// How far the island's steps are trusted, from the outcome of the last ones.
 struct StepTrust {
   double length_m = 0.0;           ///< the trust region radius of the next frame [m]
+  std::uint32_t limit = 0;         ///< frame_flag of the limit that it has reached; 0: it may grow
   int consecutive_rejections = 0;  ///< frames in a row in which no step could be taken [-]
 };
 

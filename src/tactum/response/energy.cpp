@@ -22,16 +22,17 @@ double bodies_energy(const World& world, const WorldState& bodies, int grasped) 
   return energy_J;
 }
 
-void add_stored_energy(const World& world, const Coupling& coupling, const WorldState& bodies, int grasped,
-                       const Twist& to_hand, double outside_work_J, double pending_J,
+void add_stored_energy(const World& world, const FrameSettings& settings, const WorldState& bodies,
+                       int grasped, const Twist& to_hand, double outside_work_J, double pending_J,
                        PortInput& port) noexcept {
   // The work of a field on the grasped part is taken from the field, as that on a falling weight is from
   // gravity; a vortex does work without end. So does a constant torque, and damping takes it.
-  port.bodies_J = bodies_energy(world, bodies, grasped) - outside_work_J;
+  const double scale = settings.workspace.scale;
+  port.bodies_J = (bodies_energy(world, bodies, grasped) - outside_work_J) / scale;
   if (grasped < 0) return;
-  port.spring_J = 0.5 * coupling.stiffness_N_per_m * to_hand.v.squaredNorm();
-  port.spring_J += pending_J;
-  port.spring_turning_J = 0.5 * coupling.stiffness_Nm_per_rad * to_hand.w.squaredNorm();
+  const Coupling coupling = in_scene(settings.coupling, scale);
+  port.spring_J = (0.5 * coupling.stiffness_N_per_m * to_hand.v.squaredNorm() + pending_J) / scale;
+  port.spring_turning_J = 0.5 * coupling.stiffness_Nm_per_rad * to_hand.w.squaredNorm() / scale;
 }
 
 }  // namespace tactum::inline v0_1

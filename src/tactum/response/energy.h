@@ -14,10 +14,10 @@ double bodies_energy(const World& world, const WorldState& bodies, int grasped) 
 /// Fills the energies of the port's input, after the response: of the bodies, of the coupling's stretch
 /// between the handle on the grasped part and the hand (`to_hand`), and of the impulses that are still to be
 /// felt (`pending_J`). `outside_work_J` is the work of force fields on the grasped part and of the loads of
-/// all bodies (work_of_loads). All are energies in the world, also where a workspace scale makes the hand's
-/// work at the device another one (hand.h).
-void add_stored_energy(const World& world, const Coupling& coupling, const WorldState& bodies, int grasped,
-                       const Twist& to_hand, double outside_work_J, double pending_J,
+/// all bodies (work_of_loads). All become energies at the device, those of the scene over the workspace scale
+/// (workspace_scale.h).
+void add_stored_energy(const World& world, const FrameSettings& settings, const WorldState& bodies,
+                       int grasped, const Twist& to_hand, double outside_work_J, double pending_J,
                        PortInput& port) noexcept;
 
 }  // namespace tactum::inline v0_1

@@ -24,6 +24,12 @@ inline constexpr std::uint32_t kMotionUndone =
     1u << 6;  ///< a motion was no number; the body stayed where it was
 inline constexpr std::uint32_t kNoHand =
     1u << 5;  ///< no valid sample yet: the scene stands still, nothing is felt
+/// The grasped part lags behind the hand, by ...
+inline constexpr std::uint32_t kStepLimited = 1u << 7;  ///< Constraint::max_step_m or Penalty::max_step_m
+inline constexpr std::uint32_t kSurfaceStepLimited = 1u << 8;  ///< Constraint::max_step_on_surfaces_m
+inline constexpr std::uint32_t kTurnLimited = 1u << 9;         ///< Constraint::max_turn_rad
+inline constexpr std::uint32_t kLags =
+    kStepLimited | kSurfaceStepLimited | kTurnLimited;  ///< any of the three
 }  // namespace frame_flag
 
 /// Dry friction of one frame, over all patches that push (constraint response); friction_use.h has it by
@@ -44,7 +50,8 @@ struct FrameReport {
   Wrench restoring;  ///< contact forces on the grasped part, at its centre of mass, world axes [N, N m]
   Wrench field;      ///< of force fields on the grasped part, at its centre of mass, world axes [N, N m]
   /// The wrench that the response lets the hand feel, before all other stages, at the handle, world axes: in
-  /// the penalty response that of the coupling, in the constraint response Response::felt() [N, N m].
+  /// the penalty response that of the coupling, in the constraint response Response::felt(). It is that of
+  /// the scene, see workspace_scale.h [N, N m].
   Wrench coupling;
   Wrench smoothed;  ///< the same after smoothing, at the handle, device axes [N, N m]
   PortReport port;  ///< energy that passed between hand and scene, and what the passivity controller did

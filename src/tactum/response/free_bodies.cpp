@@ -85,6 +85,8 @@ void limit_shares(ConstraintStep& step) {
     const double travel = (V.v.norm() + V.w.norm() * step.radius_m[i]) * step.dt_s;
     double& share = f.share[Index(f.islands.of(static_cast<int>(i)))];
     if (travel * share > step.own.motion_bound[i]) share = step.own.motion_bound[i] / travel;
+    if (static_cast<int>(i) == step.grasped.body && travel > step.own.motion_bound[i])
+      step.report.flags |= step.own.constraint.trust.limit;
     step.own.waiting.travel[i] = travel;
   }
   // An island's number is its first body.

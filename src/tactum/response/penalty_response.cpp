@@ -20,19 +20,15 @@ GraspMetric coupling_stiffness(const Coupling& coupling) {
   return {coupling.stiffness_N_per_m, coupling.stiffness_Nm_per_rad};
 }
 
-/// V scaled down so that no point within `radius_m` of the body's origin moves more than `max_step_m` in
-/// `dt_s`.
-Twist within_threshold(const Twist& V, double radius_m, double max_step_m, double dt_s) {
-  const double step = (V.v.norm() + V.w.norm() * radius_m) * dt_s;
-  return step > max_step_m ? V * (max_step_m / step) : V;
-}
-
-/// Keeps the grasped part's step below the threshold distance.
-void limit_grasped(const MotionInput& input, WorldState& bodies) {
-  if (input.grasped.body < 0) return;
-  const Index grasped = Index(input.grasped.body);
-  bodies.V_WB[grasped] = within_threshold(bodies.V_WB[grasped], input.radius_m[grasped],
-                                          input.settings.penalty.max_step_m, input.dt_s);
+/// Keeps the grasped part's step below the threshold distance. True where the step was longer.
+bool limit_grasped(const MotionInput& input, WorldState& bodies) {
+  if (input.grasped.body < 0) return false;
+  Twist& V_WB = bodies.V_WB[Index(input.grasped.body)];
+  const double step =
+      (V_WB.v.norm() + V_WB.w.norm() * input.radius_m[Index(input.grasped.body)]) * input.dt_s;
+  if (!(step > input.limits.step_m)) return false;
+  V_WB = V_WB * (input.limits.step_m / step);
+  return true;
 }
 
 /// Up to kTrustedDepth times the shortest depth, the depth along the motion is used as it is; from the second
@@ -102,9 +98,9 @@ void PenaltyResponse::add_body(const MotionInput& input, int body, double h_s,
   const Body& what = input.world.bodies[Index(body)];
   const Pose& X_WB = bodies.X_WB[Index(body)];
   if (body == input.grasped.body) {
-    const Twist target = equilibrium_step(input.settings.coupling, input.grasped, what.load.constant, X_WB);
+    const Twist target = equilibrium_step(input.coupling, input.grasped, what.load.constant, X_WB);
     const GraspedBody as_body =
-        grasped_body_of(what.load, input.grasped, X_WB, coupling_stiffness(input.settings.coupling),
+        grasped_body_of(what.load, input.grasped, X_WB, coupling_stiffness(input.coupling),
                         to_vector(target), input.dt_s);
     problem_.add_body(placed(input.world, bodies, body), as_body.centre_W, as_body.metric, as_body.target,
                       h_s);
@@ -134,7 +130,7 @@ std::span<const double> PenaltyResponse::bound_motion(const MotionInput& input, 
     solve_penalty({}, input.settings.budget.solver_iterations, forces_, problem_);
     V_WB = to_twist(problem_.displacement(number) / input.dt_s);
   }
-  limit_grasped(input, bodies);
+  cut_ = limit_grasped(input, bodies);
   for (Index i = 0; i < motion_bound_.size(); ++i) {
     const Twist& V = bodies.V_WB[i];
     motion_bound_[i] = (V.v.norm() + V.w.norm() * input.radius_m[i]) * input.dt_s;
@@ -216,7 +212,8 @@ void PenaltyResponse::step(const StepInput& input, GapOracle& gaps, WorldState& 
   std::vector<Twist>& V_WB = bodies.V_WB;
   std::vector<ContactRow>& rows = contacts_.rows;
   const int tests_before = gaps.tests_left();
-  make_contact_rows(X_WB, input.patches, input.shading, input.settings.penalty.stiffness_N_per_m,
+  make_contact_rows(X_WB, input.patches, input.shading,
+                    input.settings.penalty.stiffness_N_per_m / input.settings.workspace.scale,
                     scale_depths(input, gaps, V_WB), contacts_);
   const double impact_s = first_impact(input, rows, gaps, V_WB);
   const double rest_s = input.dt_s - impact_s;
@@ -225,6 +222,7 @@ void PenaltyResponse::step(const StepInput& input, GapOracle& gaps, WorldState& 
     advance_distances(rows, X_WB, V_WB, impact_s);
     advance_bodies(world, V_WB, impact_s, X_WB);
   }
+  if (cut_ && !(rest_s > 0.0)) report.flags |= frame_flag::kStepLimited;  // nothing was in its way
   if (rest_s > 0.0) {
     solve(input, rest_s, bodies, report);
     report.contact_points = static_cast<int>(rows.size());
@@ -246,7 +244,7 @@ Wrench PenaltyResponse::felt(const StepInput& input, const PlacedHandle& handle)
   // The velocity is that of the whole frame's displacement, not of the last part after an impact.
   const Pose X_WH_before = input.X_WB_start[Index(grasped.body)] * grasped.X_BH;
   const Twist V_WH_proxy = twist_between(X_WH_before, handle.X_WH_proxy, input.dt_s);
-  return coupling_wrench(input.settings.coupling, grasped, handle.to_hand, V_WH_proxy);
+  return coupling_wrench(input.coupling, grasped, handle.to_hand, V_WH_proxy);
 }
 
 }  // namespace tactum::inline v0_1

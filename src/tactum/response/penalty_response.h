@@ -62,6 +62,7 @@ class PenaltyResponse {
   std::vector<char> all_move_;          // by body, all zero: none is deferred
   std::vector<Twist> V_before_joints_;  // by body: before joints and the hand change it [m/s, rad/s]
   std::vector<double> motion_bound_;    // by body [m]
+  bool cut_ = false;                    // the motion to the hand is cut to the threshold distance
   ReservedVector<double> depth_scale_;  // by patch
 };
 

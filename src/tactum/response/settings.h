@@ -16,11 +16,12 @@ namespace tactum::inline v0_1 {
 /// How the device's handle H maps into the world (hand.h).
 struct Workspace {
   Pose X_WD;               ///< device frame in the world [m]
-  double scale = 1.0;      ///< world metres per device metre; rotation is never scaled [-]
+  double scale = 1.0;      ///< world metres per device metre, see workspace_scale.h [-]
   int clutch_button = -1;  ///< bit of DeviceSample::buttons that disengages the handle; -1: none
 };
 
-/// The virtual coupling: the spring and damper between the probe and the proxy of the grasped part.
+/// The virtual coupling: the spring and damper between the probe and the proxy of the grasped part, as the
+/// device meets them; in_scene() gives those of the scene.
 struct Coupling {
   double stiffness_N_per_m = 600.0;     ///< k_t [N/m]
   double stiffness_Nm_per_rad = 0.3;    ///< k_r [N m/rad]
@@ -34,11 +35,11 @@ enum class OverlapDepth {
   kAlongMotion  ///< back along the relative motion, as published, 4.1; the force keeps the contact normal
 };
 
-/// The penalty response as published.
+/// The penalty response as published. Stiffness and lengths are stated at the device (workspace_scale.h).
 struct Penalty {
   double stiffness_N_per_m = 600.0;  ///< k_s, 0.6 N/mm in the paper, 5.1 [N/m]
-  double max_step_m = 0.5e-3;     ///< the "safe threshold distance" the proxy may travel in a frame, 3.2 [m]
-  double min_tolerance_m = 2e-5;  ///< smallest delta, so that a resting part keeps its contacts [m]
+  double max_step_m = 0.5e-3;        ///< the "safe threshold distance" of the proxy's travel in 1 ms, 3.2 [m]
+  double min_tolerance_m = 2e-5;     ///< smallest delta, so that a resting part keeps its contacts [m]
   OverlapDepth depth = OverlapDepth::kShortest;
 };
 
@@ -48,16 +49,17 @@ enum class ResponseModel {
   kConstraint  ///< no part penetrates another
 };
 
-/// The constraint response. The hand feels its coupling's stiffness and nothing else.
+/// The constraint response. The hand feels its coupling's stiffness and nothing else. Lengths are stated at
+/// the device, for a part of a hand's size; step_limits() gives those of the scene and the part.
 struct Constraint {
-  /// Farthest that a point of the grasped part goes in a step; the opening of gaps below the skin comes
-  /// before it [m].
+  /// Farthest that a point of the grasped part goes in 1 ms; the opening of gaps below the skin comes before
+  /// it [m].
   double max_step_m = 1e-3;
   double least_step_m = 5e-5;  ///< the least that the limit sinks to; from there it doubles [m]
   /// ... while surfaces without pieces touch: the number of contacts within a step, and the time to find
   /// them, grow with the step.
   double max_step_on_surfaces_m = 3e-5;  ///< [m]
-  double max_turn_rad = 0.020;           ///< farthest that the grasped part turns in a frame [rad]
+  double max_turn_rad = 0.020;           ///< farthest that the grasped part turns in 1 ms [rad]
 };
 
 /// A coefficient for every pair of bodies (scene files give it for pairs of materials).

@@ -9,7 +9,7 @@
 #include "tactum/contact/shading.h"
 #include "tactum/dynamics/world.h"
 #include "tactum/math/screw.h"
-#include "tactum/response/settings.h"
+#include "tactum/response/workspace_scale.h"
 
 namespace tactum::inline v0_1 {
 
@@ -67,7 +67,21 @@ struct MotionInput {
   const GraspedPart& grasped;
   std::span<const double> radius_m;  ///< of each body: farthest point from its origin [m]
   double dt_s;                       ///< time from frame to frame [s]
+  Coupling coupling;                 ///< in the scene
+  StepLimits limits;                 ///< of the grasped part
 };
+
+inline MotionInput motion_input(const World& world, const FrameSettings& settings, const GraspedPart& grasped,
+                                std::span<const double> radius_m) noexcept {
+  const double radius = grasped.body < 0 ? 0.0 : radius_m[static_cast<std::size_t>(grasped.body)];
+  return {world,
+          settings,
+          grasped,
+          radius_m,
+          settings.dt_s,
+          in_scene(settings.coupling, settings.workspace.scale),
+          step_limits(settings, radius)};
+}
 
 struct StepInput : MotionInput {
   std::span<const ContactPatch> patches;       ///< found with the bodies at X_WB_start

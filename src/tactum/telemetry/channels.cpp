@@ -4,6 +4,7 @@
 
 #include "tactum/haptics/report_fields.h"
 #include "tactum/math/screw.h"
+#include "tactum/response/workspace_scale.h"
 
 namespace tactum::inline v0_1 {
 namespace {
@@ -20,11 +21,17 @@ Wrench contact_at_handle(Source frame) noexcept {
   return moved(frame.report.restoring, frame.report.X_WH_proxy.p - p_WB);
 }
 
+/// So that all stages of the wrench can be compared.
+Wrench felt_at_device(Source frame, const Wrench& in_scene) noexcept {
+  return at_device(in_scene, frame.settings.workspace.scale);
+}
+
 // clang-format off
 constexpr WrenchStage kStages[] = {
-  {"contact", "Contact forces", "what the touched parts do to the held one, told at the handle", contact_at_handle},
+  {"contact", "Contact forces", "what the touched parts do to the held one, told at the handle",
+   [](Source f) noexcept -> Wrench { return felt_at_device(f, contact_at_handle(f)); }},
   {"coupling", "Raw: the coupling", "spring and damper from the hand to the held part; joints and free motion take their share",
-   [](Source f) noexcept -> Wrench { return f.report.coupling; }},
+   [](Source f) noexcept -> Wrench { return felt_at_device(f, f.report.coupling); }},
   {"smoothed", "After smoothing", "no step larger than the smoothing settings allow",
    [](Source f) noexcept -> Wrench { return from_device_axes(f, f.report.smoothed); }},
   {"shown", "Shown: after safety", "limits, slew, ramps and stop; this was sent to the device",
@@ -46,7 +53,7 @@ constexpr Channel kMadeChannels[] = {
   {"field_Nm", "Force fields, torque", "N m", "torque of force fields", "the same about its centre of mass",
    [](Source f) noexcept { return f.report.field.t.norm(); }},
   {"field_given_J", "From force fields", "J", "energy", "work they have done on what was held, of either sign",
-   [](Source f) noexcept { return f.state.hand.field.given_J; }},
+   [](Source f) noexcept { return f.state.hand.field.given_J / f.settings.workspace.scale; }},
   {"safety_gain", "Ramp", "", "ramp", "of the start and stop ramps, 0 to 1",
    [](Source f) noexcept { return f.state.safety.gain; }},
 };
@@ -59,6 +66,9 @@ constexpr FlagName kFrameFlags[] = {
   {frame_flag::kUncertified, "a distance without its certificate was used"},
   {frame_flag::kMotionUndone, "a motion was no number and was undone"},
   {frame_flag::kNoHand, "no valid sample of the hand yet"},
+  {frame_flag::kStepLimited, "the held part lags behind the hand: raise max_step_m"},
+  {frame_flag::kSurfaceStepLimited, "the held part lags behind the hand: raise max_step_on_surfaces_m"},
+  {frame_flag::kTurnLimited, "the held part lags behind the hand: raise max_turn_deg"},
 };
 // clang-format on
 

@@ -30,6 +30,7 @@ void RunRecord::add(const FrameReport& report, const WorldState& world) noexcept
   last_shown_ = report.shown;
 
   flags |= report.flags;
+  if (report.flags & frame_flag::kLags) ++lagging_frames;
   safety |= report.safety;
   max_tests = std::max(max_tests, report.tests());
   for_each_report_field([&](auto field) {

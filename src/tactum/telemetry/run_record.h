@@ -32,6 +32,7 @@ class RunRecord {
   double sum_torque_Nm = 0.0;                ///< of |shown torque|, for the mean [N m]
   double max_momentum_off_Ns = 0.0;          ///< of frames whose steps were all taken whole [N s]
   std::uint64_t forced_short_frames = 0;     ///< the others
+  std::uint64_t lagging_frames = 0;          ///< frames with one of frame_flag::kLags
   std::uint64_t non_finite_frames = 0;       ///< frames whose computed wrench was not finite (zero was sent)
   std::uint32_t flags = 0;                   ///< union of all frames' frame_flag
   std::uint32_t safety = 0;                  ///< union of all frames' safety_flag
