@@ -218,8 +218,7 @@ void leave_out_passed(ConstraintStep& step) {
   const std::span<ContactRow> rows(step.own.contact_rows.rows.data(), step.own.constraint.rows.count);
   f.V_free = step.bodies.V_WB;  // same size: nothing is allocated
   for (Index i = 0; i < f.V_free.size(); ++i)
-    if (f.struck[i])
-      drive(step.world.bodies[i], step.world.gravity_W, 0.5 * h, X_WB[i], f.V_free[i]);
+    if (f.struck[i]) drive(step.world.bodies[i], step.world.gravity_W, 0.5 * h, X_WB[i], f.V_free[i]);
   for (Index first = 0, end = 0; first < rows.size(); first = end) {
     for (end = first + 1; end < rows.size() && rows[end].patch == rows[first].patch;) ++end;
     const std::span<ContactRow> own = rows.subspan(first, end - first);

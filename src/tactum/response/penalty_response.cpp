@@ -99,9 +99,8 @@ void PenaltyResponse::add_body(const MotionInput& input, int body, double h_s,
   const Pose& X_WB = bodies.X_WB[Index(body)];
   if (body == input.grasped.body) {
     const Twist target = equilibrium_step(input.coupling, input.grasped, what.load.constant, X_WB);
-    const GraspedBody as_body =
-        grasped_body_of(what.load, input.grasped, X_WB, coupling_stiffness(input.coupling),
-                        to_vector(target), input.dt_s);
+    const GraspedBody as_body = grasped_body_of(
+        what.load, input.grasped, X_WB, coupling_stiffness(input.coupling), to_vector(target), input.dt_s);
     problem_.add_body(placed(input.world, bodies, body), as_body.centre_W, as_body.metric, as_body.target,
                       h_s);
     return;

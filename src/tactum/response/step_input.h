@@ -55,9 +55,9 @@ inline PlacedHandle handle_at(const GraspedPart& grasped, const Pose& X_WB) {
   const Pose X_WH_proxy = X_WB * grasped.X_BH;
   const Mat3 turn = grasped.X_WH.R * X_WH_proxy.R.transpose();
   return {X_WH_proxy,
-          {grasped.X_WH.p - grasped.beside_W - X_WH_proxy.p,
-           grasped.hold == Hold::kRod ? turn_aside(turn, grasped.axis_W)
-                                      : followed_turn(turn, grasped.turned_W)}};
+          {grasped.X_WH.p - grasped.beside_W - X_WH_proxy.p, grasped.hold == Hold::kRod
+                                                                 ? turn_aside(turn, grasped.axis_W)
+                                                                 : followed_turn(turn, grasped.turned_W)}};
 }
 
 /// The input of a motion bound: everything that is known before contacts are looked for.
