@@ -32,7 +32,7 @@ class FlushBodies {
 
   /// Marks the implied contacts among `patches` with `ContactPatch::implied` and gives them the normal of the
   /// contact that implies them. Surfaces without pieces are left as they are. Cost: nothing while only two
-  /// bodies touch; else, for every body that moves, the square of its patches, 3 ns each.
+  /// bodies touch; else, for every body that moves, the square of the number of its patches.
   void mark_implied(std::span<const CollisionBody> bodies, std::span<const Pose> X_WB,
                     std::span<ContactPatch> patches) noexcept;
 

@@ -26,7 +26,7 @@ using UnknownChange = std::array<double, kMostUnknowns>;
 /// Finds the most even loads that have the effect of the contacts' normal forces in the last answer of the
 /// exact solver together with the forces `beside`, which are given by their change of the unknowns. Where
 /// more corners touch than there is room for, or no such loads are found, the loads are those of the answer,
-/// and the result is false. Cost: that of a linear system in the unknowns, 1 us for one or two bodies.
+/// and the result is false. Cost: that of a linear system in the unknowns, as a rule once or twice.
 bool find_even_loads(const RowsInProblem& contacts, const ContactProblem& problem,
                      const UnknownChange& beside, EvenLoads& loads) noexcept;
 

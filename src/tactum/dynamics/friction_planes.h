@@ -19,7 +19,7 @@ class FrictionPlanes {
   FrictionPlanes(std::size_t bodies, std::size_t most_rows);
   /// Sets ContactRow::plane of rows that have friction: to the surfaces of the first row in its plane, of the
   /// same bodies, where all fixed ones count as one. Cost: each row is compared with the planes of the body
-  /// that moves, 3 ns each.
+  /// that moves.
   void find(std::span<ContactRow> rows) noexcept;
 
  private:
