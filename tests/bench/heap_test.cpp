@@ -99,7 +99,7 @@ TEST(Heap, StaysWithinATenthOfItsPairsAndEntersNothing) {
     watch.budget = 380;
   } else if (cases::kSlowness > 1) {  // a sanitized build looks for faults of memory
     options = {.bodies = 8, .width_m = 0.08, .calm_s = 0.2};
-    watch.budget = 45;
+    watch.budget = 60;  // the grasped jack has up to 52 pairs that are due at once
     times_near = 4;
   } else {
     options = {.bodies = 40, .width_m = 0.12, .calm_s = 0.6};
