@@ -14,6 +14,8 @@ using Index = std::size_t;
 /// A patch that moved from one piece of a surface to the next is in the same plane within so many skins.
 constexpr double kSamePlaneSkins = 20.0;
 
+bool has_friction(const ContactRow& row) { return row.friction > 0.0; }
+
 /// By how much the anchor's displacement relaxes a row beyond the gap.
 double allowance(const FrictionPatch& patch, Index k) {
   if (k >= Friction::kDirections || patch.anchor.apart_W.isZero(0.0)) return 0.0;
@@ -94,7 +96,7 @@ void Friction::find_pushing(const RowsInProblem& contacts, const ContactProblem&
   const auto for_pushing_rows = [&](const auto& visit) {
     for (Index i = 0; i < loads.rows.size(); ++i) {
       const ContactRow& row = contacts.rows[Index(loads.rows[i])];
-      if (!(loads.force_N[i] > 0.0) || !(row.friction > 0.0)) continue;
+      if (!(loads.force_N[i] > 0.0) || !has_friction(row)) continue;
       FrictionPatch* found = patch_of(row.friction_surfaces());
       if (found == nullptr) {
         FrictionPatch next;
@@ -190,6 +192,7 @@ void Friction::drop_unsqueezed(const ContactProblem& problem) noexcept {
 bool Friction::begin(const RowsInProblem& contacts, std::span<const Pose> X_WB,
                      const FrictionAnchors& anchors, ContactProblem& problem) noexcept {
   patches_.clear();
+  if (std::none_of(contacts.rows.begin(), contacts.rows.end(), has_friction)) return false;
   find_pushing(contacts, problem);
   find_last_pushing(contacts, anchors, X_WB);
   drop_unsqueezed(problem);
@@ -383,6 +386,13 @@ void Friction::forget_anchors(ContactProblem& problem) noexcept {
 
 void Friction::end(const RowsInProblem& contacts, const ContactProblem& problem, std::span<const Pose> X_WB,
                    FrictionAnchors& anchors) const noexcept {
+  if (acts()) anchor_patches(contacts, problem, X_WB, anchors);
+  note_pressed(contacts, problem, X_WB, anchors);
+}
+
+/// Anchors every patch at the centre of its forces.
+void Friction::anchor_patches(const RowsInProblem& contacts, const ContactProblem& problem,
+                              std::span<const Pose> X_WB, FrictionAnchors& anchors) const noexcept {
   UnknownChange cones{};  // by the normal forces of the cones
   for (const FrictionPatch& patch : patches_)
     push(patch.motion.off, loads_of(patch, contacts, problem).cone_N, cones.data());
@@ -405,7 +415,6 @@ void Friction::end(const RowsInProblem& contacts, const ContactProblem& problem,
     const bool pushed = loads.cone_N > 0.0 || (patch.sliding.acts && load > 0.0);
     anchors.add(next_anchor(patch, centre, pushed, X_WB));
   }
-  note_pressed(contacts, problem, X_WB, anchors);
 }
 
 /// Anchors the planes that push in the last answer only because there was friction elsewhere, as a ladder's
@@ -414,7 +423,7 @@ void Friction::note_pressed(const RowsInProblem& contacts, const ContactProblem&
                             std::span<const Pose> X_WB, FrictionAnchors& anchors) const noexcept {
   for (const QpActive& active : problem.answer().active) {
     const ContactRow* const row = contacts.row(active.row);
-    if (row == nullptr || !(active.multiplier > 0.0) || !(row->friction > 0.0)) continue;
+    if (row == nullptr || !(active.multiplier > 0.0) || !has_friction(*row)) continue;
     const SurfacePair& on = row->friction_surfaces();
     if (std::any_of(patches_.begin(), patches_.end(),
                     [&](const FrictionPatch& patch) { return patch.surfaces == on; }))

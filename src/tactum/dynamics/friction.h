@@ -106,6 +106,8 @@ class Friction {
   void find_last_pushing(const RowsInProblem& contacts, const FrictionAnchors& anchors,
                          std::span<const Pose> X_WB) noexcept;
   double taken_off(const FrictionPatch& patch, const ContactProblem& problem) const noexcept;
+  void anchor_patches(const RowsInProblem& contacts, const ContactProblem& problem,
+                      std::span<const Pose> X_WB, FrictionAnchors& anchors) const noexcept;
   void note_pressed(const RowsInProblem& contacts, const ContactProblem& problem, std::span<const Pose> X_WB,
                     FrictionAnchors& anchors) const noexcept;
   void drop_unsqueezed(const ContactProblem& problem) noexcept;
