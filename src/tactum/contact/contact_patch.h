@@ -15,6 +15,12 @@ struct FacetPair {
   int a = -1, b = -1;
 };
 
+/// Of each body: an edge or corner of it touches on another piece; the feature, if any, is the face beside it
+/// on this one.
+struct NeighbourFaces {
+  bool a = false, b = false;
+};
+
 /// Two pieces nearer than their tolerance, or two triangles of surfaces with a local minimum of their
 /// distance. Manifold in A's body frame.
 struct ContactPatch {
@@ -22,9 +28,7 @@ struct ContactPatch {
   int piece_a = -1, piece_b = -1;  ///< within their parts; triangles where two surfaces meet
   int pair = -1;                   ///< of pieces, in the finder's list
   bool of_surfaces = false;        ///< the features of the manifold are those of SurfaceTree
-  /// An edge or corner of A (of B) touches on another piece; the feature, if any, is the face beside it on
-  /// this one.
-  bool neighbour_face_a = false, neighbour_face_b = false;
+  NeighbourFaces neighbour_face;
   bool implied = false;  ///< by a contact with another body (flush_bodies.h): it has no force of its own
   FacetPair facets;
   double distance = 0.0;   ///< of the pieces, or of the local minimum; negative when they overlap [m]

@@ -312,9 +312,9 @@ void take_from(const ContactPatch& representative, const SeamCandidate& candidat
   patch.manifold.points.clear();
   patch.manifold.normal = leading.normal;
   patch.manifold.a =
-      stretch_of(candidate.a, representative.piece_a, leading.a, -leading.normal, patch.neighbour_face_a);
+      stretch_of(candidate.a, representative.piece_a, leading.a, -leading.normal, patch.neighbour_face.a);
   patch.manifold.b = stretch_of(candidate.b, representative.piece_b, leading.b,
-                                rotated_back(X_AB.R, leading.normal), patch.neighbour_face_b);
+                                rotated_back(X_AB.R, leading.normal), patch.neighbour_face.b);
 }
 
 }  // namespace

@@ -163,10 +163,13 @@ void ContactProblem::set_motions(ProblemBody& body, const PlacedBody& placed, co
                                             : set_motions_about_ball(body, placed, metric, target, h);
   if (!forces.acts) return;
   const Push along{body.centre, forces.rate.head<3>(), forces.rate.tail<3>()};
-  if (forces.friction > 0.0 && body.rank == 1)
-    joint_frictions_.push_back({bodies_.size() - 1, forces.friction,
-                                work(along, body.centre, body.motions.col(0)),
-                                work(along, body.centre, body.target)});
+  if (forces.friction > 0.0 && body.rank == 1) {
+    JointFriction& friction = joint_frictions_.emplace_back();
+    friction.friction = forces.friction;
+    friction.travel.runs[0] = {
+        static_cast<std::uint32_t>(body.first), 1, {work(along, body.centre, body.motions.col(0))}};
+    friction.travel.offset = -work(along, body.centre, body.target);
+  }
   if (forces.limited_down()) limits_.push_back({body.body, along, std::max(0.0, forces.travel_down)});
   if (forces.limited_up())
     limits_.push_back({body.body, {along.p_W, -along.force, -along.torque}, std::max(0.0, forces.travel_up)});
@@ -207,14 +210,14 @@ void ContactProblem::follow(const ContactProblem& led) noexcept {
 void ContactProblem::add_friction_unknown(const JointFriction& friction) noexcept {
   if (unknowns_ == kMostUnknowns) return;
   const Index unknown = unknowns_++;
+  const QpRow::Run& travel = friction.travel.runs[0];
   const double spring = kFrictionSoftness * friction.friction / kFarthestTravel;
   const double unpulled = -friction.friction / spring;  // t*
   for (const double side : {1.0, -1.0}) {
     QpRow& row = rows_.emplace_back();
     row.runs[0] = {static_cast<std::uint32_t>(unknown), 1, {1.0 / std::sqrt(spring)}};
-    row.runs[1] = {
-        static_cast<std::uint32_t>(bodies_[friction.body].first), 1, {-side * friction.per_unknown}};
-    row.offset = side * friction.free_travel - unpulled;
+    row.runs[1] = {travel.first, 1, {-side * travel.g[0]}};
+    row.offset = -side * friction.travel.offset - unpulled;
   }
 }
 

@@ -153,10 +153,9 @@ class ContactProblem {
 
   // Of the other solvers: they work on the rows and the unknowns themselves.
   struct JointFriction {
-    std::size_t body = 0;      ///< index into bodies()
-    double friction = 0.0;     ///< [N m or N]
-    double per_unknown = 0.0;  ///< the joint's travel for its body's unknown [rad or m]
-    double free_travel = 0.0;  ///< in this step, without the friction [rad or m]
+    double friction = 0.0;  ///< [N m or N]
+    /// opening(travel) is the joint's travel in the step. It has one run, of one unknown [rad or m].
+    QpRow travel;
   };
   std::span<const QpRow> row_list() const noexcept { return rows_; }
   std::span<const JointFriction> joint_frictions() const noexcept {

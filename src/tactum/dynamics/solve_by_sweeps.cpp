@@ -111,8 +111,8 @@ void Sweeps::for_each_force(ContactProblem& problem, const Visit& visit) noexcep
   double* const z = problem.values();
   const std::span<const QpRow> rows = problem.row_list();
   for (Index i = 0; i < joints_.size(); ++i) {
-    const ContactProblem::JointFriction& joint = problem.joint_frictions()[i];
-    visit(joints_[i], [&](double f) { z[problem.bodies()[joint.body].first] += joint.per_unknown * f; });
+    const QpRow& travel = problem.joint_frictions()[i].travel;
+    visit(joints_[i], [&](double f) { push(travel, f, z); });
   }
   for (Index i = 0; i < rows_.size(); ++i) visit(rows_[i].force, [&](double f) { push(rows[i], f, z); });
   for (Index i = 0; i < patches_.size(); ++i) {
@@ -135,13 +135,12 @@ void Sweeps::tighten(std::size_t contact, double by_m, ContactProblem& problem) 
 /// change of its travel [m or rad].
 double Sweeps::relax_joint(std::size_t joint, ContactProblem& problem) noexcept {
   const ContactProblem::JointFriction& friction = problem.joint_frictions()[joint];
-  double& z = problem.values()[problem.bodies()[friction.body].first];
-  const double mobile = friction.per_unknown * friction.per_unknown;
+  const double mobile = mobility(friction.travel);
   if (!(mobile > 0.0)) return 0.0;
   Force& force = joints_[joint];
-  const double travel = friction.free_travel + friction.per_unknown * z;
+  const double travel = problem.opening(friction.travel);
   force.now = std::clamp(force.now - travel / mobile, -friction.friction, friction.friction);
-  z += friction.per_unknown * (force.now - force.before);
+  push(friction.travel, force.now - force.before, problem.values());
   return std::abs(force.now - force.before) * mobile;
 }
 

@@ -37,12 +37,9 @@ void for_each_row(std::span<const double> stiffness, const ContactProblem& probl
   for (Index i = first; i < rows.size(); ++i) visit(i, rows[i], ForceLaw{.stiffness = stiffness[i - first]});
   const std::span<const ContactProblem::JointFriction> frictions = problem.joint_frictions();
   for (Index i = 0; i < frictions.size(); ++i) {
-    const ContactProblem::JointFriction& friction = frictions[i];
-    QpRow row;
-    row.runs[0] = {
-        static_cast<std::uint32_t>(problem.bodies()[friction.body].first), 1, {friction.per_unknown}};
-    row.offset = -friction.free_travel;
-    visit(rows.size() + i, row, ForceLaw{rigid_stiffness(row), -friction.friction, friction.friction});
+    const double most = frictions[i].friction;
+    const QpRow& travel = frictions[i].travel;
+    visit(rows.size() + i, travel, ForceLaw{rigid_stiffness(travel), -most, most});
   }
 }
 

@@ -54,9 +54,9 @@ Vec3 bend(const ShadingNormals& a, const ShadingNormals& b, const Pose& X_AB, co
   const Feature& on_a = patch.manifold.a;
   const Feature& on_b = patch.manifold.b;
   const Vec3 p_B = rotated_back(X_AB.R, corner.p_A - X_AB.p);
-  const Vec3 by_a = deviation(a, patch.piece_a, on_a, patch.neighbour_face_a, corner.p_A);
-  const Vec3 by_b = deviation(b, patch.piece_b, on_b, patch.neighbour_face_b, p_B);
-  if (!by_face(on_a, patch.neighbour_face_a) || !by_face(on_b, patch.neighbour_face_b))
+  const Vec3 by_a = deviation(a, patch.piece_a, on_a, patch.neighbour_face.a, corner.p_A);
+  const Vec3 by_b = deviation(b, patch.piece_b, on_b, patch.neighbour_face.b, p_B);
+  if (!by_face(on_a, patch.neighbour_face.a) || !by_face(on_b, patch.neighbour_face.b))
     return rotated(X_AB.R, by_b) - by_a;
   if (by_a.isZero(0.0) || by_b.isZero(0.0)) return Vec3::Zero();
   return 0.5 * (rotated(X_AB.R, by_b) - by_a);
@@ -178,8 +178,8 @@ double gap_at_trial(const ContactRow& row, const ConstraintStep& step) noexcept 
     const Pose& before = step.bodies.X_WB[Index(body)];
     return c.trial.X_WB[Index(body)] * rotated_back(before.R, p_W - before.p);
   };
-  const bool on_a = by_face(patch.manifold.a, patch.neighbour_face_a);
-  const bool on_b = by_face(patch.manifold.b, patch.neighbour_face_b);
+  const bool on_a = by_face(patch.manifold.a, patch.neighbour_face.a);
+  const bool on_b = by_face(patch.manifold.b, patch.neighbour_face.b);
   const int owner = on_a && !on_b ? row.body_a : row.body_b;
   const Vec3 half = 0.5 * row.distance * row.n_BA_W;
   const Vec3 normal =

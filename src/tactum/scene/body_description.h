@@ -71,6 +71,12 @@ struct SamplePoint {
   std::optional<double> weight = {};  ///< 1 / the number of points when absent [-]
 };
 
+/// Where force fields act on a body; with neither, on points that the program spreads.
+struct FieldPointsDescription {
+  std::optional<int> count = {};         ///< either so many points, spread over the surface [-]
+  std::vector<SamplePoint> listed = {};  ///< ... or these
+};
+
 struct BodyDescription {
   std::string name = {};                              ///< one of its own
   std::optional<PartDescription> part = {};           ///< either this
@@ -81,10 +87,9 @@ struct BodyDescription {
   std::optional<double> mass_kg = {};            ///< either this [kg]
   std::optional<double> density_kg_per_m3 = {};  ///< ... or this; 1000 when both are absent [kg/m^3]
   JointDescription joint = FreeJoint{};
-  BodyLoad load = {};                         ///< at the centre of mass; none for a fixed body
-  std::string material = {};                  ///< for friction and restitution; may be empty
-  std::optional<int> field_points = {};       ///< so many points feel fields, spread over the surface [-]
-  std::vector<SamplePoint> field_point = {};  ///< ... or these
+  BodyLoad load = {};         ///< at the centre of mass; none for a fixed body
+  std::string material = {};  ///< for friction and restitution; may be empty
+  FieldPointsDescription field_points = {};
 };
 
 }  // namespace tactum::inline v0_1

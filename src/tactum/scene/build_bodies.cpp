@@ -62,10 +62,10 @@ class JointMaker {
 
 /// The points where force fields act: a number of them spread over the surface, or each by itself.
 std::vector<FieldPoint> field_points(const BodyDescription& body, const Part& part) {
-  if (body.field_points) return spread_over(part.surface, *body.field_points);
+  if (body.field_points.count) return spread_over(part.surface, *body.field_points.count);
   std::vector<FieldPoint> points;
-  const double share = 1.0 / static_cast<double>(body.field_point.size());
-  for (const SamplePoint& point : body.field_point)
+  const double share = 1.0 / static_cast<double>(body.field_points.listed.size());
+  for (const SamplePoint& point : body.field_points.listed)
     points.push_back({point.pos_m - part.origin, point.weight.value_or(share)});
   return points;
 }

@@ -97,10 +97,10 @@ void visit_items(ItemVisitor& visitor, BodyDescription& body) {
     visitor.fail("mass_kg", "two masses in " + visitor.section(), "mass_kg and density_kg_per_m3",
                  "one of them");
 
-  visitor.tables("field_point", body.field_point);
-  visitor.optional("field_points", body.field_points,
+  visitor.tables("field_point", body.field_points.listed);
+  visitor.optional("field_points", body.field_points.count,
                    [&](int& count) { visitor.integer("field_points", count, 1, kMostFieldPoints); });
-  if (body.field_points && !body.field_point.empty())
+  if (body.field_points.count && !body.field_points.listed.empty())
     visitor.fail("field_points", "two sets of sample points in " + visitor.section(),
                  "field_points and field_point", "one of them");
 }
