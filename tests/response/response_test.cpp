@@ -92,6 +92,7 @@ class OverPlane final : public GapOracle {
   bool passes(int, std::span<const Pose>, std::span<const Twist>, double, double) noexcept override {
     return false;
   }
+  bool capacity_reached() const noexcept override { return false; }
   int tests_left() const noexcept override { return 1000; }
   bool budget_limited() const noexcept override { return false; }
   bool blocked(int /*body*/) const noexcept override { return false; }

@@ -49,6 +49,7 @@ void ContactFinder::find_patches(std::span<const Pose> X_WB, int budget, PatchPo
   candidates_.clear();
   emitted_.clear();
   std::fill(blocked_.begin(), blocked_.end(), 0);
+  block_unlisted();
   list_due_pairs();
   budget_limited_ = kAmple * due_.size() > static_cast<Index>(std::max(budget, 0));
   // Pairs whose answer still holds are removed before the list is sorted.
@@ -87,7 +88,8 @@ void ContactFinder::find_patches(std::span<const Pose> X_WB, int budget, PatchPo
   } else {
     candidate_order_.clear();
     for (SeamCandidate& candidate : candidates_) candidate_order_.push_back(&candidate);
-    work_.capacity_reached |= !settle_seams(candidate_order_, X_WB, steady_, patches_);
+    if (!settle_seams(candidate_order_, X_WB, steady_, patches_))
+      for (const SeamCandidate& candidate : candidates_) drop(candidate.a.body, candidate.b.body);
   }
   flush_bodies_.mark_implied(bodies_, X_WB, patches_);
   if (points_ == PatchPoints::kQuadrature)
@@ -163,6 +165,22 @@ void ContactFinder::skip(int a, int b, double gap, std::int64_t last_checked) no
   blocked_[Index(a)] = blocked_[Index(b)] = 1;
 }
 
+/// Flags that a contact of two bodies finds no room. Nothing keeps them apart there, so they may not move.
+void ContactFinder::drop(int a, int b) noexcept {
+  work_.capacity_reached = true;
+  blocked_[Index(a)] = blocked_[Index(b)] = 1;
+}
+
+/// Blocks the bodies whose near pairs found no room on the lists; all of them, where it is not known which
+/// bodies are near.
+void ContactFinder::block_unlisted() noexcept {
+  for (const SweepAndPrune::Pair& near : sweep_.pairs())
+    if (list_of(near).cut_short) drop(near.a, near.b);
+  if (sweep_.missing() == 0) return;
+  work_.capacity_reached = true;
+  std::fill(blocked_.begin(), blocked_.end(), 1);
+}
+
 double ContactFinder::tolerance(int a, int b) const noexcept {
   const auto bound_of = [&](int body) {
     return bodies_[Index(body)].moves ? motion_bound_[Index(body)] : 0.0;
@@ -206,8 +224,7 @@ void ContactFinder::add_candidate(Pair& pair, const PairDistance& found, bool in
 }
 
 /// Makes a patch of the answer, when it is within the tolerance. Of a pair that was not tested in this frame
-/// the points and the normal are those of its last test, in A's frame, and the distance is a bound. Without
-/// room the contact is dropped: nothing then keeps the two pieces apart, and only the flag says so.
+/// the points and the normal are those of its last test, in A's frame, and the distance is a bound.
 void ContactFinder::emit_patch(Pair& pair, const PairDistance& found, const Pose& X_AB) noexcept {
   const Part& part_a = *bodies_[Index(pair.body_a)].part;
   const Part& part_b = *bodies_[Index(pair.body_b)].part;
@@ -217,10 +234,8 @@ void ContactFinder::emit_patch(Pair& pair, const PairDistance& found, const Pose
     pair.shown = {};
     return;
   }
-  if (patches_.size() == patches_.capacity() || candidates_.size() == candidates_.capacity()) {
-    work_.capacity_reached = true;
-    return;
-  }
+  if (patches_.size() == patches_.capacity() || candidates_.size() == candidates_.capacity())
+    return drop(pair.body_a, pair.body_b);
   const bool seams = !part_a.true_surface.single_piece() || !part_b.true_surface.single_piece();
   const bool internal = seams && !is_true_contact(part_a, pair.piece_a, part_b, pair.piece_b, X_AB, found);
   if (seams && points_ == PatchPoints::kQuadrature) return add_candidate(pair, found, internal, -1);

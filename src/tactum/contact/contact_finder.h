@@ -76,6 +76,7 @@ class ContactFinder final : public GapOracle {
   void find_patches(std::span<const Pose> X_WB, int budget, PatchPoints points = PatchPoints::kQuadrature,
                     std::span<const std::uint8_t> priority = {}) noexcept;
   bool budget_limited() const noexcept override { return budget_limited_; }
+  bool capacity_reached() const noexcept override { return work_.capacity_reached; }
   int tests_left() const noexcept override { return tests_left_; }
   bool blocked(int body) const noexcept override { return blocked_[static_cast<std::size_t>(body)] != 0; }
 
@@ -133,6 +134,8 @@ class ContactFinder final : public GapOracle {
   void list_due_pairs() noexcept;
   int skip_still_valid(std::span<const Pose> X_WB) noexcept;
   void skip(int a, int b, double gap, std::int64_t last_checked) noexcept;
+  void drop(int a, int b) noexcept;
+  void block_unlisted() noexcept;
   bool of_grasped(int a, int b) const noexcept { return priority_of(a, b) == priority::kGrasped; }
   std::uint8_t priority_of(int a, int b) const noexcept;
   void test(Pair& pair, const Pose& X_AB) noexcept;

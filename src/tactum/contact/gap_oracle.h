@@ -70,6 +70,8 @@ class GapOracle {
   /// surfaces without pieces, or where no test is left. Costs the tests of time_of_impact.h.
   virtual bool passes(int patch, std::span<const Pose> X_WB, std::span<const Twist> V_WB, double dt_s,
                       double gap_m) noexcept = 0;
+  /// Whether something found no memory in this frame, in a trial too.
+  virtual bool capacity_reached() const noexcept = 0;
   /// Exact tests that are left of the frame's budget.
   virtual int tests_left() const noexcept = 0;
   /// Whether the budget was not ample in this frame.

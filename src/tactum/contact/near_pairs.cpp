@@ -81,8 +81,6 @@ void ContactFinder::find_near_pairs(std::span<const Pose> X_WB, std::span<const 
   const bool lists_hold = std::all_of(sweep_.pairs().begin(), sweep_.pairs().end(),
                                       [&](const auto& near) { return list_holds(near); });
   if (!lists_hold) renew_lists(X_WB);
-  work_.capacity_reached |= sweep_.missing() > 0;
-  for (const SweepAndPrune::Pair& near : sweep_.pairs()) work_.capacity_reached |= list_of(near).cut_short;
   work_.near_pairs = static_cast<int>(pairs_.size());
 }
 

@@ -58,7 +58,7 @@ void ContactFinder::test_surfaces(const SweepAndPrune::Pair& near, std::span<con
   ++work_.surface_queries;
   work_.minima += found.minima;
   work_.feature_steps += found.feature_pairs;
-  work_.capacity_reached |= found.full;
+  if (found.full) drop(a, b);
   list.apart = minima_.empty();
   list.free_until = accumulated_motion(a, b) + (list.apart ? margin : 0.0);
   Index kept = minima_.size();
@@ -87,10 +87,7 @@ void ContactFinder::test_surfaces(const SweepAndPrune::Pair& near, std::span<con
 
 void ContactFinder::add_surface_patch(int a, int b, const SurfaceMinimum& minimum, bool second_end,
                                       double margin) noexcept {
-  if (patches_.size() == patches_.capacity()) {
-    work_.capacity_reached = true;
-    return;
-  }
+  if (patches_.size() == patches_.capacity()) return drop(a, b);
   ContactPatch& patch = patches_.emplace_back();
   patch.body_a = a;
   patch.body_b = b;

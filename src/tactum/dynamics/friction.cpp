@@ -104,7 +104,10 @@ void Friction::find_pushing(const RowsInProblem& contacts, const ContactProblem&
         next.source_patch = row.patch;
         next.coefficient = row.friction;
         next.place.skin_m = row.skin_m;
-        if (!patches_.push_back(next)) continue;
+        if (!patches_.push_back(next)) {
+          no_room_ = true;
+          continue;
+        }
         found = &patches_.back();
       }
       visit(*found, row, loads.force_N[i]);
@@ -146,7 +149,10 @@ void Friction::find_last_pushing(const RowsInProblem& contacts, const FrictionAn
       patch.place.skin_m = row.skin_m;
       patch.place.centre_W = X_WB[Index(last->surfaces.body_a)] * last->centre_A;
       patch.place.radius_m = last->radius_m;
-      if (!patches_.push_back(patch)) break;
+      if (!patches_.push_back(patch)) {
+        no_room_ = true;
+        break;
+      }
       found = &patches_.back();
     } else if (found < patches_.begin() + pushing) {
       continue;
@@ -191,7 +197,7 @@ void Friction::drop_unsqueezed(const ContactProblem& problem) noexcept {
 
 bool Friction::begin(const RowsInProblem& contacts, std::span<const Pose> X_WB,
                      const FrictionAnchors& anchors, ContactProblem& problem) noexcept {
-  patches_.clear();
+  clear();
   if (std::none_of(contacts.rows.begin(), contacts.rows.end(), has_friction)) return false;
   find_pushing(contacts, problem);
   find_last_pushing(contacts, anchors, X_WB);

@@ -45,7 +45,7 @@ class Friction {
 
   /// Finds the patches that push in the last answer, and those that pushed in the last frame; adds their rows
   /// to the problem. False when there are none. There is room for kMostPatches: all further ones have no
-  /// friction in this frame, and nothing reports it.
+  /// friction in this frame, see no_room().
   bool begin(const RowsInProblem& contacts, std::span<const Pose> X_WB, const FrictionAnchors& anchors,
              ContactProblem& problem) noexcept;
   /// Appends the rows that pushed in the last frame while the patches stuck.
@@ -83,9 +83,14 @@ class Friction {
   }
 
   bool acts() const noexcept { return !patches_.empty(); }
+  /// Whether a patch has no friction in this frame for want of room.
+  bool no_room() const noexcept { return no_room_; }
   std::span<const FrictionPatch> patches() const noexcept { return {patches_.begin(), patches_.end()}; }
   /// Removes all patches.
-  void clear() noexcept { patches_.clear(); }
+  void clear() noexcept {
+    patches_.clear();
+    no_room_ = false;
+  }
 
  private:
   /// The forces at one patch, on A: of its cone, and of its corners along their normals.
@@ -117,6 +122,7 @@ class Friction {
   void release(FrictionPatch& patch, ContactProblem& problem) noexcept;
 
   StaticVector<FrictionPatch, kMostPatches> patches_;
+  bool no_room_ = false;
 };
 
 /// Sets the anchor of a patch, and its centre in the patch's plane, to the last frame's; a patch that had

@@ -120,9 +120,8 @@ Extent extent_of(const ConstraintStep& step, const ProblemBody& problem_body) {
 }
 
 /// The fraction of the answer's step that is trusted: with it no body of the island goes beyond its motion
-/// bound less kBoundMargin skins, and the grasped part turns no farther than it may. The step of restore()
-/// has the same bound for itself. Zero where nothing of a bound is left, as of a body at rest, without
-/// gravity, that the part has just met.
+/// bound less kBoundMargin skins, and the grasped part turns no farther than it may. Zero where nothing of a
+/// bound is left, as of a body at rest, without gravity, that the part has just met.
 double trusted_share(const ConstraintStep& step) {
   double share = 1.0;
   for (const ProblemBody& problem_body : step.own.constraint.step_problem().bodies()) {
@@ -179,7 +178,10 @@ void restore(ConstraintStep& step) {
   add_bodies(true, step);
   c.rows.first = add_contact_rows(true, c.problem, step);
   if (!solve_frictionless(c.rows.first, c.problem, step)) return;
-  if (!open_after(trusted_share(step), step)) return;
+  const double share = trusted_share(step);
+  if (!open_after(share, step)) return;
+  for (const ProblemBody& body : c.problem.bodies())  // the step that follows has what is left of the bound
+    step.own.motion_bound[Index(body.body)] -= share * extent_of(step, body).travel_m;
   for (ContactRow& row : own_rows(step)) row.distance = gap_at_trial(row, step);
   take_trial(step);
 }
@@ -256,6 +258,7 @@ double move_grasped_island(ConstraintStep& step) {
     step.own.free.patch_asked.push_back(step.own.free.of_grasped(patch) ? 1 : 0);
   restore(step);
   const double share = advance(step);
+  if (c.friction.no_room()) step.report.flags |= frame_flag::kCapacityReached;
   c.friction.end(contacts_of(step), c.problem, step.bodies.X_WB, c.anchors);
   c.trust.consecutive_rejections = share > 0.0 ? 0 : c.trust.consecutive_rejections + 1;
   if (share > 0.0 && share < 1.0) step.report.flags |= limit_of_step(step);

@@ -11,11 +11,11 @@
 
 namespace tactum::inline v0_1 {
 
-/// The limits that a frame ran into, each with the setting to raise. A frame never stops for these. What the
-/// tests of trial poses run into sets none of them.
+/// The limits that a frame ran into, each with the setting to raise. A frame never stops for these. Of what
+/// the tests of trial poses run into, only kCapacityReached is set.
 namespace frame_flag {
 inline constexpr std::uint32_t kBudgetShort = 1u << 0;  ///< pairs left unchecked: WorkBudget::max_exact_tests
-inline constexpr std::uint32_t kCapacityReached = 1u << 1;  ///< pairs or patches dropped: WorkBudget
+inline constexpr std::uint32_t kCapacityReached = 1u << 1;  ///< something dropped: WorkBudget::capacity
 inline constexpr std::uint32_t kPointsFull =
     1u << 2;  ///< contact points dropped: WorkBudget::max_contact_points
 inline constexpr std::uint32_t kSolverBounded = 1u << 3;  ///< not converged: WorkBudget::solver_iterations

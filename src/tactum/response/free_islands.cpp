@@ -110,6 +110,7 @@ bool solve_exact(IslandProblem& p) {
   c.friction.for_each_force(p.problem, [&](Index patch, const Push& push, double multiplier) {
     report_friction(c.friction.patches()[patch], multiplier * push.force, multiplier * push.torque, p);
   });
+  if (c.friction.no_room()) p.step.report.flags |= frame_flag::kCapacityReached;
   c.friction.end(p.in_problem, p.problem, p.step.bodies.X_WB, c.anchors);
   return true;
 }

@@ -42,6 +42,7 @@ void Response::step(const StepInput& input, GapOracle& gaps, WorldState& bodies,
       [&](auto& model) {
         model.step(input, gaps, bodies, report);
         if (model.rows_full()) report.flags |= frame_flag::kPointsFull;
+        if (gaps.capacity_reached()) report.flags |= frame_flag::kCapacityReached;
       },
       model_);
   undo_non_finite(input.world, input.X_WB_start, bodies, report);

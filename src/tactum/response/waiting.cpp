@@ -123,7 +123,7 @@ void defer_bodies(ConstraintStep& step) noexcept {
     w.rounds = std::max(w.rounds - 1, kFewestRounds);
   }
   w.ran_out = false;
-  const bool some_blocked = step.work.left_unproven > 0;
+  const bool some_blocked = step.work.left_unproven > 0 || step.gaps.capacity_reached();
   if (!step.gaps.budget_limited() && !some_blocked) {
     std::fill(w.waits.begin(), w.waits.end(), 0);
     std::fill(w.waited.begin(), w.waited.end(), 0);

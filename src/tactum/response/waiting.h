@@ -4,7 +4,7 @@
 /// stand still needs no test and cannot come to penetrate; so a short budget costs time in the scene, never
 /// penetration.
 ///
-///   deferred:  a body with a pair that was left unproven (contact_finder.h)
+///   deferred:  a body with a pair that was left unproven, or that found no memory (contact_finder.h)
 ///              a body that the tests left for trial poses do not cover; the bodies that touch the
 ///              grasped part come first, then those that have been deferred longest
 ///

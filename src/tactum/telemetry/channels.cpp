@@ -60,7 +60,7 @@ constexpr Channel kMadeChannels[] = {
 
 constexpr FlagName kFrameFlags[] = {
   {frame_flag::kBudgetShort, "pairs left unchecked: raise max_exact_tests"},
-  {frame_flag::kCapacityReached, "pairs or patches dropped: capacity reached"},
+  {frame_flag::kCapacityReached, "pairs, patches or their friction dropped: capacity reached"},
   {frame_flag::kPointsFull, "contact points dropped: raise max_contact_points"},
   {frame_flag::kSolverBounded, "contact solver not converged: raise solver_iterations"},
   {frame_flag::kUncertified, "a distance without its certificate was used"},
