@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "app/program.h"
+#include "support/effort.h"
 #include "support/real_data.h"
 
 namespace tactum {

@@ -8,20 +8,14 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 #include <memory>
 
-#include "collision/cases.h"
 #include "oracles/exhaustive.h"
+#include "support/effort.h"
 #include "tactum/haptics/simulation.h"
 
 namespace tactum::bench {
 namespace {
-
-bool full() {
-  const char* const asked = std::getenv("TACTUM_FULL");
-  return asked != nullptr && *asked != '\0';
-}
 
 /// An ideal device that follows the scene's hand.
 struct HeapRig {
@@ -82,7 +76,7 @@ struct HeapWatch {
     for (std::size_t b = 1; b < bodies && rig.frames() % 25 == 0; ++b) {
       ASSERT_FALSE(rig.entered(0, b)) << "frame " << rig.frames();
     }
-    for (std::size_t a = 1; a < bodies && rig.frames() % (full() ? 500 : 250) == 0; ++a) {
+    for (std::size_t a = 1; a < bodies && rig.frames() % (testing::full_run() ? 500 : 250) == 0; ++a) {
       for (std::size_t b = a + 1; b < bodies; ++b) {
         ASSERT_FALSE(rig.entered(a, b)) << a << " and " << b << ", frame " << rig.frames();
       }
@@ -94,10 +88,10 @@ TEST(Heap, StaysWithinATenthOfItsPairsAndEntersNothing) {
   HeapOptions options;
   HeapWatch watch;
   int times_near = 10;
-  if (full()) {
+  if (testing::full_run()) {
     options.calm_s = 2.0;
     watch.budget = 380;
-  } else if (cases::kSlowness > 1) {  // a sanitized build looks for faults of memory
+  } else if (testing::kSanitized) {  // a sanitized build looks for faults of memory
     options = {.bodies = 8, .width_m = 0.08, .calm_s = 0.2};
     watch.budget = 60;  // the grasped jack has up to 52 pairs that are due at once
     times_near = 4;

@@ -2,12 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
+#include "support/effort.h"
 
 namespace tactum::bench {
 namespace {
-
-bool full() { return std::getenv("TACTUM_FULL") != nullptr; }
 
 std::vector<WallSetup> every_setup(bool turning) {
   std::vector<WallSetup> setups;
@@ -23,7 +21,7 @@ std::string named(const WallSetup& setup) {
 }
 
 TEST(Stability, NearlyTheWholeBoundMakesNoEnergy) {
-  const double seconds = full() ? 60.0 : 2.4;
+  const double seconds = testing::full_run() ? 60.0 : 2.4;
   for (const bool turning : {false, true})
     for (const WallSetup& setup : every_setup(turning)) {
       const WallTrial trial = try_wall(setup, 0.95 * wall_bound(setup), seconds);
@@ -69,7 +67,7 @@ TEST(Stability, BeyondTheBoundEnergyIsMade) {
 
 TEST(Stability, TheStiffestWallWithoutEnergyIsThatOfTheBoundAtEveryRate) {
   for (const double rate_Hz :
-       full() ? std::vector<double>{1000, 2000, 4000, 10000} : std::vector<double>{1000}) {
+       testing::full_run() ? std::vector<double>{1000, 2000, 4000, 10000} : std::vector<double>{1000}) {
     const WallRow row =
         stiffest_wall({*simulated_device_preset("sigma.7"), *hand_model("medium"), rate_Hz, false});
     EXPECT_GT(row.passive, 0.95 * row.bound) << rate_Hz;

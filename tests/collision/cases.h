@@ -4,10 +4,10 @@
 
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <string>
 #include <vector>
 
+#include "support/effort.h"
 #include "tactum/base/random.h"
 #include "tactum/geometry/hull.h"
 #include "tactum/geometry/primitives.h"
@@ -235,22 +235,13 @@ inline Pose make_pose(Random& random, const Polytope& A, const Polytope& B, Maki
                  direction * (A.extent.radius + B.extent.radius) * random.uniform(0.0, 1.3)};
 }
 
-#if defined(__has_feature)
-#if __has_feature(address_sanitizer)
-#define TACTUM_CASES_SLOW
-#endif
-#endif
-#if defined(TACTUM_CASES_SLOW) || defined(__SANITIZE_ADDRESS__)
-inline constexpr int kSlowness =
-    100;  ///< a sanitized build takes a few poses only: it looks for faults of memory
-#else
-inline constexpr int kSlowness = 1;
-#endif
+/// A sanitized build takes a few poses only.
+inline constexpr int kSlowness = testing::kSanitized ? 100 : 1;
 
 /// How many of `poses` this build tries.
 inline int some_of(int poses) { return poses / kSlowness; }
 
-inline bool full() { return std::getenv("TACTUM_FULL") != nullptr; }
+inline bool full() { return testing::full_run(); }
 
 inline std::string describe(const Pose& X) {
   char text[400];

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "mesh/gltf_sample.h"
+#include "support/effort.h"
 #include "support/real_data.h"
 #include "support/sample_meshes.h"
 #include "tactum/base/random.h"

@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 
+#include "support/effort.h"
 #include "support/sandbox.h"
 #include "tactum/math/screw.h"
 
@@ -184,7 +184,7 @@ TEST(FreeBodies, ABlockHoldsOnAnInclineBelowTheAngleOfFrictionAndSlidesAboveIt) 
 }
 
 TEST(FreeBodies, TenBoxesStayStacked) {
-  const double seconds = std::getenv("TACTUM_FULL") ? 60.0 : 6.0;
+  const double seconds = testing::full_run() ? 60.0 : 6.0;
   Sandbox box;
   box.world.gravity_W = kGravity;
   box.add_fixed(make_box({0.1, 0.1, 0.01}), at(0, 0, -0.01));

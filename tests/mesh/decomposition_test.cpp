@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "support/effort.h"
 #include "support/real_data.h"
 #include "support/sample_meshes.h"
 #include "support/sample_solids.h"

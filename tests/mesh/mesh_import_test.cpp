@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "mesh/gltf_sample.h"
+#include "support/effort.h"
 #include "support/real_data.h"
 #include "tactum/base/random.h"
 #include "tactum/geometry/mesh_report.h"

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "support/effort.h"
 #include "support/real_data.h"
 #include "support/sample_meshes.h"
 #include "tactum/base/tolerances.h"

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 
+#include "support/effort.h"
 #include "tactum/base/random.h"
 #include "tactum/math/screw.h"
 #include "tactum/scene/builtin_scenes.h"
@@ -12,12 +12,7 @@
 namespace tactum {
 namespace {
 
-bool full() { return std::getenv("TACTUM_FULL") != nullptr; }
-#ifdef TACTUM_SANITIZED
-constexpr int kSlowness = 10;
-#else
-constexpr int kSlowness = 1;
-#endif
+constexpr int kSlowness = testing::kSanitized ? 10 : 1;
 
 Vec3 random_vector(Random& random, double size) {
   const double x = random.uniform(-size, size);
@@ -205,8 +200,8 @@ class PegInItsHole : public ::testing::TestWithParam<Case> {};
 
 TEST_P(PegInItsHole, IsInsertedByAnyHandAndNeverEntersNorSticks) {
   const auto& [scene, mu] = GetParam();
-  const int hands = full() ? 21 : kSlowness > 1 ? 1 : 3;
-  const double duration_s = full() ? 20.0 : 4.0 / kSlowness + 5.0;
+  const int hands = testing::full_run() ? 21 : kSlowness > 1 ? 1 : 3;
+  const double duration_s = testing::full_run() ? 20.0 : 4.0 / kSlowness + 5.0;
   for (int hand = 0; hand < hands; ++hand) {
     const std::uint64_t seed = 100 + static_cast<std::uint64_t>(hand);
     SCOPED_TRACE(seed);

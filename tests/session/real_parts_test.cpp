@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "support/effort.h"
 #include "support/real_data.h"
 #include "tactum/scene/builtin_scenes.h"
 #include "tactum/session/session.h"
@@ -76,11 +77,7 @@ struct Case {
   std::uint64_t sample;  ///< frames of the short test, in contact at the end; 0: all
   std::uint64_t every;   ///< ... of which so many are passed by from look to look
 };
-#ifdef TACTUM_SANITIZED
-constexpr std::uint64_t kSlowness = 10;
-#else
-constexpr std::uint64_t kSlowness = 1;
-#endif
+constexpr std::uint64_t kSlowness = testing::kSanitized ? 10 : 1;
 
 class RealParts : public ::testing::TestWithParam<Case> {};
 

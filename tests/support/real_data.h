@@ -17,12 +17,6 @@ inline std::filesystem::path real_data() {
   return std::filesystem::is_directory(path, ignored) ? path : std::filesystem::path();
 }
 
-/// Whether the long variants of tests run.
-inline bool full_run() {
-  const char* full = std::getenv("TACTUM_FULL");
-  return full != nullptr && std::string(full) != "0";
-}
-
 /// The first file of this name anywhere below the folder.
 inline std::filesystem::path find_real(const std::string& name) {
   for (const auto& entry : std::filesystem::recursive_directory_iterator(real_data())) {

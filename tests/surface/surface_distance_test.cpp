@@ -8,6 +8,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "support/effort.h"
 #include "support/real_data.h"
 #include "tactum/base/random.h"
 #include "tactum/math/screw.h"

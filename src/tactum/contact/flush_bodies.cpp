@@ -15,11 +15,15 @@ constexpr double kSameNormal = 0.9987;
 /// A part may be so many times as deep beside the body it rests on as in it.
 constexpr double kDeeperBeside = 2.0;
 
+int other_body(const ContactPatch& patch, int body) {
+  return patch.body_a == body ? patch.body_b : patch.body_a;
+}
+
 /// A patch, seen from one of its two bodies, which rests on the other.
 struct Resting {
   Resting(const ContactPatch& patch, int body, std::span<const Pose> X_WB)
       : is_a(patch.body_a == body),
-        other(is_a ? patch.body_b : patch.body_a),
+        other(other_body(patch, body)),
         piece(is_a ? patch.piece_a : patch.piece_b),
         other_piece(is_a ? patch.piece_b : patch.piece_a) {
     const Pose& X_WA = X_WB[Index(patch.body_a)];
@@ -49,40 +53,43 @@ bool counts(const ContactPatch& patch) {
   return !patch.of_surfaces && !patch.implied && !patch.manifold.points.empty();
 }
 
+/// A plane  normal_W . p = height, with the normal toward the body that rests on it.
+struct Plane {
+  Vec3 normal_W;        ///< [-]
+  double height = 0.0;  ///< [m]
+};
+
 /// The plane of the face on which the body rests; where it rests on an edge or corner, that of the contact.
 /// The face is taken because the contact's normal may be that of the body's own face, which leans.
-void plane_of(const ContactPatch& patch, const Resting& r, const Polytope& others, const Pose& X_WO,
-              Vec3& normal_W, double& height) {
-  normal_W = r.normal_W;
-  height = normal_W.dot(r.p_other_W);
+Plane plane_of(const ContactPatch& patch, const Resting& r, const Polytope& others, const Pose& X_WO) {
   const Vec3 outward = rotated_back(X_WO.R, r.normal_W);
   const int face = reference_face(others, r.is_a ? patch.manifold.b : patch.manifold.a, outward);
-  if (!(others.faces[face].normal.dot(outward) > kSameNormal)) return;
-  normal_W = X_WO.R * others.faces[face].normal;
-  height = others.faces[face].offset + normal_W.dot(X_WO.p);
+  if (!(others.faces[face].normal.dot(outward) > kSameNormal))
+    return {r.normal_W, r.normal_W.dot(r.p_other_W)};
+  const Vec3 normal_W = X_WO.R * others.faces[face].normal;
+  return {normal_W, others.faces[face].offset + normal_W.dot(X_WO.p)};
 }
 
-/// The plane of a contact, and the step that the other body's piece makes with it.
-struct Plane {
-  Vec3 normal_W;        ///< toward the body that rests
-  double lowest = 0.0;  ///< of the body's piece along the normal [m]
-  double top = 0.0;     ///< of the other body's piece [m]
-  double step_m = 0.0;  ///< the step that is ridden over [m]
+/// The step that the piece of another body makes with the plane on which a body rests.
+struct Step {
+  Vec3 normal_W;          ///< of the plane
+  double lowest = 0.0;    ///< of the resting body's piece along the normal [m]
+  double top = 0.0;       ///< of the other body's piece [m]
+  double ridden_m = 0.0;  ///< a step as high as this is ridden over [m]
 };
 
 /// Gives an implied contact the normal of the plane, and the points at which its body would meet the step:
 /// where it is nearest, and the lowest vertices that are no farther from there than the motion may lead.
-void take_plane(const Resting& implied, const Plane& plane, const Polytope& own, const Pose& X_WS,
-                const Pose& X_WA, ContactPatch& patch) {
-  const Vec3& n = plane.normal_W;
+void take_step(const Resting& implied, const Step& step, const Polytope& own, const Pose& X_WS,
+               const Pose& X_WA, ContactPatch& patch) {
+  const Vec3& n = step.normal_W;
   const auto add = [&](const Vec3& p_W) {
-    const double distance = n.dot(p_W) - plane.top;
+    const double distance = n.dot(p_W) - step.top;
     const Vec3 on_body = X_WA.inverse() * p_W;
     const Vec3 on_other = X_WA.inverse() * (p_W - distance * n);
     patch.manifold.points.push_back(
         {implied.is_a ? on_body : on_other, implied.is_a ? on_other : on_body, distance, 1.0, 0});
   };
-  patch.implied = true;
   patch.manifold.normal = rotated_back(X_WA.R, implied.is_a ? n : Vec3(-n));
   patch.manifold.a.kind = patch.manifold.b.kind = FeatureKind::kVertex;
   patch.manifold.points.clear();
@@ -90,7 +97,7 @@ void take_plane(const Resting& implied, const Plane& plane, const Polytope& own,
   const Vec3 away = implied.normal_W - n * n.dot(implied.normal_W);
   for (const Vec3& vertex : own.vertices) {
     const Vec3 p_W = X_WS * vertex;
-    if (n.dot(p_W) > plane.lowest + plane.step_m) continue;
+    if (n.dot(p_W) > step.lowest + step.ridden_m) continue;
     if (away.dot(p_W - implied.p_W) > patch.tolerance * away.norm()) continue;
     if (patch.manifold.points.size() == Manifold::kMostPoints) break;
     add(p_W);
@@ -104,6 +111,31 @@ bool one_pair(std::span<const ContactPatch> patches) {
   });
 }
 
+/// Looks for contacts of one body that imply others of it.
+struct OfBody {
+  std::span<const CollisionBody> bodies;
+  std::span<const Pose> X_WB;
+  int body;
+
+  const Polytope& piece(int of, int number) const { return bodies[Index(of)].part->pieces[Index(number)]; }
+
+  /// Makes the patch an implied one if the body, as it rests in `resting`, does not meet it.
+  bool implies(const ContactPatch& resting, const Resting& r, const Resting& p, ContactPatch& patch) const {
+    if (r.normal_W.dot(p.normal_W) > kSameNormal) return false;
+    const Plane plane = plane_of(resting, r, piece(r.other, r.other_piece), X_WB[Index(r.other)]);
+    const Polytope& own = piece(body, p.piece);
+    const Step step{plane.normal_W, -highest(own, X_WB[Index(body)], -plane.normal_W),
+                    highest(piece(p.other, p.other_piece), X_WB[Index(p.other)], plane.normal_W),
+                    kRiddenStep * bodies[Index(body)].part->size};
+    if (step.top > plane.height + step.ridden_m) return false;
+    // A part that has entered the body it rests on may lean, and is then deeper beside it.
+    const double entered = kDeeperBeside * std::min(0.0, resting.distance);
+    if (step.lowest < plane.height + entered - step.ridden_m) return false;
+    take_step(p, step, own, X_WB[Index(body)], X_WB[Index(patch.body_a)], patch);
+    return true;
+  }
+};
+
 }  // namespace
 
 void FlushBodies::mark_implied(std::span<const CollisionBody> bodies, std::span<const Pose> X_WB,
@@ -114,31 +146,22 @@ void FlushBodies::mark_implied(std::span<const CollisionBody> bodies, std::span<
     const int body = i % 2 == 0 ? patch.body_a : patch.body_b;
     return bodies[Index(body)].moves ? body : -1;
   });
-  for (Index body = 0; body < bodies.size(); ++body) {
-    const double step_m = kRiddenStep * bodies[body].part->size;
-    for (const int item : of_body_[body]) {
+  for (Index i = 0; i < bodies.size(); ++i) {
+    const int body = static_cast<int>(i);
+    const std::span<const int> items = of_body_[i];
+    const auto other_of = [&](int item) { return other_body(patches[Index(item / 2)], body); };
+    if (std::all_of(items.begin(), items.end(), [&](int j) { return other_of(j) == other_of(items[0]); }))
+      continue;
+    const OfBody of_body{bodies, X_WB, body};
+    for (const int item : items) {
       ContactPatch& patch = patches[Index(item / 2)];
       if (!counts(patch)) continue;
-      const Resting p(patch, static_cast<int>(body), X_WB);
-      const Polytope& own = bodies[body].part->pieces[Index(p.piece)];
-      const Polytope& others = bodies[Index(p.other)].part->pieces[Index(p.other_piece)];
-      for (const int by : of_body_[body]) {
+      const Resting p(patch, body, X_WB);
+      patch.implied = std::any_of(items.begin(), items.end(), [&](int by) {
         const ContactPatch& resting = patches[Index(by / 2)];
-        if (!counts(resting)) continue;
-        const Resting r(resting, static_cast<int>(body), X_WB);
-        if (r.other == p.other || r.normal_W.dot(p.normal_W) > kSameNormal) continue;
-        const Polytope& under = bodies[Index(r.other)].part->pieces[Index(r.other_piece)];
-        Vec3 n_W;
-        double height = 0.0;
-        plane_of(resting, r, under, X_WB[Index(r.other)], n_W, height);
-        const Plane plane{n_W, -highest(own, X_WB[body], -n_W), highest(others, X_WB[Index(p.other)], n_W),
-                          step_m};
-        if (plane.top > height + step_m) continue;
-        // A part that has entered the body it rests on may lean, and is then deeper beside it.
-        if (plane.lowest < height + kDeeperBeside * std::min(0.0, resting.distance) - step_m) continue;
-        take_plane(p, plane, own, X_WB[body], X_WB[Index(patch.body_a)], patch);
-        break;
-      }
+        return other_of(by) != p.other && counts(resting) &&
+               of_body.implies(resting, Resting(resting, body, X_WB), p, patch);
+      });
     }
   }
 }

@@ -94,31 +94,31 @@ struct RowMaker {
     SurfacePair surfaces = surfaces_of(step.world, patch);
     surfaces.fixed_a = !step.world.bodies[Index(patch.body_a)].moves();
     surfaces.fixed_b = !step.world.bodies[Index(patch.body_b)].moves();
-    const double friction = step.settings.friction.between(patch.body_a, patch.body_b);
-    const double restitution = step.settings.impacts.restitution.between(patch.body_a, patch.body_b);
     // The grasped part has no impacts with bodies that are fixed or jointed: there its coupling is what
     // bounces.
     const Islands& islands = step.own.free.islands;
     const bool struck = !patch.implied && (islands.moves(patch.body_a) || islands.moves(patch.body_b)) &&
                         (other < 0 || step.world.bodies[Index(other)].joint.kind == JointKind::kFree);
+    ContactRow row;  // what all corners have alike; the rest is set below
+    static_cast<SurfacePair&>(row) = surfaces;
+    row.patch = number;
+    row.n_BA_W = normal_W;
+    row.margin = patch.tolerance;
+    row.skin_m = c.skin_of(patch);
+    row.idle = patch.implied;
+    row.friction = step.settings.friction.between(patch.body_a, patch.body_b);
+    row.impact.restitution = step.settings.impacts.restitution.between(patch.body_a, patch.body_b);
+    row.impact.enabled = struck;
     for (Index i = 0; i < corners.size(); ++i) {
       if (out.rows.size() == out.rows.capacity()) {
         out.full = true;
         return;
       }
-      ContactRow& row = out.rows.emplace_back();
-      static_cast<SurfacePair&>(row) = surfaces;
-      row.patch = number;
-      row.n_BA_W = normal_W;
       row.p_W = X_WA * corners[i].p_A;
       row.distance = corners[i].distance;
-      row.margin = patch.tolerance;
-      row.skin_m = c.skin_of(patch);
-      row.idle = patch.implied;
       row.asked = asked_of(row, c.opening_share);
-      row.friction = friction;
-      row.impact = {.restitution = restitution, .enabled = struck};
       row.state = c.rows.memory.recall(name_of(patch, i));
+      out.rows.push_back(row);
       if (!own || step.shading.empty()) continue;
       const Vec3 bent =
           bend(step.shading[Index(patch.body_a)], step.shading[Index(patch.body_b)], X_AB, patch, corners[i]);
