@@ -98,7 +98,7 @@ inline PlacedBody placed(const World& world, const WorldState& state, int number
 
 class ContactProblem {
  public:
-  static constexpr std::size_t kMostCones = 16;
+  static constexpr std::size_t kMostCones = 32;
   /// Room for `most_rows` rows beside those of joints and for `most_bodies` of the world's bodies.
   ContactProblem(std::size_t most_rows, std::size_t world_bodies, std::size_t most_bodies);
   /// Room for all of the world's bodies.
