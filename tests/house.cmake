@@ -8,9 +8,11 @@ add_test(NAME house.layers COMMAND ${PYTHON3} ${tools}/check_layers.py)
 add_test(NAME house.docs COMMAND ${PYTHON3} ${tools}/check_docs.py)
 add_test(NAME house.sources COMMAND ${PYTHON3} ${tools}/check_sources.py)
 add_test(NAME house.words COMMAND ${PYTHON3} ${tools}/check_words.py)
+add_test(NAME house.mutations COMMAND ${PYTHON3} ${tools}/mutations.py --check)
 add_test(NAME house.format COMMAND ${tools}/format.sh --check)
 add_test(NAME house.tools COMMAND ${PYTHON3} -m unittest discover -s ${CMAKE_CURRENT_SOURCE_DIR}/tools)
-set_tests_properties(house.layers house.docs house.sources house.words house.format house.tools PROPERTIES LABELS house)
+set_tests_properties(house.layers house.docs house.sources house.words house.mutations house.format house.tools
+  PROPERTIES LABELS house)
 
 add_test(NAME house.tidy COMMAND ${PYTHON3} ${tools}/tidy.py ${PROJECT_BINARY_DIR})
 set_tests_properties(house.tidy PROPERTIES LABELS slow PROCESSORS 2 TIMEOUT 1500)

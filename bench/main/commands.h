@@ -9,6 +9,7 @@ void add_bench_clearance(CLI::App& parent);
 void add_bench_feel(CLI::App& parent);
 void add_bench_impact(CLI::App& parent);
 void add_bench_manifold(CLI::App& parent);
+void add_bench_mechanics(CLI::App& parent);
 void add_bench_pairs(CLI::App& parent);
 void add_bench_penetration(CLI::App& parent);
 void add_bench_schedule(CLI::App& parent);

@@ -9,7 +9,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   for (auto* add :
        {add_bench_pairs, add_bench_penetration, add_bench_manifold, add_bench_impact, add_bench_surfaces,
-        add_bench_clearance, add_bench_stability, add_bench_feel, add_bench_schedule})
+        add_bench_clearance, add_bench_stability, add_bench_feel, add_bench_mechanics, add_bench_schedule})
     add(app);
   return run_command_line(app, argc, argv);
 }

@@ -30,6 +30,7 @@ class OdeGeometry {
     id_ = dCreateConvex(nullptr, planes_.data(), static_cast<unsigned>(P.faces.size()), points_.data(),
                         static_cast<unsigned>(P.vertices.size()), polygons_.data());
   }
+  explicit OdeGeometry(double ball_radius_m) : id_(dCreateSphere(nullptr, ball_radius_m)) {}
   ~OdeGeometry() { dGeomDestroy(id_); }
   OdeGeometry(const OdeGeometry&) = delete;
   OdeGeometry& operator=(const OdeGeometry&) = delete;
