@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 #include "tactum/base/static_vector.h"
@@ -14,15 +16,35 @@ using Index = std::size_t;
 
 constexpr int kMostIterations = 200;
 
+/// What bodies at rest approach with: a frame begins with half a frame's weight, and a body that was let down
+/// in the last one may have that of a whole one; half as much again is the margin.
+constexpr double kRestFrames = 1.5;
+/// ... and what solvers leave of a rest without weight, a hundred times (kRestingVelocity).
+constexpr double kRest_m_per_s = 100.0 * tolerances::kRestingVelocity;
+
 /// The corners of one impact, which are solved together, each with its least normal velocity after it [m/s].
 /// They are those of two bodies; all fixed bodies count as one, the world.
 using Corners = StaticVector<ContactRow, ImpactScratch::kMostCorners>;
 
-double approach(const ContactRow& row, const ImpactBodies& bodies) {
+/// The velocity at which a motion of the bodies opens a row.
+double opening(const ContactRow& row, const ImpactBodies& bodies, std::span<const Twist> motion) {
   const Index a = Index(row.body_a);
   const Index b = Index(row.body_b);
-  return -row.n_BA_W.dot(velocity_at(bodies.V_WB[a], row.p_W - bodies.X_WB[a].p) -
-                         velocity_at(bodies.V_WB[b], row.p_W - bodies.X_WB[b].p));
+  return row.n_BA_W.dot(velocity_at(motion[a], row.p_W - bodies.X_WB[a].p) -
+                        velocity_at(motion[b], row.p_W - bodies.X_WB[b].p));
+}
+
+/// A row's gap beyond the skin, and the speed at which it closes, `t` seconds after the start of the frame.
+struct Gap {
+  double beyond_skin = 0.0;  // [m]
+  double closing = 0.0;      // [m/s]
+  double faster = 0.0;       // [m/s^2]
+};
+Gap gap_at(const ContactRow& row, const ImpactBodies& bodies, double t) {
+  const double closing = -opening(row, bodies, bodies.V_WB);
+  const double faster = -opening(row, bodies, bodies.A_WB);
+  const double start = row.distance - row.skin_m + opening(row, bodies, bodies.detour);
+  return {start - t * (closing + 0.5 * t * faster), closing + t * faster, faster};
 }
 
 constexpr int kWorld = -1;
@@ -31,42 +53,6 @@ constexpr int kWorld = -1;
 std::pair<int, int> met_at(const ContactRow& row, const World& world) {
   const auto who = [&](int body) { return world.bodies[Index(body)].moves() ? body : kWorld; };
   return std::minmax({who(row.body_a), who(row.body_b)});
-}
-
-/// Finds all corners of the impact of `first` that close within h, or are as near as that one: where two
-/// faces meet flat, rounding must not leave corners out.
-void find_corners(std::span<const ContactRow> rows, const ContactRow& first, const ImpactBodies& bodies,
-                  double fastest, double h, Corners& corners) {
-  for (const ContactRow& row : rows) {
-    if (row.idle || met_at(row, bodies.world) != met_at(first, bodies.world)) continue;
-    const double speed = approach(row, bodies);
-    const double closes_m = std::max(std::max(0.0, speed) * h, first.distance + first.skin_m);
-    if (row.distance > closes_m || !corners.push_back(row)) continue;
-    corners.back().distance = 0.0;
-    corners.back().skin_m = tolerances::kImpactSettled * fastest / kSettledSkins;  // lengths are speeds here
-    corners.back().asked = speed > kImpactSpeed ? row.impact.restitution * speed : 0.0;
-  }
-}
-
-/// Sets up the problem of the impact: velocities for displacements, impulses for forces.
-RowsInProblem set_problem(const Corners& corners, const ImpactBodies& bodies, ContactProblem& problem) {
-  problem.clear();
-  const auto [one, other] = met_at(corners[0], bodies.world);
-  for (const int body : {one, other}) {
-    if (body == kWorld) continue;
-    const Index i = Index(body);
-    const Body& what = bodies.world.bodies[i];
-    const Pose& X_WB = bodies.X_WB[i];
-    if (bodies.moves[i] == 0) {  // the impact does not change its velocity, but depends on it
-      problem.add_given(body, X_WB.p, to_vector(bodies.V_WB[i]));
-      continue;
-    }
-    problem.add_body({body, what, X_WB}, X_WB.p, inertial_metric(what, X_WB, 1.0), to_vector(bodies.V_WB[i]),
-                     0.0);
-  }
-  const RowsInProblem contacts{{corners.begin(), corners.end()}, problem.rows()};
-  for (const ContactRow& row : corners) problem.add_row(row.body_a, row.body_b, push_of(row), row.asked);
-  return contacts;
 }
 
 /// Reports the fraction `share` of an answer's impulses to the observer.
@@ -87,22 +73,49 @@ void report(const RowsInProblem& contacts, const Friction& friction, const Conta
 /// Twists of the two bodies that meet; of the world, zero.
 using PairTwists = std::array<Twist, 2>;
 
-/// The impact of one pair.
+/// The impact of one pair, at a time t of the frame. A free body has moved until then, but not turned: its
+/// angular momentum, which is kept, is stated by the inertia at the start of the frame.
 class PairImpact {
  public:
-  PairImpact(const Corners& corners, const ImpactBodies& bodies, ImpactScratch& scratch)
-      : corners_(corners),
-        met_(met_at(corners[0], bodies.world)),
+  PairImpact(const ContactRow& first, double t, const ImpactBodies& bodies, ImpactScratch& scratch)
+      : met_(met_at(first, bodies.world)),
+        t_(t),
         input_{bodies.X_WB, scratch.no_anchors},
         bodies_(bodies),
-        scratch_(scratch) {}
+        scratch_(scratch) {
+    for_each_body([&](Index i, int number) {
+      const Index body = Index(number);
+      const Twist& V = bodies.V_WB[body];
+      const Twist& A = bodies.A_WB[body];
+      X_WB_[i] = bodies.X_WB[body];
+      if (bodies.world.bodies[body].joint.kind == JointKind::kFree)
+        X_WB_[i].p += bodies.detour[body].v + t * (V.v + 0.5 * t * A.v);
+      before_[i] = V + A * t;
+    });
+  }
 
-  /// Solves for the velocities after the impact, each corner leaving with `asked`, or, plastic, with zero.
+  /// Finds all corners of the pair that meet with `first`: where two faces meet flat, rounding must not leave
+  /// corners out.
+  void find_corners(std::span<const ContactRow> rows, const ContactRow& first, double speed, double h) {
+    const double near_m = gap_at(first, bodies_, t_).beyond_skin + first.skin_m;
+    for (const ContactRow& row : rows) {
+      if (row.idle || met_at(row, bodies_.world) != met_) continue;
+      if (gap_at(row, bodies_, t_).beyond_skin > near_m || !corners_.push_back(row)) continue;
+      ContactRow& corner = corners_.back();
+      corner.p_W += 0.5 * (moved_by(row.body_a, row.p_W) + moved_by(row.body_b, row.p_W));
+      const double closing = approach(corner);
+      corner.distance = 0.0;
+      corner.skin_m = tolerances::kImpactSettled * speed / kSettledSkins;  // lengths are speeds here
+      corner.asked = closing > slowest_impact(row, bodies_, h) ? row.impact.restitution * closing : 0.0;
+    }
+  }
+  /// Solves for the velocities after the impact, each corner leaving with what it asks, or, plastic, with
+  /// zero.
   bool solve(bool plastic) {
     corners_now_ = corners_;
     if (plastic)
       for (ContactRow& row : corners_now_) row.asked = 0.0;
-    contacts_ = set_problem(corners_now_, bodies_, scratch_.problem);
+    set_problem();
     ExactStart start;
     return solve_exactly(contacts_, input_, kMostIterations, start, scratch_.friction, scratch_.problem)
         .solved;
@@ -112,11 +125,7 @@ class PairImpact {
     for_each_body([&](Index i, int body) { V[i] = to_twist(scratch_.problem.displacement(body)); });
     return V;
   }
-  PairTwists now() const {
-    PairTwists V;
-    for_each_body([&](Index i, int body) { V[i] = bodies_.V_WB[Index(body)]; });
-    return V;
-  }
+  const PairTwists& before() const { return before_; }
   /// Kinetic energy of the bodies of the pair that an impact moves [J].
   double energy(const PairTwists& V) const {
     double energy_J = 0.0;
@@ -131,18 +140,21 @@ class PairImpact {
   /// Whether no body with a given velocity does work on the pair.
   bool is_closed() const {
     bool closed = true;
-    for_each_body([&](Index, int body) {
-      const Twist& V = bodies_.V_WB[Index(body)];
-      closed &= bodies_.moves[Index(body)] != 0 || (V.v.isZero(0.0) && V.w.isZero(0.0));
+    for_each_body([&](Index i, int body) {
+      closed &= bodies_.moves[Index(body)] != 0 || (before_[i].v.isZero(0.0) && before_[i].w.isZero(0.0));
     });
     return closed;
   }
   void give(double share, ImpactObserver* observer) const {
     report(contacts_, scratch_.friction, scratch_.problem, share, observer);
   }
+  /// Sets the velocities after the impact, and what their change adds to the detours.
   void set(const PairTwists& V) const {
     for_each_body([&](Index i, int body) {
-      if (bodies_.moves[Index(body)] != 0) bodies_.V_WB[Index(body)] = V[i];
+      if (bodies_.moves[Index(body)] == 0) return;
+      const Twist change = V[i] - before_[i];
+      bodies_.V_WB[Index(body)] = bodies_.V_WB[Index(body)] + change;
+      bodies_.detour[Index(body)] = bodies_.detour[Index(body)] - change * t_;
     });
   }
 
@@ -153,10 +165,44 @@ class PairImpact {
     if (met_.first != kWorld) visit(Index(0), met_.first);
     if (met_.second != kWorld) visit(Index(1), met_.second);
   }
+  /// Sets up the problem of the impact: velocities for displacements, impulses for forces.
+  void set_problem() {
+    ContactProblem& problem = scratch_.problem;
+    problem.clear();
+    for_each_body([&](Index i, int body) {
+      if (bodies_.moves[Index(body)] == 0) {  // the impact does not change its velocity, but depends on it
+        problem.add_given(body, X_WB_[i].p, to_vector(before_[i]));
+        return;
+      }
+      const Body& what = bodies_.world.bodies[Index(body)];
+      problem.add_body({body, what, X_WB_[i]}, X_WB_[i].p, inertial_metric(what, X_WB_[i], 1.0),
+                       to_vector(before_[i]), 0.0);
+    });
+    contacts_ = {{corners_now_.begin(), corners_now_.end()}, problem.rows()};
+    for (const ContactRow& row : corners_now_)
+      problem.add_row(row.body_a, row.body_b, push_of(row), row.asked);
+  }
+  /// The speed at which a corner closes, which was moved to the time of the impact.
+  double approach(const ContactRow& corner) const {
+    Vec3 v = Vec3::Zero();
+    for_each_body([&](Index i, int body) {
+      const Vec3 of_body = velocity_at(before_[i], corner.p_W - X_WB_[i].p);
+      v += body == corner.body_a ? of_body : Vec3(-of_body);
+    });
+    return -corner.n_BA_W.dot(v);
+  }
+  /// How far a point of a body has moved until the impact.
+  Vec3 moved_by(int body, const Vec3& p_W) const {
+    const Index i = Index(body);
+    const Twist moved = bodies_.detour[i] + (bodies_.V_WB[i] + bodies_.A_WB[i] * (0.5 * t_)) * t_;
+    return velocity_at(moved, p_W - bodies_.X_WB[i].p);
+  }
 
-  const Corners& corners_;
   std::pair<int, int> met_;
-  Corners corners_now_;
+  double t_;
+  std::array<Pose, 2> X_WB_;
+  PairTwists before_;
+  Corners corners_, corners_now_;
   RowsInProblem contacts_;
   FrictionInput input_;
   const ImpactBodies& bodies_;
@@ -173,12 +219,11 @@ PairTwists mixed(double share, const PairTwists& one, const PairTwists& other) {
 /// Then the answer is mixed with that of Poisson's restitution, which never does: the plastic impulses and e
 /// times these again. Both satisfy the cones and leave no corner approaching, and so does every mixture of
 /// them.
-bool hit(std::span<const ContactRow> rows, const ContactRow& first, const ImpactBodies& bodies, double speed,
-         double h, ImpactScratch& scratch, ImpactObserver* observer) {
-  Corners corners;
-  find_corners(rows, first, bodies, speed, h, corners);
-  PairImpact impact(corners, bodies, scratch);
-  const PairTwists before = impact.now();
+bool hit(std::span<const ContactRow> rows, const ContactRow& first, const Meeting& meeting,
+         const ImpactBodies& bodies, double h, ImpactScratch& scratch, ImpactObserver* observer) {
+  PairImpact impact(first, meeting.time_s, bodies, scratch);
+  impact.find_corners(rows, first, meeting.speed, h);
+  const PairTwists& before = impact.before();
   if (!impact.solve(false)) {  // a body without room to bounce, hit from both sides, stays
     const bool solved = impact.solve(true);
     impact.give(1.0, observer);
@@ -210,26 +255,45 @@ bool hit(std::span<const ContactRow> rows, const ContactRow& first, const Impact
 
 }  // namespace
 
+Meeting meeting_of(const ContactRow& row, const ImpactBodies& bodies, double now) noexcept {
+  const Gap gap = gap_at(row, bodies, now);
+  if (gap.beyond_skin <= 0.0) return {now, gap.closing};
+  const double squared = gap.closing * gap.closing + 2.0 * gap.faster * gap.beyond_skin;
+  const double speed = squared > 0.0 ? std::sqrt(squared) : 0.0;
+  if (!(gap.closing + speed > 0.0)) return {std::numeric_limits<double>::infinity(), 0.0};
+  return {now + 2.0 * gap.beyond_skin / (gap.closing + speed), speed};
+}
+
+double slowest_impact(const ContactRow& row, const ImpactBodies& bodies, double h) noexcept {
+  const Vec3& n = row.n_BA_W;
+  const double falls = std::max(std::abs(n.dot(bodies.A_WB[Index(row.body_a)].v)),
+                                std::abs(n.dot(bodies.A_WB[Index(row.body_b)].v)));
+  return kRestFrames * falls * h + row.skin_m / h + kRest_m_per_s;
+}
+
 ImpactResult resolve_impacts(std::span<ContactRow> rows, const ImpactBodies& bodies, double h, int most,
                              ImpactScratch& scratch, ImpactObserver* observer) noexcept {
   ImpactResult result;
-  for (;; ++result.hits) {
-    ContactRow* fastest = nullptr;
-    double speed = kImpactSpeed;
+  for (double now = 0.0;; ++result.hits) {
+    ContactRow* first = nullptr;
+    Meeting meeting{h, 0.0};
     for (ContactRow& row : rows) {
       if (!row.impact.enabled) continue;
-      const double closing = approach(row, bodies);
-      if (!(closing > speed) || row.distance > closing * h) continue;
-      fastest = &row;
-      speed = closing;
+      const Meeting of_row = meeting_of(row, bodies, now);
+      const bool sooner =
+          of_row.time_s < meeting.time_s || (of_row.time_s == meeting.time_s && of_row.speed > meeting.speed);
+      if (!sooner || !(of_row.speed > slowest_impact(row, bodies, h))) continue;
+      first = &row;
+      meeting = of_row;
     }
-    if (fastest == nullptr) return result;
+    if (first == nullptr) return result;
     if (result.hits == most) {
       result.converged = false;
       return result;
     }
-    fastest->impact.seen = true;
-    result.converged &= hit(rows, *fastest, bodies, speed, h, scratch, observer);
+    now = meeting.time_s;
+    first->impact.seen = true;
+    result.converged &= hit(rows, *first, meeting, bodies, h, scratch, observer);
   }
 }
 

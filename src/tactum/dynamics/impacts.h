@@ -1,13 +1,20 @@
 #pragma once
-/// Impacts: momentum that bodies exchange in no time [Mirtich 1996b]. One pair of bodies is solved after the
-/// other, the fastest approach first, until none approaches faster than resting bodies do. So an impact
-/// travels through a row of touching balls as through Newton's cradle; solved all at once, the contacts would
-/// divide it among them.
+/// Impacts: momentum that bodies exchange in no time [Mirtich 1996b], each at its own time within the frame.
+/// The pair of bodies that meets first is advanced to the time of its impact and solved there, then the next
+/// one on the way it has from then on, until none is left that is faster than resting bodies are. So an
+/// impact travels through a row of balls as through Newton's cradle; solved all at once, the contacts
+/// would divide it among them.
 ///
-/// Within a pair all its corners are solved together: vn after >= -e vn before, impulses >= 0, with Coulomb's
-/// friction for each pair of surfaces; a box that falls flat on its face leaves flat. All fixed bodies are
-/// one, the world: on two rails a box leaves as flat as on one floor. It is the contact problem of two bodies
-/// with velocities for displacements, and is solved exactly: the order of corners has no effect.
+/// Within a pair all corners that meet at that time are solved as one: vn after >= -e vn before, impulses
+/// >= 0, with Coulomb's friction for each pair of surfaces; a box that falls on its face leaves flat. All
+/// fixed bodies are one, the world: on two rails a box leaves as flat as on a floor. It is the contact
+/// problem of two bodies with velocities for displacements, and is solved exactly: the order of corners has
+/// no effect.
+///
+/// A body that is hit at time t moves with V_before until then, with V_after from then on. Its twist after
+/// the frame's impacts is given at the start of the frame, as if it had always been V_after; what that leaves
+/// out, (V_before - V_after) t, is its detour, which belongs to its displacement. With both a body that
+/// bounces is on its exact parabola at the frame's end, wherever in the frame it was hit.
 
 #include <span>
 
@@ -15,9 +22,6 @@
 #include "tactum/dynamics/world.h"
 
 namespace tactum::inline v0_1 {
-
-/// Approach slower than this is rest, not impact: a few frames' worth of gravity [m/s].
-inline constexpr double kImpactSpeed = 0.03;
 
 /// Receives the impulses between the two bodies of every pair that is hit.
 class ImpactObserver {
@@ -28,13 +32,28 @@ class ImpactObserver {
                    const Vec3& p_W) noexcept = 0;
 };
 
-/// The bodies of a world, and the mark of those that an impact moves; an entry per body.
+/// The bodies of a world; an entry per body.
 struct ImpactBodies {
   const World& world;
-  std::span<const Pose> X_WB;
-  std::span<const char> moves;
-  std::span<Twist> V_WB;
+  std::span<const Pose> X_WB;   ///< at the start of the frame
+  std::span<const char> moves;  ///< an impact moves the body
+  std::span<const Twist> A_WB;  ///< what weight and load add to its twist in a second [m/s2, rad/s2]
+  std::span<Twist> V_WB;        ///< at the start of the frame [m/s, rad/s]
+  std::span<Twist> detour;      ///< displacement beside that of V_WB; zero where nothing was hit [m, rad]
 };
+
+/// The meeting of two surfaces at a contact point: they come as near as the skin.
+struct Meeting {
+  double time_s = 0.0;  ///< after the start of the frame; infinite when they do not meet
+  double speed = 0.0;   ///< with which they approach then [m/s]
+};
+
+/// When a row meets, not before `now` seconds.
+Meeting meeting_of(const ContactRow& row, const ImpactBodies& bodies, double now) noexcept;
+
+/// Approach slower than this is rest, not impact, in frames of `h` seconds [m/s]. It is what bodies at rest
+/// have: the weight of a frame and a half, and the opening of a gap by the skin.
+double slowest_impact(const ContactRow& row, const ImpactBodies& bodies, double h) noexcept;
 
 struct ImpactResult {
   int hits = 0;           ///< pairs that were hit
@@ -52,9 +71,9 @@ struct ImpactScratch {
   Friction friction;
 };
 
-/// Changes the twists of the bodies that hit each other within the next `h` seconds, from rows with distances
-/// at their start; leaves the rows' impulses as they were and marks the fastest corner of every pair that was
-/// hit. At most `most` pairs are hit. `observer` may be null.
+/// Changes the twists and detours of the bodies that hit each other within the next `h` seconds, from rows
+/// with distances at their start; leaves the rows' impulses as they were and marks the corner of every pair
+/// that met first. At most `most` pairs are hit. `observer` may be null.
 ImpactResult resolve_impacts(std::span<ContactRow> rows, const ImpactBodies& bodies, double h, int most,
                              ImpactScratch& scratch, ImpactObserver* observer) noexcept;
 

@@ -43,7 +43,8 @@ void add_bodies(bool at_rest, ConstraintStep& step) {
     if (b == grasped || !step.own.free.near_grasped[i]) continue;
     const Body& body = step.world.bodies[i];
     const Pose& X_WB = step.bodies.X_WB[i];
-    const Vec6 on = at_rest ? Vec6(Vec6::Zero()) : to_vector(step.bodies.V_WB[i] * step.dt_s);
+    const Vec6 on =
+        at_rest ? Vec6(Vec6::Zero()) : to_vector(step.bodies.V_WB[i] * step.dt_s + step.own.free.detour[i]);
     problem.add_body(placed(step.world, step.bodies, b), X_WB.p, damped_metric(body, X_WB, step.dt_s), on,
                      step.dt_s);
   }
@@ -249,8 +250,8 @@ double advance(ConstraintStep& step) {
 }
 
 /// Moves the island of the grasped part. The velocities of its bodies are their displacements over the frame,
-/// less those that only opened gaps, which no force caused. Returns the fraction of the answer that was
-/// taken.
+/// less those that only opened gaps, which no force caused, and the detours by impacts. Returns the fraction
+/// of the answer that was taken.
 double move_grasped_island(ConstraintStep& step) {
   ConstraintState& c = step.own.constraint;
   step.own.free.patch_asked.clear();
@@ -265,9 +266,13 @@ double move_grasped_island(ConstraintStep& step) {
   if (share > 0.0) take_trial(step);
   if (c.trust.consecutive_rejections >= frames_in(kStands_s, step.dt_s)) feel(Vec6::Zero(), step);
   const std::vector<Pose>& before = share > 0.0 ? c.trial.X_WB : step.bodies.X_WB;  // take_trial swaps them
-  for (Index i = 0; i < step.world.bodies.size(); ++i)
-    if (step.own.free.near_grasped[i])
-      step.bodies.V_WB[i] = twist_between(before[i], step.bodies.X_WB[i], step.dt_s);
+  for (Index i = 0; i < step.world.bodies.size(); ++i) {
+    if (!step.own.free.near_grasped[i]) continue;
+    Twist& detour = step.own.free.detour[i];
+    step.bodies.V_WB[i] =
+        twist_between(before[i], step.bodies.X_WB[i], step.dt_s) - detour * (share / step.dt_s);
+    detour = {};
+  }
   return share;
 }
 
@@ -359,6 +364,8 @@ void bound_constrained_motion(const MotionInput& input, const WorldState& bodies
       const Body& body = input.world.bodies[i];
       const Twist spring = most_by_spring(body, bodies.X_WB[i], bodies.joints[i], input.dt_s);
       const Twist load = most_by_load(body, bodies.X_WB[i], input.dt_s);
+      const Twist& left = own.free.detour[i];
+      own.motion_bound[i] += left.v.norm() + left.w.norm() * input.radius_m[i];
       own.motion_bound[i] += (V.v.norm() + spring.v.norm() + load.v.norm() + pull +
                               (V.w.norm() + spring.w.norm() + load.w.norm()) * input.radius_m[i]) *
                              input.dt_s;

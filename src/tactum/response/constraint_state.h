@@ -138,6 +138,10 @@ struct FreeBodies {
   /// frame until find_islands(), of this frame from then on.
   std::vector<char> near_grasped;
 
+  /// Of each body, the displacement that impacts add to its velocity's in this frame (impacts.h); at the end
+  /// of a frame what is left of its displacement, for the next one [m, rad].
+  std::vector<Twist> detour;
+
   /// Whether a patch belongs to the island that constraint.h moves.
   bool of_grasped(const ContactPatch& patch) const noexcept {
     return grasped_island >= 0 && islands.of_contact(patch.body_a, patch.body_b) == grasped_island;
@@ -146,6 +150,7 @@ struct FreeBodies {
   // Scratch of one frame, one entry per body, or per patch.
   std::vector<char> struck;             ///< impacts change its velocity
   std::vector<Twist> V_free;            ///< if nothing touches [m/s, rad/s]
+  std::vector<Twist> A_free;            ///< what weight and load add to it in a second [m/s2, rad/s2]
   std::vector<Vec3> given_Ns;           ///< by island: the momentum that contacts gave counted bodies [N s]
   GroupedIndices bodies, rows;          ///< by island
   ReservedVector<ContactRow> gathered;  ///< copies of the rows of one island

@@ -81,7 +81,7 @@ void limit_shares(ConstraintStep& step) {
   std::fill(f.share.begin(), f.share.end(), 1.0);
   for (Index i = 0; i < f.share.size(); ++i) {
     if (!moves_here(step, i)) continue;
-    const Twist& V = step.bodies.V_WB[i];
+    const Twist V = mean_twist(step, i);
     const double travel = (V.v.norm() + V.w.norm() * step.radius_m[i]) * step.dt_s;
     double& share = f.share[Index(f.islands.of(static_cast<int>(i)))];
     if (travel * share > step.own.motion_bound[i]) share = step.own.motion_bound[i] / travel;
@@ -105,7 +105,7 @@ void try_steps(ConstraintStep& step) {
     X_trial = X_WB;
     if (f.share[i] > 0.0)
       X_trial =
-          constrained_pose(step.world.bodies[i], advanced(X_WB, step.bodies.V_WB[i], f.share[i] * step.dt_s));
+          constrained_pose(step.world.bodies[i], advanced(X_WB, mean_twist(step, i), f.share[i] * step.dt_s));
     if (!X_trial.finite()) X_trial = X_WB;
   }
 }
@@ -179,11 +179,37 @@ int kept_for_grasped(const ConstraintStep& step) {
   return std::min(kRoundsOfGrasped * static_cast<int>(own), step.gaps.tests_left() / 2);
 }
 
+/// The displacement, or velocity, by which a motion of its two bodies opens a row.
+double opening(const ContactRow& row, const Twist& of_a, const Twist& of_b, const ConstraintStep& step) {
+  const std::vector<Pose>& X_WB = step.bodies.X_WB;
+  return row.n_BA_W.dot(velocity_at(of_a, row.p_W - X_WB[Index(row.body_a)].p) -
+                        velocity_at(of_b, row.p_W - X_WB[Index(row.body_b)].p));
+}
+
+/// Where an impact was found so late that its gap is closed on trial, as rows are linear and bodies turn, it
+/// is met earlier: that opens the gap, where a force would add to the speed with which the bodies part. False
+/// when no impact, or none alone, has closed it.
+bool met_earlier(std::span<const ContactRow> rows_of_patch, double too_much, ConstraintStep& step) {
+  if (!closed_at_trial(Index(rows_of_patch.front().patch), step)) return false;
+  std::vector<Twist>& detour = step.own.free.detour;
+  Twist& of_a = detour[Index(rows_of_patch.front().body_a)];
+  Twist& of_b = detour[Index(rows_of_patch.front().body_b)];
+  double shorter = 0.0;
+  for (const ContactRow& row : rows_of_patch) {
+    const double missing = row.skin_m - (gap_at_trial(row, step) - too_much);
+    if (!(missing > 0.0)) continue;
+    const double by_detour = -opening(row, of_a, of_b, step);
+    if (!(by_detour > missing)) return false;
+    shorter = std::max(shorter, missing / by_detour);
+  }
+  of_a = of_a * (1.0 - shorter);
+  of_b = of_b * (1.0 - shorter);
+  return shorter > 0.0;
+}
+
 /// Second-order correction, as in constraint_rows.h.
 void correct(ConstraintStep& step) {
   FreeBodies& f = step.own.free;
-  const std::vector<Twist>& V_WB = step.bodies.V_WB;
-  const std::vector<Pose>& X_WB = step.bodies.X_WB;
   const CornerRows& corners = step.own.constraint.rows;
   const std::span<ContactRow> rows(step.own.contact_rows.rows.data(), corners.count);
   for (Index first = corners.own, end = first; first < rows.size(); first = end) {
@@ -195,13 +221,15 @@ void correct(ConstraintStep& step) {
     const double too_much = overstated_at_trial(rows.subspan(first, end - first), step);
     const double share = f.share[Index(of_contact)];
     if (!(share > 0.0)) continue;  // it stays, and its rows are not corrected
+    if (met_earlier(rows.subspan(first, end - first), too_much, step)) continue;
+    const Twist V_a = mean_twist(step, a);
+    const Twist V_b = mean_twist(step, b);
     for (Index r = first; r < end; ++r) {
       if (rows[r].idle) {
         if (closed_at_trial(Index(rows[r].patch), step)) rows[r].asked = lift_of(rows[r], share);
         continue;
       }
-      const double speed = rows[r].n_BA_W.dot(velocity_at(V_WB[a], rows[r].p_W - X_WB[a].p) -
-                                              velocity_at(V_WB[b], rows[r].p_W - X_WB[b].p));
+      const double speed = opening(rows[r], V_a, V_b, step);
       const double gap = gap_at_trial(rows[r], step) - too_much;
       const double missing = (rows[r].distance + share * speed * step.dt_s - gap) / share;
       if (missing > 0.0) rows[r].asked += missing;
@@ -209,30 +237,76 @@ void correct(ConstraintStep& step) {
   }
 }
 
+ImpactBodies impact_bodies(ConstraintStep& step) {
+  FreeBodies& f = step.own.free;
+  return {step.world, step.bodies.X_WB, f.struck, f.A_free, step.bodies.V_WB, f.detour};
+}
+
+/// Marks the bodies that impacts move, and finds what weight and load add to their twists.
+void begin_impacts(ConstraintStep& step) {
+  FreeBodies& f = step.own.free;
+  const double half_s = 0.5 * step.dt_s;
+  for (Index i = 0; i < step.world.bodies.size(); ++i) {
+    const Body& body = step.world.bodies[i];
+    if (!body.moves()) continue;
+    f.A_free[i] = {};
+    // The hand decides where the grasped part goes: an impact does not move it, it is felt.
+    f.struck[i] = !is_grasped(step, i) && f.islands.moves(static_cast<int>(i)) ? 1 : 0;
+    if (!f.struck[i]) {
+      f.detour[i] = {};
+      continue;
+    }
+    Twist V = step.bodies.V_WB[i];
+    drive(body, step.world.gravity_W, half_s, step.bodies.X_WB[i], V);
+    f.A_free[i] = (V - step.bodies.V_WB[i]) * (1.0 / half_s);
+  }
+}
+
+bool is_zero(const Twist& displacement) { return displacement.v.isZero(0.0) && displacement.w.isZero(0.0); }
+
+/// Forgets what the last frame has left of a displacement where another body has come into its way.
+void clear_blocked_rests(ConstraintStep& step) {
+  std::vector<Twist>& detour = step.own.free.detour;
+  if (std::all_of(detour.begin(), detour.end(), is_zero)) return;
+  for (const ContactRow& row : step.own.contact_rows.rows) {
+    Twist& of_a = detour[Index(row.body_a)];
+    Twist& of_b = detour[Index(row.body_b)];
+    if (opening(row, of_a, of_b, step) < std::min(0.0, row.skin_m - row.distance)) of_a = of_b = {};
+  }
+}
+
+/// Keeps what is left of the displacement of a body that was hit, and then went beyond its motion bound, for
+/// the next frame: it was not expected to be so fast, and is on its way again one frame later.
+void keep_rests(bool as_answered, ConstraintStep& step) {
+  FreeBodies& f = step.own.free;
+  for (Index i = 0; i < step.world.bodies.size(); ++i) {
+    if (is_zero(f.detour[i]) || !moves_here(step, i)) continue;
+    const double left_s = as_answered ? (1.0 - f.share[i]) * step.dt_s : 0.0;
+    f.detour[i] = left_s > 0.0 ? mean_twist(step, i) * left_s : Twist{};
+  }
+}
+
 /// Leaves out the contacts that bodies pass by: a row states a gap along one normal, which turns as a ball
 /// falls past an edge, and would stop it where it never touches. They ask nothing until a trial closes them.
 void leave_out_passed(ConstraintStep& step) {
   FreeBodies& f = step.own.free;
-  const std::vector<Pose>& X_WB = step.bodies.X_WB;
   const double h = step.dt_s;
+  const ImpactBodies bodies = impact_bodies(step);
   const std::span<ContactRow> rows(step.own.contact_rows.rows.data(), step.own.constraint.rows.count);
-  f.V_free = step.bodies.V_WB;  // same size: nothing is allocated
-  for (Index i = 0; i < f.V_free.size(); ++i)
-    if (f.struck[i]) drive(step.world.bodies[i], step.world.gravity_W, 0.5 * h, X_WB[i], f.V_free[i]);
+  const auto meets = [&](const ContactRow& row) {
+    if (!(row.distance > 2.0 * row.skin_m)) return false;
+    const Meeting meeting = meeting_of(row, bodies, 0.0);
+    return meeting.time_s < h && meeting.speed > slowest_impact(row, bodies, h);
+  };
   for (Index first = 0, end = 0; first < rows.size(); first = end) {
     for (end = first + 1; end < rows.size() && rows[end].patch == rows[first].patch;) ++end;
     const std::span<ContactRow> own = rows.subspan(first, end - first);
     const Index a = Index(own[0].body_a);
     const Index b = Index(own[0].body_b);
     const bool free = (f.struck[a] || f.struck[b]) && !is_grasped(step, a) && !is_grasped(step, b);
-    const auto meets = [&](const ContactRow& row) {
-      const double closing = row.n_BA_W.dot(velocity_at(f.V_free[b], row.p_W - X_WB[b].p) -
-                                            velocity_at(f.V_free[a], row.p_W - X_WB[a].p));
-      return closing > kImpactSpeed && row.distance > 2.0 * row.skin_m &&
-             row.distance - closing * h < row.skin_m;
-    };
     if (!free || own[0].idle || std::none_of(own.begin(), own.end(), meets)) continue;
-    if (!step.gaps.passes(own[0].patch, X_WB, f.V_free, h, 0.5 * own[0].skin_m)) continue;
+    for (const Index i : {a, b}) f.V_free[i] = step.bodies.V_WB[i] + f.A_free[i] * (0.5 * h);
+    if (!step.gaps.passes(own[0].patch, step.bodies.X_WB, f.V_free, h, 0.5 * own[0].skin_m)) continue;
     for (ContactRow& row : own) {
       row.idle = true;
       row.asked = kAsksNothing_m;
@@ -298,18 +372,14 @@ void apply_impacts(ConstraintStep& step) noexcept {
   std::vector<Twist>& V_WB = step.bodies.V_WB;
   const std::vector<Pose>& X_WB = step.bodies.X_WB;
   const int grasped = step.grasped.body;
-  for (Index i = 0; i < step.world.bodies.size(); ++i) {
-    if (!step.world.bodies[i].moves()) continue;
-    // The hand decides where the grasped part goes: an impact does not move it, it is felt.
-    step.own.free.struck[i] =
-        !is_grasped(step, i) && step.own.free.islands.moves(static_cast<int>(i)) ? 1 : 0;
-  }
+  begin_impacts(step);
+  clear_blocked_rests(step);
   leave_out_passed(step);
   const double energy_J = grasped < 0 ? 0.0 : bodies_energy(step.world, step.bodies, grasped);
   ImpactsOnGrasped impacts(grasped, grasped < 0 ? Vec3::Zero() : X_WB[Index(grasped)] * step.grasped.X_BH.p,
                            step.own.free.momentum);
   const ImpactResult result = resolve_impacts(
-      step.own.contact_rows.rows, {step.world, X_WB, step.own.free.struck, V_WB}, step.dt_s,
+      step.own.contact_rows.rows, impact_bodies(step), step.dt_s,
       std::min(kMostImpacts, kImpactsAPoint * static_cast<int>(step.own.contact_rows.rows.size())),
       step.own.impact_scratch, &impacts);
   step.report.impacts = result.hits;
@@ -341,7 +411,8 @@ void move_free_bodies(ConstraintStep& step) noexcept {
   const int keep_back = kept_for_grasped(step);
   c.trial.X_WB = step.bodies.X_WB;  // same size: nothing is allocated
   bool all = true;
-  for (int round = 0, cuts = 0;; ++round) {
+  int cuts = 0;
+  for (int round = 0;; ++round) {
     try_steps(step);
     if (cuts > kBacktracks + kMostStops) break;  // stay() has stopped the rest
     const int tests = step.report.validation_tests;
@@ -360,6 +431,7 @@ void move_free_bodies(ConstraintStep& step) noexcept {
       stay(step);
     }
   }
+  keep_rests(cuts == 0, step);
   for (Index i = 0; i < step.world.bodies.size(); ++i) {
     if (!moves_here(step, i)) continue;
     step.bodies.X_WB[i] = c.trial.X_WB[i];

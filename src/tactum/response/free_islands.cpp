@@ -41,7 +41,7 @@ void assemble(bool exact, bool opening, IslandProblem& p) {
     const Body& what = step.world.bodies[i];
     const Pose& X_WB = step.bodies.X_WB[i];
     p.problem.add_body(placed(step.world, step.bodies, body), X_WB.p, damped_metric(what, X_WB, step.dt_s),
-                       to_vector(step.own.free.V_free[i] * step.dt_s), step.dt_s);
+                       to_vector(step.own.free.V_free[i] * step.dt_s + step.own.free.detour[i]), step.dt_s);
   }
   p.problem.add_joint_rows(exact);
   p.in_problem = {p.contacts, p.problem.rows()};
@@ -146,7 +146,9 @@ void solve_island(IslandProblem& p) {
   for (const ContactRow& row : p.contacts) give(row, row.impulse / step.dt_s * row.n_BA_W, p);
   for (const ProblemBody& body : p.problem.bodies()) {
     if (body.body == step.grasped.body) feel(displacement_of_handle(p.problem, step), p.step);
-    step.bodies.V_WB[Index(body.body)] = to_twist(p.problem.displacement(body.body) / step.dt_s);
+    const Twist displacement = to_twist(p.problem.displacement(body.body));
+    step.bodies.V_WB[Index(body.body)] =
+        (displacement - step.own.free.detour[Index(body.body)]) * (1.0 / step.dt_s);
   }
 }
 
@@ -156,6 +158,10 @@ bool moves_here(const ConstraintStep& step, Index body) noexcept {
   const FreeBodies& f = step.own.free;
   if (!f.islands.moves(static_cast<int>(body))) return false;
   return f.grasped_island < 0 || f.islands.of(static_cast<int>(body)) != f.grasped_island;
+}
+
+Twist mean_twist(const ConstraintStep& step, Index body) noexcept {
+  return step.bodies.V_WB[body] + step.own.free.detour[body] * (1.0 / step.dt_s);
 }
 
 void begin_islands(ConstraintStep& step) noexcept {

@@ -9,6 +9,9 @@ namespace tactum::inline v0_1 {
 /// Whether move_free_bodies() moves a body: one that moves, in an island other than that of constraint.h.
 bool moves_here(const ConstraintStep& step, std::size_t body) noexcept;
 
+/// The twist that leads a body through the frame's displacement: its velocity, and the detour by impacts.
+Twist mean_twist(const ConstraintStep& step, std::size_t body) noexcept;
+
 /// Groups bodies and contact rows by island, and keeps the velocities as those without contact.
 void begin_islands(ConstraintStep& step) noexcept;
 
