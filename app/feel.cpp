@@ -12,6 +12,7 @@
 #include "output.h"
 #include "tactum/haptics/coupling_gains.h"
 #include "tactum/response/field_pull.h"
+#include "tactum/response/penalty_limits.h"
 #include "tactum/response/workspace_scale.h"
 #include "tactum/scene/builtin_scenes.h"
 #include "tactum/session/session.h"
@@ -148,7 +149,8 @@ void report_what_is_felt(std::FILE* out, const Session& session, const std::stri
   fmt::print(out, "{}{}\n", margin_sentence(coupling, session.device(), session.rate_Hz()),
              scene.coupling_by_device ? "; chosen for this device and rate" : "");
   for (const std::string& sentence :
-       {scale_sentence(coupling, scale), field_sentence(scene.world, in_scene(coupling, scale))})
+       {scale_sentence(coupling, scale), field_sentence(scene.world, in_scene(coupling, scale)),
+        penalty_sentence(scene.settings)})
     if (!sentence.empty()) fmt::print(out, "{}\n", sentence);
   std::fflush(out);
 }

@@ -130,7 +130,9 @@ TEST(SteadyContact, TheCentroidTakesNoStepOnAnyShape) {
         const double sideways = (step - patch.normal * patch.normal.dot(step)).norm();
         worst = std::max(worst, sideways);
         worst_raw = std::max(worst_raw, (centroid(raw) - raw_before).norm());
-        EXPECT_LE(sideways, 1e-4) << "seed " << seed << " run " << run << " frame " << frame;
+        // Beyond 20 mm it catches up, by a fifth of what is more in a frame.
+        const double behind = 0.25 * std::max(0.0, (centroid(raw) - c).norm() - 0.02);
+        EXPECT_LE(sideways, 1e-4 + behind) << "seed " << seed << " run " << run << " frame " << frame;
       }
       before = c;
       raw_before = centroid(raw);

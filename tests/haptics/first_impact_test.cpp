@@ -14,7 +14,8 @@
 namespace tactum {
 namespace {
 
-/// A bar turns about y over a plate whose top is at z = 0. Turned by `a` from lying flat, its lowest corner,
+/// A hand turns a bar about y, at the largest step, over a plate whose top is at z = 0. Turned by `a` from
+/// lying flat, its lowest corner,
 /// `rho` from the middle and at the angle `alpha` there, is  rho cos(alpha - a)  below the middle.
 struct Case {
   const char* name;
@@ -23,10 +24,8 @@ struct Case {
   double turn_rad = 0.03;    ///< in a frame
   double before_rad = 0.05;  ///< where the first frame starts, before the corner is lowest
   double gap_m = -2e-4;      ///< under the corner at its lowest, for a bar of 1 m; negative: it hits
-  double falling_m = 0.0;    ///< by which a bar that is free falls in a frame
   double rising_m = 0.0;     ///< by which the plate rises in a frame
   int bar_pieces = 1, plate_pieces = 1;
-  bool grasped = false;  ///< the hand turns it, at the largest step
 };
 
 /// A box of so many boxes side by side along x.
@@ -54,9 +53,7 @@ struct Swing {
     bar.mass_kg = 1.0;
     bar.inertia_B = at.size_m * at.size_m * Mat3::Identity();
     bar.X_WB = {exp_rotation({0.0, alpha() - at.before_rad, 0.0}), {0.0, 0.0, height()}};
-    if (at.falling_m == 0.0)
-      bar.joint = {.kind = JointKind::kHinge, .axis_W = Vec3::UnitY(), .anchor_W = bar.X_WB.p};
-    bar.V_WB = {{0.0, 0.0, -at.falling_m / at.dt_s}, {0.0, at.turn_rad / at.dt_s, 0.0}};
+    bar.joint = {.kind = JointKind::kHinge, .axis_W = Vec3::UnitY(), .anchor_W = bar.X_WB.p};
     Body& plate = world.bodies[1];
     const Vec3 plate_half = at.size_m * Vec3(2.0, 1.0, 0.3);
     plate.part = cut_box(plate_half, at.plate_pieces);
@@ -68,11 +65,10 @@ struct Swing {
     FrameSettings settings;
     settings.response = ResponseModel::kPenalty;
     settings.dt_s = at.dt_s;
-    if (at.grasped) {
-      settings.tool.body = 0;
-      settings.penalty.max_step_m = longest_step_setting(at.turn_rad * half().norm(), at.dt_s);
-    }
+    settings.tool.body = 0;
+    settings.penalty.max_step_m = longest_step_setting(at.turn_rad * half().norm(), at.dt_s);
     simulation = std::move(*Simulation::make(std::move(world), settings));
+    simulation->step(Pose{});  // the hand takes the bar
   }
 
   Vec3 half() const { return 0.5 * at.size_m * Vec3(1.0, 0.2, 0.3); }
@@ -81,8 +77,7 @@ struct Swing {
   double height() const { return rho() + at.gap_m * at.size_m; }
   /// Of the corner over the plate, `frames` after the start.
   double gap_after(double frames) const {
-    return height() - frames * (at.falling_m + at.rising_m) -
-           rho() * std::cos(at.before_rad - at.turn_rad * frames);
+    return height() - (frames + 1.0) * at.rising_m - rho() * std::cos(at.before_rad - at.turn_rad * frames);
   }
   /// When the corner reaches the plate, in frames from the start: the first root, between samples.
   double impact() const {
@@ -97,15 +92,11 @@ struct Swing {
   }
   /// The published estimate: distance over the closing speed at the start of the frame.
   double estimated_impact(int frame) const {
-    const double speed =
-        at.falling_m + at.rising_m + at.turn_rad * rho() * std::sin(at.before_rad - at.turn_rad * frame);
+    const double speed = at.rising_m + at.turn_rad * rho() * std::sin(at.before_rad - at.turn_rad * frame);
     return frame + gap_after(frame) / speed;
   }
-  /// A grasped bar is turned as far ahead as a frame may follow.
-  void step() {
-    const double ahead = at.grasped ? 1.0 : 0.0;
-    simulation->step(Pose{exp_rotation({0.0, ahead, 0.0}), Vec3::Zero()});
-  }
+  /// The hand is farther ahead than a frame may follow.
+  void step() { simulation->step(Pose{exp_rotation({0.0, 1.0, 0.0}), Vec3::Zero()}); }
 
   Case at;
   std::unique_ptr<Simulation> simulation;
@@ -117,17 +108,14 @@ std::vector<Case> striking() {
           {.name = "a bar of 10 m", .size_m = 10.0},
           {.name = "10 kHz", .dt_s = 1e-4},
           {.name = "250 Hz", .dt_s = 4e-3},
-          {.name = "a bar that falls", .gap_m = -1.5e-4, .falling_m = 5e-6},
           {.name = "a plate that rises", .gap_m = -1.5e-4, .rising_m = 5e-6},
-          {.name = "both of several pieces", .bar_pieces = 3, .plate_pieces = 4},
-          {.name = "in the hand", .grasped = true}};
+          {.name = "both of several pieces", .bar_pieces = 3, .plate_pieces = 4}};
 }
 
 TEST(FirstImpact, OfABarThatTurnsIsWhereItsCornerReachesThePlate) {
   for (const Case& at : striking()) {
     SCOPED_TRACE(at.name);
     Swing swing(at);
-    if (at.grasped) swing.simulation->step(Pose{});  // the hand takes the bar
     const double expected = swing.impact();
     const int frame = static_cast<int>(expected);
     for (int i = 0; i < frame; ++i) {
@@ -145,7 +133,7 @@ TEST(FirstImpact, OfABarThatTurnsIsWhereItsCornerReachesThePlate) {
 /// The closing speed at the start of the frame would take the corner into the plate; turning lifts it before.
 TEST(FirstImpact, WhatSwingsPastIsNotPushed) {
   for (Case at : striking()) {
-    if (at.grasped || at.falling_m > 0.0 || at.rising_m > 0.0) continue;
+    if (at.rising_m > 0.0) continue;
     SCOPED_TRACE(at.name);
     at.gap_m = 2e-5;
     Swing swing(at);
@@ -156,15 +144,15 @@ TEST(FirstImpact, WhatSwingsPastIsNotPushed) {
       EXPECT_EQ(swing.simulation->report().time_of_impact_s, at.dt_s) << "frame " << i;
     }
     EXPECT_TRUE(estimated) << "the estimate would do as well";
-    EXPECT_DOUBLE_EQ(swing.simulation->bodies().V_WB[0].w.y(), at.turn_rad / at.dt_s);
+    EXPECT_NEAR(swing.simulation->bodies().V_WB[0].w.y(), at.turn_rad / at.dt_s,
+                1e-9 * at.turn_rad / at.dt_s);
   }
 }
 
 /// Where no test is left the published estimate stands.
 TEST(FirstImpact, WithoutBudgetItIsThePublishedEstimate) {
-  const Case at{.name = "no budget", .grasped = true};
+  const Case at{.name = "no budget"};
   Swing swing(at);
-  swing.simulation->step(Pose{});
   const int frame = static_cast<int>(swing.impact());
   for (int i = 0; i < frame; ++i) swing.step();
   swing.simulation->settings().budget.max_exact_tests = 0;  // the contact is known from the frame before

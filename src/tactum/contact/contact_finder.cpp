@@ -47,6 +47,7 @@ void ContactFinder::find_patches(std::span<const Pose> X_WB, int budget, PatchPo
   tests_left_ = budget;
   patches_.clear();
   candidates_.clear();
+  internal_.clear();
   emitted_.clear();
   std::fill(blocked_.begin(), blocked_.end(), 0);
   block_unlisted();
@@ -83,24 +84,29 @@ void ContactFinder::find_patches(std::span<const Pose> X_WB, int budget, PatchPo
       emit_patch(pair, last, X_AB);
     }
   }
-  if (points_ == PatchPoints::kClosest) {
-    settle_closest_points(candidates_, X_WB, patches_);
-  } else {
-    candidate_order_.clear();
-    for (SeamCandidate& candidate : candidates_) candidate_order_.push_back(&candidate);
-    if (!settle_seams(candidate_order_, X_WB, steady_, patches_))
-      for (const SeamCandidate& candidate : candidates_) drop(candidate.a.body, candidate.b.body);
-  }
-  flush_bodies_.mark_implied(bodies_, X_WB, patches_);
-  if (points_ == PatchPoints::kQuadrature)
-    patches_.erase(std::remove_if(patches_.begin(), patches_.end(),
-                                  [](const ContactPatch& patch) { return patch.implied; }),
-                   patches_.end());
+  settle_candidates(X_WB);
   for (const bool grasped : {true, false})
     for (const SweepAndPrune::Pair& near : sweep_.pairs())
       if (meet_by_surfaces(near.a, near.b) && of_grasped(near.a, near.b) == grasped)
         test_surfaces(near, X_WB);
   work_.patches = static_cast<int>(patches_.size());
+}
+
+/// Leaves out the contacts with walls between the pieces of one part, and those that contacts with other
+/// bodies imply.
+void ContactFinder::settle_candidates(std::span<const Pose> X_WB) noexcept {
+  settle_closest_points(internal_, X_WB, patches_);
+  candidate_order_.clear();
+  for (SeamCandidate& candidate : candidates_) candidate_order_.push_back(&candidate);
+  if (!settle_seams(candidate_order_, X_WB, steady_, patches_))
+    for (const SeamCandidate& candidate : candidates_) drop(candidate.a.body, candidate.b.body);
+  flush_bodies_.mark_implied(bodies_, X_WB, patches_);
+  if (points_ == PatchPoints::kQuadrature)
+    patches_.erase(std::remove_if(patches_.begin(), patches_.end(),
+                                  [&](const ContactPatch& patch) {
+                                    return patch.implied && over_areas(patch.body_a, patch.body_b);
+                                  }),
+                   patches_.end());
 }
 
 std::uint8_t ContactFinder::priority_of(int a, int b) const noexcept {
@@ -210,9 +216,10 @@ void ContactFinder::test(Pair& pair, const Pose& X_AB) noexcept {
   emit_patch(pair, pair.last.found, X_AB);
 }
 
-/// Adds what was found to the contacts that are settled with those of the pieces beside (seam_settler.h).
-void ContactFinder::add_candidate(Pair& pair, const PairDistance& found, bool internal, int patch) noexcept {
-  SeamCandidate& candidate = candidates_.emplace_back();
+/// What was found, as it is settled with the contacts of the pieces beside (seam_settler.h).
+SeamCandidate ContactFinder::candidate_of(Pair& pair, const PairDistance& found,
+                                          bool internal) const noexcept {
+  SeamCandidate candidate;
   candidate.a = {pair.body_a, pair.piece_a, bodies_[Index(pair.body_a)].part};
   candidate.b = {pair.body_b, pair.piece_b, bodies_[Index(pair.body_b)].part};
   candidate.pair = static_cast<int>(&pair - pairs_.data());
@@ -220,7 +227,7 @@ void ContactFinder::add_candidate(Pair& pair, const PairDistance& found, bool in
   candidate.margin = tolerance(pair.body_a, pair.body_b);
   candidate.found = found;
   candidate.internal = internal;
-  candidate.patch = patch;
+  return candidate;
 }
 
 /// Makes a patch of the answer, when it is within the tolerance. Of a pair that was not tested in this frame
@@ -234,11 +241,16 @@ void ContactFinder::emit_patch(Pair& pair, const PairDistance& found, const Pose
     pair.shown = {};
     return;
   }
-  if (patches_.size() == patches_.capacity() || candidates_.size() == candidates_.capacity())
+  if (patches_.size() == patches_.capacity() || candidates_.size() == candidates_.capacity() ||
+      internal_.size() == internal_.capacity())
     return drop(pair.body_a, pair.body_b);
   const bool seams = !part_a.true_surface.single_piece() || !part_b.true_surface.single_piece();
   const bool internal = seams && !is_true_contact(part_a, pair.piece_a, part_b, pair.piece_b, X_AB, found);
-  if (seams && points_ == PatchPoints::kQuadrature) return add_candidate(pair, found, internal, -1);
+  const bool over_area = over_areas(pair.body_a, pair.body_b);
+  if (seams && over_area) {
+    candidates_.push_back(candidate_of(pair, found, internal));
+    return;
+  }
   ContactPatch& patch = patches_.emplace_back();
   patch.body_a = pair.body_a;
   patch.body_b = pair.body_b;
@@ -248,14 +260,15 @@ void ContactFinder::emit_patch(Pair& pair, const PairDistance& found, const Pose
   patch.facets.a = part_a.groups.of_piece[Index(pair.piece_a)];
   patch.facets.b = part_b.groups.of_piece[Index(pair.piece_b)];
   patch.tolerance = margin;
-  if (points_ == PatchPoints::kClosest) {
+  if (!over_area) {
     patch.distance = found.distance;
     patch.manifold.normal = found.normal;
     patch.manifold.a = found.a;
     patch.manifold.b = found.b;
     patch.manifold.points.push_back({found.p_a, found.p_b, found.distance, 1.0, 0});
-    if (internal && found.distance > 0.0)
-      add_candidate(pair, found, internal, static_cast<int>(patches_.size()) - 1);
+    if (!internal || !(found.distance > 0.0)) return;
+    SeamCandidate& candidate = internal_.emplace_back(candidate_of(pair, found, internal));
+    candidate.patch = static_cast<int>(patches_.size()) - 1;
     return;
   }
   const Polytope& A = part_a.pieces[Index(pair.piece_a)];

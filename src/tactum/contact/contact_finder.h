@@ -50,7 +50,8 @@
 
 namespace tactum::inline v0_1 {
 
-/// The kind of points in a patch's manifold.
+/// The kind of points in a patch's manifold. Where a frame asks for kQuadrature and names the grasped part's
+/// priority, only its patches are of that kind; the bodies that move by themselves meet in closest points.
 enum class PatchPoints {
   kQuadrature,  ///< weighted, for forces over the area; they move without steps
   kClosest      ///< the closest point alone, on the closest features, as they are
@@ -137,9 +138,13 @@ class ContactFinder final : public GapOracle {
   void drop(int a, int b) noexcept;
   void block_unlisted() noexcept;
   bool of_grasped(int a, int b) const noexcept { return priority_of(a, b) == priority::kGrasped; }
+  bool over_areas(int a, int b) const noexcept {
+    return points_ == PatchPoints::kQuadrature && (priority_.empty() || of_grasped(a, b));
+  }
   std::uint8_t priority_of(int a, int b) const noexcept;
   void test(Pair& pair, const Pose& X_AB) noexcept;
-  void add_candidate(Pair& pair, const PairDistance& found, bool internal, int patch) noexcept;
+  SeamCandidate candidate_of(Pair& pair, const PairDistance& found, bool internal) const noexcept;
+  void settle_candidates(std::span<const Pose> X_WB) noexcept;
   void emit_patch(Pair& pair, const PairDistance& found, const Pose& X_AB) noexcept;
   GapAnswer distance_at(const ContactPatch& patch, std::span<const Pose> X_WB, double enough, int keep_back,
                         double& distance) noexcept;
@@ -181,7 +186,8 @@ class ContactFinder final : public GapOracle {
   bool budget_limited_ = false;
   int tests_left_ = 0;
   ReservedVector<ContactPatch> patches_;
-  ReservedVector<SeamCandidate> candidates_;
+  ReservedVector<SeamCandidate> candidates_;  // over areas
+  ReservedVector<SeamCandidate> internal_;    // closest points on walls between pieces
   ReservedVector<SeamCandidate*> candidate_order_;
   FlushBodies flush_bodies_;
   ReservedVector<SurfaceMinimum> minima_;

@@ -64,6 +64,7 @@ ContactFinder::ContactFinder(std::vector<CollisionBody> bodies, std::span<const 
   blocked_.assign(bodies_.size(), 0);
   patches_.reserve(capacity.patches);
   candidates_.reserve(capacity.patches);
+  internal_.reserve(capacity.patches);
   candidate_order_.reserve(capacity.patches);
   minima_.reserve(capacity.minima);
   reduction_scratch_.reserve(capacity.minima);

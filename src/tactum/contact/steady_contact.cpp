@@ -22,6 +22,19 @@ PairDistance depth_across(const PairView& pair, const PairDistance& found, const
   return result;
 }
 
+/// A centroid that is farther away than it goes in this time approaches that distance with kCatchUp_s: the
+/// force of a long part that comes down on one end, and then lies flat, would otherwise act at that end for
+/// more than a second, and tip the part over.
+constexpr double kLag_s = 0.4;
+constexpr double kCatchUp_s = 0.005;
+
+/// How far the centroid moves in a frame when it is `length` away [m].
+double centroid_step(double length, const SteadyLimits& limits) noexcept {
+  const double dt_s = limits.turn_rad / kNormalTurnRate;
+  const double too_far = length - limits.step_m * (kLag_s / dt_s);
+  return too_far > 0.0 ? limits.step_m + too_far * std::min(1.0, dt_s / kCatchUp_s) : limits.step_m;
+}
+
 }  // namespace
 
 PairDistance steady_depth(const Polytope& A, const Polytope& B, const Pose& X_AB, const PairDistance& found,
@@ -53,8 +66,9 @@ void steady_centroid(const Pose& X_AB, Manifold& patch, const SteadyLimits& limi
     const Vec3 displacement = 0.5 * (last.centroid_A + X_AB * last.centroid_B) - centroid;
     const Vec3 back = displacement - patch.normal * patch.normal.dot(displacement);
     const double length = back.norm();
-    if (length > limits.step_m) {
-      const Vec3 shift = back * (1.0 - limits.step_m / length);
+    const double step = centroid_step(length, limits);
+    if (length > step) {
+      const Vec3 shift = back * (1.0 - step / length);
       for (ContactPoint& point : patch.points) {
         point.p_a += shift;
         point.p_b += shift;

@@ -38,7 +38,7 @@ void ContactFinder::test_surfaces(const SweepAndPrune::Pair& near, std::span<con
   const Part& part_a = *bodies_[Index(a)].part;
   const Part& part_b = *bodies_[Index(b)].part;
   // Where nothing may cross, a distance below zero is rounding.
-  const bool may_cross = points_ == PatchPoints::kQuadrature;
+  const bool may_cross = over_areas(a, b);
   const MinimaQuery query{
       .max_distance = margin,
       .depth = may_cross ? kSurfaceDepth * std::min(part_a.size, part_b.size) : kWatched * margin,

@@ -11,8 +11,6 @@
 #include "tactum/response/field_pull.h"
 #include "tactum/response/free_bodies.h"
 #include "tactum/response/grasped_part.h"
-#include "tactum/response/momentum.h"
-#include "tactum/response/waiting.h"
 
 namespace tactum::inline v0_1 {
 namespace {
@@ -375,27 +373,12 @@ void bound_constrained_motion(const MotionInput& input, const WorldState& bodies
 }
 
 void respond_constrained(ConstraintStep& step) noexcept {
-  ConstraintState& c = step.own.constraint;
-  c.trial.gap_now.clear();
-  for (const ContactPatch& patch : step.patches) c.trial.gap_now.push_back(patch.distance);
-  c.trial.gap.resize(c.trial.gap_now.size());
-  c.trial.gap_least.resize(c.trial.gap_now.size());
-  c.trial.gap_answer.resize(c.trial.gap_now.size());
-
-  step.own.free.others = others_move(step.world, step.grasped.body);
-  defer_bodies(step);
-  find_islands(step);
-  begin_balance(step);
-  make_corner_rows(step);
-  apply_impacts(step);
+  begin_step(step);
   move_free_bodies(step);
   double share = 1.0;  // of the step of the grasped part's island
   if (step.own.free.grasped_island >= 0) share = move_grasped_island(step);
-  c.anchors.end_frame([&](int body) { return step.own.free.islands.moves(body); });
   update_trust_length(step);
-  end_turning(step);
-  end_balance(share == 1.0 && !c.rows.shades, step);
-  go_on(step);
+  end_step(share == 1.0 && !step.own.constraint.rows.shades, step);
   report_rows(step);
 }
 

@@ -26,7 +26,7 @@ void ConstraintResponse::step(const StepInput& input, GapOracle& gaps, WorldStat
     memory_.constraint.trust.consecutive_rejections = 0;
   }
   grasped_last_ = input.grasped.body;
-  ConstraintStep step{input, gaps, bodies, memory_, report};
+  ConstraintStep step{input, false, gaps, bodies, memory_, report};
   respond_constrained(step);
 }
 

@@ -140,7 +140,7 @@ void make_corner_rows(ConstraintStep& step) noexcept {
   c.rows.shades = c.rows.bent = false;
   const std::span<const ContactPatch> patches = step.patches;
   const RowMaker maker{step};
-  for (Index p = 0; p < patches.size() && !out.full; ++p)
+  for (Index p = 0; p < patches.size() && !out.full && !step.grasped_yields; ++p)
     if (step.own.free.of_grasped(patches[p])) maker.add(patches[p], static_cast<int>(p), true);
   c.rows.own = out.rows.size();
   for (Index p = 0; p < patches.size() && !out.full; ++p)

@@ -129,8 +129,8 @@ struct FreeBodies {
   Islands islands;
   Sweeps sweeps;
   Momentum momentum;
-  int grasped_island = -1;             ///< the island that constraint.h moves; -1: none
-  bool grasped_here = false;           ///< the grasped part's island is too large for constraint.h
+  int grasped_island = -1;    ///< the island that constraint.h, or the penalty response, moves; -1: none
+  bool grasped_here = false;  ///< the grasped part's island is too large for constraint.h
   Vec3 grasped_torque = Vec3::Zero();  ///< of friction about normals on the grasped part, found here [N m]
   bool others = false;                 ///< some body moves by itself
   bool alone = true;                   ///< nothing but the grasped part's island moves
@@ -142,9 +142,10 @@ struct FreeBodies {
   /// of a frame what is left of its displacement, for the next one [m, rad].
   std::vector<Twist> detour;
 
-  /// Whether a patch belongs to the island that constraint.h moves.
+  /// Whether a patch belongs to the island of the grasped part that is not moved here.
   bool of_grasped(const ContactPatch& patch) const noexcept {
-    return grasped_island >= 0 && islands.of_contact(patch.body_a, patch.body_b) == grasped_island;
+    return grasped_island >= 0 &&
+           (islands.of(patch.body_a) == grasped_island || islands.of(patch.body_b) == grasped_island);
   }
 
   // Scratch of one frame, one entry per body, or per patch.
@@ -213,6 +214,9 @@ struct ConstraintMemory {
 
 /// One step while it is made: its inputs, the gap oracle, and the states that it changes.
 struct ConstraintStep : StepInput {
+  /// The grasped part's contacts are springs of the penalty response: it joins no island, and its contacts
+  /// have no rows here.
+  bool grasped_yields;
   GapOracle& gaps;
   WorldState& bodies;     ///< the poses and velocities of all bodies
   ConstraintMemory& own;  ///< the memory of the response

@@ -20,13 +20,6 @@ bool same_facet(const Facet& a, const Facet& b) {
          std::tie(b.body_a, b.body_b, b.group_a, b.group_b);
 }
 
-/// The input from which rows are made.
-struct Source {
-  std::span<const ContactPatch> patches;
-  const std::vector<ShadingNormals>& shading;
-  std::span<const double> depth_scale;  // by patch; empty: 1
-};
-
 /// The poses of the bodies of a facet, which the next facet has too as a rule.
 struct BodyPoses {
   int a, b;
@@ -41,7 +34,7 @@ struct BodyPoses {
 };
 
 /// The points of a run of patches on one facet, weighted by area.
-void gather_points(const Source& from, const BodyPoses& poses, std::span<const Facet> facet,
+void gather_points(const ContactSource& from, const BodyPoses& poses, std::span<const Facet> facet,
                    std::vector<FacetPoint>& points) {
   points.clear();
   double weights = 0.0;
@@ -109,29 +102,27 @@ void reduce_to_four(std::vector<FacetPoint>& points) {
 
 }  // namespace
 
-void make_contact_rows(std::span<const Pose> X_WB, std::span<const ContactPatch> patches,
-                       const std::vector<ShadingNormals>& shading, double stiffness_N_per_m,
-                       std::span<const double> depth_scale, ContactRows& out) noexcept {
+void make_contact_rows(const ContactSource& from, double stiffness_N_per_m, ContactRows& out) noexcept {
   out.rows.clear();
   out.facets.clear();
   out.full = false;
-  for (Index i = 0; i < patches.size() && i < out.facets.capacity(); ++i) {
-    const ContactPatch& patch = patches[i];
+  for (Index i = 0; i < from.patches.size() && i < out.facets.capacity(); ++i) {
+    const ContactPatch& patch = from.patches[i];
+    if (from.body >= 0 && patch.body_a != from.body && patch.body_b != from.body) continue;
     out.facets.push_back({patch.body_a, patch.body_b, patch.facets.a, patch.facets.b, static_cast<int>(i)});
   }
   std::sort(out.facets.begin(), out.facets.end(),
             [](const Facet& a, const Facet& b) { return key(a) < key(b); });
 
   if (out.facets.empty()) return;
-  const Source source{patches, shading, depth_scale};
-  BodyPoses poses(X_WB, out.facets.front());
+  BodyPoses poses(from.X_WB, out.facets.front());
   for (auto first = out.facets.begin(); first != out.facets.end();) {
     const auto last =
         std::find_if(first, out.facets.end(), [&](const Facet& f) { return !same_facet(f, *first); });
-    if (!poses.are_of(*first)) poses = BodyPoses(X_WB, *first);
-    gather_points(source, poses, {first, last}, out.points);
+    if (!poses.are_of(*first)) poses = BodyPoses(from.X_WB, *first);
+    gather_points(from, poses, {first, last}, out.points);
     if (out.points.size() > 4) reduce_to_four(out.points);
-    const double tolerance = patches[Index(first->patch)].tolerance;
+    const double tolerance = from.patches[Index(first->patch)].tolerance;
     for (const FacetPoint& point : out.points) {
       if (out.rows.size() == out.rows.capacity()) {
         out.full = true;

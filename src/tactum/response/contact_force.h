@@ -43,11 +43,17 @@ struct ContactRows {
   bool full = false;  ///< points were dropped
 };
 
-/// Fills `out.rows`. `shading` has one entry per body, or is empty for force directions without shading.
-/// `depth_scale` has one entry per patch, by which the depth of points that overlap is multiplied; empty: 1.
-void make_contact_rows(std::span<const Pose> X_WB, std::span<const ContactPatch> patches,
-                       const std::vector<ShadingNormals>& shading, double stiffness_N_per_m,
-                       std::span<const double> depth_scale, ContactRows& out) noexcept;
+/// The contacts from which rows are made.
+struct ContactSource {
+  std::span<const Pose> X_WB;                  ///< of the bodies [m]
+  std::span<const ContactPatch> patches;       ///< found there
+  int body = -1;                               ///< only patches of this body become rows; -1: all
+  const std::vector<ShadingNormals>& shading;  ///< one per body; empty: normals without shading
+  std::span<const double> depth_scale;  ///< by patch: factor for the depth of points that overlap; empty: 1
+};
+
+/// Fills `out.rows`.
+void make_contact_rows(const ContactSource& from, double stiffness_N_per_m, ContactRows& out) noexcept;
 
 /// Appends the friction force on A of a patch [N] as a contact row, whose normal is the direction of the
 /// force and whose impulse is that of `h` seconds, as far as there is room. `number` is

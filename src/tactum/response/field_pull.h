@@ -44,8 +44,8 @@ Wrench field_at_handle(const GraspedPart& grasped, std::span<const Pose> X_WB) n
 GraspMetric step_metric(const Coupling& coupling, const GraspedPart& grasped, double dt_s) noexcept;
 
 /// In the penalty response: the displacement of the handle to where the coupling carries the load of fields
-/// and `constant`, a wrench at the centre of mass, or as far towards it as is safe. X_WB is the grasped
-/// body's.
+/// and `constant`, weight and load at the centre of mass, or as far towards it as is safe. X_WB is the
+/// grasped body's.
 Twist equilibrium_step(const Coupling& coupling, const GraspedPart& grasped, const Wrench& constant,
                        const Pose& X_WB) noexcept;
 

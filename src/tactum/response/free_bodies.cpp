@@ -10,6 +10,7 @@
 #include "tactum/response/energy.h"
 #include "tactum/response/free_islands.h"
 #include "tactum/response/momentum.h"
+#include "tactum/response/waiting.h"
 
 namespace tactum::inline v0_1 {
 namespace {
@@ -315,42 +316,17 @@ void leave_out_passed(ConstraintStep& step) {
   }
 }
 
-}  // namespace
-
-void begin_midway(const World& world, double dt_s, WorldState& state) noexcept {
-  for (Index i = 0; i < world.bodies.size(); ++i) {
-    const Body& body = world.bodies[i];
-    if (!body.moves()) continue;
-    JointPosition& joint = state.joints[i];
-    joint.before = joint.now - dt_s * joint_rate(body, state.X_WB[i]).dot(to_vector(state.V_WB[i]));
-    double back_s = 0.5 * dt_s;
-    if (body.load.damps()) back_s = std::min(back_s, kFarthestBack / fastest_fading(body, state.X_WB[i]));
-    drive(body, world.gravity_W, -back_s, state.X_WB[i], state.V_WB[i]);
-  }
-}
-
-void pull_free_bodies(const MotionInput& input, WorldState& bodies) noexcept {
-  const World& world = input.world;
-  for (Index i = 0; i < world.bodies.size(); ++i) {
-    const Body& body = world.bodies[i];
-    if (!body.moves() || static_cast<int>(i) == input.grasped.body) continue;
-    bodies.V_WB[i] = carried_velocity(body.joint, bodies.X_WB[i], bodies.V_WB[i]);
-    drive(body, world.gravity_W, 0.5 * input.dt_s, bodies.X_WB[i], bodies.V_WB[i]);
-  }
-}
-
-bool others_move(const World& world, int grasped) noexcept {
-  for (Index i = 0; i < world.bodies.size(); ++i)
-    if (world.bodies[i].moves() && static_cast<int>(i) != grasped) return true;
-  return false;
-}
-
-void find_islands(ConstraintStep& step) noexcept {
+/// Finds the islands, from the patches of the frame.
+void find_islands(ConstraintStep& step) {
   FreeBodies& f = step.own.free;
   f.islands.clear(step.world, step.own.waiting.waits);
   f.grasped_island = -1;
   f.grasped_here = false;
-  for (const ContactPatch& patch : step.patches) f.islands.join(patch.body_a, patch.body_b);
+  const auto yields = [&](const ContactPatch& patch) {
+    return step.grasped_yields && (patch.body_a == step.grasped.body || patch.body_b == step.grasped.body);
+  };
+  for (const ContactPatch& patch : step.patches)
+    if (!yields(patch)) f.islands.join(patch.body_a, patch.body_b);
   const int grasped = step.grasped.body;
   const int island = grasped < 0 ? -1 : f.islands.of(grasped);
   Index unknowns = 0;
@@ -367,7 +343,8 @@ void find_islands(ConstraintStep& step) noexcept {
   if (!f.grasped_here) f.grasped_island = island;
 }
 
-void apply_impacts(ConstraintStep& step) noexcept {
+/// Applies impacts, and adds the other half of weight and load.
+void apply_impacts(ConstraintStep& step) {
   if (!step.own.free.others) return;
   std::vector<Twist>& V_WB = step.bodies.V_WB;
   const std::vector<Pose>& X_WB = step.bodies.X_WB;
@@ -397,6 +374,52 @@ void apply_impacts(ConstraintStep& step) noexcept {
     step.own.free.w_free[i] = V_WB[i].w;
     drive(body, step.world.gravity_W, 0.5 * step.dt_s, X_WB[i], V_WB[i]);
   }
+}
+
+/// The rates at the end of the frame of the bodies that turn freely, from their mean ones.
+void end_turning(ConstraintStep& step) {
+  for (Index i = 0; i < step.world.bodies.size(); ++i) {
+    const Body& body = step.world.bodies[i];
+    if (!turns_freely(body) || is_grasped(step, i) || !step.own.free.islands.moves(static_cast<int>(i)))
+      continue;
+    const Mat3 inertia_B = turning_inertia(body);
+    const Mat3& R_start = step.X_WB_start[i].R;
+    const Pose& X_WB = step.bodies.X_WB[i];
+    Twist& V = step.bodies.V_WB[i];
+    const Vec3 pushed = inertia_at(inertia_B, R_start) * (V.w - step.own.free.w_free[i]);
+    V.w = rate_after(inertia_B, R_start, step.own.free.w_start[i], pushed, X_WB.R);
+    if (body.joint.kind == JointKind::kBall) V.v = V.w.cross(X_WB.p - body.joint.anchor_W);
+  }
+}
+
+}  // namespace
+
+void begin_midway(const World& world, double dt_s, WorldState& state) noexcept {
+  for (Index i = 0; i < world.bodies.size(); ++i) {
+    const Body& body = world.bodies[i];
+    if (!body.moves()) continue;
+    JointPosition& joint = state.joints[i];
+    joint.before = joint.now - dt_s * joint_rate(body, state.X_WB[i]).dot(to_vector(state.V_WB[i]));
+    double back_s = 0.5 * dt_s;
+    if (body.load.damps()) back_s = std::min(back_s, kFarthestBack / fastest_fading(body, state.X_WB[i]));
+    drive(body, world.gravity_W, -back_s, state.X_WB[i], state.V_WB[i]);
+  }
+}
+
+void pull_free_bodies(const MotionInput& input, WorldState& bodies) noexcept {
+  const World& world = input.world;
+  for (Index i = 0; i < world.bodies.size(); ++i) {
+    const Body& body = world.bodies[i];
+    if (!body.moves() || static_cast<int>(i) == input.grasped.body) continue;
+    bodies.V_WB[i] = carried_velocity(body.joint, bodies.X_WB[i], bodies.V_WB[i]);
+    drive(body, world.gravity_W, 0.5 * input.dt_s, bodies.X_WB[i], bodies.V_WB[i]);
+  }
+}
+
+bool others_move(const World& world, int grasped) noexcept {
+  for (Index i = 0; i < world.bodies.size(); ++i)
+    if (world.bodies[i].moves() && static_cast<int>(i) != grasped) return true;
+  return false;
 }
 
 void move_free_bodies(ConstraintStep& step) noexcept {
@@ -445,19 +468,27 @@ void move_free_bodies(ConstraintStep& step) noexcept {
   }
 }
 
-void end_turning(ConstraintStep& step) noexcept {
-  for (Index i = 0; i < step.world.bodies.size(); ++i) {
-    const Body& body = step.world.bodies[i];
-    if (!turns_freely(body) || is_grasped(step, i) || !step.own.free.islands.moves(static_cast<int>(i)))
-      continue;
-    const Mat3 inertia_B = turning_inertia(body);
-    const Mat3& R_start = step.X_WB_start[i].R;
-    const Pose& X_WB = step.bodies.X_WB[i];
-    Twist& V = step.bodies.V_WB[i];
-    const Vec3 pushed = inertia_at(inertia_B, R_start) * (V.w - step.own.free.w_free[i]);
-    V.w = rate_after(inertia_B, R_start, step.own.free.w_start[i], pushed, X_WB.R);
-    if (body.joint.kind == JointKind::kBall) V.v = V.w.cross(X_WB.p - body.joint.anchor_W);
-  }
+void begin_step(ConstraintStep& step) noexcept {
+  TrialPose& trial = step.own.constraint.trial;
+  trial.gap_now.clear();
+  for (const ContactPatch& patch : step.patches) trial.gap_now.push_back(patch.distance);
+  trial.gap.resize(trial.gap_now.size());
+  trial.gap_least.resize(trial.gap_now.size());
+  trial.gap_answer.resize(trial.gap_now.size());
+
+  step.own.free.others = others_move(step.world, step.grasped.body);
+  defer_bodies(step);
+  find_islands(step);
+  begin_balance(step);
+  make_corner_rows(step);
+  apply_impacts(step);
+}
+
+void end_step(bool as_forced, ConstraintStep& step) noexcept {
+  step.own.constraint.anchors.end_frame([&](int body) { return step.own.free.islands.moves(body); });
+  end_turning(step);
+  end_balance(as_forced, step);
+  go_on(step);
 }
 
 }  // namespace tactum::inline v0_1

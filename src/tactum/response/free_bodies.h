@@ -16,6 +16,9 @@
 
 namespace tactum::inline v0_1 {
 
+/// In the penalty response the bodies move by the same rules; the grasped part's contacts then push them as
+/// springs, between the two halves of what follows (penalty_response.h).
+
 /// Takes half a frame of weight and load (body_load.h) from the initial velocities of a world.
 void begin_midway(const World& world, double dt_s, WorldState& state) noexcept;
 
@@ -25,17 +28,17 @@ void pull_free_bodies(const MotionInput& input, WorldState& bodies) noexcept;
 /// Whether any body but the grasped one moves.
 bool others_move(const World& world, int grasped) noexcept;
 
-/// Finds the islands, from the patches of the frame.
-void find_islands(ConstraintStep& step) noexcept;
-
-/// Applies impacts, and adds the other half of weight and load: afterwards every body that is not grasped has
-/// the velocity that it keeps when no contact holds it.
-void apply_impacts(ConstraintStep& step) noexcept;
+/// Begins the step of all bodies: which are deferred, the islands, the contact rows, impacts, and the other
+/// half of weight and load. Afterwards every body that is not grasped has the velocity that it keeps when no
+/// contact holds it.
+void begin_step(ConstraintStep& step) noexcept;
 
 /// Moves all islands but `grasped_island`.
 void move_free_bodies(ConstraintStep& step) noexcept;
 
-/// The rates at the end of the frame of the bodies that turn freely, from their mean ones.
-void end_turning(ConstraintStep& step) noexcept;
+/// Ends the step: the rates of the bodies that turn freely, at the end of the frame, from their mean ones,
+/// and what is kept for the next frame. `as_forced`: the grasped part's island went where its contact forces
+/// would have it.
+void end_step(bool as_forced, ConstraintStep& step) noexcept;
 
 }  // namespace tactum::inline v0_1

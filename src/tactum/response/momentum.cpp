@@ -43,7 +43,7 @@ void end_balance(bool as_forced, ConstraintStep& step) noexcept {
   if (!step.own.free.others) return;
   Momentum& momentum = step.own.free.momentum;
   bool near_grasped = false;
-  if (step.own.free.grasped_island >= 0) {
+  if (step.own.free.grasped_island >= 0 && !step.grasped_yields) {
     give_by_island(step);
     for (Index i = 0; i < step.world.bodies.size(); ++i)
       near_grasped |= momentum.counts[i] && step.own.free.near_grasped[i];

@@ -7,15 +7,17 @@
 #include "tactum/dynamics/solver_choice.h"
 #include "tactum/dynamics/step.h"
 #include "tactum/math/screw.h"
+#include "tactum/response/constraint.h"
 #include "tactum/response/coupling.h"
 #include "tactum/response/field_pull.h"
+#include "tactum/response/free_bodies.h"
 
 namespace tactum::inline v0_1 {
 namespace {
 
 using Index = std::size_t;
 
-/// The grasped part weighs nothing: it resists as its coupling does, at the handle.
+/// The grasped part has weight, but no inertia: it resists as its coupling does, at the handle.
 GraspMetric coupling_stiffness(const Coupling& coupling) {
   return {coupling.stiffness_N_per_m, coupling.stiffness_Nm_per_rad};
 }
@@ -29,6 +31,20 @@ bool limit_grasped(const MotionInput& input, WorldState& bodies) {
   if (!(step > input.limits.step_m)) return false;
   V_WB = V_WB * (input.limits.step_m / step);
   return true;
+}
+
+/// Whether a body other than the grasped one may meet anything but that, or falls: then all of them move by
+/// impulses.
+bool others_meet(const World& world, int grasped) {
+  int others = 0;
+  bool moves = false;
+  for (Index i = 0; i < world.bodies.size(); ++i) {
+    if (static_cast<int>(i) == grasped) continue;
+    if (world.bodies[i].joint.kind == JointKind::kFree) return true;
+    ++others;
+    moves |= world.bodies[i].moves();
+  }
+  return moves && others > 1;
 }
 
 /// Up to kTrustedDepth times the shortest depth, the depth along the motion is used as it is; from the second
@@ -59,6 +75,7 @@ Vec3 velocity_across(const ContactPatch& patch, std::span<const Pose> X_WB, std:
 /// turn; else, and where the budget has no test left, by the published estimate, distance over closing speed.
 double first_impact(const StepInput& input, std::span<const ContactRow> rows, GapOracle& gaps,
                     std::span<const Twist> V_WB) noexcept {
+  if (rows.empty()) return input.dt_s;
   const std::span<const Pose> X_WB = input.X_WB_start;
   if (std::any_of(rows.begin(), rows.end(), [](const ContactRow& row) { return row.distance <= 0.0; }))
     return 0.0;
@@ -76,46 +93,58 @@ double first_impact(const StepInput& input, std::span<const ContactRow> rows, Ga
 
 }  // namespace
 
-PenaltyResponse::PenaltyResponse(const World& world, const FrameSettings& settings)
+PenaltyResponse::PenaltyResponse(const World& world, const FrameSettings& settings, WorldState& bodies)
     : contacts_(settings.budget.capacity.patches, Index(settings.budget.max_contact_points)),
+      memory_(world, settings),
+      pushed_(world.bodies.size(), 0),
       islands_(world),
       bodies_(world.bodies.size(), world.bodies.size()),
       rows_(world.bodies.size(), Index(settings.budget.max_contact_points)),
       problem_(Index(settings.budget.max_contact_points), world.bodies.size()),
-      all_move_(world.bodies.size(), 0),
       V_before_joints_(world.bodies.size()),
-      motion_bound_(world.bodies.size(), 0.0) {
+      delta_(world.bodies.size(), 0.0) {
+  begin_midway(world, settings.dt_s, bodies);
   stiffness_.reserve(Index(settings.budget.max_contact_points));
   depth_scale_.reserve(settings.budget.capacity.patches);
   forces_.reserve(Index(settings.budget.max_contact_points) + 4 * world.bodies.size());
 }
 
 /// Adds a body with its target over a step of `h_s` seconds. The grasped part's target is the whole
-/// displacement to the hand however short the step: it weighs nothing, so nothing but its coupling holds it
-/// back.
+/// displacement to where its coupling carries its weight and load, however short the step: it has no inertia,
+/// so nothing but its coupling holds it back.
 void PenaltyResponse::add_body(const MotionInput& input, int body, double h_s,
                                const WorldState& bodies) noexcept {
   const Body& what = input.world.bodies[Index(body)];
   const Pose& X_WB = bodies.X_WB[Index(body)];
   if (body == input.grasped.body) {
-    const Twist target = equilibrium_step(input.coupling, input.grasped, what.load.constant, X_WB);
+    Wrench load = what.load.constant;
+    load.f += what.mass_kg * input.world.gravity_W;
+    const Twist target = equilibrium_step(input.coupling, input.grasped, load, X_WB);
     const GraspedBody as_body = grasped_body_of(
         what.load, input.grasped, X_WB, coupling_stiffness(input.coupling), to_vector(target), input.dt_s);
     problem_.add_body(placed(input.world, bodies, body), as_body.centre_W, as_body.metric, as_body.target,
                       h_s);
     return;
   }
+  // The joint of a body that moves by impulses acts there.
   problem_.add_body(placed(input.world, bodies, body), X_WB.p, damped_metric(what, X_WB, h_s),
-                    to_vector(bodies.V_WB[Index(body)] * h_s), h_s);
+                    to_vector(bodies.V_WB[Index(body)] * h_s), by_impulses_ ? 0.0 : h_s);
 }
 
 std::span<const double> PenaltyResponse::bound_motion(const MotionInput& input, WorldState& bodies) noexcept {
   const World& world = input.world;
+  by_impulses_ = others_meet(world, input.grasped.body);
+  memory_.waiting.V_kept = bodies.V_WB;  // same size: nothing is allocated
+  if (by_impulses_) {
+    pull_free_bodies(input, bodies);
+  } else {
+    std::fill(memory_.waiting.waits.begin(), memory_.waiting.waits.end(), 0);  // none sleeps
+  }
   for (Index i = 0; i < world.bodies.size(); ++i) {
     const Body& body = world.bodies[i];
-    if (!body.moves()) continue;
-    Twist& V_WB = bodies.V_WB[i];
     const int number = static_cast<int>(i);
+    if (!body.moves() || (by_impulses_ && number != input.grasped.body)) continue;
+    Twist& V_WB = bodies.V_WB[i];
     if (number != input.grasped.body) {
       V_WB = carried_velocity(body.joint, bodies.X_WB[i], V_WB);
       V_WB = driven_velocity(body, world.gravity_W, bodies.X_WB[i], V_WB, input.dt_s);
@@ -130,11 +159,21 @@ std::span<const double> PenaltyResponse::bound_motion(const MotionInput& input, 
     V_WB = to_twist(problem_.displacement(number) / input.dt_s);
   }
   cut_ = limit_grasped(input, bodies);
-  for (Index i = 0; i < motion_bound_.size(); ++i) {
+  for (Index i = 0; i < delta_.size(); ++i) {
     const Twist& V = bodies.V_WB[i];
-    motion_bound_[i] = (V.v.norm() + V.w.norm() * input.radius_m[i]) * input.dt_s;
+    delta_[i] = (V.v.norm() + V.w.norm() * input.radius_m[i]) * input.dt_s;
   }
-  return motion_bound_;
+  if (!by_impulses_) return delta_;
+  // Beside its own motion, a body goes as far as the grasped part may push it.
+  bound_constrained_motion(input, bodies, memory_);
+  for (Index i = 0; i < delta_.size(); ++i) {
+    if (static_cast<int>(i) == input.grasped.body) {
+      memory_.motion_bound[i] = delta_[i];
+    } else if (pushed_[i] && input.grasped.body >= 0) {
+      memory_.motion_bound[i] += delta_[Index(input.grasped.body)];
+    }
+  }
+  return memory_.motion_bound;
 }
 
 std::span<const double> PenaltyResponse::scale_depths(const StepInput& input, GapOracle& gaps,
@@ -189,14 +228,17 @@ void PenaltyResponse::solve(const StepInput& input, double rest_s, WorldState& b
   // Of the joints' forces over the whole frame, only the part up to the impact counts here.
   const double before_impact = 1.0 - rest_s / input.dt_s;
   for (Index i = 0; i < world.bodies.size(); ++i)
-    if (world.bodies[i].moves())
+    if (world.bodies[i].moves() && !by_impulses_)
       bodies.V_WB[i] = V_before_joints_[i] + (bodies.V_WB[i] - V_before_joints_[i]) * before_impact;
-  islands_.clear(world, all_move_);
+  islands_.clear(world, memory_.waiting.waits);
   for (Index r = 0; r < rows.size(); ++r)  // many rows in turn are of the same two bodies
     if (r == 0 || rows[r].body_a != rows[r - 1].body_a || rows[r].body_b != rows[r - 1].body_b)
       islands_.join(rows[r].body_a, rows[r].body_b);
-  bodies_.set(world.bodies.size(), world.bodies.size(),
-              [&](Index i) { return world.bodies[i].moves() ? islands_.of(static_cast<int>(i)) : -1; });
+  const int of_grasped = by_impulses_ ? islands_.of(input.grasped.body) : -1;
+  bodies_.set(world.bodies.size(), world.bodies.size(), [&](Index i) {
+    const int island = islands_.moves(static_cast<int>(i)) ? islands_.of(static_cast<int>(i)) : -1;
+    return by_impulses_ && island != of_grasped ? -1 : island;
+  });
   rows_.set(world.bodies.size(), rows.size(),
             [&](Index r) { return islands_.of_contact(rows[r].body_a, rows[r].body_b); });
   report.solvers |= static_cast<int>(ContactSolver::kPenalty);
@@ -204,22 +246,47 @@ void PenaltyResponse::solve(const StepInput& input, double rest_s, WorldState& b
     if (!bodies_[island].empty()) solve_island(input, island, rest_s, bodies, report);
 }
 
-void PenaltyResponse::step(const StepInput& input, GapOracle& gaps, WorldState& bodies,
-                           FrameReport& report) noexcept {
-  const World& world = input.world;
-  std::vector<Pose>& X_WB = bodies.X_WB;
-  std::vector<Twist>& V_WB = bodies.V_WB;
+/// Makes the rows of the springs.
+void PenaltyResponse::find_rows(const StepInput& input, GapOracle& gaps, const WorldState& bodies) noexcept {
+  const int grasped = input.grasped.body;
+  std::fill(pushed_.begin(), pushed_.end(), 0);
+  contacts_.rows.clear();
+  if (by_impulses_ && grasped < 0) return;
+  const double scale = input.settings.workspace.scale;
+  const ContactSource source{bodies.X_WB, input.patches, by_impulses_ ? grasped : -1, input.shading,
+                             scale_depths(input, gaps, bodies.V_WB)};
+  make_contact_rows(source, input.settings.penalty.stiffness_N_per_m / scale, contacts_);
+  if (!by_impulses_) return;
+  // The pair was looked for within more than delta, as its bodies may be pushed.
+  for (ContactRow& row : contacts_.rows) {
+    pushed_[Index(row.body_a)] = pushed_[Index(row.body_b)] = 1;
+    row.margin = std::max(input.settings.penalty.min_tolerance_m * scale,
+                          delta_[Index(row.body_a)] + delta_[Index(row.body_b)]);
+  }
+}
+
+/// Advances the bodies that move by springs.
+void PenaltyResponse::advance(const StepInput& input, double t_s, WorldState& bodies) const noexcept {
+  if (!by_impulses_) {
+    advance_bodies(input.world, bodies.V_WB, t_s, bodies.X_WB);
+  } else if (input.grasped.body >= 0) {
+    const Index grasped = Index(input.grasped.body);
+    bodies.X_WB[grasped] = advanced(bodies.X_WB[grasped], bodies.V_WB[grasped], t_s);
+  }
+}
+
+/// Moves the grasped part, and all bodies that do not move by impulses; changes the velocities of those that
+/// do.
+void PenaltyResponse::move_by_springs(const StepInput& input, GapOracle& gaps, WorldState& bodies,
+                                      FrameReport& report) noexcept {
   std::vector<ContactRow>& rows = contacts_.rows;
-  const int tests_before = gaps.tests_left();
-  make_contact_rows(X_WB, input.patches, input.shading,
-                    input.settings.penalty.stiffness_N_per_m / input.settings.workspace.scale,
-                    scale_depths(input, gaps, V_WB), contacts_);
-  const double impact_s = first_impact(input, rows, gaps, V_WB);
+  find_rows(input, gaps, bodies);
+  const double impact_s = first_impact(input, rows, gaps, bodies.V_WB);
   const double rest_s = input.dt_s - impact_s;
   const int grasped = input.grasped.body;
   if (impact_s > 0.0) {
-    advance_distances(rows, X_WB, V_WB, impact_s);
-    advance_bodies(world, V_WB, impact_s, X_WB);
+    advance_distances(rows, bodies.X_WB, bodies.V_WB, impact_s);
+    advance(input, impact_s, bodies);
   }
   if (cut_ && !(rest_s > 0.0)) report.flags |= frame_flag::kStepLimited;  // nothing was in its way
   if (rest_s > 0.0) {
@@ -227,13 +294,33 @@ void PenaltyResponse::step(const StepInput& input, GapOracle& gaps, WorldState& 
     report.contact_points = static_cast<int>(rows.size());
     for (const ContactRow& row : rows)
       report.grasped_contact_points += row.body_a == grasped || row.body_b == grasped ? 1 : 0;
-    if (grasped >= 0) report.restoring = contact_wrench(rows, grasped, X_WB[Index(grasped)].p, rest_s);
+    if (grasped >= 0) report.restoring = contact_wrench(rows, grasped, bodies.X_WB[Index(grasped)].p, rest_s);
     limit_grasped(input, bodies);
-    advance_bodies(world, V_WB, rest_s, X_WB);
+    advance(input, rest_s, bodies);
   }
-  for (Index i = 0; i < world.bodies.size(); ++i)
-    if (world.bodies[i].moves()) X_WB[i] = constrained_pose(world.bodies[i], X_WB[i]);
+  for (Index i = 0; i < input.world.bodies.size(); ++i)
+    if (input.world.bodies[i].moves() && (!by_impulses_ || static_cast<int>(i) == grasped))
+      bodies.X_WB[i] = constrained_pose(input.world.bodies[i], bodies.X_WB[i]);
   report.time_of_impact_s = impact_s;
+}
+
+void PenaltyResponse::step(const StepInput& input, GapOracle& gaps, WorldState& bodies,
+                           FrameReport& report) noexcept {
+  const int tests_before = gaps.tests_left();
+  if (!by_impulses_) {
+    move_by_springs(input, gaps, bodies, report);
+  } else {
+    ConstraintStep others{input, true, gaps, bodies, memory_, report};
+    begin_step(others);
+    move_by_springs(input, gaps, bodies, report);
+    for (const ContactRow& row : contacts_.rows)
+      memory_.free.momentum.give(row.body_a, row.body_b, row.impulse * row.n_BA_W);
+    move_free_bodies(others);
+    end_step(true, others);
+    report.contact_points += static_cast<int>(memory_.constraint.rows.count);
+    for (const ContactRow& row : memory_.contact_rows.rows)
+      if (contacts_.rows.size() < contacts_.rows.capacity()) contacts_.rows.push_back(row);
+  }
   report.validation_tests = tests_before - gaps.tests_left();
 }
 

@@ -10,12 +10,18 @@
 /// it back is bounded by the threshold too, but first tested in the next frame.) The threshold limits the
 /// step that is taken, not the pull that the contact forces are weighed against: with the pull cut to the
 /// threshold, a grasped gear could never push harder than the spring over half a millimetre.
+///
+/// The other bodies move by impulses [Gregory 2000, 6.2]: among each other and with fixed bodies they hit,
+/// slide and rest as in the constraint response (free_bodies.h), and penetrate nothing. The springs of the
+/// grasped part push them beside that. Where there is only one other body, and on a joint, as of two gears,
+/// nothing but the grasped part can meet it: then all that moves is one problem of springs.
 
 #include <vector>
 
 #include "tactum/base/grouped_indices.h"
 #include "tactum/dynamics/islands.h"
 #include "tactum/dynamics/solve_penalty.h"
+#include "tactum/response/constraint_state.h"
 #include "tactum/response/contact_force.h"
 #include "tactum/response/frame_report.h"
 #include "tactum/response/step_input.h"
@@ -27,7 +33,7 @@ class PenaltyResponse {
   /// What it needs of a patch: points that carry its force over its area.
   static constexpr PatchPoints kPoints = PatchPoints::kQuadrature;
 
-  PenaltyResponse(const World& world, const FrameSettings& settings);
+  PenaltyResponse(const World& world, const FrameSettings& settings, WorldState& bodies);
 
   /// How far any point of a body moves in this frame at its wanted velocity, by body [m]: that of the grasped
   /// part leads to the hand, at most the threshold distance; the others go on as they moved, pulled by
@@ -41,27 +47,33 @@ class PenaltyResponse {
   /// The contacts of the last step.
   std::span<const ContactRow> rows() const noexcept { return contacts_.rows; }
   /// Whether rows were dropped for want of room.
-  bool rows_full() const noexcept { return contacts_.full; }
+  bool rows_full() const noexcept { return contacts_.full || memory_.contact_rows.full; }
 
  private:
   /// Of each patch, the factor for its depth; empty where the shortest depth is wanted.
   std::span<const double> scale_depths(const StepInput& input, GapOracle& gaps,
                                        std::span<const Twist> V_WB) noexcept;
   void add_body(const MotionInput& input, int body, double h_s, const WorldState& bodies) noexcept;
+  void find_rows(const StepInput& input, GapOracle& gaps, const WorldState& bodies) noexcept;
+  void advance(const StepInput& input, double t_s, WorldState& bodies) const noexcept;
+  void move_by_springs(const StepInput& input, GapOracle& gaps, WorldState& bodies,
+                       FrameReport& report) noexcept;
   void solve_island(const StepInput& input, std::size_t island, double rest_s, WorldState& bodies,
                     FrameReport& report) noexcept;
   void solve(const StepInput& input, double rest_s, WorldState& bodies, FrameReport& report) noexcept;
 
   ContactRows contacts_;
+  ConstraintMemory memory_;   // of the bodies that move by impulses
+  std::vector<char> pushed_;  // by body: the grasped part was near it in the last frame
   // Scratch of one frame.
+  bool by_impulses_ = false;  // the other bodies move by impulses
   Islands islands_;
   GroupedIndices bodies_, rows_;      // by island
   ReservedVector<double> stiffness_;  // of the contact rows of the island in work [N/m]
   ReservedVector<double> forces_;     // of all rows of its problem, and of its joints' dry friction [N]
   ContactProblem problem_;
-  std::vector<char> all_move_;          // by body, all zero: none is deferred
   std::vector<Twist> V_before_joints_;  // by body: before joints and the hand change it [m/s, rad/s]
-  std::vector<double> motion_bound_;    // by body [m]
+  std::vector<double> delta_;           // by body: its part of the tolerance, v_c dt [m]
   bool cut_ = false;                    // the motion to the hand is cut to the threshold distance
   ReservedVector<double> depth_scale_;  // by patch
 };

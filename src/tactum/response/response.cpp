@@ -8,7 +8,7 @@ using Model = std::variant<PenaltyResponse, ConstraintResponse>;
 Model make_model(const World& world, const FrameSettings& settings, WorldState& bodies) {
   if (settings.response == ResponseModel::kConstraint)
     return Model(std::in_place_type<ConstraintResponse>, world, settings, bodies);
-  return Model(std::in_place_type<PenaltyResponse>, world, settings);
+  return Model(std::in_place_type<PenaltyResponse>, world, settings, bodies);
 }
 
 /// A body whose motion is not a number stays where it was, at rest: one bad frame must not be the last good
