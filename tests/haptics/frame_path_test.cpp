@@ -223,8 +223,10 @@ TEST(FramePath, ACubeBouncesOnAJointedPlateAsOnAFixedOne) {
     const Vec3 axis = c.kind == JointKind::kHinge ? Vec3::UnitZ() : Vec3::UnitX();
     const double fixed = speed_after_bounce(c, {.kind = JointKind::kFixed});
     const double jointed = speed_after_bounce(c, {.kind = c.kind, .axis_W = axis});
-    EXPECT_NEAR(jointed, fixed, 1e-9);
-    EXPECT_LT(std::abs(fixed), 0.1 * std::sqrt(2.0 * 9.81 * c.height_m));  // it is at its highest then
+    const double falls = std::sqrt(2.0 * 9.81 * c.height_m);
+    const double skin_m = 5e-5 * c.size_m;  // [m/m] at most, of the plate: bodies meet where their skins do
+    EXPECT_NEAR(jointed, fixed, 9.81 * (1.0 + c.restitution) * skin_m / falls);
+    EXPECT_LT(std::abs(fixed), 0.1 * falls);  // it is at its highest then
   }
 }
 

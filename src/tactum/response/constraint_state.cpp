@@ -35,6 +35,7 @@ FreeBodies::FreeBodies(const World& world, const FrameSettings& settings)
       near_grasped(world.bodies.size(), 0),
       detour(world.bodies.size()),
       struck(world.bodies.size(), 0),
+      hit(world.bodies.size(), 0),
       V_free(world.bodies.size()),
       A_free(world.bodies.size()),
       given_Ns(world.bodies.size(), Vec3::Zero()),

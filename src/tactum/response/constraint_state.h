@@ -149,7 +149,8 @@ struct FreeBodies {
   }
 
   // Scratch of one frame, one entry per body, or per patch.
-  std::vector<char> struck;             ///< impacts change its velocity
+  std::vector<char> struck;             ///< impacts may change its velocity
+  std::vector<char> hit;                ///< ... and one did
   std::vector<Twist> V_free;            ///< if nothing touches [m/s, rad/s]
   std::vector<Twist> A_free;            ///< what weight and load add to it in a second [m/s2, rad/s2]
   std::vector<Vec3> given_Ns;           ///< by island: the momentum that contacts gave counted bodies [N s]

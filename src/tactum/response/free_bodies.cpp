@@ -277,12 +277,13 @@ void clear_blocked_rests(ConstraintStep& step) {
 }
 
 /// Keeps what is left of the displacement of a body that was hit, and then went beyond its motion bound, for
-/// the next frame: it was not expected to be so fast, and is on its way again one frame later.
+/// the next frame: it was not expected to be so fast, and is on its way again one frame later. What is left
+/// after that is dropped: where the body cannot go on, the rests would add up from frame to frame.
 void keep_rests(bool as_answered, ConstraintStep& step) {
   FreeBodies& f = step.own.free;
   for (Index i = 0; i < step.world.bodies.size(); ++i) {
     if (is_zero(f.detour[i]) || !moves_here(step, i)) continue;
-    const double left_s = as_answered ? (1.0 - f.share[i]) * step.dt_s : 0.0;
+    const double left_s = as_answered && f.hit[i] ? (1.0 - f.share[i]) * step.dt_s : 0.0;
     f.detour[i] = left_s > 0.0 ? mean_twist(step, i) * left_s : Twist{};
   }
 }
@@ -355,6 +356,9 @@ void apply_impacts(ConstraintStep& step) {
   const double energy_J = grasped < 0 ? 0.0 : bodies_energy(step.world, step.bodies, grasped);
   ImpactsOnGrasped impacts(grasped, grasped < 0 ? Vec3::Zero() : X_WB[Index(grasped)] * step.grasped.X_BH.p,
                            step.own.free.momentum);
+  const std::vector<Twist>& detour = step.own.free.detour;
+  std::vector<Twist>& detour_before = step.own.free.V_free;
+  detour_before = detour;  // same size: nothing is allocated
   const ImpactResult result = resolve_impacts(
       step.own.contact_rows.rows, impact_bodies(step), step.dt_s,
       std::min(kMostImpacts, kImpactsAPoint * static_cast<int>(step.own.contact_rows.rows.size())),
@@ -368,6 +372,8 @@ void apply_impacts(ConstraintStep& step) {
   for (Index i = 0; i < step.world.bodies.size(); ++i) {
     const Body& body = step.world.bodies[i];
     if (!step.own.free.islands.moves(static_cast<int>(i)) || is_grasped(step, i)) continue;
+    // A body that has passed its impulse on has the velocity that it had before.
+    step.own.free.hit[i] = detour[i].v != detour_before[i].v || detour[i].w != detour_before[i].w ? 1 : 0;
     step.own.free.w_start[i] = V_WB[i].w;
     if (turns_freely(body)) V_WB[i].w = rate_midway(turning_inertia(body), X_WB[i].R, V_WB[i].w, step.dt_s);
     if (body.joint.kind == JointKind::kBall) V_WB[i].v = V_WB[i].w.cross(X_WB[i].p - body.joint.anchor_W);
