@@ -29,7 +29,7 @@ MechanicsCase slide(int tiles) {
           .law = "v² / (2 µ g)",
           .unit = "m",
           .right = kSpeed * kSpeed / (2.0 * kFriction * kGravity),
-          .bounds = {.constraint = 1e-5},
+          .bounds = {.constraint = 1e-5, .penalty = 1e-5},
           .free = seen};
 }
 
@@ -53,7 +53,7 @@ MechanicsCase incline(double share) {
           .law = slides ? "g (sin a - µ cos a) t² / 2" : "stays",
           .unit = "m",
           .right = slides ? right : 0.0,
-          .bounds = {.constraint = slides ? 1e-4 : 1e-9 /* m */},
+          .bounds = {.constraint = slides ? 1e-4 : 1e-9, .penalty = slides ? 1e-4 : 1e-9 /* m */},
           .free = seen};
 }
 
@@ -77,7 +77,7 @@ MechanicsCase stack(bool load) {
           .law = load ? "10 m g" : "10 a",
           .unit = load ? "N" : "m",
           .right = load ? kCubes * 1000.0 * edge * edge * edge * kGravity : kCubes * edge,
-          .bounds = {.constraint = 1e-5},
+          .bounds = {.constraint = 1e-5, .penalty = 1e-5},
           .free = seen};
 }
 
@@ -112,7 +112,7 @@ MechanicsCase tip() {
           .law = "t: cosh(t sqrt(3 g / (4 r))) = 5",
           .unit = "s",
           .right = std::acosh(kTo / kFrom) / std::sqrt(0.75 * kGravity / arm),
-          .bounds = {.constraint = 1e-3},
+          .bounds = {.constraint = 1e-3, .penalty = 1e-3},
           .free = seen};
 }
 
@@ -134,7 +134,7 @@ MechanicsCase roll() {
           .law = "5/7 g sin a t² / 2",
           .unit = "m",
           .right = 0.5 * 5.0 / 7.0 * kGravity * std::sin(kSlope),
-          .bounds = {.constraint = 0.4},
+          .bounds = {.constraint = 0.4, .penalty = 0.4},
           .free = seen};
 }
 
@@ -165,7 +165,7 @@ MechanicsCase wedge() {
           .law = "m g / (2 sin a)",
           .unit = "N",
           .right = mass * kGravity / (2.0 * std::sin(kHalfAngle)),
-          .bounds = {.constraint = 1e-5},
+          .bounds = {.constraint = 1e-5, .penalty = 1e-5},
           .free = seen};
 }
 

@@ -32,7 +32,7 @@ MechanicsCase bounce(double edge_m, const std::string& name) {
           .law = "e²",
           .unit = "",
           .right = kRestitution * kRestitution,
-          .bounds = {.constraint = 0.05},
+          .bounds = {.constraint = 1e-5, .penalty = 1e-5},
           .free = seen};
 }
 
@@ -54,7 +54,7 @@ MechanicsCase cradle() {
           .law = "v",
           .unit = "m/s",
           .right = kSpeed,
-          .bounds = {.constraint = 1e-6},
+          .bounds = {.constraint = 1e-6, .penalty = 1e-6},
           .free = seen};
 }
 
@@ -87,13 +87,13 @@ std::vector<MechanicsCase> oblique_impact() {
            .law = "1",
            .unit = "",
            .right = 1.0,
-           .bounds = {.constraint = 1e-6},
+           .bounds = {.constraint = 1e-6, .penalty = 1e-6},
            .free = [](MakeMotion make) { return meet(make).energy; }},
           {.name = "... difference of their spins",
            .law = "0",
            .unit = "rad/s",
            .right = 0.0,
-           .bounds = {.constraint = 1e-6 /* rad/s */},
+           .bounds = {.constraint = 1e-6, .penalty = 1e-6 /* rad/s */},
            .free = [](MakeMotion make) {
              const AfterImpact after = meet(make);
              return after.spin_a - after.spin_b;

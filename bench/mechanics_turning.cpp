@@ -94,13 +94,13 @@ std::vector<MechanicsCase> turning_cases() {
            .law = "1",
            .unit = "",
            .right = 1.0,
-           .bounds = {.constraint = 1e-6},
+           .bounds = {.constraint = 1e-6, .penalty = 1e-6},
            .free = [](MakeMotion make) { return tumble(make).energy; }},
           {.name = "... change of its angular momentum",
            .law = "0",
            .unit = "",
            .right = 0.0,
-           .bounds = {.constraint = 1e-9},
+           .bounds = {.constraint = 1e-9, .penalty = 1e-9},
            .free = [](MakeMotion make) { return tumble(make).momentum; }}};
 }
 
