@@ -17,6 +17,9 @@ namespace {
 
 using Index = std::size_t;
 
+/// How often a step is halved to find the part of it that a limit allows: to a billionth.
+constexpr int kHalvings = 30;
+
 /// The grasped part has weight, but no inertia: it resists as its coupling does, at the handle.
 GraspMetric coupling_stiffness(const Coupling& coupling) {
   return {coupling.stiffness_N_per_m, coupling.stiffness_Nm_per_rad};
@@ -31,6 +34,28 @@ bool limit_grasped(const MotionInput& input, WorldState& bodies) {
   if (!(step > input.limits.step_m)) return false;
   V_WB = V_WB * (input.limits.step_m / step);
   return true;
+}
+
+/// Cuts the rest of the grasped part's step, `rest_s` seconds with V_rest after `impact_s` with V_first, so
+/// that both together lead no farther than the threshold distance. The way there and back is not counted:
+/// where the part is pushed off again after an impact, the contact force would be that of a pose which is
+/// not taken.
+void limit_rest(const MotionInput& input, const Twist& V_first, double impact_s, double rest_s,
+                Twist& V_rest) {
+  const double radius_m = input.radius_m[Index(input.grasped.body)];
+  const Twist first = V_first * impact_s;
+  const Twist rest = V_rest * rest_s;
+  const auto step_of = [&](double share) {
+    // Two turns one after the other turn by no more than their sum and half their product.
+    const double both = 0.5 * first.w.norm() * rest.w.norm() * share;
+    return (first.v + share * rest.v).norm() + ((first.w + share * rest.w).norm() + both) * radius_m;
+  };
+  if (!(step_of(1.0) > input.limits.step_m)) return;
+  double share = 0.0;
+  double more = 0.5;
+  for (int i = 0; i < kHalvings; ++i, more *= 0.5)
+    if (step_of(share + more) <= input.limits.step_m) share += more;
+  V_rest = V_rest * share;
 }
 
 /// Whether a body other than the grasped one may meet anything but that, or falls: then all of them move by
@@ -290,12 +315,13 @@ void PenaltyResponse::move_by_springs(const StepInput& input, GapOracle& gaps, W
   }
   if (cut_ && !(rest_s > 0.0)) report.flags |= frame_flag::kStepLimited;  // nothing was in its way
   if (rest_s > 0.0) {
+    const Twist V_first = grasped < 0 ? Twist{} : bodies.V_WB[Index(grasped)];
     solve(input, rest_s, bodies, report);
     report.contact_points = static_cast<int>(rows.size());
     for (const ContactRow& row : rows)
       report.grasped_contact_points += row.body_a == grasped || row.body_b == grasped ? 1 : 0;
     if (grasped >= 0) report.restoring = contact_wrench(rows, grasped, bodies.X_WB[Index(grasped)].p, rest_s);
-    limit_grasped(input, bodies);
+    if (grasped >= 0) limit_rest(input, V_first, impact_s, rest_s, bodies.V_WB[Index(grasped)]);
     advance(input, rest_s, bodies);
   }
   for (Index i = 0; i < input.world.bodies.size(); ++i)
