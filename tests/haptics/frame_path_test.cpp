@@ -1,5 +1,5 @@
 /// Stages on the path of the whole frame, each by its closed form: the smoothing of the wrench, shaded
-/// normals, the margin of bodies that turn, and the joint of the grasped part.
+/// normals, the margin of bodies that turn, the joint of the grasped part, and the passivity of the port.
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,10 @@
 #include "support/add_body.h"
 #include "support/block_rig.h"
 #include "support/sandbox.h"
+#include "support/solid_box.h"
 #include "tactum/geometry/primitives.h"
+#include "tactum/haptics/force_stage.h"
+#include "tactum/haptics/simulation.h"
 
 namespace tactum {
 namespace {
@@ -228,6 +231,70 @@ TEST(FramePath, ACubeBouncesOnAJointedPlateAsOnAFixedOne) {
     EXPECT_NEAR(jointed, fixed, 9.81 * (1.0 + c.restitution) * skin_m / falls);
     EXPECT_LT(std::abs(fixed), 0.1 * falls);  // it is at its highest then
   }
+}
+
+/// A caller's stage that pushes the hand on as it moves: it generates energy.
+class PushOn final : public ForceStage {
+ public:
+  PushOn(double gain_Ns_per_m, double dt_s) : gain_Ns_per_m_(gain_Ns_per_m), dt_s_(dt_s) {}
+  Wrench apply(const Wrench& /*F_D*/, const DeviceSample& sample,
+               const FrameReport& /*report*/) noexcept override {
+    const Vec3 moved = known_ ? Vec3(sample.X_DH.p - last_) : Vec3(Vec3::Zero());
+    last_ = sample.X_DH.p;
+    known_ = true;
+    generated_J_ += gain_Ns_per_m_ / dt_s_ * moved.squaredNorm();
+    return {gain_Ns_per_m_ / dt_s_ * moved, Vec3::Zero()};
+  }
+  double generated_J() const { return generated_J_; }
+
+ private:
+  double gain_Ns_per_m_, dt_s_;
+  double generated_J_ = 0.0;
+  bool known_ = false;
+  Vec3 last_ = Vec3::Zero();
+};
+
+struct Pushed {
+  double gain_Ns_per_m = 20.0;
+  double rate_Hz = 1000.0;
+  double frequency_Hz = 2.0;
+  Vec3 along = Vec3::UnitX();
+};
+
+/// The hand moves to and fro in free space. Whatever the stage generates, no more than the credit of the
+/// balance is given to the hand: the port takes the rest out before the wrench is sent. (It can take out one
+/// credit a frame, here 1 W.)
+TEST(FramePath, TheHandIsGivenNoEnergyThatAStageGenerates) {
+  for (const ResponseModel response : kResponses)
+    for (const Pushed& c : {Pushed{}, Pushed{.gain_Ns_per_m = 5.0}, Pushed{.rate_Hz = 4000.0},
+                            Pushed{.frequency_Hz = 3.0}, Pushed{.along = Vec3(0.6, 0.0, 0.8)}}) {
+      SCOPED_TRACE(testing::Message() << "response " << int(response) << ", " << c.gain_Ns_per_m << " N s/m, "
+                                      << c.rate_Hz << " Hz, " << c.frequency_Hz << " Hz");
+      World world;
+      add_body(world, {.part = solid_box({0.01, 0.01, 0.01}), .mass_kg = 1e-6 /* kg */});
+      DeviceInfo device;
+      device.actuates_force = device.senses_rotation = true;
+      device.max_force_N = 20.0;
+      device.max_stiffness_N_per_m = 2000.0;
+      FrameSettings settings = settings_for(device, c.rate_Hz);
+      settings.response = response;
+      settings.tool.body = 0;
+      settings.port.max_injected_Ns_per_m = 4.0 * c.gain_Ns_per_m;
+      const auto simulation = std::move(*Simulation::make(std::move(world), settings));
+      PushOn stage(c.gain_Ns_per_m, settings.dt_s);
+      simulation->set_force_stage(&stage);
+      double given_J = 0.0;
+      Vec3 sent = Vec3::Zero();
+      Pose X_DH;
+      for (int i = 1; i < static_cast<int>(2.0 * c.rate_Hz); ++i) {
+        const Vec3 next = 0.01 * std::sin(2.0 * kPi * c.frequency_Hz * i / c.rate_Hz) * c.along;
+        given_J += sent.dot(next - X_DH.p);
+        X_DH.p = next;
+        sent = simulation->step(X_DH).f;
+      }
+      EXPECT_GT(stage.generated_J(), 10.0 * settings.port.credit_J);
+      EXPECT_LT(given_J, 2.0 * settings.port.credit_J);
+    }
 }
 
 }  // namespace

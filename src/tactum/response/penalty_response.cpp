@@ -17,8 +17,8 @@ namespace {
 
 using Index = std::size_t;
 
-/// How often a step is halved to find the part of it that a limit allows: to a billionth.
-constexpr int kHalvings = 30;
+/// How often the part of a step that a limit allows is bisected: to a billionth.
+constexpr int kBisections = 30;
 
 /// The grasped part has weight, but no inertia: it resists as its coupling does, at the handle.
 GraspMetric coupling_stiffness(const Coupling& coupling) {
@@ -53,7 +53,7 @@ void limit_rest(const MotionInput& input, const Twist& V_first, double impact_s,
   if (!(step_of(1.0) > input.limits.step_m)) return;
   double share = 0.0;
   double more = 0.5;
-  for (int i = 0; i < kHalvings; ++i, more *= 0.5)
+  for (int i = 0; i < kBisections; ++i, more *= 0.5)
     if (step_of(share + more) <= input.limits.step_m) share += more;
   V_rest = V_rest * share;
 }
