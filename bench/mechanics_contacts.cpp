@@ -100,7 +100,7 @@ MechanicsCase tip() {
     double before = kFrom;
     for (int i = 1; i < 3000; ++i) {
       engine->step();
-      const Mat3& R_now = engine->state().X_WB[static_cast<std::size_t>(block)].R;
+      const Mat3 R_now = engine->state().X_WB[static_cast<std::size_t>(block)].R;
       const double beyond = std::atan2(R_now(0, 2), R_now(2, 2)) - balance;
       if (beyond >= kTo) return (i - (beyond - kTo) / (beyond - before)) * kMechanicsStep_s;
       before = beyond;
