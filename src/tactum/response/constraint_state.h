@@ -217,7 +217,7 @@ struct ConstraintMemory {
 struct ConstraintStep : StepInput {
   /// The grasped part's contacts are springs of the penalty response: it joins no island, and its contacts
   /// have no rows here.
-  bool grasped_yields;
+  bool grasped_yields = false;
   GapOracle& gaps;
   WorldState& bodies;     ///< the poses and velocities of all bodies
   ConstraintMemory& own;  ///< the memory of the response
