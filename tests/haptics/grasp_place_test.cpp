@@ -1,6 +1,6 @@
-/// A hinged body is held by the place at which it is picked: near its axis the probe becomes the body,
-/// farther out it is a rod in a wheel. Angle and wrench against closed forms, on wheels of 10 mm to 1 m, in
-/// both responses, from 0.5 to 4 kHz.
+/// A hinged body is held by the place at which it is taken, picked by the button or held from the start: near
+/// its axis the probe becomes the body, farther out it is a rod in a wheel. Angle and wrench against closed
+/// forms, on wheels of 10 mm to 1 m, in both responses, from 0.5 to 4 kHz.
 
 #include <gtest/gtest.h>
 
@@ -16,12 +16,13 @@ struct Case {
   double dt_s = 0.001;
   double radius_m = 0.036;  ///< of the wheel
   double fraction = 0.1;    ///< of it, where the wheel is taken
+  bool picked = true;       ///< by the button; false: the hand holds it from the start
 
   double taken_m() const { return radius_m * fraction; }
   std::string name() const {
     return std::string(response == ResponseModel::kConstraint ? "constraint" : "penalty") + ", step " +
-           std::to_string(dt_s) + " s, radius " + std::to_string(radius_m) + " m, taken at " +
-           std::to_string(fraction);
+           std::to_string(dt_s) + " s, radius " + std::to_string(radius_m) + " m, " +
+           (picked ? "taken at " : "held from the start at ") + std::to_string(fraction);
   }
 };
 
@@ -31,6 +32,7 @@ std::vector<Case> cases(std::initializer_list<double> fractions) {
     for (const double radius_m : {0.005, 0.03, 0.5})
       for (const double fraction : fractions) {
         all.push_back({response, 0.001, radius_m, fraction});
+        all.push_back({response, 0.001, radius_m, fraction, false});
         if (radius_m == 0.03)
           for (const double rate_Hz : {500.0, 4000.0})
             all.push_back({response, 1.0 / rate_Hz, radius_m, fraction});
@@ -58,7 +60,11 @@ class Wheel : public Sandbox {
                      .load = {.constant = {Vec3::Zero(), torque_Nm * X_WA_.R.col(2)}}});
     settings.dt_s = c.dt_s;
     settings.response = c.response;
-    settings.tool.picks = true;
+    settings.tool.picks = c.picked;
+    if (!c.picked) {
+      settings.tool.body = 0;
+      settings.tool.X_BH.p = Vec3(c.taken_m(), 0, 0);  // the body's axes are those of A
+    }
     settings.tool.centre_fraction = centre_fraction;
     settings.coupling.damping_Ns_per_m = settings.coupling.damping_Nms_per_rad = 0.0;
     settings.smoothing = {kInfinity, kInfinity};

@@ -7,14 +7,16 @@ namespace {
 
 using Index = std::size_t;
 
-/// Moves the mapping of the device so that the probe is at the grasp point, and grasps the part in its
+/// Moves the mapping of the device so that the probe is at the tool's grasp point, and takes the part in its
 /// present orientation.
-void take_first(const Vec3& p_BH, std::span<const Pose> X_WB, HandStage& hand) {
+void take_first(const World& world, const Tool& tool, std::span<const Pose> X_WB, HandStage& hand) {
   if (hand.grasp.body < 0) return;
-  const Pose& X_WB_grasped = X_WB[Index(hand.grasp.body)];
-  hand.X_WD.p += X_WB_grasped * p_BH - hand.X_WH.p;
-  hand.X_WH.p = X_WB_grasped * p_BH;
-  hand.grasp.X_BH.R = X_WB_grasped.R.transpose() * hand.X_WH.R;
+  const auto body = Index(hand.grasp.body);
+  const Vec3 handle_W = X_WB[body] * tool.X_BH.p;
+  hand.X_WD.p += handle_W - hand.X_WH.p;
+  hand.X_WH.p = handle_W;
+  take(world.bodies[body], X_WB[body], tool.centre_fraction, hand.X_WH, hand.grasp);
+  if (hand.grasp.hold != Hold::kCentre) hand.grasp.X_BH.p = tool.X_BH.p;  // without rounding
 }
 
 }  // namespace
@@ -31,7 +33,7 @@ GraspedPart track_hand(const World& world, const FrameSettings& settings, const 
                        std::span<const Pose> X_WB, HandStage& hand) noexcept {
   const bool was_known = hand.known;
   follow_hand(settings.workspace, sample, settings.dt_s, hand);
-  if (!was_known && hand.known) take_first(settings.tool.X_BH.p, X_WB, hand);
+  if (!was_known && hand.known) take_first(world, settings.tool, X_WB, hand);
   const int was_grasped = hand.grasp.body;
   if (sample.valid && hand.known)
     pick_or_release(world, X_WB, settings.tool, hand.X_WH, sample.buttons, hand.grasp);

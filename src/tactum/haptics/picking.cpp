@@ -41,8 +41,10 @@ double radius_about_axis(const Body& body) {
   return std::sqrt(most_sq);
 }
 
-/// Takes the body where the hand is: where, and how.
-void take(const Body& body, const Pose& X_WB, double centre_fraction, const Pose& X_WH, Grasp& grasp) {
+}  // namespace
+
+void take(const Body& body, const Pose& X_WB, double centre_fraction, const Pose& X_WH,
+          Grasp& grasp) noexcept {
   grasp.X_BH = relative_pose(X_WB, X_WH);
   grasp.hold = Hold::kFirm;
   grasp.beside_W.setZero();
@@ -54,8 +56,6 @@ void take(const Body& body, const Pose& X_WB, double centre_fraction, const Pose
   grasp.beside_W = beside;
   grasp.X_BH.p = rotated_back(X_WB.R, X_WH.p - beside - X_WB.p);
 }
-
-}  // namespace
 
 int nearest_body(const World& world, std::span<const Pose> X_WB, const Vec3& p_W,
                  double pick_distance_m) noexcept {

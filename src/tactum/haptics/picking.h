@@ -4,11 +4,12 @@
 /// was in that moment, so nothing is pulled and no force steps. A body that is released keeps the velocity it
 /// had: it is thrown.
 ///
-/// A hinged body can be held in two ways, and the place decides [Gregory 2000, 6.2]. Near its axis the probe
-/// becomes the body: the body turns with the hand about the axis, is felt by its torque alone, and wherever
-/// the hand is led it turns nothing. Elsewhere the hand holds it as a rod in a wheel: it turns as the hand is
-/// led round the axis, and is felt by force; the turn of the hand itself about the axis makes no difference.
-/// In both ways the coupling holds the hand where the body allows no motion.
+/// A hinged body can be held in two ways, and the place decides [Gregory 2000, 6.2], where the settings put
+/// it into the hand as well as where it is picked. Near its axis the probe becomes the body: the body turns
+/// with the hand about the axis, is felt by its torque alone, and wherever the hand is led it turns nothing.
+/// Elsewhere the hand holds it as a rod in a wheel: it turns as the hand is led round the axis, and is felt
+/// by force; the turn of the hand itself about the axis makes no difference. In both ways the coupling holds
+/// the hand where the body allows no motion.
 
 #include <span>
 
@@ -32,6 +33,11 @@ struct Grasp {
   Vec3 beside_W = Vec3::Zero();  ///< from the handle to where the hand took it, for Hold::kCentre [m]
   bool pressed = false;          ///< the primary button was pressed in the last frame
 };
+
+/// Takes hold of the body where the hand is: sets where it is held, and how. Cost: linear in the part's
+/// vertices.
+void take(const Body& body, const Pose& X_WB, double centre_fraction, const Pose& X_WH,
+          Grasp& grasp) noexcept;
 
 /// Grasps or releases when the button has been pressed or released since the last frame. `X_WH` is the probe.
 void pick_or_release(const World& world, std::span<const Pose> X_WB, const Tool& tool, const Pose& X_WH,

@@ -88,7 +88,7 @@ struct Tool {
   Pose X_BH;                      ///< the handle in the grasped body's frame while grasped [m]
   bool picks = false;             ///< the primary button grasps and releases (picking.h)
   double pick_distance_m = 0.01;  ///< how far from the handle [m]
-  /// A hinged body that is picked nearer to its axis than this fraction of its radius about the axis is held
+  /// A hinged body that is taken nearer to its axis than this fraction of its radius about the axis is held
   /// at its centre, else as by a rod (Hold) [-].
   double centre_fraction = 0.25;
 };
