@@ -18,7 +18,7 @@
 namespace tactum {
 namespace {
 
-struct Options {
+struct ClearanceOptions {
   ClearanceFiles files;
   std::string csv, json;  ///< files to write; both empty: CSV on stdout
 };
@@ -74,7 +74,7 @@ std::ptrdiff_t touching(const std::vector<Row>& rows) {
   return std::count_if(rows.begin(), rows.end(), [](const Row& row) { return row.touching_pairs > 0; });
 }
 
-std::string as_json(const Options& options, const ClearanceJob& job, const std::vector<Row>& rows) {
+std::string as_json(const ClearanceOptions& options, const ClearanceJob& job, const std::vector<Row>& rows) {
   nlohmann::json out = {{"a", options.files.mesh_a},
                         {"b", options.files.mesh_b},
                         {"motion", options.files.motion},
@@ -102,7 +102,7 @@ void write_file(const std::string& path, const std::string& text) {
     fail(Error{"the file cannot be written", "", "a writable place", path});
 }
 
-void run(const Options& options) {
+void run(const ClearanceOptions& options) {
   const ClearanceJob job = read_clearance_job(options.files);
   const std::vector<Row> rows = distances(job);
   if (!options.csv.empty()) write_file(options.csv, as_csv(rows));
@@ -116,7 +116,7 @@ void run(const Options& options) {
 
 void add_clearance(CLI::App& app) {
   CLI::App* command = app.add_subcommand("clearance", "Exact distance of two meshes along a motion of both.");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ClearanceOptions>();
   add_clearance_files(*command, options->files);
   command->add_option("--csv", options->csv, "Write frame,time_s,distance_m,touching_pairs to this file");
   command->add_option("--json", options->json, "Write rows and summary to this file");

@@ -19,7 +19,7 @@
 namespace tactum {
 namespace {
 
-struct Options {
+struct InspectOptions {
   std::vector<std::string> files;
   std::string json;    ///< file to write, "-" for stdout
   double scale = 1.0;  ///< metres per unit of the files [m]
@@ -123,7 +123,7 @@ nlohmann::json as_json(const Inspection& of) {
 }
 
 /// A prepared part as it is, or what a mesh would become without repairs.
-Result<Part> part_of(const Options& options) {
+Result<Part> part_of(const InspectOptions& options) {
   const std::string& file = options.files[0];
   if (is_part_file(file)) {
     Result<PartFile> part = load_part(file);
@@ -135,14 +135,14 @@ Result<Part> part_of(const Options& options) {
   return part_from_mesh(mesh->mesh, {.name = std::filesystem::path(file).filename().string()});
 }
 
-void view(const Options& options) {
+void view(const InspectOptions& options) {
   const Result<Part> part = part_of(options);
   if (!part) fail(part.error());
   view_part(*part, options.port);
 }
 
 /// Prints the file unless JSON goes to stdout.
-Result<nlohmann::ordered_json> inspect(const std::string& file, const Options& options) {
+Result<nlohmann::ordered_json> inspect(const std::string& file, const InspectOptions& options) {
   if (is_part_file(file)) {
     const Result<PartFile> part = load_part(file);
     if (!part) return part.error();
@@ -156,7 +156,7 @@ Result<nlohmann::ordered_json> inspect(const std::string& file, const Options& o
   return nlohmann::ordered_json(as_json(inspection));
 }
 
-void run(const Options& options) {
+void run(const InspectOptions& options) {
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
   bool failed = false;
   for (const std::string& file : options.files) {
@@ -186,7 +186,7 @@ void run(const Options& options) {
 void add_inspect(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "inspect", "What is in mesh files and what is wrong with them; what prepared parts are.");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<InspectOptions>();
   command->add_option("FILE", options->files, "Mesh files (OBJ, STL, PLY, OFF, glTF, GLB) and prepared parts")
       ->required();
   command->add_option("--json", options->json, "Write the reports to this file (- for stdout)");

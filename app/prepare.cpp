@@ -19,7 +19,7 @@
 namespace tactum {
 namespace {
 
-struct Options {
+struct PrepareCommand {
   std::vector<std::string> meshes;
   std::string part;
   std::string json;   ///< file to write, "-" for stdout
@@ -67,7 +67,7 @@ Result<ImportedMesh> import_all(const std::vector<std::string>& paths) {
   return all;
 }
 
-Result<PartFile> prepared(const Options& options, const Bar& bar) {
+Result<PartFile> prepared(const PrepareCommand& options, const Bar& bar) {
   bar.show("reading", 0.0);
   const Result<ImportedMesh> mesh = import_all(options.meshes);
   if (!mesh) return mesh.error();
@@ -89,7 +89,7 @@ double peak_memory_MB() {
   return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
-void run(const Options& options) {
+void run(const PrepareCommand& options) {
   const auto start = std::chrono::steady_clock::now();
   const Bar bar;
   const PartCache cache = options.no_cache ? PartCache() : PartCache(options.cache);
@@ -123,7 +123,7 @@ void run(const Options& options) {
 
 void add_prepare(CLI::App& app) {
   CLI::App* command = app.add_subcommand("prepare", "Make a verified part of meshes, ready to be felt.");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<PrepareCommand>();
   std::vector<std::string> ways = pieces_ways();
   ways.insert(ways.begin(), "auto");
   command

@@ -91,18 +91,18 @@ class Referee {
 };
 
 /// One run, frame by frame: the queries of every engine and scene.
-struct Run {
+struct FeelRun {
   Pose X_WH, X_WB;
   Wrench felt, last;
   double time_s = 0.0;
 };
 
 /// Leads the engine through the scene; returns the mean time of a step [us].
-double lead(const FeelScene& scene, FeelEngine& engine, const std::function<void(const Run&)>& look) {
+double lead(const FeelScene& scene, FeelEngine& engine, const std::function<void(const FeelRun&)>& look) {
   static const FineClock clock;
   const auto frames = static_cast<int>(scene.hand->duration_s() / kFeelStep_s);
   double ns = 0.0;
-  Run run;
+  FeelRun run;
   for (int i = 0; i <= frames; ++i) {
     run.time_s = i * kFeelStep_s;
     run.X_WH = scene.hand->at(run.time_s).X_DH;
@@ -120,7 +120,7 @@ double lead(const FeelScene& scene, FeelEngine& engine, const std::function<void
 /// The energy that the hand has put in, with the mean of the forces at the two ends of each step [J].
 class EnergyBalance {
  public:
-  void add(const Run& run) {
+  void add(const FeelRun& run) {
     if (known_) {
       const Vec3 displacement = run.X_WH.p - last_.p;
       const Vec3 turn = log_rotation(run.X_WH.R * last_.R.transpose());
@@ -136,7 +136,7 @@ class EnergyBalance {
   Pose last_;
 };
 
-void judge(const FeelScene& scene, const FeelEngine& engine, const Run& run, FeelRow& row) {
+void judge(const FeelScene& scene, const FeelEngine& engine, const FeelRun& run, FeelRow& row) {
   const Wrench truth = scene.truth(run.X_WH, engine.skin_m());
   row.force_error_N = std::max(row.force_error_N, (run.felt.f - truth.f).norm());
   row.torque_error_Nm = std::max(row.torque_error_Nm, (run.felt.t - truth.t).norm());
@@ -150,7 +150,7 @@ void judge(const FeelScene& scene, const FeelEngine& engine, const Run& run, Fee
 class Sliding {
  public:
   explicit Sliding(const FeelScene& scene) : scene_(scene) {}
-  void look(const Run& run, FeelRow& row) {
+  void look(const FeelRun& run, FeelRow& row) {
     const Vec3 in_plane(run.X_WB.p.x(), run.X_WB.p.y(), 0);
     if (run.time_s < scene_.judged_from_s) rested_ = in_plane;
     if (run.time_s <= scene_.judged_to_s) {
@@ -184,7 +184,7 @@ PegRow insert(double clearance_m, int hands, const FeelEngineEntry& entry, const
     const std::unique_ptr<FeelEngine> engine = entry.make(scene, setup);
     const Referee depth(scene);
     double lowest = 1.0, last = 1.0;
-    const double us = lead(scene, *engine, [&](const Run& run) {
+    const double us = lead(scene, *engine, [&](const FeelRun& run) {
       row.penetration_m = std::max(row.penetration_m, depth(run.X_WB));
       row.force_step_N = std::max(row.force_step_N, (run.felt.f - run.last.f).norm());
       lowest = std::min(lowest, run.X_WB.p.z());
@@ -227,7 +227,7 @@ FeelRow feel(const FeelSceneEntry& what, const FeelEngineEntry& entry, const Fee
   const Referee depth(scene);
   EnergyBalance balance;
   Sliding sliding(scene);
-  row.frame_us = lead(scene, *engine, [&](const Run& run) {
+  row.frame_us = lead(scene, *engine, [&](const FeelRun& run) {
     row.penetration_m = std::max(row.penetration_m, depth(run.X_WB));
     balance.add(run);
     if (scene.begins_to_slide) sliding.look(run, row);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "bench/core_width.h"
+#include "bench/quantile.h"
 
 namespace tactum::bench {
 namespace {
@@ -24,12 +25,6 @@ class Nothing final : public Engine {
  private:
   int calls_ = 0;
 };
-
-/// The smallest value that at least a fraction q of all do not exceed; `sorted` is not empty.
-double quantile(const std::vector<double>& sorted, double q) {
-  const auto rank = static_cast<std::size_t>(std::ceil(q * static_cast<double>(sorted.size())));
-  return sorted[std::min(sorted.size(), std::max<std::size_t>(rank, 1)) - 1];
-}
 
 void judge(const Answer& answer, const Truth& truth, Row& row) {
   const bool apart_for_contact = answer.distance > 0.0 && truth.high < -Row::kAccurate_m;

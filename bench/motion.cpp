@@ -30,7 +30,7 @@ Pose anywhere(const Shape& a, const Shape& b, Random& random) {
 }
 
 /// 0.1-0.5 mm and 1-3 mrad a frame, in another direction every 100 frames.
-struct HandMotion {
+struct HandSway {
   Vec3 step = Vec3::Zero();  ///< [m]
   Vec3 turn = Vec3::Zero();  ///< [rad]
 
@@ -103,7 +103,7 @@ Recording record_deep(const Shape& a, const Shape& b, int frames, std::uint64_t 
   PairCache cache;
   Pose X = anywhere(a, b, random);
   steer(a, b, -0.2 * thick, X, cache);
-  HandMotion hand;
+  HandSway hand;
   for (int i = 0; i < frames; ++i) {
     hand.move(i, X, random);
     PairDistance found = gap_of(a, b, X, cache);
@@ -153,7 +153,7 @@ Recording record(const Shape& a, const Shape& b, const Regime& regime, int frame
   Recording recording;
   PairCache cache;
   Pose X = anywhere(a, b, random);
-  HandMotion hand;
+  HandSway hand;
   const double middle = 0.5 * (regime.least_m + regime.most_m);
   const double swing = 0.48 * (regime.most_m - regime.least_m);
   for (int i = 0; i < frames; ++i) {

@@ -16,9 +16,9 @@ constexpr const char* kDeep = "deep";
 constexpr std::uint64_t kSeed = 7;
 
 /// The state common to the runs of both commands: the meter and the report that grows.
-class Run {
+class PairsRun {
  public:
-  explicit Run(const PairsOptions& options) : options_(options), meter_(options.replays) {}
+  explicit PairsRun(const PairsOptions& options) : options_(options), meter_(options.replays) {}
 
   bool skips(const Pair& pair) const {
     const bool is_quick = pair.name() == "box/box" || pair.name() == "sphere162/sphere162";
@@ -121,7 +121,7 @@ std::vector<std::string> engine_names() {
 }
 
 PairsReport bench_pairs(const PairsOptions& options, const Progress& progress) {
-  Run run(options);
+  PairsRun run(options);
   for (const Pair& pair : distance_pairs()) {
     if (run.skips(pair)) continue;
     progress(pair.name());
@@ -135,7 +135,7 @@ PairsReport bench_pairs(const PairsOptions& options, const Progress& progress) {
 }
 
 PairsReport bench_penetration(const PairsOptions& options, const Progress& progress) {
-  Run run(options);
+  PairsRun run(options);
   for (const Pair& pair : depth_pairs()) {
     if (run.skips(pair)) continue;
     progress(pair.name());

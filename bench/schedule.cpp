@@ -9,6 +9,7 @@
 
 #include "bench/heap.h"
 #include "bench/overlap.h"
+#include "bench/quantile.h"
 #include "tactum/base/hash.h"
 #include "tactum/haptics/frame_hash.h"
 #include "tactum/haptics/simulation.h"
@@ -133,13 +134,6 @@ int most_near_pairs(const Scene& scene, int frames) {
   return most;
 }
 
-double quantile(std::vector<double> values, double q) {
-  if (values.empty()) return 0.0;
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(q * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
-
 double fastest(const WorldState& state) {
   double speed = 0.0;
   for (Index i = kHeapFixtures; i < state.V_WB.size(); ++i) speed = std::max(speed, state.V_WB[i].v.norm());
@@ -184,6 +178,7 @@ ScheduleRow run_with(const Scene& scene, double share, int pairs, int frames, in
     row.force_error_max_N = std::max(row.force_error_max_N, error);
   }
   row.fastest_at_end = fastest(run.at());
+  std::sort(times.begin(), times.end());
   row.p50_us = quantile(times, 0.5) * 1e-3;
   row.p99_us = quantile(times, 0.99) * 1e-3;
   row.frame_hash = hash.value();
@@ -253,6 +248,7 @@ TimeModel fitted(const std::vector<Frame>& frames, Index terms) {
   std::vector<double> errors;
   for (const Frame& frame : frames)
     errors.push_back(std::abs(predicted(frame, model.constants_ns) / frame.ns - 1.0));
+  std::sort(errors.begin(), errors.end());
   model.typical_error = quantile(errors, 0.5);
   model.worst_error = quantile(errors, 1.0);
   return model;

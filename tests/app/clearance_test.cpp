@@ -152,7 +152,7 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         ReferenceMotion{"Gears", "industreal/industreal_gear_medium.obj",
                         "industreal/industreal_gear_small.obj", "reference/gears_medium_small", "m", 1.0,
-                        false},
+                        testing::kSanitized},
         ReferenceMotion{"Thread", "factory/factory_bolt_m16_loose.obj",
                         "factory/factory_nut_m16_loose_subdiv_3x.obj", "reference/m16_loose_screw", "m", 1.0,
                         true},

@@ -8,6 +8,7 @@
 
 #include "collision/cases.h"
 #include "collision/manifold_contact.h"
+#include "support/effort.h"
 #include "tactum/base/tolerances.h"
 #include "tactum/collision/planar_patch.h"
 #include "tactum/collision/supporting_feature.h"
@@ -84,14 +85,14 @@ struct EdgeOverFace {
 };
 
 /// Counts of the kinds of cases, so that the test can check that there were enough of each.
-struct Tally {
+struct CountedIntervals {
   int level = 0;
   int leaning = 0;
   int cut = 0;
 };
 
 /// Compares the ends of the segment that the manifold has with those that are found by steps along the edge.
-void expect_counted_interval(const EdgeOverFace& at, Tally& tally) {
+void expect_counted_interval(const EdgeOverFace& at, CountedIntervals& tally) {
   constexpr double kTolerance = 3e-4;
   constexpr int kSteps = 2000;
   const Contact c = at.found(kTolerance);
@@ -138,10 +139,10 @@ TEST(Manifold, EdgeOverAFaceAgreesWithCounting) {
   const Polytope roof = make_box({0.02, 0.03, 0.01});
   const Mat3 on_edge = exp_rotation(Vec3(0, 0.25 * kPi, 0));  // about y: an edge along y points up
   const double height = std::sqrt(0.02 * 0.02 + 0.01 * 0.01) * std::sin(std::atan2(0.01, 0.02) + 0.25 * kPi);
-  Tally tally;
+  CountedIntervals tally;
   for (const Polytope& P : {box(), make_prism(5, 0.02, 0.02), make_prism(200, 0.02, 0.02)}) {
     Random random(std::uint64_t(P.faces.size()));
-    for (int i = 0; i < 200; ++i) {
+    for (int i = 0; i < testing::effort(200, 40); ++i) {
       SCOPED_TRACE(std::to_string(P.faces.size()) + " faces, case " + std::to_string(i));
       const double out_of_level = i % 2 ? random.uniform(0.018, 0.034) : random.uniform(0.0, 0.004);
       const Mat3 R = exp_rotation(Vec3(0, 0, random.uniform(-kPi, kPi))) *

@@ -2,6 +2,7 @@
 /// in both responses, from 0.5 to 4 kHz and from 5 mm to 2 m.
 
 #include "tactum/dynamics/body_load.h"
+#include "support/effort.h"
 
 #include <gtest/gtest.h>
 
@@ -42,7 +43,7 @@ std::vector<Case> cases() {
     for (const double rate_Hz : {500.0, 1000.0, 4000.0})
       for (const double size_m : {0.005, 0.1, 2.0})
         for (const double mass_kg : {0.002, 0.5}) all.push_back({response, 1.0 / rate_Hz, size_m, mass_kg});
-  return all;
+  return testing::sampled(all, 5);
 }
 
 FrameSettings settings_of(const Case& c) {

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "support/effort.h"
 #include "support/sandbox.h"
 #include "tactum/base/tolerances.h"
 #include "tactum/math/screw.h"
@@ -70,7 +71,7 @@ double bounced_height(double fall_m, double e, double t) {
 /// A bounce has the square of the restitution of the energy, and leads along its parabola, from its first
 /// frame to its apex.
 void expect_bounces(const Drop& drop, int bounces) {
-  SCOPED_TRACE(testing::Message() << drop);
+  SCOPED_TRACE(::testing::Message() << drop);
   Dropped made = dropped(drop);
   const double dt_s = made.box.settings.dt_s;
   const double e = drop.restitution;
@@ -129,8 +130,8 @@ struct Tumble {
 /// What turns and bounces without loss keeps its energy: each bounce to rounding, but for the few whose gap
 /// is closed in the pose that their time leads to, as that is found without the turn in the frame.
 void expect_tumbles(const Tumble& c) {
-  SCOPED_TRACE(testing::Message() << (c.ball ? "ball" : "cube") << " of " << c.size_m << " m, "
-                                  << c.spin_rad_per_s << " rad/s, " << c.rate_Hz << " Hz");
+  SCOPED_TRACE(::testing::Message() << (c.ball ? "ball" : "cube") << " of " << c.size_m << " m, "
+                                    << c.spin_rad_per_s << " rad/s, " << c.rate_Hz << " Hz");
   Sandbox box;
   box.world.gravity_W = {0, 0, -kGravity};
   box.settings.dt_s = 1.0 / c.rate_Hz;
@@ -158,6 +159,7 @@ TEST(Bounce, WhatTumblesKeepsItsEnergy) {
                             Tumble{.spin_rad_per_s = 20.0}, Tumble{.size_m = 0.004},
                             Tumble{.size_m = 0.004, .rate_Hz = 4000.0}, Tumble{.rate_Hz = 4000.0}}) {
       Tumble tumble = c;
+      if (testing::kSanitized && c.rate_Hz > 1000.0) continue;
       tumble.ball = ball;
       expect_tumbles(tumble);
     }
@@ -174,8 +176,8 @@ struct HeadOn {
 /// Two cubes that meet without gravity part from where they met, also where the light one leaves much faster
 /// than it came.
 void expect_head_on(const HeadOn& c) {
-  SCOPED_TRACE(testing::Message() << c.size_a_m << " m at " << c.u_a << " m/s, " << c.size_b_m << " m at "
-                                  << c.u_b << " m/s, e " << c.restitution << ", " << c.rate_Hz << " Hz");
+  SCOPED_TRACE(::testing::Message() << c.size_a_m << " m at " << c.u_a << " m/s, " << c.size_b_m << " m at "
+                                    << c.u_b << " m/s, e " << c.restitution << ", " << c.rate_Hz << " Hz");
   Sandbox box;
   box.settings.dt_s = 1.0 / c.rate_Hz;
   const double a = 0.5 * c.size_a_m;
@@ -214,8 +216,8 @@ TEST(Bounce, BodiesThatMoveIntoEachOtherPartFromWhereTheyMet) {
 /// their impulse acts at the middle between the balls, and both spin alike. Which faces, and where, follows
 /// from the planes alone.
 void expect_oblique(double radius_m, double speed, double aside, double rate_Hz) {
-  SCOPED_TRACE(testing::Message() << radius_m << " m, " << speed << " m/s, " << aside << " radii aside, "
-                                  << rate_Hz << " Hz");
+  SCOPED_TRACE(::testing::Message() << radius_m << " m, " << speed << " m/s, " << aside << " radii aside, "
+                                    << rate_Hz << " Hz");
   Sandbox box;
   box.settings.dt_s = 1.0 / rate_Hz;
   const Polytope shape = make_icosphere(2, radius_m);
@@ -262,7 +264,7 @@ TEST(Bounce, ABallHitAsideSpinsAsThePlacesOfTheFacesSay) {
 TEST(Bounce, AnImpactGoesThroughARowAtItsTimes) {
   for (const double rate_Hz : {500.0, 1000.0, 4000.0})
     for (const double gap_m : {2e-6, 1e-5}) {
-      SCOPED_TRACE(testing::Message() << rate_Hz << " Hz, gaps of " << gap_m << " m");
+      SCOPED_TRACE(::testing::Message() << rate_Hz << " Hz, gaps of " << gap_m << " m");
       Sandbox box;
       box.settings.dt_s = 1.0 / rate_Hz;
       const double half = 0.01;
@@ -289,7 +291,7 @@ TEST(Bounce, WhatLiesDoesNotBounce) {
     for (const double rate_Hz : {500.0, 1000.0, 4000.0})
       for (const double size_m : {0.002, 0.04, 1.0})
         for (const int stacked : {1, 4}) {
-          SCOPED_TRACE(testing::Message()
+          SCOPED_TRACE(::testing::Message()
                        << stacked << " of " << size_m << " m, e " << e << ", " << rate_Hz << " Hz");
           Sandbox box;
           box.world.gravity_W = {0, 0, -kGravity};

@@ -1,4 +1,5 @@
 #include "tactum/parts/gear.h"
+#include "support/effort.h"
 
 #include <gtest/gtest.h>
 
@@ -148,8 +149,9 @@ TEST(Gear, PairTurnsFreelyInTheMiddleOfItsPlay) {
     b.teeth = teeth_b;
     const Pair pair(a, b);
     double least = 1e300;
-    for (int step = 0; step <= 400; ++step) {
-      const double angle = 2.0 * 2.0 * kPi / teeth_a * step / 400.0 - 0.3;  // two teeth pass
+    for (int step = 0; step <= testing::effort(400, 100); ++step) {
+      const double angle =
+          2.0 * 2.0 * kPi / teeth_a * step / testing::effort(400.0, 100.0) - 0.3;  // two teeth pass
       least = std::min(least, pair.separation_at(angle, pair.middle_b(angle)));
     }
     // Half the play, seen along the line of action, is free on either side.
@@ -164,7 +166,7 @@ TEST(Gear, PlayOfThePairIsTheBacklashAskedFor) {
     b.teeth = 20;
     a.backlash_m = b.backlash_m = backlash;
     const Pair pair(a, b);
-    for (int step = 0; step < 12; ++step) {
+    for (int step = 0; step < 12; step += testing::effort(1, 5)) {
       const double angle = 2.0 * kPi / a.teeth * step / 12.0;
       const double play = (pair.free_turn(angle, 1.0) + pair.free_turn(angle, -1.0)) * b.pitch_radius_m();
       EXPECT_GT(play, backlash - 1e-8) << "angle " << angle;

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "support/effort.h"
 #include "tactum/haptics/frame.h"
 #include "tactum/haptics/frame_hash.h"
 #include "tactum/scene/builtin_scenes.h"
@@ -26,29 +27,30 @@ std::uint64_t hash_of(const Scene& scene, FrameState& state, int first, int fram
   return hash.value();
 }
 
-class CopiedState : public testing::TestWithParam<const char*> {};
+class CopiedState : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(CopiedState, GoesOnAsItsOriginal) {
+  constexpr int kStage = testing::effort(200, 40);  // frames
   for (const ResponseModel response : {ResponseModel::kConstraint, ResponseModel::kPenalty}) {
     Result<Scene> scene = open_scene(GetParam());
     ASSERT_TRUE(scene) << scene.error().message();
     scene->settings.response = response;
     FrameState state(scene->world, scene->settings);
-    hash_of(*scene, state, 0, 400);
+    hash_of(*scene, state, 0, 2 * kStage);
     // The first copy is made before most contacts, so that its room is larger than its contents.
     FrameState early(state);
-    hash_of(*scene, state, 400, 1600);
+    hash_of(*scene, state, 2 * kStage, 8 * kStage);
     FrameState late(state);
-    const std::uint64_t original = hash_of(*scene, state, 2000, 1000);
-    EXPECT_EQ(hash_of(*scene, late, 2000, 1000), original);
-    hash_of(*scene, early, 400, 1600);
-    EXPECT_EQ(hash_of(*scene, early, 2000, 1000), original);
+    const std::uint64_t original = hash_of(*scene, state, 10 * kStage, 5 * kStage);
+    EXPECT_EQ(hash_of(*scene, late, 10 * kStage, 5 * kStage), original);
+    hash_of(*scene, early, 2 * kStage, 8 * kStage);
+    EXPECT_EQ(hash_of(*scene, early, 10 * kStage, 5 * kStage), original);
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, CopiedState,
-                         testing::Values("block-on-plate", "gears", "peg-in-hole", "moving-objects",
-                                         "gears-involute", "lock"));
+                         ::testing::Values("block-on-plate", "gears", "peg-in-hole", "moving-objects",
+                                           "gears-involute", "lock"));
 
 }  // namespace
 }  // namespace tactum

@@ -1,4 +1,5 @@
 #include "tactum/session/session.h"
+#include "support/effort.h"
 
 #include <gtest/gtest.h>
 
@@ -61,7 +62,7 @@ std::pair<std::uint64_t, bool> frames_to_run(const Scene& scene) {
   const auto& bodies = scene.world.bodies;
   const bool slow = std::any_of(bodies.begin(), bodies.end(),
                                 [](const Body& body) { return body.part->surface.triangles.size() > 3000; });
-  if (slow && !testing::full_run()) return {300, false};
+  if (slow && !testing::full_run()) return {testing::effort<std::uint64_t>(300, 60), false};
   return {std::max<std::uint64_t>(10000, static_cast<std::uint64_t>(frames_of_motion(scene))), true};
 }
 

@@ -2,6 +2,7 @@
 /// How much of a test a build runs: TACTUM_FULL=1 asks for the long variants, and a sanitized build, which
 /// looks for faults of memory and is many times slower, runs a part of the usual ones.
 
+#include <cstddef>
 #include <cstdlib>
 #include <string>
 
@@ -12,6 +13,22 @@ inline constexpr bool kSanitized = true;
 #else
 inline constexpr bool kSanitized = false;
 #endif
+
+/// How much of a loop runs: `usual`, or `sanitized` in a sanitized build.
+template <class Count>
+constexpr Count effort(Count usual, Count sanitized) {
+  return kSanitized ? sanitized : usual;
+}
+
+/// Every `stride`-th of the variants in a sanitized build, all of them otherwise. A stride that shares no
+/// divisor with the counts that the variants are made of takes every value of each at least once.
+template <class Variants>
+Variants sampled(Variants variants, int stride) {
+  if (!kSanitized) return variants;
+  Variants some;
+  for (std::size_t i = 0; i < variants.size(); i += std::size_t(stride)) some.push_back(variants[i]);
+  return some;
+}
 
 /// Whether the long variants of tests run.
 inline bool full_run() {

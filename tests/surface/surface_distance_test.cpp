@@ -69,7 +69,7 @@ TEST(TriangleDistance, AgreesWithAlternatingProjections) {
   const std::uint64_t seed = 11;
   Random random(seed);
   int apart = 0;
-  for (int i = 0; i < 2000; ++i) {
+  for (int i = 0; i < testing::effort(2000, 200); ++i) {
     const TrianglePoints a = random_triangle(random, 1.0);
     TrianglePoints b = random_triangle(random, 1.0);
     const Vec3 shift = random_point(random, 2.0);
@@ -88,7 +88,7 @@ TEST(TriangleDistance, AgreesWithAlternatingProjections) {
     EXPECT_TRUE(on_triangle(answer.p_b, b, 1e-7)) << "seed " << seed << " case " << i;
     EXPECT_NEAR((answer.p_a - answer.p_b).norm(), distance, 1e-15);
   }
-  EXPECT_GT(apart, 1000);
+  EXPECT_GT(apart, testing::effort(1000, 100));
 }
 
 TEST(TriangleDistance, SwappingTheTrianglesSwapsThePoints) {
@@ -166,7 +166,7 @@ TEST(SurfaceDistance, AgreesWithAllPairs) {
   const Surface a(mesh_a);
   const Surface b(mesh_b);
   SurfacePairCache cache;
-  for (int i = 0; i < 150; ++i) {
+  for (int i = 0; i < testing::effort(150, 30); ++i) {
     const Vec3 turn = random_point(random, 2.0);
     const Pose X{exp_rotation(turn), random_point(random, 1.6)};
     double least = 1e300;
@@ -274,7 +274,7 @@ TEST(SurfaceDistance, RecordedMotionsOfRealParts) {
     const std::string a_file = comment.substr(a + 2, comment.find(' ', a) - a - 2);
     const std::string b_file = comment.substr(b + 2, comment.find(' ', b) - b - 2);
     const Worst worst = compare(testing::find_real(a_file), testing::find_real(b_file), stem,
-                                testing::full_run() ? 1 : 10, 1e-8);
+                                testing::full_run() ? 1 : testing::effort(10, 50), 1e-8);
     EXPECT_LT(worst.deviation, 1e-7) << name;
     EXPECT_EQ(worst.state_differs, 0) << name;
   }

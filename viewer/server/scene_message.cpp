@@ -15,11 +15,11 @@
 namespace tactum {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
-Json vector_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+OrderedJson vector_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
-Json pose_json(const Pose& X) {
+OrderedJson pose_json(const Pose& X) {
   const Quat q(X.R);
   return {{"p", vector_json(X.p)}, {"q", {q.w(), q.x(), q.y(), q.z()}}};
 }
@@ -56,19 +56,19 @@ const char* joint_name(JointKind kind) {
   return "";
 }
 
-Json bodies_json(const World& world) {
+OrderedJson bodies_json(const World& world) {
   const Shapes shapes = shapes_of(world);
-  Json bodies = Json::array();
+  OrderedJson bodies = OrderedJson::array();
   for (std::size_t i = 0; i < world.bodies.size(); ++i) {
     const Body& body = world.bodies[i];
-    Json json = {{"name", body.name},
-                 {"shape", shapes.of_body[i]},
-                 {"moves", body.moves()},
-                 {"joint", joint_name(body.joint.kind)},
-                 {"pieces", body.part->pieces.size()},
-                 {"mass_kg", body.mass_kg},
-                 {"radius_m", body.part->radius},
-                 {"X_WB", pose_json(body.X_WB)}};
+    OrderedJson json = {{"name", body.name},
+                        {"shape", shapes.of_body[i]},
+                        {"moves", body.moves()},
+                        {"joint", joint_name(body.joint.kind)},
+                        {"pieces", body.part->pieces.size()},
+                        {"mass_kg", body.mass_kg},
+                        {"radius_m", body.part->radius},
+                        {"X_WB", pose_json(body.X_WB)}};
     if (body.joint.kind == JointKind::kHinge) {
       json["axis_W"] = vector_json(body.joint.axis_W);
       json["anchor_W"] = vector_json(body.joint.anchor_W);
@@ -79,21 +79,21 @@ Json bodies_json(const World& world) {
 }
 
 /// Place and force of every arrow, one after the other; as floats, which are shorter.
-Json field_json(const World& world) {
-  Json numbers = Json::array();
+OrderedJson field_json(const World& world) {
+  OrderedJson numbers = OrderedJson::array();
   for (const FieldArrow& arrow : field_arrows(world))
     for (const Vec3& v : {arrow.p_W, arrow.force})
       for (int i = 0; i < 3; ++i) numbers.push_back(static_cast<float>(v[i]));
   return numbers;
 }
 
-Json settings_json(const FrameSettings& frame, const SafetySettings& safety) {
-  Json settings = Json::array();
+OrderedJson settings_json(const FrameSettings& frame, const SafetySettings& safety) {
+  OrderedJson settings = OrderedJson::array();
   for (const SettingInfo& setting : setting_table()) {
     const double value = setting.get(frame, safety);
     constexpr const char* kKinds[] = {"number", "integer", "on-off", "choice"};  // as in SettingKind
     const char* kind = kKinds[static_cast<std::size_t>(setting.kind)];
-    Json choices = Json::array();
+    OrderedJson choices = OrderedJson::array();
     for (const char* choice : setting.choices) choices.push_back(choice);
     settings.push_back({{"section", setting.section},
                         {"key", setting.key},
@@ -105,14 +105,14 @@ Json settings_json(const FrameSettings& frame, const SafetySettings& safety) {
                         {"kind", kind},
                         {"choices", choices},
                         {"live", setting.live},
-                        {"value", std::isfinite(value) ? Json(value) : Json()}});
+                        {"value", std::isfinite(value) ? OrderedJson(value) : OrderedJson()}});
   }
   return settings;
 }
 
-Json device_json(const Session& session, const RunFacts& facts) {
+OrderedJson device_json(const Session& session, const RunFacts& facts) {
   const DeviceInfo& info = session.device();
-  Json choices = Json::array();
+  OrderedJson choices = OrderedJson::array();
   for (const SimulatedDeviceModel& model : simulated_device_presets())
     choices.push_back({{"name", "pointer:" + model.name}, {"label", model.name + " (simulated)"}});
   return {{"name", facts.device},
@@ -130,16 +130,16 @@ Json device_json(const Session& session, const RunFacts& facts) {
           {"choices", choices}};
 }
 
-Json stages_json() {
-  Json stages = Json::array();
+OrderedJson stages_json() {
+  OrderedJson stages = OrderedJson::array();
   for (const WrenchStage& stage : wrench_stages())
     stages.push_back({{"key", stage.key}, {"name", stage.name}, {"meaning", stage.meaning}});
   return stages;
 }
 
 /// The channels behind the wrench stages, as ChartSample has them.
-Json channels_json() {
-  Json list = Json::array();
+OrderedJson channels_json() {
+  OrderedJson list = OrderedJson::array();
   const auto add = [&list](const std::string& key, const std::string& name, const char* unit,
                            const char* group, const char* meaning) {
     list.push_back({{"key", key}, {"name", name}, {"unit", unit}, {"group", group}, {"meaning", meaning}});
@@ -157,19 +157,19 @@ Json channels_json() {
   return list;
 }
 
-Json flags_json() {
-  Json safety = Json::array();
+OrderedJson flags_json() {
+  OrderedJson safety = OrderedJson::array();
   for (unsigned bit = 0; bit < 24; ++bit)
     if (const std::string name = safety_flag_names(1u << bit); !name.empty())
       safety.push_back(
           {{"flag", 1u << bit}, {"name", name}, {"fault", (safety_flag::kFaults >> bit & 1u) != 0}});
-  Json frame = Json::array();
+  OrderedJson frame = OrderedJson::array();
   for (const FlagName& flag : frame_flag_table()) frame.push_back({{"flag", flag.flag}, {"name", flag.name}});
   return {{"safety", safety}, {"frame", frame}};
 }
 
-Json scenes_json() {
-  Json scenes = Json::array();
+OrderedJson scenes_json() {
+  OrderedJson scenes = OrderedJson::array();
   for (const SceneEntry& scene : list_scenes())
     scenes.push_back({{"name", scene.name}, {"description", scene.description}});
   return scenes;
@@ -252,33 +252,33 @@ std::string margin_of(const Session& session, const UserSettings& settings) {
 std::string run_message(const Session& session, const UserSettings& settings, const RunFacts& facts) {
   const Scene& scene = session.scene();
   const Tool& tool = scene.settings.tool;
-  const Json message = {{"type", "run"},
-                        {"run", facts.run},
-                        {"scene", scene.name},
-                        {"description", scene.description},
-                        {"scenes", scenes_json()},
-                        {"rate_Hz", session.rate_Hz()},
-                        {"real_time", facts.loop_in_real_time},
-                        {"bodies", bodies_json(scene.world)},
-                        {"field", field_json(scene.world)},
-                        {"grasped", tool.body},
-                        {"picks", tool.picks},
-                        {"X_BH", pose_json(tool.X_BH)},
-                        {"device", device_json(session, facts)},
-                        {"stages", stages_json()},
-                        {"channels", channels_json()},
-                        {"flags", flags_json()},
-                        {"settings", settings_json(settings.frame, settings.safety)},
-                        {"margin", margin_of(session, settings)},
-                        {"toml", settings_toml(settings.frame, settings.safety)}};
-  return message.dump(-1, ' ', false, Json::error_handler_t::replace);
+  const OrderedJson message = {{"type", "run"},
+                               {"run", facts.run},
+                               {"scene", scene.name},
+                               {"description", scene.description},
+                               {"scenes", scenes_json()},
+                               {"rate_Hz", session.rate_Hz()},
+                               {"real_time", facts.loop_in_real_time},
+                               {"bodies", bodies_json(scene.world)},
+                               {"field", field_json(scene.world)},
+                               {"grasped", tool.body},
+                               {"picks", tool.picks},
+                               {"X_BH", pose_json(tool.X_BH)},
+                               {"device", device_json(session, facts)},
+                               {"stages", stages_json()},
+                               {"channels", channels_json()},
+                               {"flags", flags_json()},
+                               {"settings", settings_json(settings.frame, settings.safety)},
+                               {"margin", margin_of(session, settings)},
+                               {"toml", settings_toml(settings.frame, settings.safety)}};
+  return message.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
 }
 
 std::string settings_message(const Session& session, const UserSettings& settings) {
-  const Json message = {{"type", "settings"},
-                        {"settings", settings_json(settings.frame, settings.safety)},
-                        {"margin", margin_of(session, settings)},
-                        {"toml", settings_toml(settings.frame, settings.safety)}};
+  const OrderedJson message = {{"type", "settings"},
+                               {"settings", settings_json(settings.frame, settings.safety)},
+                               {"margin", margin_of(session, settings)},
+                               {"toml", settings_toml(settings.frame, settings.safety)}};
   return message.dump();
 }
 

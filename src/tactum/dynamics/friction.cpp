@@ -12,7 +12,7 @@ namespace {
 using Index = std::size_t;
 
 /// A patch that moved from one piece of a surface to the next is in the same plane within so many skins.
-constexpr double kSamePlaneSkins = 20.0;
+constexpr double kAnchorPlaneSkins = 20.0;
 
 bool has_friction(const ContactRow& row) { return row.friction > 0.0; }
 
@@ -44,7 +44,7 @@ const FrictionAnchor* take_anchor(const FrictionAnchors& anchors, std::span<cons
                                   FrictionPatch& patch) noexcept {
   const Pose& X_WA = X_WB[Index(patch.surfaces.body_a)];
   const Pose& X_W_B = X_WB[Index(patch.surfaces.body_b)];
-  const FrictionAnchor* const last = anchors.find(patch, X_WB, kSamePlaneSkins * patch.place.skin_m);
+  const FrictionAnchor* const last = anchors.find(patch, X_WB, kAnchorPlaneSkins * patch.place.skin_m);
   if (last == nullptr) {
     patch.anchor.on_A = X_WA.inverse() * patch.place.centre_W;
     patch.anchor.on_B = X_W_B.inverse() * patch.place.centre_W;

@@ -12,15 +12,15 @@ namespace tactum::inline v0_1 {
 namespace {
 
 using Index = std::size_t;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 /// How much stiffer than its bodies a row is that should not yield.
 constexpr double kRigid = 1e9;
 
 /// The law of a row's force:  stiffness (offset - g z), between two bounds.
 struct ForceLaw {
-  double stiffness = 0.0;                // [N/m]
-  double least = 0.0, most = kInfinity;  // [N]
+  double stiffness = 0.0;                 // [N/m]
+  double least = 0.0, most = kUnbounded;  // [N]
 };
 
 double rigid_stiffness(const QpRow& row) noexcept {
@@ -243,7 +243,7 @@ class Newton {
     const double force = row.missing * row.stiffness;
     // For a force with bounds a fraction of these; else the force of the length that may be missing.
     const double tolerance =
-        row.most < kInfinity ? tolerances::kContactVelocity * row.most : allowed_ * row.stiffness;
+        row.most < kUnbounded ? tolerances::kContactVelocity * row.most : allowed_ * row.stiffness;
     switch (row.state) {
       case kIdle:
         return !(force <= row.least + tolerance);  // a NaN is wrong

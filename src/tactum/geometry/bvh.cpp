@@ -16,10 +16,10 @@ double surface(const Aabb& box) {
   return d.x() * d.y() + d.y() * d.z() + d.z() * d.x();
 }
 
-class Builder {
+class TreeBuilder {
  public:
-  Builder(const std::vector<Aabb>& boxes, int leaf_size, std::vector<Bvh::Node>& nodes,
-          std::vector<std::int32_t>& order)
+  TreeBuilder(const std::vector<Aabb>& boxes, int leaf_size, std::vector<Bvh::Node>& nodes,
+              std::vector<std::int32_t>& order)
       : boxes_(boxes), leaf_size_(leaf_size), nodes_(nodes), order_(order) {
     centers_.reserve(boxes.size());
     for (const Aabb& box : boxes) centers_.push_back(box.center());
@@ -126,7 +126,7 @@ class Builder {
 }  // namespace
 
 Bvh::Bvh(const std::vector<Aabb>& boxes, int leaf_size) {
-  if (!boxes.empty()) Builder(boxes, std::max(1, leaf_size), nodes_, order_);
+  if (!boxes.empty()) TreeBuilder(boxes, std::max(1, leaf_size), nodes_, order_);
 }
 
 }  // namespace tactum::inline v0_1

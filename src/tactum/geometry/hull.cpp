@@ -82,13 +82,13 @@ Result<Hull> triangulated_hull(const std::vector<Vec3>& points) {
   return hull;
 }
 
-struct Plane {
+struct FacetPlane {
   Vec3 normal = Vec3::Zero();
   double offset = 0.0;
   double area = 0.0;
 };
 
-Plane plane_of(const std::vector<Vec3>& points, const Triangle& t) {
+FacetPlane plane_of(const std::vector<Vec3>& points, const Triangle& t) {
   const Vec3& a = points[Index(t[0])];
   const Vec3 cross = (points[Index(t[1])] - a).cross(points[Index(t[2])] - a);
   const double length = cross.norm();
@@ -106,7 +106,7 @@ std::vector<int> facet_of_triangles(const std::vector<Vec3>& points, const std::
     for (Index i = 0; i < 3; ++i)
       triangle_at[{triangles[t][i], triangles[t][(i + 1) % 3]}] = static_cast<int>(t);
 
-  std::vector<Plane> planes;
+  std::vector<FacetPlane> planes;
   for (const Triangle& t : triangles) planes.push_back(plane_of(points, t));
   std::vector<int> order(triangles.size());
   std::iota(order.begin(), order.end(), 0);
@@ -118,7 +118,7 @@ std::vector<int> facet_of_triangles(const std::vector<Vec3>& points, const std::
   std::vector<int> stack;
   for (int seed : order) {
     if (facet[Index(seed)] >= 0) continue;
-    const Plane& plane = planes[Index(seed)];
+    const FacetPlane& plane = planes[Index(seed)];
     facet[Index(seed)] = facets;
     stack.assign(1, seed);
     while (!stack.empty()) {

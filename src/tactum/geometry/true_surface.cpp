@@ -16,9 +16,9 @@ namespace {
 /// Touching intervals and areas count when they are longer, or wider, than this many times the noise.
 constexpr double kLongerThanNoise = 4.0;
 
-class Builder {
+class TrueSurfaceBuilder {
  public:
-  Builder(const std::vector<Polytope>& pieces, double noise)
+  TrueSurfaceBuilder(const std::vector<Polytope>& pieces, double noise)
       : pieces_(pieces), noise_(noise), sets_(number_features()) {
     touching_.resize(static_cast<std::size_t>(features_));
     covered_.assign(static_cast<std::size_t>(features_), 0.0);
@@ -218,7 +218,7 @@ TrueSurface true_surface(const std::vector<Polytope>& pieces, const Bvh& hierarc
   });
   if (near.empty()) return {};
   std::sort(near.begin(), near.end());
-  Builder builder(pieces, noise);
+  TrueSurfaceBuilder builder(pieces, noise);
   for (const auto& [i, k] : near) builder.touch(i, k);
   for (const auto& [i, k] : near)
     if (i < k) builder.join(i, k);

@@ -12,12 +12,12 @@
 namespace tactum::inline v0_1 {
 namespace {
 
-constexpr std::size_t kMagic = 8;
+constexpr std::size_t kMagicBytes = 8;
 constexpr std::size_t kName = 24;
 constexpr std::uint32_t kByteOrder = 0x01020304;
 
 struct Header {
-  std::array<char, kMagic> magic{};
+  std::array<char, kMagicBytes> magic{};
   std::uint32_t version = 0;
   std::uint32_t byte_order = kByteOrder;
   std::uint64_t size = 0;
@@ -162,7 +162,7 @@ void ArrayWriter::operator()(std::string_view name, const std::vector<Polytope>&
 
 std::string ArrayWriter::finish(std::string_view magic, std::uint32_t version) && {
   Header header;
-  std::copy_n(magic.data(), std::min(magic.size(), kMagic), header.magic.data());
+  std::copy_n(magic.data(), std::min(magic.size(), kMagicBytes), header.magic.data());
   header.version = version;
   header.size = sizeof header + body_.size();
   header.checksum = checksum(header, body_);

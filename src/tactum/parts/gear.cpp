@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "tactum/parts/generated_parts.h"
+#include "tactum/parts/measure_checks.h"
 
 namespace tactum::inline v0_1 {
 namespace {
@@ -25,8 +26,6 @@ int fewest_teeth(const Gear& gear) {
   const double sine = std::sin(gear.pressure_angle_rad);
   return static_cast<int>(std::ceil(2.0 * (gear.addendum - gear.profile_shift) / (sine * sine)));
 }
-
-bool positive(double number) { return std::isfinite(number) && number > 0.0; }
 
 std::optional<Error> defect(const Gear& gear) {
   const auto bad = [](const char* what, const std::string& found, const std::string& expected) {

@@ -6,18 +6,12 @@
 #include <optional>
 
 #include "tactum/geometry/hull.h"
+#include "tactum/parts/measure_checks.h"
 
 namespace tactum::inline v0_1 {
 namespace {
 
 using Polygon = std::vector<Vec2>;
-
-bool positive(double number) { return std::isfinite(number) && number > 0.0; }
-bool not_negative(double number) { return std::isfinite(number) && number >= 0.0; }
-
-Error bad(const char* what, double found, const char* expected) {
-  return {fmt::format("the part's {} cannot be", what), fmt::format("{}", found), expected, ""};
-}
 
 bool allowed_sides(int sides) { return sides == 0 || (sides >= 3 && sides <= 256); }
 
@@ -59,16 +53,17 @@ Result<Polytope> extruded(const std::vector<Vec2>& polygon, double z_low_m, doub
 }
 
 Result<std::vector<Polytope>> peg_pieces(const Peg& peg) {
-  if (!allowed_sides(peg.sides)) return bad("number of sides", peg.sides, "0 (rectangular) or 3 to 256");
-  if (!positive(peg.width_m)) return bad("width", peg.width_m, "more than 0 m");
+  if (!allowed_sides(peg.sides))
+    return impossible("number of sides", peg.sides, "0 (rectangular) or 3 to 256");
+  if (!positive(peg.width_m)) return impossible("width", peg.width_m, "more than 0 m");
   const bool round = peg.sides > 0;
-  if (!round && !positive(peg.depth_m)) return bad("depth", peg.depth_m, "more than 0 m");
-  if (!positive(peg.length_m)) return bad("length", peg.length_m, "more than 0 m");
+  if (!round && !positive(peg.depth_m)) return impossible("depth", peg.depth_m, "more than 0 m");
+  if (!positive(peg.length_m)) return impossible("length", peg.length_m, "more than 0 m");
   const double thinnest =
       round ? peg.width_m * std::cos(kPi / peg.sides) : std::min(peg.width_m, peg.depth_m);
   if (!not_negative(peg.chamfer_m) || 2.0 * peg.chamfer_m >= thinnest || peg.chamfer_m >= peg.length_m)
-    return bad("chamfer", peg.chamfer_m,
-               "0 m or more, and less than half the peg's thickness and its length");
+    return impossible("chamfer", peg.chamfer_m,
+                      "0 m or more, and less than half the peg's thickness and its length");
 
   const double cut = 2.0 * peg.chamfer_m;
   const Polygon full =
@@ -87,15 +82,17 @@ Result<std::vector<Polytope>> peg_pieces(const Peg& peg) {
 }
 
 Result<std::vector<Polytope>> hole_block_pieces(const HoleBlock& block) {
-  if (!allowed_sides(block.sides)) return bad("number of sides", block.sides, "0 (rectangular) or 3 to 256");
-  if (!positive(block.peg_width_m)) return bad("peg width", block.peg_width_m, "more than 0 m");
+  if (!allowed_sides(block.sides))
+    return impossible("number of sides", block.sides, "0 (rectangular) or 3 to 256");
+  if (!positive(block.peg_width_m)) return impossible("peg width", block.peg_width_m, "more than 0 m");
   const bool round = block.sides > 0;
-  if (!round && !positive(block.peg_depth_m)) return bad("peg depth", block.peg_depth_m, "more than 0 m");
-  if (!not_negative(block.clearance_m)) return bad("clearance", block.clearance_m, "0 m or more");
-  if (!positive(block.wall_m)) return bad("wall", block.wall_m, "more than 0 m");
-  if (!positive(block.hole_depth_m)) return bad("hole depth", block.hole_depth_m, "more than 0 m");
+  if (!round && !positive(block.peg_depth_m))
+    return impossible("peg depth", block.peg_depth_m, "more than 0 m");
+  if (!not_negative(block.clearance_m)) return impossible("clearance", block.clearance_m, "0 m or more");
+  if (!positive(block.wall_m)) return impossible("wall", block.wall_m, "more than 0 m");
+  if (!positive(block.hole_depth_m)) return impossible("hole depth", block.hole_depth_m, "more than 0 m");
   if (!not_negative(block.floor_m))
-    return bad("floor", block.floor_m, "0 m (a hole that goes through) or more");
+    return impossible("floor", block.floor_m, "0 m (a hole that goes through) or more");
 
   const double width = block.peg_width_m + block.clearance_m;
   const double depth = block.peg_depth_m + block.clearance_m;

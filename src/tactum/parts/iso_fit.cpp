@@ -14,18 +14,18 @@ namespace {
 
 constexpr int kSteps = 13;
 constexpr int kFineSteps = 22;
-using Row = std::array<int, kSteps>;
+using StepRow = std::array<int, kSteps>;
 using FineRow = std::array<int, kFineSteps>;
 
 // The steps of nominal size: above the one before, up to and including this [mm]. The letters r and s divide
 // the steps beyond 50 mm once more.
-constexpr Row kUpTo = {3, 6, 10, 18, 30, 50, 80, 120, 180, 250, 315, 400, 500};
+constexpr StepRow kUpTo = {3, 6, 10, 18, 30, 50, 80, 120, 180, 250, 315, 400, 500};
 constexpr FineRow kFineUpTo = {3,   6,   10,  18,  30,  50,  65,  80,  100, 120, 140,
                                160, 180, 200, 225, 250, 280, 315, 355, 400, 450, 500};
 
 // Standard tolerance grades 4 to 13 [um]. Grade 4 is needed for the differences of grades only.
 constexpr int kFirstGrade = 4;
-constexpr std::array<Row, 10> kGrades = {{
+constexpr std::array<StepRow, 10> kGrades = {{
     {3, 4, 4, 5, 6, 7, 8, 10, 12, 14, 16, 18, 20},
     {4, 5, 6, 8, 9, 11, 13, 15, 18, 20, 23, 25, 27},
     {6, 8, 9, 11, 13, 16, 19, 22, 25, 29, 32, 36, 40},
@@ -39,15 +39,15 @@ constexpr std::array<Row, 10> kGrades = {{
 }};
 
 // Shafts' fundamental deviations, distances from the nominal size [um]: d to h below it, k to s above.
-constexpr Row kD = {20, 30, 40, 50, 65, 80, 100, 120, 145, 170, 190, 210, 230};
-constexpr Row kE = {14, 20, 25, 32, 40, 50, 60, 72, 85, 100, 110, 125, 135};
-constexpr Row kF = {6, 10, 13, 16, 20, 25, 30, 36, 43, 50, 56, 62, 68};
-constexpr Row kG = {2, 4, 5, 6, 7, 9, 10, 12, 14, 15, 17, 18, 20};
-constexpr Row kH = {};
-constexpr Row kK = {0, 1, 1, 1, 2, 2, 2, 3, 3, 4, 4, 4, 5};
-constexpr Row kM = {2, 4, 6, 7, 8, 9, 11, 13, 15, 17, 20, 21, 23};
-constexpr Row kN = {4, 8, 10, 12, 15, 17, 20, 23, 27, 31, 34, 37, 40};
-constexpr Row kP = {6, 12, 15, 18, 22, 26, 32, 37, 43, 50, 56, 62, 68};
+constexpr StepRow kD = {20, 30, 40, 50, 65, 80, 100, 120, 145, 170, 190, 210, 230};
+constexpr StepRow kE = {14, 20, 25, 32, 40, 50, 60, 72, 85, 100, 110, 125, 135};
+constexpr StepRow kF = {6, 10, 13, 16, 20, 25, 30, 36, 43, 50, 56, 62, 68};
+constexpr StepRow kG = {2, 4, 5, 6, 7, 9, 10, 12, 14, 15, 17, 18, 20};
+constexpr StepRow kH = {};
+constexpr StepRow kK = {0, 1, 1, 1, 2, 2, 2, 3, 3, 4, 4, 4, 5};
+constexpr StepRow kM = {2, 4, 6, 7, 8, 9, 11, 13, 15, 17, 20, 21, 23};
+constexpr StepRow kN = {4, 8, 10, 12, 15, 17, 20, 23, 27, 31, 34, 37, 40};
+constexpr StepRow kP = {6, 12, 15, 18, 22, 26, 32, 37, 43, 50, 56, 62, 68};
 constexpr FineRow kR = {10, 15, 19, 23, 28, 34, 41, 43,  51,  54,  63,
                         65, 68, 77, 80, 84, 94, 98, 108, 114, 126, 132};
 constexpr FineRow kS = {14,  19,  23,  28,  35,  43,  53,  59,  71,  79,  92,
@@ -55,7 +55,7 @@ constexpr FineRow kS = {14,  19,  23,  28,  35,  43,  53,  59,  71,  79,  92,
 
 struct Letter {
   std::string_view name;  // of the shaft
-  const Row* deviation;
+  const StepRow* deviation;
 };
 constexpr Letter kBelow[] = {{"d", &kD}, {"e", &kE}, {"f", &kF}, {"g", &kG}, {"h", &kH}};
 constexpr Letter kAbove[] = {{"k", &kK}, {"m", &kM}, {"n", &kN}, {"p", &kP}};
@@ -68,7 +68,7 @@ std::size_t step_of(const std::array<int, N>& up_to, double nominal_mm) {
 }
 
 template <std::size_t N>
-const Row* deviation_of(const Letter (&letters)[N], std::string_view name) {
+const StepRow* deviation_of(const Letter (&letters)[N], std::string_view name) {
   for (const Letter& letter : letters)
     if (letter.name == name) return letter.deviation;
   return nullptr;
@@ -106,12 +106,12 @@ std::optional<Zone> shaft_zone(const Name& name, double nominal_mm) {
   const std::size_t step = step_of(kUpTo, nominal_mm);
   const double width = grade_um(name.grade, step);
   if (name.letter == "js") return Zone{-0.5 * width, 0.5 * width};
-  if (const Row* below = deviation_of(kBelow, name.letter))
+  if (const StepRow* below = deviation_of(kBelow, name.letter))
     return Zone{-(*below)[step] - width, -1.0 * (*below)[step]};
   double above = 0.0;
   if (name.letter == "r" || name.letter == "s") {
     above = (name.letter == "r" ? kR : kS)[step_of(kFineUpTo, nominal_mm)];
-  } else if (const Row* row = deviation_of(kAbove, name.letter)) {
+  } else if (const StepRow* row = deviation_of(kAbove, name.letter)) {
     above = name.letter == "k" && name.grade > 7 ? 0 : (*row)[step];
   } else {
     return std::nullopt;
@@ -122,7 +122,7 @@ std::optional<Zone> shaft_zone(const Name& name, double nominal_mm) {
 /// How far a hole of the letters K to P lies below the nominal size at its upper limit. In the finer grades
 /// the hole is moved up by the difference to the next finer grade, so that "K7/h6" fits as "H7/k6" does.
 std::optional<double> hole_below(const Name& name, const std::string& letter, std::size_t step) {
-  const Row* row = deviation_of(kAbove, letter);
+  const StepRow* row = deviation_of(kAbove, letter);
   if (row == nullptr) return std::nullopt;
   const bool smallest = step == 0;  // 3 mm and below: no such differences
   if (letter == "k" && name.grade > 8 && !smallest) return std::nullopt;
@@ -139,7 +139,7 @@ std::optional<Zone> hole_zone(const Name& name, double nominal_mm) {
   const std::size_t step = step_of(kUpTo, nominal_mm);
   const double width = grade_um(name.grade, step);
   if (letter == "js") return Zone{-0.5 * width, 0.5 * width};
-  if (const Row* above = deviation_of(kBelow, letter))
+  if (const StepRow* above = deviation_of(kBelow, letter))
     return Zone{1.0 * (*above)[step], (*above)[step] + width};
   const std::optional<double> below = hole_below(name, letter, step);
   if (!below) return std::nullopt;

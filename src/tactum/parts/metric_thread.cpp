@@ -7,7 +7,7 @@ namespace {
 
 // Pitch, hexagon and heights in mm; tolerances of the pitch diameter and the allowance of class g in um.
 // Zero: the standard has none.
-struct Row {
+struct ThreadRow {
   const char* name;
   double major, pitch;
   double across_flats, head, nut;
@@ -15,7 +15,7 @@ struct Row {
   int nut_5, nut_6, nut_7;
   int allowance_g;
 };
-constexpr Row kRows[] = {
+constexpr ThreadRow kThreadRows[] = {
     {"M3", 3, 0.5, 5.5, 2.0, 2.4, 48, 75, 0, 80, 100, 125, 20},
     {"M4", 4, 0.7, 7, 2.8, 3.2, 56, 90, 0, 95, 118, 150, 22},
     {"M5", 5, 0.8, 8, 3.5, 4.7, 60, 95, 150, 100, 125, 160, 24},
@@ -34,9 +34,9 @@ constexpr Row kRows[] = {
 constexpr double kPerMillimetre = 1.0 / 1000.0;
 constexpr double kPerMicrometre = 1.0 / 1e6;
 
-Result<const Row*> row_of(const std::string& name) {
+Result<const ThreadRow*> row_of(const std::string& name) {
   std::string known;
-  for (const Row& row : kRows) {
+  for (const ThreadRow& row : kThreadRows) {
     if (name == row.name) return &row;
     known += (known.empty() ? "" : " ") + std::string(row.name);
   }
@@ -53,9 +53,9 @@ double MetricScrew::pitch_diameter_m() const { return major_m - 0.75 * triangle_
 double MetricScrew::minor_m() const { return major_m - 1.25 * triangle_height(pitch_m); }
 
 Result<MetricScrew> metric_screw(const std::string& name) {
-  const Result<const Row*> found = row_of(name);
+  const Result<const ThreadRow*> found = row_of(name);
   if (!found) return found.error();
-  const Row& row = **found;
+  const ThreadRow& row = **found;
   return MetricScrew{row.name,
                      row.major * kPerMillimetre,
                      row.pitch * kPerMillimetre,
@@ -65,9 +65,9 @@ Result<MetricScrew> metric_screw(const std::string& name) {
 }
 
 Result<ThreadFit> thread_fit(const std::string& screw, const std::string& tolerance_class) {
-  const Result<const Row*> found = row_of(screw);
+  const Result<const ThreadRow*> found = row_of(screw);
   if (!found) return found.error();
-  const Row& row = **found;
+  const ThreadRow& row = **found;
   const auto middle = [](int allowance, int bolt, int nut) {
     return ThreadFit{-(allowance + 0.5 * bolt) * kPerMicrometre, 0.5 * nut * kPerMicrometre};
   };

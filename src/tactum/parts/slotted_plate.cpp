@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "tactum/parts/generated_parts.h"
+#include "tactum/parts/measure_checks.h"
 
 namespace tactum::inline v0_1 {
 namespace {
@@ -17,7 +18,6 @@ std::optional<Error> defect(const SlottedPlate& plate) {
   const auto bad = [](const char* what, double found, const char* expected) {
     return Error{fmt::format("the plate's {} cannot be", what), fmt::format("{}", found), expected, ""};
   };
-  const auto positive = [](double number) { return std::isfinite(number) && number > 0.0; };
   if (plate.slots < 1 || plate.slots > 32) return bad("number of slots", plate.slots, "1 to 32");
   if (plate.end_facets < 2 || plate.end_facets > 32 || plate.end_facets % 2 != 0)
     return bad("number of end facets", plate.end_facets, "an even number from 2 (square ends) to 32");

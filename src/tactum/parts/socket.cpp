@@ -7,16 +7,10 @@
 
 #include "tactum/geometry/hull.h"
 #include "tactum/parts/generated_parts.h"
+#include "tactum/parts/measure_checks.h"
 
 namespace tactum::inline v0_1 {
 namespace {
-
-bool positive(double number) { return std::isfinite(number) && number > 0.0; }
-bool not_negative(double number) { return std::isfinite(number) && number >= 0.0; }
-
-Error bad(const char* what, double found, const std::string& expected) {
-  return {fmt::format("the part's {} cannot be", what), fmt::format("{}", found), expected, ""};
-}
 
 /// From the axis to a corner of a hexagon.
 double corner_radius(double across_flats) { return across_flats / std::sqrt(3.0); }
@@ -34,12 +28,14 @@ std::vector<Vec2> corners_from_minus_60(int count, double radius) {
 }  // namespace
 
 Result<std::vector<Polytope>> hex_key_pieces(const HexKey& key) {
-  if (!positive(key.across_flats_m)) return bad("width across flats", key.across_flats_m, "more than 0 m");
+  if (!positive(key.across_flats_m))
+    return impossible("width across flats", key.across_flats_m, "more than 0 m");
   const double radius = corner_radius(key.across_flats_m);
   const std::string longer = fmt::format("more than the key's {:.3g} m across corners", 2.0 * radius);
   if (!(std::isfinite(key.short_m) && key.short_m > 2.0 * radius))
-    return bad("short arm", key.short_m, longer);
-  if (!(std::isfinite(key.long_m) && key.long_m > 2.0 * radius)) return bad("long arm", key.long_m, longer);
+    return impossible("short arm", key.short_m, longer);
+  if (!(std::isfinite(key.long_m) && key.long_m > 2.0 * radius))
+    return impossible("long arm", key.long_m, longer);
 
   std::vector<Vec3> short_arm;
   std::vector<Vec3> long_arm;
@@ -61,17 +57,17 @@ Result<std::vector<Polytope>> hex_key_pieces(const HexKey& key) {
 
 Result<std::vector<Polytope>> hex_socket_pieces(const HexSocket& socket) {
   if (!positive(socket.across_flats_m))
-    return bad("width across flats", socket.across_flats_m, "more than 0 m");
-  if (!not_negative(socket.clearance_m)) return bad("clearance", socket.clearance_m, "0 m or more");
-  if (!positive(socket.depth_m)) return bad("depth", socket.depth_m, "more than 0 m");
+    return impossible("width across flats", socket.across_flats_m, "more than 0 m");
+  if (!not_negative(socket.clearance_m)) return impossible("clearance", socket.clearance_m, "0 m or more");
+  if (!positive(socket.depth_m)) return impossible("depth", socket.depth_m, "more than 0 m");
   if (!not_negative(socket.floor_m))
-    return bad("floor", socket.floor_m, "0 m (a hole that goes through) or more");
+    return impossible("floor", socket.floor_m, "0 m (a hole that goes through) or more");
   if (socket.facets_per_side < 1 || socket.facets_per_side > 32)
-    return bad("number of facets per side", socket.facets_per_side, "1 to 32");
+    return impossible("number of facets per side", socket.facets_per_side, "1 to 32");
   const double radius = corner_radius(socket.across_flats_m + socket.clearance_m);
   if (!(std::isfinite(socket.diameter_m) && socket.diameter_m > 2.0 * radius))
-    return bad("diameter", socket.diameter_m,
-               fmt::format("more than the hole's {:.3g} m across corners", 2.0 * radius));
+    return impossible("diameter", socket.diameter_m,
+                      fmt::format("more than the hole's {:.3g} m across corners", 2.0 * radius));
 
   const std::vector<Vec2> hole = corners_from_minus_60(6, radius);
   const std::vector<Vec2> head = corners_from_minus_60(6 * socket.facets_per_side, 0.5 * socket.diameter_m);

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kSchema = 1;
+constexpr int kFieldSchema = 1;
 constexpr std::size_t kMostHeaderBytes = 1 << 16;
 
 struct Header {
@@ -45,7 +45,7 @@ std::array<int, 3> read_nodes(const TomlReader& root, const char* key) {
 
 Header read_header(const TomlReader& root) {
   Header header;
-  root.integer("schema", {}, kSchema, kSchema);
+  root.integer("schema", {}, kFieldSchema, kFieldSchema);
   header.data = root.text("data");
   header.shape.nodes = read_nodes(root, "nodes");
   header.shape.spacing = root.vector3("spacing_m");

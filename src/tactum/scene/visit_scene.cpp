@@ -6,7 +6,7 @@
 namespace tactum::inline v0_1 {
 namespace {
 
-constexpr int kSchema = 1;
+constexpr int kSceneSchema = 1;
 
 template <class Take>
 void each_setting(std::string_view section, const Take& take) {
@@ -83,8 +83,8 @@ void visit_settings(ItemVisitor& visitor, SettingsDescription& settings, Workspa
 }  // namespace
 
 void visit_items(ItemVisitor& visitor, SceneDescription& scene) {
-  int schema = kSchema;
-  visitor.integer("schema", schema, kSchema, kSchema, Need::kRequired);
+  int schema = kSceneSchema;
+  visitor.integer("schema", schema, kSceneSchema, kSceneSchema, Need::kRequired);
   visitor.text("description", scene.description);
   visitor.vector("gravity_m_per_s2", scene.gravity_W);
   visitor.tables("body", scene.bodies);
