@@ -73,7 +73,7 @@ struct TwoBodies {
     ImpactScratch scratch(2);
     const std::vector<char> moves{1, 1};
     const std::vector<Twist> A(2);
-    return resolve_impacts(rows, {world, X_WB, moves, A, V, detour}, kStep_s, most, scratch, nullptr);
+    return resolve_impacts(rows, {world, X_WB, moves, A, A, V, detour}, kStep_s, most, scratch, nullptr);
   }
 };
 
@@ -153,8 +153,8 @@ TEST(Impacts, ABallOnAWallSlidesOrRolls) {
       std::vector<ContactRow> rows{row};
       const std::vector<Twist> A(2);
       std::vector<Twist> detour(2);
-      EXPECT_TRUE(
-          resolve_impacts(rows, {world, X_WB, moves, A, V, detour}, kStep_s, 8, scratch, nullptr).converged);
+      EXPECT_TRUE(resolve_impacts(rows, {world, X_WB, moves, A, A, V, detour}, kStep_s, 8, scratch, nullptr)
+                      .converged);
       const double normal = 0.1 * 0.8 * 1.5;
       const double to_roll = 0.1 * 1.0 * 2.0 / 7.0;
       const double across = std::min(mu * normal, to_roll);

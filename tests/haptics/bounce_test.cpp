@@ -285,6 +285,100 @@ TEST(Bounce, AnImpactGoesThroughARowAtItsTimes) {
     }
 }
 
+struct OnResting {
+  double height_m = 0.1;
+  double rate_Hz = 1000.0;
+  double restitution = 0.8;  // of the body that falls
+  double of_others = 0.0;    // of what lies there, among itself and with the floor
+  double size_m = 0.02;      // of the cube that falls
+  double under_m = 0.02;     // of those that lie there
+  int under = 1;
+  Vec3 up = {0, 0, 1};
+  ResponseModel response = ResponseModel::kConstraint;
+};
+
+/// A cube that falls on others, which lie on a floor, leaves them as it would leave the floor.
+void expect_bounces_on_resting(const OnResting& c) {
+  SCOPED_TRACE(testing::Message() << c.height_m << " m, " << c.rate_Hz << " Hz, e " << c.restitution
+                                  << " and " << c.of_others << ", " << c.size_m << " m on " << c.under
+                                  << " of " << c.under_m << " m, up " << c.up.transpose());
+  Sandbox box;
+  const Mat3 R = Quat::FromTwoVectors(Vec3::UnitZ(), c.up.normalized()).toRotationMatrix();
+  const auto at = [&](double z) { return Pose{R, R * Vec3(0, 0, z)}; };
+  const auto cube = [](double size) { return make_box(Vec3::Constant(0.5 * size)); };
+  const auto skin = [](double size) { return tolerances::kSkin * std::sqrt(3.0) * size; };
+  box.world.gravity_W = R * Vec3(0, 0, -kGravity);
+  box.settings.dt_s = 1.0 / c.rate_Hz;
+  box.settings.response = c.response;
+  box.add_fixed(make_box(c.under_m * Vec3(4, 4, 0.5)), at(-0.5 * c.under_m));
+  double top = 0.0;
+  for (int i = 0; i < c.under; ++i) {
+    box.add(cube(c.under_m), at(top + skin(c.under_m) + 0.5 * c.under_m));
+    top += skin(c.under_m) + c.under_m;
+  }
+  const int body = box.add(cube(c.size_m), at(top + c.height_m + 0.5 * c.size_m));
+  box.bounce(c.restitution);
+  const int bodies = body + 1;
+  for (int i = 0; i < body; ++i)
+    for (int k = 0; k < body; ++k)
+      box.settings.impacts.restitution.coefficients[static_cast<std::size_t>(i * bodies + k)] = c.of_others;
+  const double gap = skin(std::max(c.size_m, c.under_m));
+  const double fall = c.height_m - gap;
+  const double share = c.restitution * c.restitution;
+  const double impact_s = std::sqrt(2.0 * fall / kGravity);
+  const Vec3 up = R.col(2);
+  const double rest_z = top + gap + 0.5 * c.size_m;
+  double apex = 0.0;
+  const int frames = static_cast<int>((impact_s * (1.0 + c.restitution)) * c.rate_Hz);
+  for (int i = 0; i < frames; ++i) {
+    box.step();
+    for (int lies = 1; lies < body; ++lies) {
+      const double z = skin(c.under_m) + 0.5 * c.under_m + (lies - 1) * (skin(c.under_m) + c.under_m);
+      ASSERT_NEAR(up.dot(box.X(lies).p), z, 0.5 * skin(c.under_m)) << "frame " << i;
+    }
+  }
+  const double v = up.dot(box.V(body).v);
+  apex = up.dot(box.X(body).p) - rest_z + v * v / (2.0 * kGravity);
+  EXPECT_NEAR(apex, share * fall, 1e-6 * share * fall);
+  EXPECT_EQ(box.penetrating_frames, 0);
+}
+
+TEST(Bounce, OnABodyThatLiesOnAFloorIsAsOnTheFloor) {
+  for (const ResponseModel response : {ResponseModel::kConstraint, ResponseModel::kPenalty})
+    for (OnResting c :
+         {OnResting{}, OnResting{.height_m = 0.01}, OnResting{.height_m = 1.0}, OnResting{.rate_Hz = 500.0},
+          OnResting{.rate_Hz = 4000.0}, OnResting{.restitution = 0.5, .of_others = 0.9},
+          OnResting{.restitution = 1.0, .of_others = 0.3}, OnResting{.restitution = 1.0, .of_others = 1.0},
+          OnResting{.under_m = 0.0431}, OnResting{.size_m = 0.0431}, OnResting{.under = 2},
+          OnResting{.under_m = 0.0431, .under = 2}, OnResting{.of_others = 0.5, .under = 3},
+          OnResting{.up = {1, 0, 0}}, OnResting{.under = 2, .up = {0.3, -0.5, 0.8}},
+          OnResting{.size_m = 0.002, .under_m = 0.002}, OnResting{.size_m = 1.0, .under_m = 1.0}}) {
+      c.response = response;
+      expect_bounces_on_resting(c);
+    }
+}
+
+/// What merely touches passes an impact on: only what carries is solved together with it.
+TEST(Bounce, ACradleOnAFloorPassesTheImpactOn) {
+  for (const double rate_Hz : {500.0, 1000.0, 4000.0}) {
+    SCOPED_TRACE(testing::Message() << rate_Hz << " Hz");
+    Sandbox box;
+    box.world.gravity_W = {0, 0, -kGravity};
+    box.settings.dt_s = 1.0 / rate_Hz;
+    const double half = 0.01;
+    const double skin = tolerances::kSkin * std::sqrt(3.0) * 2.0 * half;
+    box.add_fixed(make_box(Vec3(0.5, 0.1, half)), {Mat3::Identity(), {0, 0, -half}});
+    for (int i = 0; i < 3; ++i)
+      box.add(make_box(Vec3::Constant(half)), {Mat3::Identity(), {i * (2.0 * half + skin), 0, half + skin}});
+    box.add(make_box(Vec3::Constant(half)), {Mat3::Identity(), {-2.0 * half - 0.02, 0, half + skin}},
+            {{0.5, 0, 0}, Vec3::Zero()});
+    box.bounce(1.0);
+    box.run(0.1);
+    EXPECT_NEAR(box.V(3).v.x(), 0.5, 1e-6);
+    for (const int i : {1, 2, 4}) EXPECT_NEAR(box.V(i).v.x(), 0.0, 1e-6);
+  }
+}
+
 /// What lies, or was let down, lies still, however elastic: impacts end, and nothing leaves its place.
 TEST(Bounce, WhatLiesDoesNotBounce) {
   for (const double e : {0.3, 0.9})

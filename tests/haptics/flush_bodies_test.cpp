@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <vector>
 
 #include "support/add_body.h"
+#include "support/sample_meshes.h"
 #include "support/solid_box.h"
 #include "tactum/contact/flush_bodies.h"
 #include "tactum/haptics/simulation.h"
@@ -23,10 +25,19 @@ struct Case {
   double step = 0.0;        // by how much every second board is lower, of the block's length
   bool block_last = false;  // the block's number in the world is after the boards'
   double yaw_rad = 0.0;
+  bool surface_block = false, surface_floor = false;  // felt by their surfaces, not as convex pieces
   ResponseModel response = ResponseModel::kConstraint;
 };
 
+std::shared_ptr<const Part> box_part(const Vec3& half, bool surface) {
+  if (!surface) return solid_box(half);
+  Result<Part> part = part_from_mesh(testing::box_mesh(half), {.pieces = PieceSource::kSurface});
+  EXPECT_TRUE(part);
+  return std::make_shared<const Part>(std::move(*part));
+}
+
 constexpr int kBoards = 8;
+constexpr double kGravity = 9.81;  // [m/s^2]
 
 /// A floor of boards across x, as long as kBoards blocks, or of one plate; and a block of 1 x 0.7 x 0.5.
 struct Floor {
@@ -37,7 +48,7 @@ struct Floor {
   Floor(const Case& c, bool one_plate) {
     const Vec3 half = c.size_m * Vec3(0.5, 0.35, 0.25);
     const auto add_block = [&] {
-      block = add_body(world, {.part = solid_box(half),
+      block = add_body(world, {.part = box_part(half, c.surface_block),
                                .mass_kg = 0.1,
                                .X_WP = {exp_rotation({0, 0, c.yaw_rad}),
                                         {-0.3 * kBoards * c.size_m, 0, half.z() + 1e-4 * c.size_m}}});
@@ -45,7 +56,7 @@ struct Floor {
     if (!c.block_last) add_block();
     const int boards = one_plate ? 1 : kBoards;
     const double length = kBoards * c.size_m / boards;
-    const auto board = solid_box({0.5 * length, 1.5 * c.size_m, 0.5 * c.size_m});
+    const auto board = box_part({0.5 * length, 1.5 * c.size_m, 0.5 * c.size_m}, c.surface_floor);
     for (int i = 0; i < boards; ++i)
       add_body(world, {.part = board,
                        .X_WP = {Mat3::Identity(),
@@ -95,8 +106,8 @@ TEST(FlushBodies, BoardsAreFeltAsOnePlate) {
        {Case{}, Case{.block_last = true}, Case{.size_m = 0.002}, Case{.size_m = 1.0}, Case{.rate_Hz = 500.0},
         Case{.rate_Hz = 4000.0}, Case{.yaw_rad = 0.3}, Case{.mu = 0.3}, Case{.mu = 0.3, .block_last = true},
         Case{.mu = 0.6, .yaw_rad = 0.3}, Case{.size_m = 0.3, .mu = 0.2}}) {
-    SCOPED_TRACE(testing::Message() << c.size_m << " m, " << c.rate_Hz << " Hz, mu " << c.mu << ", yaw "
-                                    << c.yaw_rad << ", last " << c.block_last);
+    SCOPED_TRACE(::testing::Message() << c.size_m << " m, " << c.rate_Hz << " Hz, mu " << c.mu << ", yaw "
+                                      << c.yaw_rad << ", last " << c.block_last);
     EXPECT_LT(largest_difference(drawn(c, true), drawn(c, false), c.size_m), 1e-3 * press_N);
   }
 }
@@ -105,8 +116,8 @@ TEST(FlushBodies, StepsBelowTheToldHeightAreRiddenOver) {
   const double k = FrameSettings{}.coupling.stiffness_N_per_m;
   for (Case c : {Case{}, Case{.block_last = true}, Case{.size_m = 0.2}, Case{.rate_Hz = 4000.0},
                  Case{.yaw_rad = 0.3}}) {
-    SCOPED_TRACE(testing::Message() << c.size_m << " m, " << c.rate_Hz << " Hz, yaw " << c.yaw_rad
-                                    << ", last " << c.block_last);
+    SCOPED_TRACE(::testing::Message()
+                 << c.size_m << " m, " << c.rate_Hz << " Hz, yaw " << c.yaw_rad << ", last " << c.block_last);
     const std::vector<Wrench> level = drawn(c, true);
     c.step = 0.9 * kRiddenStep;
     const std::vector<Wrench> stepped = drawn(c, false);
@@ -128,7 +139,7 @@ TEST(FlushBodies, HigherStepsStopTheBlock) {
 TEST(FlushBodies, ThePublishedResponseFeelsNoSeams) {
   for (Case c : {Case{}, Case{.block_last = true}, Case{.size_m = 0.01}, Case{.yaw_rad = 0.3}}) {
     c.response = ResponseModel::kPenalty;
-    SCOPED_TRACE(testing::Message() << c.size_m << " m, yaw " << c.yaw_rad << ", last " << c.block_last);
+    SCOPED_TRACE(::testing::Message() << c.size_m << " m, yaw " << c.yaw_rad << ", last " << c.block_last);
     const std::vector<Wrench> one = drawn(c, true);
     const std::vector<Wrench> boards = drawn(c, false);
     double most = 0.0;
@@ -160,9 +171,58 @@ TEST(FlushBodies, AFreeBlockStopsWhereFrictionSays) {
     // It stops after half of the floor: v^2 = 2 mu g s.
     const double length = 0.5 * kBoards * c.size_m;
     const double speed = std::sqrt(2.0 * c.mu * 9.81 * length);
-    SCOPED_TRACE(testing::Message() << c.size_m << " m, " << c.rate_Hz << " Hz, mu " << c.mu);
+    SCOPED_TRACE(::testing::Message() << c.size_m << " m, " << c.rate_Hz << " Hz, mu " << c.mu);
     EXPECT_NEAR(slides(c, speed, false), slides(c, speed, true), 2e-3 * length);
     EXPECT_NEAR(slides(c, speed, false), length * (1.0 + 0.5 * 0.03 * 0.03), 0.01 * length);
+  }
+}
+
+/// The block, the floor, or both felt by their surfaces.
+std::vector<Case> by_surfaces(const std::vector<Case>& cases) {
+  std::vector<Case> made;
+  for (Case c : cases)
+    for (const auto& [block, floor] :
+         {std::pair(true, true), std::pair(true, false), std::pair(false, true)}) {
+      c.surface_block = block;
+      c.surface_floor = floor;
+      made.push_back(c);
+    }
+  return made;
+}
+
+TEST(FlushBodies, SurfacesAreFeltAsOneFloor) {
+  for (const Case& c : by_surfaces({{},
+                                    {.size_m = 0.01},
+                                    {.rate_Hz = 4000.0},
+                                    {.mu = 0.3, .yaw_rad = 0.3},
+                                    {.size_m = 0.01, .rate_Hz = 4000.0, .mu = 0.3, .block_last = true},
+                                    {.size_m = 0.3, .mu = 0.3}})) {
+    SCOPED_TRACE(::testing::Message() << c.size_m << " m, " << c.rate_Hz << " Hz, mu " << c.mu << ", yaw "
+                                      << c.yaw_rad << ", surfaces " << c.surface_block << c.surface_floor);
+    const std::vector<Wrench> felt = drawn(c, false);
+    double step = 0.0, ratio = 0.0, torque = 0.0;
+    for (std::size_t i = felt.size() * 2 / 5; i < felt.size(); ++i) {
+      step = std::max(step, (felt[i].f - felt[i - 1].f).norm());
+      ratio = std::max(ratio, std::abs(felt[i].f.head<2>().norm() / felt[i].f.z() - c.mu));
+      torque = std::max(torque, std::abs(felt[i].t.z()));
+    }
+    EXPECT_LT(step, 1e-3);
+    EXPECT_LT(ratio, 1e-3);
+    EXPECT_LT(torque, 1e-3 * c.size_m * felt.back().f.z());
+  }
+}
+
+TEST(FlushBodies, AFreeBlockOverSurfacesStopsWhereFrictionSays) {
+  for (const Case& c : by_surfaces({{.mu = 0.2},
+                                    {.mu = 0.2, .block_last = true},
+                                    {.mu = 0.5, .yaw_rad = 0.4},
+                                    {.size_m = 0.3, .mu = 0.1},
+                                    {.rate_Hz = 4000.0, .mu = 0.2}})) {
+    SCOPED_TRACE(::testing::Message() << c.size_m << " m, " << c.rate_Hz << " Hz, mu " << c.mu
+                                      << ", surfaces " << c.surface_block << c.surface_floor);
+    const double length = 0.5 * kBoards * c.size_m * (1.0 + 0.5 * 0.03 * 0.03);
+    const double speed = std::sqrt(2.0 * c.mu * kGravity * 0.5 * kBoards * c.size_m);
+    EXPECT_NEAR(slides(c, speed, false), length, 1e-3 * length);
   }
 }
 

@@ -140,5 +140,35 @@ TEST(Friction, ActsBetweenPartsFeltByTheirSurfaces) {
         }
 }
 
+/// A crate of 250 g on a floor, drawn by a hand that is h above where the crate lies: the coupling carries
+/// k h of its weight, and friction is mu (m g - k h), not mu m g. Drawn 0.1 mm above, 2.4 % are missing.
+TEST(Friction, OfADrawnCrateIsThatOfTheWeightWhichTheHandDoesNotCarry) {
+  constexpr double kMass = 0.25, kGravity = 9.81, kMu = 0.3, kHalf = 0.05;
+  for (const double rate_Hz : {500.0, 1000.0, 4000.0})
+    for (const double speed : {0.02, 0.1})
+      for (const double above_m : {-0.001, 0.0, 1e-4, 1e-3})
+        for (const bool surface : {false, true}) {
+          SCOPED_TRACE(::testing::Message() << rate_Hz << " Hz, " << speed << " m/s, " << above_m << " m");
+          Rig rig(2);
+          const double lies_m = tolerances::kSkin * 2.0 * std::sqrt(3.0) * kHalf;
+          rig.world.bodies[0].part = BoxOnBox::box(Vec3::Constant(kHalf), surface);
+          rig.world.bodies[0].mass_kg = kMass;
+          rig.world.bodies[0].X_WB.p.z() = kHalf + lies_m;
+          rig.world.bodies[1].part = solid_box({1, 1, 0.1});
+          rig.world.bodies[1].X_WB.p.z() = -0.1;
+          rig.world.bodies[1].joint.kind = JointKind::kFixed;
+          rig.world.gravity_W = {0, 0, -kGravity};
+          rig.settings.dt_s = 1.0 / rate_Hz;
+          rig.settings.friction = {{0.0, kMu, kMu, 0.0}, 2};
+          rig.step({});
+          const int frames = static_cast<int>(rate_Hz);
+          const FrameReport& report = rig.go(at(speed, 0, above_m), frames);
+          const double carried_N = rig.settings.coupling.stiffness_N_per_m * above_m;
+          const double right = kMu * (kMass * kGravity - carried_N);
+          EXPECT_NEAR(-report.coupling.f.x(), right, 1e-3 * right);
+          EXPECT_NEAR(report.coupling.f.z(), -carried_N, 1e-3 * kMass * kGravity);
+        }
+}
+
 }  // namespace
 }  // namespace tactum

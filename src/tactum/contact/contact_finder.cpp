@@ -89,18 +89,29 @@ void ContactFinder::find_patches(std::span<const Pose> X_WB, int budget, PatchPo
     for (const SweepAndPrune::Pair& near : sweep_.pairs())
       if (meet_by_surfaces(near.a, near.b) && of_grasped(near.a, near.b) == grasped)
         test_surfaces(near, X_WB);
+  leave_out_implied(X_WB);
   work_.patches = static_cast<int>(patches_.size());
 }
 
-/// Leaves out the contacts with walls between the pieces of one part, and those that contacts with other
-/// bodies imply.
+/// Leaves out the contacts with walls between the pieces of one part.
 void ContactFinder::settle_candidates(std::span<const Pose> X_WB) noexcept {
   settle_closest_points(internal_, X_WB, patches_);
   candidate_order_.clear();
   for (SeamCandidate& candidate : candidates_) candidate_order_.push_back(&candidate);
   if (!settle_seams(candidate_order_, X_WB, steady_, patches_))
     for (const SeamCandidate& candidate : candidates_) drop(candidate.a.body, candidate.b.body);
+}
+
+/// Leaves out the contacts that contacts with other bodies imply. Surfaces whose forces are taken over areas,
+/// which may cross, are left as they are.
+void ContactFinder::leave_out_implied(std::span<const Pose> X_WB) noexcept {
+  const auto stays = [&](const ContactPatch& patch) {
+    return patch.of_surfaces && over_areas(patch.body_a, patch.body_b);
+  };
+  for (ContactPatch& patch : patches_) patch.implied |= stays(patch);  // such a contact is not looked at
   flush_bodies_.mark_implied(bodies_, X_WB, patches_);
+  for (ContactPatch& patch : patches_)
+    if (stays(patch)) patch.implied = false;
   if (points_ == PatchPoints::kQuadrature)
     patches_.erase(std::remove_if(patches_.begin(), patches_.end(),
                                   [&](const ContactPatch& patch) {

@@ -145,6 +145,7 @@ class ContactFinder final : public GapOracle {
   void test(Pair& pair, const Pose& X_AB) noexcept;
   SeamCandidate candidate_of(Pair& pair, const PairDistance& found, bool internal) const noexcept;
   void settle_candidates(std::span<const Pose> X_WB) noexcept;
+  void leave_out_implied(std::span<const Pose> X_WB) noexcept;
   void emit_patch(Pair& pair, const PairDistance& found, const Pose& X_AB) noexcept;
   GapAnswer distance_at(const ContactPatch& patch, std::span<const Pose> X_WB, double enough, int keep_back,
                         double& distance) noexcept;

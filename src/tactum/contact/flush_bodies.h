@@ -17,6 +17,7 @@
 #include <span>
 
 #include "tactum/base/grouped_indices.h"
+#include "tactum/base/reserved_vector.h"
 #include "tactum/contact/collision_body.h"
 #include "tactum/contact/contact_patch.h"
 #include "tactum/math/spatial.h"
@@ -28,16 +29,23 @@ inline constexpr double kRiddenStep = 1e-4;  ///< [m/m]
 
 class FlushBodies {
  public:
-  FlushBodies(std::size_t bodies, std::size_t most_patches) : of_body_(bodies, 2 * most_patches) {}
+  FlushBodies(std::size_t bodies, std::size_t most_patches) : of_body_(bodies, 2 * most_patches) {
+    planes_.reserve(2 * most_patches);
+  }
 
   /// Marks the implied contacts among `patches` with `ContactPatch::implied` and gives them the normal of the
-  /// contact that implies them. Surfaces without pieces are left as they are. Cost: nothing while only two
-  /// bodies touch; else, for every body that moves, the square of the number of its patches.
+  /// contact that implies them. Of surfaces a contact is judged by the triangles at its features. Cost:
+  /// nothing while only two bodies touch; else, for every body that moves, the number of its patches times
+  /// that of those that may imply others: of pieces all, of surfaces one for each two faces, and 16 at most.
   void mark_implied(std::span<const CollisionBody> bodies, std::span<const Pose> X_WB,
                     std::span<ContactPatch> patches) noexcept;
 
  private:
-  GroupedIndices of_body_;  // the patches of each body, twice as many as there are
+  /// Lists the patches of a body that may imply others.
+  void list_planes(std::span<const int> items, std::span<const ContactPatch> patches) noexcept;
+
+  GroupedIndices of_body_;      // the patches of each body, twice as many as there are
+  ReservedVector<int> planes_;  // scratch
 };
 
 }  // namespace tactum::inline v0_1

@@ -22,8 +22,12 @@ constexpr double kRestFrames = 1.5;
 /// ... and what solvers leave of a rest without weight, a hundred times (kRestingVelocity).
 constexpr double kRest_m_per_s = 100.0 * tolerances::kRestingVelocity;
 
-/// The corners of one impact, which are solved together, each with its least normal velocity after it [m/s].
-/// They are those of two bodies; all fixed bodies count as one, the world.
+/// A contact carries a body where the push of all the body's contacts is at an angle of less than that with
+/// this cosine to its normal.
+constexpr double kCarries = 0.5;
+
+/// The corners of one impact, which are solved together, each with its least normal velocity after it [m/s]:
+/// those of the two bodies that meet, all fixed bodies counting as one, the world, and those that carry them.
 using Corners = StaticVector<ContactRow, ImpactScratch::kMostCorners>;
 
 /// The velocity at which a motion of the bodies opens a row.
@@ -70,19 +74,32 @@ void report(const RowsInProblem& contacts, const Friction& friction, const Conta
   });
 }
 
-/// Twists of the two bodies that meet; of the world, zero.
-using PairTwists = std::array<Twist, 2>;
+/// Whether a contact carried one of its two bodies in the last frame, and touches `t` seconds after the start
+/// of this one.
+bool carries(const ContactRow& row, const ImpactBodies& bodies, double t) {
+  const Vec3& of_a = bodies.A_contacts[Index(row.body_a)].v;
+  const Vec3& of_b = bodies.A_contacts[Index(row.body_b)].v;
+  const bool pushes =
+      row.n_BA_W.dot(of_a) > kCarries * of_a.norm() || -row.n_BA_W.dot(of_b) > kCarries * of_b.norm();
+  return pushes && !row.idle && gap_at(row, bodies, t).beyond_skin <= row.skin_m;
+}
 
-/// The impact of one pair, at a time t of the frame. A free body has moved until then, but not turned: its
-/// angular momentum, which is kept, is stated by the inertia at the start of the frame.
-class PairImpact {
+/// Twists of the bodies of one impact, in the order of its list.
+using Twists = std::array<Twist, ImpactScratch::kMostBodies>;
+
+/// The impact of two bodies and of those that carry them, at a time t of the frame. A free body has moved
+/// until then, but not turned: its angular momentum, which is kept, is stated by the inertia at the start of
+/// the frame.
+class Impact {
  public:
-  PairImpact(const ContactRow& first, double t, const ImpactBodies& bodies, ImpactScratch& scratch)
+  Impact(std::span<const ContactRow> rows, const ContactRow& first, double t, const ImpactBodies& bodies,
+         ImpactScratch& scratch)
       : met_(met_at(first, bodies.world)),
         t_(t),
         input_{bodies.X_WB, scratch.no_anchors},
         bodies_(bodies),
         scratch_(scratch) {
+    list_bodies(rows);
     for_each_body([&](Index i, int number) {
       const Index body = Index(number);
       const Twist& V = bodies.V_WB[body];
@@ -94,13 +111,15 @@ class PairImpact {
     });
   }
 
-  /// Finds all corners of the pair that meet with `first`: where two faces meet flat, rounding must not leave
-  /// corners out.
+  /// Finds all corners of the pair that meet with `first`, as where two faces meet flat, rounding must not
+  /// leave corners out; and those of the contacts that carry.
   void find_corners(std::span<const ContactRow> rows, const ContactRow& first, double speed, double h) {
     const double near_m = gap_at(first, bodies_, t_).beyond_skin + first.skin_m;
     for (const ContactRow& row : rows) {
-      if (row.idle || met_at(row, bodies_.world) != met_) continue;
-      if (gap_at(row, bodies_, t_).beyond_skin > near_m || !corners_.push_back(row)) continue;
+      const bool meets =
+          !row.idle && met_at(row, bodies_.world) == met_ && gap_at(row, bodies_, t_).beyond_skin <= near_m;
+      if (!meets && !holds(row)) continue;
+      if (!corners_.push_back(row)) continue;
       ContactRow& corner = corners_.back();
       corner.p_W += 0.5 * (moved_by(row.body_a, row.p_W) + moved_by(row.body_b, row.p_W));
       const double closing = approach(corner);
@@ -120,14 +139,14 @@ class PairImpact {
     return solve_exactly(contacts_, input_, kMostIterations, start, scratch_.friction, scratch_.problem)
         .solved;
   }
-  PairTwists answer() const {
-    PairTwists V;
+  Twists answer() const {
+    Twists V;
     for_each_body([&](Index i, int body) { V[i] = to_twist(scratch_.problem.displacement(body)); });
     return V;
   }
-  const PairTwists& before() const { return before_; }
-  /// Kinetic energy of the bodies of the pair that an impact moves [J].
-  double energy(const PairTwists& V) const {
+  const Twists& before() const { return before_; }
+  /// Kinetic energy of the bodies that the impact moves [J].
+  double energy(const Twists& V) const {
     double energy_J = 0.0;
     for_each_body([&](Index i, int body) {
       if (bodies_.moves[Index(body)] == 0) return;
@@ -137,7 +156,7 @@ class PairImpact {
     });
     return energy_J;
   }
-  /// Whether no body with a given velocity does work on the pair.
+  /// Whether no body with a given velocity does work on the others.
   bool is_closed() const {
     bool closed = true;
     for_each_body([&](Index i, int body) {
@@ -149,7 +168,7 @@ class PairImpact {
     report(contacts_, scratch_.friction, scratch_.problem, share, observer);
   }
   /// Sets the velocities after the impact, and what their change adds to the detours.
-  void set(const PairTwists& V) const {
+  void set(const Twists& V) const {
     for_each_body([&](Index i, int body) {
       if (bodies_.moves[Index(body)] == 0) return;
       const Twist change = V[i] - before_[i];
@@ -159,11 +178,31 @@ class PairImpact {
   }
 
  private:
-  /// Calls visit(0 or 1, number) for those of the two that are bodies, not the world.
+  /// Calls visit(its place in the list, number) for each body.
   template <class Visit>
   void for_each_body(const Visit& visit) const {
-    if (met_.first != kWorld) visit(Index(0), met_.first);
-    if (met_.second != kWorld) visit(Index(1), met_.second);
+    for (Index i = 0; i < list_.size(); ++i) visit(i, list_[i]);
+  }
+  bool lists(int body) const { return std::find(list_.begin(), list_.end(), body) != list_.end(); }
+  /// Lists the two bodies, and those that carry them, and those that carry these. What carries a body with a
+  /// given velocity is of no account.
+  void list_bodies(std::span<const ContactRow> rows) {
+    for (const int body : {met_.first, met_.second})
+      if (body != kWorld) list_.push_back(body);
+    for (Index i = 0; i < list_.size(); ++i) {
+      if (bodies_.moves[Index(list_[i])] == 0) continue;
+      for (const ContactRow& row : rows) {
+        if ((row.body_a != list_[i] && row.body_b != list_[i]) || !carries(row, bodies_, t_)) continue;
+        const int other = row.body_a == list_[i] ? row.body_b : row.body_a;
+        if (bodies_.world.bodies[Index(other)].moves() && !lists(other) && !list_.push_back(other)) return;
+      }
+    }
+  }
+  /// Whether a contact of the listed bodies and the world carries, and is not that of the two that meet.
+  bool holds(const ContactRow& row) const {
+    const auto [one, other] = met_at(row, bodies_.world);
+    if (std::pair(one, other) == met_ || !lists(other) || (one != kWorld && !lists(one))) return false;
+    return carries(row, bodies_, t_);
   }
   /// Sets up the problem of the impact: velocities for displacements, impulses for forces.
   void set_problem() {
@@ -187,7 +226,8 @@ class PairImpact {
     Vec3 v = Vec3::Zero();
     for_each_body([&](Index i, int body) {
       const Vec3 of_body = velocity_at(before_[i], corner.p_W - X_WB_[i].p);
-      v += body == corner.body_a ? of_body : Vec3(-of_body);
+      if (body == corner.body_a) v += of_body;
+      if (body == corner.body_b) v -= of_body;
     });
     return -corner.n_BA_W.dot(v);
   }
@@ -199,9 +239,10 @@ class PairImpact {
   }
 
   std::pair<int, int> met_;
+  StaticVector<int, ImpactScratch::kMostBodies> list_;
   double t_;
-  std::array<Pose, 2> X_WB_;
-  PairTwists before_;
+  std::array<Pose, ImpactScratch::kMostBodies> X_WB_;
+  Twists before_;
   Corners corners_, corners_now_;
   RowsInProblem contacts_;
   FrictionInput input_;
@@ -209,11 +250,13 @@ class PairImpact {
   ImpactScratch& scratch_;
 };
 
-PairTwists mixed(double share, const PairTwists& one, const PairTwists& other) {
-  return {one[0] * share + other[0] * (1.0 - share), one[1] * share + other[1] * (1.0 - share)};
+Twists mixed(double share, const Twists& one, const Twists& other) {
+  Twists V;
+  for (Index i = 0; i < V.size(); ++i) V[i] = one[i] * share + other[i] * (1.0 - share);
+  return V;
 }
 
-/// Solves the impact of the pair of `first`; false when its impulses are not exact.
+/// Solves the impact at `first`; false when its impulses are not exact.
 ///
 /// Newton's restitution with friction can increase the energy where friction reverses the slip [Kane 1984].
 /// Then the answer is mixed with that of Poisson's restitution, which never does: the plastic impulses and e
@@ -221,16 +264,16 @@ PairTwists mixed(double share, const PairTwists& one, const PairTwists& other) {
 /// them.
 bool hit(std::span<const ContactRow> rows, const ContactRow& first, const Meeting& meeting,
          const ImpactBodies& bodies, double h, ImpactScratch& scratch, ImpactObserver* observer) {
-  PairImpact impact(first, meeting.time_s, bodies, scratch);
+  Impact impact(rows, first, meeting.time_s, bodies, scratch);
   impact.find_corners(rows, first, meeting.speed, h);
-  const PairTwists& before = impact.before();
+  const Twists& before = impact.before();
   if (!impact.solve(false)) {  // a body without room to bounce, hit from both sides, stays
     const bool solved = impact.solve(true);
     impact.give(1.0, observer);
     impact.set(impact.answer());
     return solved;
   }
-  const PairTwists newton = impact.answer();
+  const Twists newton = impact.answer();
   const double most_J = impact.energy(before);
   // A given velocity does work on the other body: then energy is no criterion.
   const bool closed = impact.is_closed();
@@ -241,8 +284,8 @@ bool hit(std::span<const ContactRow> rows, const ContactRow& first, const Meetin
   }
   const bool plastic_solved = impact.solve(true);
   const double e = first.impact.restitution;
-  const PairTwists plastic = impact.answer();
-  const PairTwists poisson = mixed(1.0 + e, plastic, before);
+  const Twists plastic = impact.answer();
+  const Twists poisson = mixed(1.0 + e, plastic, before);
   double share = 0.0;
   for (double step = 0.5; step > tolerances::kImpactSettled; step *= 0.5)
     if (impact.energy(mixed(share + step, newton, poisson)) <= most_J) share += step;
@@ -266,8 +309,10 @@ Meeting meeting_of(const ContactRow& row, const ImpactBodies& bodies, double now
 
 double slowest_impact(const ContactRow& row, const ImpactBodies& bodies, double h) noexcept {
   const Vec3& n = row.n_BA_W;
-  const double falls = std::max(std::abs(n.dot(bodies.A_WB[Index(row.body_a)].v)),
-                                std::abs(n.dot(bodies.A_WB[Index(row.body_b)].v)));
+  const auto weight = [&](int body) {
+    return std::abs(n.dot(bodies.A_WB[Index(body)].v - bodies.A_contacts[Index(body)].v));
+  };
+  const double falls = std::max(weight(row.body_a), weight(row.body_b));
   return kRestFrames * falls * h + row.skin_m / h + kRest_m_per_s;
 }
 

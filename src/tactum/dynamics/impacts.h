@@ -15,6 +15,12 @@
 /// the frame's impacts is given at the start of the frame, as if it had always been V_after; what that leaves
 /// out, (V_before - V_after) t, is its detour, which belongs to its displacement. With both a body that
 /// bounces is on its exact parabola at the frame's end, wherever in the frame it was hit.
+///
+///        | v         What a body rests on holds it also while it is hit: the contacts that carried a body
+///       [A]          in the last frame are solved together with the impact, without restitution of their
+///      ======        own. So A leaves B, which lies on a floor, as it would leave the floor. A contact
+///       [B]          carries a body where the body's contacts, all together, push it along the contact's
+///    ==floor==       normal; two that merely touch, as in a cradle, pass the impact on.
 
 #include <span>
 
@@ -37,9 +43,12 @@ struct ImpactBodies {
   const World& world;
   std::span<const Pose> X_WB;   ///< at the start of the frame
   std::span<const char> moves;  ///< an impact moves the body
-  std::span<const Twist> A_WB;  ///< what weight and load add to its twist in a second [m/s2, rad/s2]
-  std::span<Twist> V_WB;        ///< at the start of the frame [m/s, rad/s]
-  std::span<Twist> detour;      ///< displacement beside that of V_WB; zero where nothing was hit [m, rad]
+  /// What weight, load and resting contacts add to its twist in a second [m/s2, rad/s2].
+  std::span<const Twist> A_WB;
+  /// The part of it that is of resting contacts, as they were in the last frame [m/s2, rad/s2].
+  std::span<const Twist> A_contacts;
+  std::span<Twist> V_WB;    ///< at the start of the frame [m/s, rad/s]
+  std::span<Twist> detour;  ///< displacement beside that of V_WB; zero where nothing was hit [m, rad]
 };
 
 /// The meeting of two surfaces at a contact point: they come as near as the skin.
@@ -62,9 +71,11 @@ struct ImpactResult {
 
 /// Working memory of resolve_impacts().
 struct ImpactScratch {
-  explicit ImpactScratch(std::size_t bodies) : problem(kMostCorners, bodies, 2) {}
-  /// Corners of one pair that are solved together; of more, the first ones.
-  static constexpr std::size_t kMostCorners = 32;
+  explicit ImpactScratch(std::size_t bodies) : problem(kMostCorners, bodies, kMostBodies) {}
+  /// Bodies of one impact: the two that meet, and those that carry them, as far as there is room.
+  static constexpr std::size_t kMostBodies = kMostUnknowns / 6;
+  /// Corners of one impact that are solved together; of more, the first ones.
+  static constexpr std::size_t kMostCorners = 64;
 
   ContactProblem problem;
   FrictionAnchors no_anchors{0};

@@ -267,8 +267,10 @@ double move_grasped_island(ConstraintStep& step) {
   for (Index i = 0; i < step.world.bodies.size(); ++i) {
     if (!step.own.free.near_grasped[i]) continue;
     Twist& detour = step.own.free.detour[i];
+    const Twist V_free = step.bodies.V_WB[i];
     step.bodies.V_WB[i] =
         twist_between(before[i], step.bodies.X_WB[i], step.dt_s) - detour * (share / step.dt_s);
+    step.own.free.A_contacts[i] = (step.bodies.V_WB[i] - V_free) * (share == 1.0 ? 1.0 / step.dt_s : 0.0);
     detour = {};
   }
   return share;

@@ -141,6 +141,8 @@ struct FreeBodies {
   /// Of each body, the displacement that impacts add to its velocity's in this frame (impacts.h); at the end
   /// of a frame what is left of its displacement, for the next one [m, rad].
   std::vector<Twist> detour;
+  /// Of each body, what contacts added to its twist in a second, in the last frame [m/s2, rad/s2].
+  std::vector<Twist> A_contacts;
 
   /// Whether a patch belongs to the island of the grasped part that is not moved here.
   bool of_grasped(const ContactPatch& patch) const noexcept {
@@ -149,12 +151,14 @@ struct FreeBodies {
   }
 
   // Scratch of one frame, one entry per body, or per patch.
-  std::vector<char> struck;             ///< impacts may change its velocity
-  std::vector<char> hit;                ///< ... and one did
-  std::vector<Twist> V_free;            ///< if nothing touches [m/s, rad/s]
-  std::vector<Twist> A_free;            ///< what weight and load add to it in a second [m/s2, rad/s2]
-  std::vector<Vec3> given_Ns;           ///< by island: the momentum that contacts gave counted bodies [N s]
-  GroupedIndices bodies, rows;          ///< by island
+  std::vector<char> struck;     ///< impacts may change its velocity
+  std::vector<char> hit;        ///< ... and one did
+  std::vector<Twist> V_free;    ///< if nothing touches [m/s, rad/s]
+  std::vector<Twist> A_free;    ///< what adds to the twist that impacts see in a second [m/s2, rad/s2]
+  std::vector<Twist> A_seen;    ///< ... and the part of resting contacts in it [m/s2, rad/s2]
+  std::vector<Twist> V_seen;    ///< the twist at the start that impacts see [m/s, rad/s]
+  std::vector<Vec3> given_Ns;   ///< by island: the momentum that contacts gave counted bodies [N s]
+  GroupedIndices bodies, rows;  ///< by island
   ReservedVector<ContactRow> gathered;  ///< copies of the rows of one island
   std::vector<Vec3> w_start;            ///< rates at the start [rad/s]
   std::vector<Vec3> w_free;             ///< ... midway, if nothing touches [rad/s]

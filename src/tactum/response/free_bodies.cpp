@@ -7,7 +7,7 @@
 #include "tactum/dynamics/spin.h"
 #include "tactum/response/constraint_rows.h"
 #include "tactum/response/constraint_trial.h"
-#include "tactum/response/energy.h"
+#include "tactum/response/frame_impacts.h"
 #include "tactum/response/free_islands.h"
 #include "tactum/response/momentum.h"
 #include "tactum/response/waiting.h"
@@ -17,42 +17,11 @@ namespace {
 
 using Index = std::size_t;
 
-/// The most impacts in a frame, for every contact point and in all; the approach that is left then is solved
-/// as resting contact, without restitution.
-constexpr int kImpactsAPoint = 8;
-constexpr int kMostImpacts = 128;
 /// After the backtracking, how often bodies that are in contact with a stopped one may be stopped too, before
 /// all stop.
 constexpr int kMostStops = 12;
 /// Exact tests of each gap of the grasped part's island that are kept for it.
 constexpr int kRoundsOfGrasped = 4;
-
-/// The sums of all impacts; those on the grasped part are given at the handle.
-class ImpactsOnGrasped final : public ImpactObserver {
- public:
-  ImpactsOnGrasped(int grasped, const Vec3& p_WH, Momentum& momentum)
-      : grasped_(grasped), p_WH_(p_WH), momentum_(momentum) {}
-  void hit(int body_a, int body_b, const Vec3& impulse, const Vec3& turning,
-           const Vec3& p_W) noexcept override {
-    momentum_.give(body_a, body_b, impulse);
-    if (body_a != grasped_ && body_b != grasped_) return;
-    const double sign = body_a == grasped_ ? 1.0 : -1.0;
-    sum_ = sum_ + Wrench{impulse, turning + (p_W - p_WH_).cross(impulse)} * sign;
-    any_ = true;
-  }
-  const Wrench* sum() const { return any_ ? &sum_ : nullptr; }
-
- private:
-  int grasped_;
-  Vec3 p_WH_;
-  Momentum& momentum_;
-  Wrench sum_;
-  bool any_ = false;
-};
-
-bool is_grasped(const ConstraintStep& step, Index body) {
-  return static_cast<int>(body) == step.grasped.body;
-}
 
 bool turns_freely(const Body& body) {
   return body.joint.kind == JointKind::kFree || body.joint.kind == JointKind::kBall;
@@ -68,13 +37,6 @@ Mat3 turning_inertia(const Body& body) {
 /// Half a frame is gone back at the start by at most so many times the time in which the body's motion fades
 /// by e: farther back its velocity has no digits left.
 constexpr double kFarthestBack = 10.0;
-
-/// Drives the velocity by weight and load for `h` seconds, as far as the joint lets them act.
-void drive(const Body& body, const Vec3& gravity_W, double h, const Pose& X_WB, Twist& V_WB) {
-  V_WB = driven_velocity(body, gravity_W, X_WB, V_WB, h);
-  if (body.joint.kind != JointKind::kFree)
-    V_WB = constrained_velocity(body.joint, X_WB, damped_resistance(body, X_WB, h), V_WB);
-}
 
 /// The fraction of every island's step that its bodies' motion bounds allow, and how far each would go.
 void limit_shares(ConstraintStep& step) {
@@ -180,13 +142,6 @@ int kept_for_grasped(const ConstraintStep& step) {
   return std::min(kRoundsOfGrasped * static_cast<int>(own), step.gaps.tests_left() / 2);
 }
 
-/// The displacement, or velocity, by which a motion of its two bodies opens a row.
-double opening(const ContactRow& row, const Twist& of_a, const Twist& of_b, const ConstraintStep& step) {
-  const std::vector<Pose>& X_WB = step.bodies.X_WB;
-  return row.n_BA_W.dot(velocity_at(of_a, row.p_W - X_WB[Index(row.body_a)].p) -
-                        velocity_at(of_b, row.p_W - X_WB[Index(row.body_b)].p));
-}
-
 /// Where an impact was found so late that its gap is closed on trial, as rows are linear and bodies turn, it
 /// is met earlier: that opens the gap, where a force would add to the speed with which the bodies part. False
 /// when no impact, or none alone, has closed it.
@@ -238,44 +193,6 @@ void correct(ConstraintStep& step) {
   }
 }
 
-ImpactBodies impact_bodies(ConstraintStep& step) {
-  FreeBodies& f = step.own.free;
-  return {step.world, step.bodies.X_WB, f.struck, f.A_free, step.bodies.V_WB, f.detour};
-}
-
-/// Marks the bodies that impacts move, and finds what weight and load add to their twists.
-void begin_impacts(ConstraintStep& step) {
-  FreeBodies& f = step.own.free;
-  const double half_s = 0.5 * step.dt_s;
-  for (Index i = 0; i < step.world.bodies.size(); ++i) {
-    const Body& body = step.world.bodies[i];
-    if (!body.moves()) continue;
-    f.A_free[i] = {};
-    // The hand decides where the grasped part goes: an impact does not move it, it is felt.
-    f.struck[i] = !is_grasped(step, i) && f.islands.moves(static_cast<int>(i)) ? 1 : 0;
-    if (!f.struck[i]) {
-      f.detour[i] = {};
-      continue;
-    }
-    Twist V = step.bodies.V_WB[i];
-    drive(body, step.world.gravity_W, half_s, step.bodies.X_WB[i], V);
-    f.A_free[i] = (V - step.bodies.V_WB[i]) * (1.0 / half_s);
-  }
-}
-
-bool is_zero(const Twist& displacement) { return displacement.v.isZero(0.0) && displacement.w.isZero(0.0); }
-
-/// Forgets what the last frame has left of a displacement where another body has come into its way.
-void clear_blocked_rests(ConstraintStep& step) {
-  std::vector<Twist>& detour = step.own.free.detour;
-  if (std::all_of(detour.begin(), detour.end(), is_zero)) return;
-  for (const ContactRow& row : step.own.contact_rows.rows) {
-    Twist& of_a = detour[Index(row.body_a)];
-    Twist& of_b = detour[Index(row.body_b)];
-    if (opening(row, of_a, of_b, step) < std::min(0.0, row.skin_m - row.distance)) of_a = of_b = {};
-  }
-}
-
 /// Keeps what is left of the displacement of a body that was hit, and then went beyond its motion bound, for
 /// the next frame: it was not expected to be so fast, and is on its way again one frame later. What is left
 /// after that is dropped: where the body cannot go on, the rests would add up from frame to frame.
@@ -285,35 +202,6 @@ void keep_rests(bool as_answered, ConstraintStep& step) {
     if (is_zero(f.detour[i]) || !moves_here(step, i)) continue;
     const double left_s = as_answered && f.hit[i] ? (1.0 - f.share[i]) * step.dt_s : 0.0;
     f.detour[i] = left_s > 0.0 ? mean_twist(step, i) * left_s : Twist{};
-  }
-}
-
-/// Leaves out the contacts that bodies pass by: a row states a gap along one normal, which turns as a ball
-/// falls past an edge, and would stop it where it never touches. They ask nothing until a trial closes them.
-void leave_out_passed(ConstraintStep& step) {
-  FreeBodies& f = step.own.free;
-  const double h = step.dt_s;
-  const ImpactBodies bodies = impact_bodies(step);
-  const std::span<ContactRow> rows(step.own.contact_rows.rows.data(), step.own.constraint.rows.count);
-  const auto meets = [&](const ContactRow& row) {
-    if (!(row.distance > 2.0 * row.skin_m)) return false;
-    const Meeting meeting = meeting_of(row, bodies, 0.0);
-    return meeting.time_s < h && meeting.speed > slowest_impact(row, bodies, h);
-  };
-  for (Index first = 0, end = 0; first < rows.size(); first = end) {
-    for (end = first + 1; end < rows.size() && rows[end].patch == rows[first].patch;) ++end;
-    const std::span<ContactRow> own = rows.subspan(first, end - first);
-    const Index a = Index(own[0].body_a);
-    const Index b = Index(own[0].body_b);
-    const bool free = (f.struck[a] || f.struck[b]) && !is_grasped(step, a) && !is_grasped(step, b);
-    if (!free || own[0].idle || std::none_of(own.begin(), own.end(), meets)) continue;
-    for (const Index i : {a, b}) f.V_free[i] = step.bodies.V_WB[i] + f.A_free[i] * (0.5 * h);
-    if (!step.gaps.passes(own[0].patch, step.bodies.X_WB, f.V_free, h, 0.5 * own[0].skin_m)) continue;
-    for (ContactRow& row : own) {
-      row.idle = true;
-      row.asked = kAsksNothing_m;
-      row.impact.enabled = false;
-    }
   }
 }
 
@@ -344,36 +232,14 @@ void find_islands(ConstraintStep& step) {
   if (!f.grasped_here) f.grasped_island = island;
 }
 
-/// Applies impacts, and adds the other half of weight and load.
-void apply_impacts(ConstraintStep& step) {
+/// Adds the other half of weight and load.
+void add_second_half(ConstraintStep& step) {
   if (!step.own.free.others) return;
   std::vector<Twist>& V_WB = step.bodies.V_WB;
   const std::vector<Pose>& X_WB = step.bodies.X_WB;
-  const int grasped = step.grasped.body;
-  begin_impacts(step);
-  clear_blocked_rests(step);
-  leave_out_passed(step);
-  const double energy_J = grasped < 0 ? 0.0 : bodies_energy(step.world, step.bodies, grasped);
-  ImpactsOnGrasped impacts(grasped, grasped < 0 ? Vec3::Zero() : X_WB[Index(grasped)] * step.grasped.X_BH.p,
-                           step.own.free.momentum);
-  const std::vector<Twist>& detour = step.own.free.detour;
-  std::vector<Twist>& detour_before = step.own.free.V_free;
-  detour_before = detour;  // same size: nothing is allocated
-  const ImpactResult result = resolve_impacts(
-      step.own.contact_rows.rows, impact_bodies(step), step.dt_s,
-      std::min(kMostImpacts, kImpactsAPoint * static_cast<int>(step.own.contact_rows.rows.size())),
-      step.own.impact_scratch, &impacts);
-  step.report.impacts = result.hits;
-  if (!result.converged) step.report.flags |= frame_flag::kSolverBounded;
-  if (impacts.sum())
-    step.own.impulses.add(step.settings.impacts, step.dt_s, *impacts.sum(),
-                          std::max(0.0, energy_J - bodies_energy(step.world, step.bodies, grasped)));
-
   for (Index i = 0; i < step.world.bodies.size(); ++i) {
     const Body& body = step.world.bodies[i];
     if (!step.own.free.islands.moves(static_cast<int>(i)) || is_grasped(step, i)) continue;
-    // A body that has passed its impulse on has the velocity that it had before.
-    step.own.free.hit[i] = detour[i].v != detour_before[i].v || detour[i].w != detour_before[i].w ? 1 : 0;
     step.own.free.w_start[i] = V_WB[i].w;
     if (turns_freely(body)) V_WB[i].w = rate_midway(turning_inertia(body), X_WB[i].R, V_WB[i].w, step.dt_s);
     if (body.joint.kind == JointKind::kBall) V_WB[i].v = V_WB[i].w.cross(X_WB[i].p - body.joint.anchor_W);
@@ -470,6 +336,7 @@ void move_free_bodies(ConstraintStep& step) noexcept {
     if (f.share[i] > 0.0 || is_grasped(step, i)) continue;
     // A body that stays loses its velocity: kept, it would grow under gravity meanwhile.
     step.bodies.V_WB[i] = {};
+    f.A_contacts[i] = {};
     ++step.report.cut_short;
   }
 }
@@ -488,6 +355,7 @@ void begin_step(ConstraintStep& step) noexcept {
   begin_balance(step);
   make_corner_rows(step);
   apply_impacts(step);
+  add_second_half(step);
 }
 
 void end_step(bool as_forced, ConstraintStep& step) noexcept {

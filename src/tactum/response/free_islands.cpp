@@ -134,7 +134,10 @@ void solve_swept(IslandProblem& p) {
 
 void solve_island(IslandProblem& p) {
   const ConstraintStep& step = p.step;
-  if (is_idle(p)) return;
+  if (is_idle(p)) {
+    step.own.free.A_contacts[Index(p.bodies[0])] = {};
+    return;
+  }
   Index unknowns = 0;
   bool coupled = false;
   for (const int body : p.bodies) {
@@ -147,8 +150,10 @@ void solve_island(IslandProblem& p) {
   for (const ProblemBody& body : p.problem.bodies()) {
     if (body.body == step.grasped.body) feel(displacement_of_handle(p.problem, step), p.step);
     const Twist displacement = to_twist(p.problem.displacement(body.body));
-    step.bodies.V_WB[Index(body.body)] =
-        (displacement - step.own.free.detour[Index(body.body)]) * (1.0 / step.dt_s);
+    FreeBodies& f = step.own.free;
+    const Index i = Index(body.body);
+    step.bodies.V_WB[i] = (displacement - f.detour[i]) * (1.0 / step.dt_s);
+    f.A_contacts[i] = (step.bodies.V_WB[i] - f.V_free[i]) * (1.0 / step.dt_s);
   }
 }
 
