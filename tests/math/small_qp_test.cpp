@@ -37,7 +37,7 @@ struct Rows {
   QpProblem problem() const {
     made.clear();
     for (std::size_t row = 0; row < offsets.size(); ++row) made.push_back(in_runs(row));
-    return {unknowns, made, {}, kTolerance};
+    return {unknowns, made, {}, 0, kTolerance};
   }
 
  private:
@@ -317,7 +317,7 @@ TEST(SmallQp, AConeIsItsEdgesWrittenOut) {
                 1e-14);
     SmallQp by_cones, by_rows;
     by_cones.begin(with_cones, {});
-    const QpProblem written_out{unknowns, rows, {}, kTolerance};
+    const QpProblem written_out{unknowns, rows, {}, 0, kTolerance};
     by_rows.begin(written_out, {});
     const QpAnswer& one = by_cones.solve_on(with_cones, 1000);
     const QpAnswer& other = by_rows.solve_on(written_out, 1000);
@@ -327,6 +327,31 @@ TEST(SmallQp, AConeIsItsEdgesWrittenOut) {
     for (const QpActive& active : one.active) on_edges += active.row >= 10 ? 1 : 0;
   }
   EXPECT_GT(on_edges, 400);
+}
+
+/// An equation is a row and its opposite: the same point, and a multiplier of either sign.
+TEST(SmallQp, AnEquationIsARowAndItsOpposite) {
+  constexpr std::uint64_t kSeed = 31;
+  std::cout << "seed " << kSeed << "\n";
+  Random random(kSeed);
+  int pulling = 0;
+  for (int trial = 0; trial < 200; ++trial) {
+    const std::size_t unknowns = QpRow::kLongestRun * (1 + std::size_t(random.index(6)));
+    constexpr std::size_t kEquations = 4;
+    const Rows some = random_rows(random, unknowns, 14, -0.5, 0.05);
+    QpProblem problem = some.problem();
+    problem.equalities = kEquations;
+    Rows both = some;
+    for (std::size_t i = 0; i < kEquations; ++i) both.add(-some.normal(i), -some.offsets[i]);
+    SmallQp qp;
+    qp.begin(problem, {});
+    const QpAnswer& one = qp.solve_on(problem, 1000);
+    const QpAnswer other = both.solve();
+    if (other.status != QpStatus::kSolved || one.status != QpStatus::kSolved) continue;
+    for (std::size_t i = 0; i < unknowns; ++i) ASSERT_NEAR(one.z[i], other.z[i], 1e-6) << "trial " << trial;
+    for (const QpActive& active : one.active) pulling += active.multiplier < 0.0 ? 1 : 0;
+  }
+  EXPECT_GT(pulling, 100);
 }
 
 TEST(SmallQp, AThousandRowsInSixAndInAsManyUnknownsAsThereMayBe) {

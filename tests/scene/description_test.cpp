@@ -152,25 +152,6 @@ centre_fraction = 0.4
   EXPECT_EQ(built->settings.tool.centre_fraction, 0.4);
 }
 
-/// Joints lead to the world; one to another body is refused, and said so.
-TEST(Description, AJointToAnotherBodyIsRefused) {
-  const std::string text = R"(schema = 1
-[[body]]
-name = "arm"
-part = { box = { size_m = [0.1, 0.01, 0.01] } }
-[[body]]
-name = "finger"
-part = { box = { size_m = [0.1, 0.01, 0.01] } }
-joint = { kind = "hinge", parent = "arm", axis = [0, 0, 1] }
-)";
-  const Result<SceneDescription> scene = parse_description(text, "arm", "arm.toml", {});
-  ASSERT_FALSE(scene);
-  const std::string message = scene.error().message();
-  EXPECT_NE(message.find("arm.toml:8:36: a joint between two bodies that move is not supported"),
-            std::string::npos)
-      << message;
-}
-
 TEST(DescriptionErrors, NameJointsAndFieldsByPath) {
   expect_error([](auto& s) { s.bodies[2].joint = SliderJoint{}; }, "body[2].joint.axis", "no direction");
   expect_error(

@@ -64,7 +64,7 @@ OrderedJson bodies_json(const World& world) {
     OrderedJson json = {{"name", body.name},
                         {"shape", shapes.of_body[i]},
                         {"moves", body.moves()},
-                        {"joint", joint_name(body.joint.kind)},
+                        {"joint", joint_name(world.joint_of(static_cast<int>(i)).kind)},
                         {"pieces", body.part->pieces.size()},
                         {"mass_kg", body.mass_kg},
                         {"radius_m", body.part->radius},

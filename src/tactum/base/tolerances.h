@@ -201,4 +201,8 @@ inline constexpr double kQuaternionNear = 1e-3;
 /// the weight difference that a hand can feel, far above the error of a mesh's volume integrals.
 inline constexpr double kCentered = 1e-6;
 
+/// A joint between two bodies is closed when its points are apart by no more than this fraction of the body's
+/// size, and its axes by no more than this angle [rad]: some roundings, so that no error adds up.
+inline constexpr double kJointClosed = 1e-14;
+
 }  // namespace tactum::inline v0_1::tolerances

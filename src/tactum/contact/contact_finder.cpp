@@ -87,7 +87,7 @@ void ContactFinder::find_patches(std::span<const Pose> X_WB, int budget, PatchPo
   settle_candidates(X_WB);
   for (const bool grasped : {true, false})
     for (const SweepAndPrune::Pair& near : sweep_.pairs())
-      if (meet_by_surfaces(near.a, near.b) && of_grasped(near.a, near.b) == grasped)
+      if (may_touch(near) && meet_by_surfaces(near.a, near.b) && of_grasped(near.a, near.b) == grasped)
         test_surfaces(near, X_WB);
   leave_out_implied(X_WB);
   work_.patches = static_cast<int>(patches_.size());

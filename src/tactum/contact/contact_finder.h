@@ -125,6 +125,7 @@ class ContactFinder final : public GapOracle {
   };
 
   void move_boxes(std::span<const Pose> X_WB) noexcept;
+  bool may_touch(const SweepAndPrune::Pair& near) const noexcept;
   bool list_holds(const SweepAndPrune::Pair& near) noexcept;
   void renew_lists(std::span<const Pose> X_WB) noexcept;
   bool collect(int a, int b, const Pose& X_AB, double range) noexcept;

@@ -103,8 +103,14 @@ void ContactFinder::move_boxes(std::span<const Pose> X_WB) noexcept {
   work_.broad_phase_runs = 1;
 }
 
+bool ContactFinder::may_touch(const SweepAndPrune::Pair& near) const noexcept {
+  const CollisionBody& a = bodies_[Index(near.a)];
+  const CollisionBody& b = bodies_[Index(near.b)];
+  return (a.moves || b.moves) && a.no_contact_with != near.b && b.no_contact_with != near.a;
+}
+
 bool ContactFinder::list_holds(const SweepAndPrune::Pair& near) noexcept {
-  if (!bodies_[Index(near.a)].moves && !bodies_[Index(near.b)].moves) return true;
+  if (!may_touch(near)) return true;
   const BodyPair& list = list_of(near);
   const double moved = accumulated_motion(near.a, near.b) - list.accumulated_motion;
   return list.renewal == renewal_ && moved + tolerance(near.a, near.b) <= list.range;
@@ -114,7 +120,7 @@ void ContactFinder::renew_lists(std::span<const Pose> X_WB) noexcept {
   work_.broad_phase_runs = 1;
   renewed_.clear();
   for (const SweepAndPrune::Pair& near : sweep_.pairs()) {
-    if (!bodies_[Index(near.a)].moves && !bodies_[Index(near.b)].moves) continue;
+    if (!may_touch(near)) continue;
     BodyPair& list = list_of(near);
     const Index first = renewed_.size();
     if (list_holds(near)) {

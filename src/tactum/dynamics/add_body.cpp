@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "tactum/base/tolerances.h"
 #include "tactum/dynamics/world.h"
@@ -66,6 +68,62 @@ Result<void> check_load(const BodySpec& spec) {
   return {};
 }
 
+/// A body that a joint makes fixed.
+Result<void> check_rest(const Body& body) {
+  if (!body.load.acts() && body.V_WB.v.isZero(0.0) && body.V_WB.w.isZero(0.0)) return {};
+  return Error{"a fixed body has a velocity or a load", "one of them", "a parent that moves", body.name};
+}
+
+/// Whether a body is jointed to another one, or to one that is, and so on.
+bool hangs_on(const World& world, int body, int other) {
+  for (int at = body; at != other;) {
+    const int pair = world.bodies[static_cast<std::size_t>(at)].pair_joint;
+    if (pair < 0) return false;
+    at = world.pair_joints[static_cast<std::size_t>(pair)].parent;
+  }
+  return true;
+}
+
+/// The number of joints between a body and the end of its chain.
+int depth_of(const World& world, int body) {
+  int depth = 0;
+  for (int pair = world.bodies[static_cast<std::size_t>(body)].pair_joint; pair >= 0; ++depth)
+    pair = world.bodies[static_cast<std::size_t>(world.pair_joints[static_cast<std::size_t>(pair)].parent)]
+               .pair_joint;
+  return depth;
+}
+
+/// A joint to a body that does not move is one to the world. The others: that of a parent before those on it,
+/// else in the order of their bodies; each body knows its own.
+void place_on_joints(World& world) {
+  std::vector<PairJoint>& pairs = world.pair_joints;
+  for (std::size_t i = 0; i < pairs.size();) {
+    if (world.bodies[static_cast<std::size_t>(pairs[i].parent)].moves()) {
+      ++i;
+      continue;
+    }
+    world.bodies[static_cast<std::size_t>(pairs[i].body)].joint = pairs[i].joint;
+    pairs.erase(pairs.begin() + static_cast<std::ptrdiff_t>(i));
+    i = 0;  // what hangs on that body may stand before it
+  }
+  for (Body& body : world.bodies) body.pair_joint = -1;
+  const auto number = [&] {
+    for (std::size_t i = 0; i < pairs.size(); ++i)
+      world.bodies[static_cast<std::size_t>(pairs[i].body)].pair_joint = static_cast<int>(i);
+  };
+  number();
+  std::vector<int> depth;
+  for (const Body& body : world.bodies)
+    depth.push_back(depth_of(world, static_cast<int>(&body - world.bodies.data())));
+  std::sort(pairs.begin(), pairs.end(), [&](const PairJoint& a, const PairJoint& b) {
+    const auto key = [&](const PairJoint& pair) {
+      return std::pair(depth[static_cast<std::size_t>(pair.body)], pair.body);
+    };
+    return key(a) < key(b);
+  });
+  number();
+}
+
 /// The factor of the part's mass and inertia.
 Result<double> mass_factor(const BodySpec& spec) {
   if (spec.mass_kg && spec.density_kg_per_m3)
@@ -108,6 +166,42 @@ Result<int> World::add(const BodySpec& spec) {
   body.field_points = spec.field_points;
   bodies.push_back(std::move(body));
   return static_cast<int>(bodies.size()) - 1;
+}
+
+Result<void> World::join(int body, int parent, const Joint& joint, bool contact) {
+  const int count = static_cast<int>(bodies.size());
+  if (body < 0 || body >= count || parent < 0 || parent >= count)
+    return Error{"a joint of bodies that are not there", fmt::format("{} and {}", body, parent),
+                 fmt::format("0 to {}", count - 1), ""};
+  Body& child = bodies[static_cast<std::size_t>(body)];
+  const Body& above = bodies[static_cast<std::size_t>(parent)];
+  if (child.joint.kind != JointKind::kFree || child.pair_joint >= 0)
+    return Error{"the body has a joint already", "two joints", "one", child.name};
+  if (joint.kind == JointKind::kFree)
+    return Error{"the joint to another body joins nothing", "free", "fixed, hinge, slider or ball",
+                 child.name};
+  if (body == parent)
+    return Error{"the body is joined to itself", fmt::format("\"{}\"", child.name), "another body",
+                 child.name};
+  if (hangs_on(*this, parent, body))
+    return Error{"the joints form a circle", fmt::format("\"{}\" hangs on \"{}\"", above.name, child.name),
+                 "a parent that does not hang on the body", child.name};
+  if (Result<void> sound = check_joint(joint, child.name); !sound) return sound.error();
+  if (!above.moves() && joint.kind == JointKind::kFixed) {
+    if (Result<void> sound = check_rest(child); !sound) return sound.error();
+  }
+  Joint unit = joint;
+  const double length = unit.axis_W.norm();
+  if (std::abs(length - 1.0) > tolerances::kRotationExact) unit.axis_W /= length;
+  if (!contact) child.no_contact_with = parent;
+  if (!above.moves()) {
+    child.joint = unit;
+    place_on_joints(*this);
+    return {};
+  }
+  pair_joints.push_back({body, parent, unit});
+  place_on_joints(*this);
+  return {};
 }
 
 }  // namespace tactum::inline v0_1

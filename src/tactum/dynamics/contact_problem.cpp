@@ -15,8 +15,8 @@ using Index = std::size_t;
 constexpr double kFrictionSoftness = 1e-3;
 constexpr double kFarthestTravel = 0.05;  // [rad or m]
 
-/// Rows of joints' limits and frictions, of each body.
-constexpr Index kJointRows = 4;
+/// Unknowns of a body with its joint, at most.
+constexpr Index kMostOfBody = 9;
 /// A run of a row is read in whole lanes, also beyond the last unknown.
 constexpr Index kRoomBehind = 8;
 
@@ -113,8 +113,11 @@ std::size_t freedom_of(const Joint& joint) noexcept {
   return 6;
 }
 
-std::size_t exact_unknowns_of(const Joint& joint) noexcept {
-  return freedom_of(joint) + (joint.friction > 0.0 ? 1 : 0);
+std::size_t exact_unknowns_of(const World& world, const Body& body) noexcept {
+  const Index own = freedom_of(body.joint) + (body.joint.friction > 0.0 ? 1 : 0);
+  if (body.pair_joint < 0) return own;
+  const JointUnknowns more = joint_unknowns(world.pair_joints[Index(body.pair_joint)].joint);
+  return own + more.before + more.behind;
 }
 
 ContactProblem::ContactProblem(std::size_t most_rows, std::size_t world_bodies, std::size_t bodies)
@@ -122,8 +125,9 @@ ContactProblem::ContactProblem(std::size_t most_rows, std::size_t world_bodies, 
   bodies_.reserve(bodies);
   joint_frictions_.reserve(bodies);
   limits_.reserve(2 * bodies);
+  locks_.reserve(6 * bodies);
   rows_.reserve(most_rows + kJointRows * bodies);
-  z_.reserve(std::max(6 * bodies + kRoomBehind, columns::kColumn));
+  z_.reserve(std::max(kMostOfBody * bodies + kRoomBehind, columns::kColumn));
 }
 
 void ContactProblem::clear() noexcept {
@@ -132,6 +136,8 @@ void ContactProblem::clear() noexcept {
   unknowns_ = 0;
   joint_frictions_.clear();
   limits_.clear();
+  locks_.clear();
+  equalities_ = 0;
   rows_.clear();
   cones_.clear();
   if (is_loaded_) load_.fill(0.0);
@@ -170,9 +176,10 @@ void ContactProblem::set_motions(ProblemBody& body, const PlacedBody& placed, co
         static_cast<std::uint32_t>(body.first), 1, {work(along, body.centre, body.motions.col(0))}};
     friction.travel.offset = -work(along, body.centre, body.target);
   }
-  if (forces.limited_down()) limits_.push_back({body.body, along, std::max(0.0, forces.travel_down)});
+  if (forces.limited_down()) limits_.push_back({body.body, -1, along, std::max(0.0, forces.travel_down)});
   if (forces.limited_up())
-    limits_.push_back({body.body, {along.p_W, -along.force, -along.torque}, std::max(0.0, forces.travel_up)});
+    limits_.push_back(
+        {body.body, -1, {along.p_W, -along.force, -along.torque}, std::max(0.0, forces.travel_up)});
 }
 
 void ContactProblem::add_body(const PlacedBody& placed, const Vec3& centre_W, const BodyMetric& metric,
@@ -187,6 +194,16 @@ void ContactProblem::add_body(const PlacedBody& placed, const Vec3& centre_W, co
   next.turns = inverse_factor(metric.angular);
 }
 
+void ContactProblem::add_body_and_joint(const World& world, const PlacedBody& placed, const Vec3& centre_W,
+                                        const BodyMetric& metric, const Vec6& target, double h) noexcept {
+  const int pair = placed.body.pair_joint;
+  const JointUnknowns more =
+      pair < 0 ? JointUnknowns{} : joint_unknowns(world.pair_joints[Index(pair)].joint);
+  unknowns_ += more.before;
+  add_body(placed, centre_W, metric, target, h);
+  unknowns_ += more.behind;
+}
+
 void ContactProblem::add_given(int body, const Vec3& origin_W, const Vec6& displacement) noexcept {
   next_body(body, 0, origin_W, origin_W).target = displacement;
 }
@@ -194,12 +211,20 @@ void ContactProblem::add_given(int body, const Vec3& origin_W, const Vec6& displ
 void ContactProblem::follow(const ContactProblem& led) noexcept {
   clear();
   for (const ProblemBody& other : led.bodies()) {
+    unknowns_ = other.first;  // also those of pair joints before it
     ProblemBody& body = next_body(other.body, other.rank, other.origin, other.centre);
     body.target = led.displacement_at_centre(other);
     body.per_displacement = other.per_displacement;
     body.turns = other.turns;
     body.motions = other.motions;
   }
+  for (const Lock& lock : led.locks_) {
+    locks_.push_back(lock);
+    locks_.back().row = rows_.size();
+    QpRow& row = rows_.emplace_back(row_of(lock.pair->body, lock.pair->parent, lock.push));
+    row.offset = 0.0;  // the targets are joined
+  }
+  equalities_ = rows_.size();
   limits_.assign(led.limits_.begin(), led.limits_.end());  // within the room: an assignment would reserve
   add_joint_rows(true);
 }
@@ -209,22 +234,35 @@ void ContactProblem::follow(const ContactProblem& led) noexcept {
 /// thousandth of T.
 void ContactProblem::add_friction_unknown(const JointFriction& friction) noexcept {
   if (unknowns_ == kMostUnknowns) return;
-  const Index unknown = unknowns_++;
-  const QpRow::Run& travel = friction.travel.runs[0];
+  JointFriction with_unknown = friction;
+  with_unknown.own = 0;
+  with_unknown.travel.runs[0] = {static_cast<std::uint32_t>(unknowns_++), 1, {0.0}};
+  with_unknown.travel.runs[1] = friction.travel.runs[0];
+  add_friction_rows(with_unknown);
+}
+
+void ContactProblem::add_friction_rows(const JointFriction& friction) noexcept {
   const double spring = kFrictionSoftness * friction.friction / kFarthestTravel;
   const double unpulled = -friction.friction / spring;  // t*
   for (const double side : {1.0, -1.0}) {
-    QpRow& row = rows_.emplace_back();
-    row.runs[0] = {static_cast<std::uint32_t>(unknown), 1, {1.0 / std::sqrt(spring)}};
-    row.runs[1] = {travel.first, 1, {-side * travel.g[0]}};
+    QpRow& row = rows_.emplace_back(friction.travel);
+    for (QpRow::Run& run : row.runs)
+      for (double& g : run.g) g *= -side;
+    row.runs[0].g[Index(friction.own)] = 1.0 / std::sqrt(spring);
     row.offset = -side * friction.travel.offset - unpulled;
   }
 }
 
 void ContactProblem::add_joint_rows(bool exact) noexcept {
   if (exact)
-    for (const JointFriction& friction : joint_frictions_) add_friction_unknown(friction);
-  for (const Limit& limit : limits_) add_row(limit.body, -1, limit.push, -limit.travel);
+    for (const JointFriction& friction : joint_frictions_) {
+      if (friction.own < 0) {
+        add_friction_unknown(friction);
+      } else {
+        add_friction_rows(friction);
+      }
+    }
+  for (const Limit& limit : limits_) add_row(limit.body, limit.parent, limit.push, -limit.travel);
 }
 
 /// Sets what a push on the first body does, and its opposite on the other one.
@@ -300,7 +338,7 @@ void ContactProblem::add_load(const QpRow& along, double force_N) noexcept {
 }
 
 QpProblem ContactProblem::nearest_point() const noexcept {
-  return {unknowns_, rows_, {cones_.begin(), cones_.end()}, tolerances::kRowKept_m};
+  return {unknowns_, rows_, {cones_.begin(), cones_.end()}, equalities_, tolerances::kRowKept_m};
 }
 
 void ContactProblem::begin(std::span<const int> first) noexcept { qp_.begin(nearest_point(), first); }

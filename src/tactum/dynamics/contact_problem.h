@@ -14,6 +14,11 @@
 /// unknowns for a free body, one for a hinged or sliding one, three for one on a ball. A joint's spring and
 /// damper are part of its body's metric, its limits are rows, its dry friction is a force of bounded size.
 ///
+/// A body that is jointed to another one has its six unknowns, and the joint is rows of both that hold with
+/// equality. Spring and damper act on an unknown of their own, the joint's travel, that one more such row
+/// keeps at the travel of the two bodies: the unknowns of a joint stand beside the six, so a row reaches
+/// both in one run.
+///
 /// Three solvers work on it: solve_exactly.h (active set, for few bodies), solve_by_sweeps.h (projected
 /// Gauss-Seidel, for any number), solve_penalty.h (rows that yield). choose_solver() selects one.
 
@@ -22,6 +27,7 @@
 #include "tactum/base/reserved_vector.h"
 #include "tactum/dynamics/contact_row.h"
 #include "tactum/dynamics/joint_forces.h"
+#include "tactum/dynamics/pair_joint.h"
 #include "tactum/math/small_qp.h"
 
 namespace tactum::inline v0_1 {
@@ -54,20 +60,14 @@ struct ProblemBody {
   Eigen::Matrix<double, 6, 3> motions;  ///< the first `rank` columns, of a jointed body
 };
 
-/// The force of a row per unit of its multiplier: a force at a point, and a torque beside it.
-struct Push {
-  Vec3 p_W = Vec3::Zero();     ///< [m]
-  Vec3 force = Vec3::Zero();   ///< [-]
-  Vec3 torque = Vec3::Zero();  ///< [m]
-};
-
 /// That of a contact row.
 inline Push push_of(const ContactRow& row) { return {row.p_W, row.n_BA_W, Vec3::Zero()}; }
 
 /// How many unknowns a joint leaves.
 std::size_t freedom_of(const Joint& joint) noexcept;
-/// The same, and one more for the joint's dry friction, as the exact solver needs it.
-std::size_t exact_unknowns_of(const Joint& joint) noexcept;
+/// The same, and one more for the joint's dry friction, as the exact solver needs it; with those of the pair
+/// joint that the body has.
+std::size_t exact_unknowns_of(const World& world, const Body& body) noexcept;
 
 /// The displacement along a row, as the row measures it, for a unit force along it: |g|^2 [m/N].
 inline double mobility(const QpRow& row) noexcept {
@@ -99,6 +99,8 @@ inline PlacedBody placed(const World& world, const WorldState& state, int number
 class ContactProblem {
  public:
   static constexpr std::size_t kMostCones = 32;
+  /// Rows of the joints of each body: six locks, three of a damper, two limits, two of dry friction.
+  static constexpr std::size_t kJointRows = 13;
   /// Room for `most_rows` rows beside those of joints and for `most_bodies` of the world's bodies.
   ContactProblem(std::size_t most_rows, std::size_t world_bodies, std::size_t most_bodies);
   /// Room for all of the world's bodies.
@@ -112,12 +114,23 @@ class ContactProblem {
   /// not move.
   void add_body(const PlacedBody& placed, const Vec3& centre_W, const BodyMetric& metric, const Vec6& target,
                 double h) noexcept;
+  /// The same for a body that may have a pair joint, with the unknowns of that.
+  void add_body_and_joint(const World& world, const PlacedBody& placed, const Vec3& centre_W,
+                          const BodyMetric& metric, const Vec6& target, double h) noexcept;
   /// Adds a body whose displacement is given: nothing in this problem changes it.
   void add_given(int body, const Vec3& origin_W, const Vec6& displacement) noexcept;
   /// Takes the same bodies, each with the other problem's answer as its target, and the rows of their joints'
   /// limits. Joint friction is not added: that answer contains it. This problem should have been made with
   /// room for as many bodies as the other one: with less, the limits allocate.
   void follow(const ContactProblem& led) noexcept;
+  /// Adds the rows of the pair joints between bodies that were added, which come before all others. The
+  /// joints act for `h` seconds.
+  void add_pair_joints(const World& world, const WorldState& state, double h) noexcept;
+  /// Corrects the locks of pair joints by the errors that the last answer has left in the poses X_WB; returns
+  /// the largest of them, lengths as fractions of the body's size [- or rad].
+  double correct_pair_joints(const World& world, std::span<const Pose> X_WB) noexcept;
+  /// The first so many rows hold with equality.
+  std::size_t equalities() const noexcept { return equalities_; }
   /// Adds the rows of joints. `exact`: dry friction becomes an unknown of its own with two rows, as long as
   /// there is room for it.
   void add_joint_rows(bool exact) noexcept;
@@ -154,8 +167,11 @@ class ContactProblem {
   // Of the other solvers: they work on the rows and the unknowns themselves.
   struct JointFriction {
     double friction = 0.0;  ///< [N m or N]
-    /// opening(travel) is the joint's travel in the step. It has one run, of one unknown [rad or m].
+    /// opening(travel) is the joint's travel in the step. That of a joint to the world has one run, of one
+    /// unknown [rad or m].
     QpRow travel;
+    /// Where the unknown of a pair joint's friction stands in the first run of `travel`; -1: it has none yet.
+    int own = -1;
   };
   std::span<const QpRow> row_list() const noexcept { return rows_; }
   std::span<const JointFriction> joint_frictions() const noexcept {
@@ -179,7 +195,7 @@ class ContactProblem {
 
  private:
   struct Limit {
-    int body = -1;
+    int body = -1, parent = -1;
     Push push;            // along the joint's coordinate
     double travel = 0.0;  // that is left, not negative [rad or m]
   };
@@ -195,12 +211,25 @@ class ContactProblem {
   void set_motions(ProblemBody& body, const PlacedBody& placed, const BodyMetric& metric, const Vec6& target,
                    double h) noexcept;
   void add_friction_unknown(const JointFriction& friction) noexcept;
+  void add_friction_rows(const JointFriction& friction) noexcept;
+  QpRow travel_of(const PairJoint& pair, const Push& along, std::size_t own) const noexcept;
+  double inertia_along(QpRow travel, std::size_t locks) const noexcept;
+  void add_drag(const PairJoint& pair, const Push& along, std::size_t own, double drag,
+                double travel) noexcept;
+  void add_pair_joint(const World& world, const PairJoint& pair, const WorldState& state, double h) noexcept;
 
   ReservedVector<ProblemBody> bodies_;
   std::vector<int> index_of_;  // of a body of the world in bodies_; -1: none
   std::size_t unknowns_ = 0;
   ReservedVector<JointFriction> joint_frictions_;
   ReservedVector<Limit> limits_;
+  struct Lock {
+    const PairJoint* pair = nullptr;
+    Push push;
+    std::size_t row = 0;
+  };
+  ReservedVector<Lock> locks_;
+  std::size_t equalities_ = 0;
   ReservedVector<QpRow> rows_;
   StaticVector<QpCone, kMostCones> cones_;
   // The change of the unknowns by loads: with z = z' + load the rows of qp_ are those of z'.

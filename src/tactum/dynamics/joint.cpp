@@ -19,9 +19,9 @@ bool has_single_motion(const Joint& joint) noexcept {
 
 /// The turn by hinge_angle() about the hinge's axis, from the cosine and sine of half of it, as the
 /// quaternion has them: without the angle.
-Mat3 hinge_turn(const Body& body, const Pose& X_WB) noexcept {
-  const Vec3& u = body.joint.axis_W;
-  const Quat turn(X_WB.R * body.X_WB.R.transpose());
+Mat3 hinge_turn(const Joint& hinge, const Mat3& R_start, const Mat3& R) noexcept {
+  const Vec3& u = hinge.axis_W;
+  const Quat turn(R * R_start.transpose());
   const double w = turn.w();
   const double x = u.dot(turn.vec());
   const double square = w * w + x * x;
@@ -68,26 +68,30 @@ JointMotions joint_motions(const Joint& joint, const Pose& X_WB) noexcept {
   return S;
 }
 
-Vec6 joint_rate(const Body& body, const Pose& X_WB) noexcept {
+Vec6 joint_rate(const Joint& joint, const Pose& X_start, const Pose& X_WB) noexcept {
   Vec6 rate = Vec6::Zero();
-  switch (body.joint.kind) {
+  switch (joint.kind) {
     case JointKind::kFree:
     case JointKind::kFixed:
       break;
     case JointKind::kHinge:
-      rate.tail<3>() = body.joint.axis_W;
+      rate.tail<3>() = joint.axis_W;
       break;
     case JointKind::kSlider:
-      rate.head<3>() = body.joint.axis_W;
+      rate.head<3>() = joint.axis_W;
       break;
     case JointKind::kBall: {
-      const Vec3 turned = log_rotation(X_WB.R * body.X_WB.R.transpose());
+      const Vec3 turned = log_rotation(X_WB.R * X_start.R.transpose());
       const double angle = turned.norm();
       if (angle > 0.0) rate.tail<3>() = turned / angle;
       break;
     }
   }
   return rate;
+}
+
+Vec6 joint_rate(const Body& body, const Pose& X_WB) noexcept {
+  return joint_rate(body.joint, body.X_WB, X_WB);
 }
 
 Twist constrained_velocity(const Joint& joint, const Pose& X_WB, const Resistance& M,
@@ -122,24 +126,28 @@ Twist carried_velocity(const Joint& joint, const Pose& X_WB, const Twist& V) noe
   return V;
 }
 
-Pose constrained_pose(const Body& body, const Pose& X_WB) noexcept {
-  const Vec3& anchor = body.joint.anchor_W;
+Pose constrained_pose(const Joint& joint, const Pose& X_start, const Pose& X_WB) noexcept {
+  const Vec3& anchor = joint.anchor_W;
   const auto turned = [&](const Mat3& turn) -> Pose {
-    return {turn * body.X_WB.R, anchor + turn * (body.X_WB.p - anchor)};
+    return {turn * X_start.R, anchor + turn * (X_start.p - anchor)};
   };
-  switch (body.joint.kind) {
+  switch (joint.kind) {
     case JointKind::kFixed:
-      return body.X_WB;
+      return X_start;
     case JointKind::kFree:
       return renormalized(X_WB);
     case JointKind::kHinge:
-      return turned(hinge_turn(body, X_WB));
+      return turned(hinge_turn(joint, X_start.R, X_WB.R));
     case JointKind::kSlider:
-      return {body.X_WB.R, body.X_WB.p + body.joint.axis_W * joint_position(body, X_WB)};
+      return {X_start.R, X_start.p + joint.axis_W * joint_position(joint, X_start, X_WB)};
     case JointKind::kBall:
-      return turned(renormalized(X_WB).R * body.X_WB.R.transpose());
+      return turned(renormalized(X_WB).R * X_start.R.transpose());
   }
   return X_WB;
+}
+
+Pose constrained_pose(const Body& body, const Pose& X_WB) noexcept {
+  return constrained_pose(body.joint, body.X_WB, X_WB);
 }
 
 }  // namespace tactum::inline v0_1

@@ -32,6 +32,8 @@ inline Vec3 beside_axis(const Joint& hinge, const Vec3& p_W) noexcept {
 
 /// The row that gives the rate of the joint's position from a twist: position' = rate . V. Zero where there
 /// is none. For a ball it is along the axis about which the ball has turned.
+Vec6 joint_rate(const Joint& joint, const Pose& X_start, const Pose& X_WB) noexcept;
+/// The same for a body's joint to the world.
 Vec6 joint_rate(const Body& body, const Pose& X_WB) noexcept;
 
 /// The velocity the joint allows that is nearest to V in the metric of the resistance: constraints applied to
@@ -43,7 +45,10 @@ Twist constrained_velocity(const Joint& joint, const Pose& X_WB, const Resistanc
 /// not the direction of the velocity.
 Twist carried_velocity(const Joint& joint, const Pose& X_WB, const Twist& V) noexcept;
 
-/// The pose the joint allows that is nearest to X_WB: constraints applied to poses at the end of the frame.
+/// The pose that a joint allows which is nearest to X_WB, of a body that was at X_start at the start:
+/// constraints applied to poses at the end of the frame.
+Pose constrained_pose(const Joint& joint, const Pose& X_start, const Pose& X_WB) noexcept;
+/// The same for a body's joint to the world.
 Pose constrained_pose(const Body& body, const Pose& X_WB) noexcept;
 
 inline Vec6 to_vector(const Twist& V) {

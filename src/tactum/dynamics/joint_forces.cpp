@@ -7,13 +7,17 @@ namespace tactum::inline v0_1 {
 
 JointForces joint_forces(const Body& body, const Pose& X_WB, const JointPosition& at, double inertia,
                          double h) noexcept {
+  JointForces forces = joint_forces(body.joint, at, inertia, h);
+  if (forces.acts) forces.rate = joint_rate(body, X_WB);
+  return forces;
+}
+
+JointForces joint_forces(const Joint& joint, const JointPosition& at, double inertia, double h) noexcept {
   JointForces forces;
-  const Joint& joint = body.joint;
   if (joint.kind == JointKind::kFree || joint.kind == JointKind::kFixed) return forces;
   const bool has_spring = joint.stiffness != 0.0 && joint.kind != JointKind::kBall;
   forces.acts = has_spring || joint.limited() || joint.damping != 0.0 || joint.friction != 0.0;
   if (!forces.acts) return forces;
-  forces.rate = joint_rate(body, X_WB);
   forces.friction = joint.friction;
   if (joint.kind == JointKind::kBall) {
     forces.drag_about_ball = joint.damping;

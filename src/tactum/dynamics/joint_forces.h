@@ -36,6 +36,8 @@ struct JointForces {
 /// For a step of `h` seconds from the pose X_WB and position `at`. `inertia` is that of the body along the
 /// joint over h^2 [N/m or N m/rad]; 0 for one that has no momentum. A negative travel means that a limit has
 /// been overrun.
+/// The same of a joint without its rate, which stays zero.
+JointForces joint_forces(const Joint& joint, const JointPosition& at, double inertia, double h) noexcept;
 JointForces joint_forces(const Body& body, const Pose& X_WB, const JointPosition& at, double inertia,
                          double h) noexcept;
 

@@ -37,7 +37,7 @@ auto key(const ContactRow& row) {
 }  // namespace
 
 Sweeps::Sweeps(std::size_t most_rows, std::size_t bodies) {
-  rows_.reserve(most_rows + 4 * bodies);
+  rows_.reserve(most_rows + ContactProblem::kJointRows * bodies);
   joints_.reserve(bodies);
   patches_.reserve(most_rows);
   frictions_.reserve(most_rows);
@@ -193,7 +193,8 @@ double Sweeps::sweep(ContactProblem& problem) noexcept {
     Row& row = rows_[i];
     if (row.mobility > 0.0) {
       const double missing = rows[i].offset - dot(rows[i], z);
-      row.force.now = std::max(0.0, row.force.now + missing / row.mobility);
+      row.force.now += missing / row.mobility;
+      if (i >= problem.equalities()) row.force.now = std::max(0.0, row.force.now);
       if (row.force.now != row.force.before) {
         push(rows[i], row.force.now - row.force.before, z);
         change = std::max(change, std::abs(row.force.now - row.force.before) * row.mobility);

@@ -17,8 +17,8 @@ enum class ContactSolver : std::uint8_t {
 inline constexpr std::size_t kMostExactAlone = 12;
 
 /// For rows that do not yield. `coupled`: a coupling pulls one of the island's bodies, so its forces are
-/// felt; then the exact solver, as long as it has room for the unknowns. One of these is counted for each
-/// joint's dry friction.
+/// felt, or joints join its bodies; then the exact solver, as long as it has room for the unknowns. One of
+/// these is counted for each joint's dry friction.
 inline ContactSolver choose_solver(std::size_t exact_unknowns, bool coupled) noexcept {
   const std::size_t most = coupled ? kMostUnknowns : kMostExactAlone;
   return exact_unknowns <= most ? ContactSolver::kExact : ContactSolver::kSweeps;

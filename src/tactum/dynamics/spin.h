@@ -4,9 +4,16 @@
 /// Over a step of h seconds it turns by the rate it has midway, w = I(R_mid)^-1 L, which keeps L to the bit
 /// and its energy to the second order of h.
 
+#include "tactum/dynamics/world.h"
 #include "tactum/math/screw.h"
 
 namespace tactum::inline v0_1 {
+
+/// Whether a body has a rotation of its own: it is free, or hangs on a ball.
+bool turns_freely(const Body& body) noexcept;
+
+/// Inertia of such a body about the point it turns about, the centre of mass or its ball, axes of B.
+Mat3 turning_inertia(const Body& body) noexcept;
 
 /// Inertia about world axes at an orientation.
 inline Mat3 inertia_at(const Mat3& inertia_B, const Mat3& R_WB) {

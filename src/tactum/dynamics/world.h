@@ -8,6 +8,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -18,10 +19,10 @@
 
 namespace tactum::inline v0_1 {
 
-/// The joint between a body and the world.
+/// The joint between a body and the world, or another body (PairJoint).
 enum class JointKind {
   kFree,    ///< none
-  kFixed,   ///< the body never moves
+  kFixed,   ///< the body never moves, or rides on the other one
   kHinge,   ///< turns about an axis through a point
   kSlider,  ///< slides along an axis, without turning
   kBall,    ///< turns about a point
@@ -42,6 +43,15 @@ struct Joint {
   double upper = std::numeric_limits<double>::infinity();   ///< largest position [rad or m]
 
   bool limited() const { return std::isfinite(lower) || std::isfinite(upper); }
+};
+
+/// A joint between two bodies that move. The body's own joint, to the world, is then none. Axis, anchor are
+/// those at the start; they move with the parent. The position is how far the body has come from its pose at
+/// the start as the parent sees it. Forces and torques of the joint act on both bodies, equal and opposite.
+struct PairJoint {
+  int body = -1;    ///< the one that is jointed; it has no other joint
+  int parent = -1;  ///< ... to this one, which may be jointed itself
+  Joint joint;      ///< not kFree; kFixed: the body rides on the parent
 };
 
 /// What acts on a body beside weight, contacts, its joint and the hand. All of it is stated at the centre of
@@ -71,6 +81,8 @@ struct Body {
   Joint joint;
   BodyLoad load;
   std::vector<FieldPoint> field_points;  ///< where force fields act while it is grasped
+  int pair_joint = -1;       ///< index into World::pair_joints of the one whose body it is; -1: none
+  int no_contact_with = -1;  ///< a body that it never touches, the one it is jointed to; -1: none
 
   bool moves() const { return joint.kind != JointKind::kFixed; }
 };
@@ -97,9 +109,23 @@ struct World {
   /// name that is taken. The world is then unchanged. Cost: linear in the number of bodies.
   Result<int> add(const BodySpec& spec);
 
+  /// Joins a free body to another one by `joint`, whose axis and anchor are given in the world as the bodies
+  /// stand at the start. With a fixed parent it becomes the body's joint to the world. Without `contact` the
+  /// two never touch each other. An error states why there can be no such joint: no such bodies, a body
+  /// joined to itself or to one that hangs on it, a body that has a joint, a joint that is none, or one that
+  /// add() would refuse. The world is then unchanged. Cost: linear in the number of bodies.
+  Result<void> join(int body, int parent, const Joint& joint, bool contact = false);
+
+  /// The joint of a body, to the world or to another body.
+  const Joint& joint_of(int body) const {
+    const Body& what = bodies[static_cast<std::size_t>(body)];
+    return what.pair_joint < 0 ? what.joint : pair_joints[static_cast<std::size_t>(what.pair_joint)].joint;
+  }
+
   std::vector<Body> bodies;
-  Vec3 gravity_W = Vec3::Zero();   ///< [m/s^2]
-  std::vector<ForceField> fields;  ///< felt by the grasped part
+  std::vector<PairJoint> pair_joints;  ///< joints between bodies, that of a parent before those on it
+  Vec3 gravity_W = Vec3::Zero();       ///< [m/s^2]
+  std::vector<ForceField> fields;      ///< felt by the grasped part
 };
 
 /// The position of a body's joint (see Joint), now and one step before. A hinge is followed over full turns,
@@ -118,12 +144,26 @@ struct WorldState {
 /// Poses and velocities as the world starts.
 WorldState initial_state(const World& world);
 
+/// Angle about the hinge's axis of a turn from one orientation to another, in (-pi, pi] [rad].
+double hinge_angle(const Joint& hinge, const Mat3& R_start, const Mat3& R) noexcept;
+
+/// The position of a joint to the world with the body at X_WB, from X_start; a hinge's in (-pi, pi]
+/// [rad or m].
+double joint_position(const Joint& joint, const Pose& X_start, const Pose& X_WB) noexcept;
+
 /// Angle by which a hinged body has turned from its pose at the start, in (-pi, pi] [rad].
 double hinge_angle(const Body& body, const Pose& X_WB);
 
 /// The position of the body's joint (see Joint), a hinge's in (-pi, pi]; 0 for a free or fixed body
 /// [rad or m].
 double joint_position(const Body& body, const Pose& X_WB);
+
+/// The pose of a pair joint's body as its parent sees it, with the parent taken back to where it was at the
+/// start: there the joint is one to the world.
+Pose pose_by_parent(const World& world, const PairJoint& pair, std::span<const Pose> X_WB) noexcept;
+
+/// The position of a pair joint, a hinge's in (-pi, pi]; 0 where the body rides [rad or m].
+double pair_position(const World& world, const PairJoint& pair, std::span<const Pose> X_WB) noexcept;
 
 /// Moves the positions of all joints on to the present poses. Between two calls a hinge may turn by less than
 /// half a turn. Cost: an arc tangent for each hinge.

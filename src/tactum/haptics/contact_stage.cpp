@@ -11,7 +11,8 @@ using Index = std::size_t;
 
 std::vector<CollisionBody> collision_bodies(const World& world) {
   std::vector<CollisionBody> bodies;
-  for (const Body& body : world.bodies) bodies.push_back({body.part.get(), body.moves()});
+  for (const Body& body : world.bodies)
+    bodies.push_back({body.part.get(), body.moves(), body.no_contact_with});
   return bodies;
 }
 

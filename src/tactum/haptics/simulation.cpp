@@ -1,10 +1,23 @@
 #include "tactum/haptics/simulation.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "tactum/haptics/coupling_gains.h"
 
 namespace tactum::inline v0_1 {
+
+namespace {
+
+/// Whether the hand holds, or may pick up, a body that a pair joint joins to another one.
+bool may_hold_joined(const World& world, const FrameSettings& settings) {
+  const int tool = settings.tool.body;
+  return std::any_of(world.pair_joints.begin(), world.pair_joints.end(), [&](const PairJoint& pair) {
+    return settings.tool.picks || pair.body == tool || pair.parent == tool;
+  });
+}
+
+}  // namespace
 
 Result<void> check_world(const World& world, const FrameSettings& settings) {
   for (const Body& body : world.bodies) {
@@ -24,6 +37,11 @@ Result<void> check_world(const World& world, const FrameSettings& settings) {
         (table->bodies != bodies || table->coefficients.size() != world.bodies.size() * world.bodies.size()))
       return Error{"a table of friction or restitution is of another world",
                    std::to_string(table->bodies) + " bodies", std::to_string(bodies), ""};
+  if (settings.response == ResponseModel::kPenalty && may_hold_joined(world, settings))
+    return Error{
+        "in the penalty response the hand cannot hold a body that is jointed to another one that moves",
+        settings.tool.picks ? "a tool that picks up any body" : "such a body as the tool",
+        "response = \"constraint\", or a body without such joints as the tool", ""};
   if (!(settings.dt_s > 0.0))
     return Error{"the frame's step is not positive", std::to_string(settings.dt_s) + " s", "more", ""};
   return {};

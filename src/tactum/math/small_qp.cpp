@@ -126,6 +126,10 @@ void SmallQp::begin(const QpProblem& problem, std::span<const int> first) noexce
   problem_ = problem;
   answer_.active.clear();
   off_square_ = 0.0;
+  for (Index row = 0; row < problem.equalities && count() < problem.unknowns; ++row) {
+    set_direction(problem.rows[row]);
+    if (leaves(tolerances::kDependentRow)) append(row, 0.0);
+  }
   for (const int row : first)
     if (count() < problem.unknowns) {
       set_direction(problem.row(Index(row)));
@@ -163,8 +167,10 @@ void SmallQp::begin_at_active() noexcept {
 
 /// Drops the row that would have to pull most, if any would.
 bool SmallQp::release_pulling() noexcept {
+  Index first = 0;  // behind the equations, which come first
+  while (first < count() && may_pull(first)) ++first;
   const auto end = push_.begin() + static_cast<std::ptrdiff_t>(count());
-  const auto least = std::min_element(push_.begin(), end);
+  const auto least = std::min_element(push_.begin() + static_cast<std::ptrdiff_t>(first), end);
   if (least == end || !(*least < 0.0)) return false;
   release(static_cast<Index>(least - push_.begin()));
   return true;
@@ -294,7 +300,7 @@ void SmallQp::set_push() noexcept {
 double SmallQp::longest_step(Index& blocking) const noexcept {
   double longest = kFar;
   for (Index j = 0; j < count(); ++j) {
-    if (push_[j] <= 0.0) continue;
+    if (push_[j] <= 0.0 || may_pull(j)) continue;
     const double step = answer_.active[j].multiplier / push_[j];
     if (step < longest) {
       longest = step;

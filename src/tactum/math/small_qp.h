@@ -70,6 +70,7 @@ struct QpProblem {
   std::size_t unknowns = 0;       ///< at most kMostUnknowns
   std::span<const QpRow> rows;    ///< any number
   std::span<const QpCone> cones;  ///< any number
+  std::size_t equalities = 0;     ///< the first so many rows are equations: always active
   double tolerance = 0.0;         ///< a row is kept when it is missed by no more than this
 
   std::size_t size() const noexcept { return rows.size() + cones.size() * QpCone::kEdges; }
@@ -80,7 +81,7 @@ struct QpProblem {
 /// An active row, and its multiplier.
 struct QpActive {
   int row = -1;
-  double multiplier = 0.0;  ///< u_i >= 0
+  double multiplier = 0.0;  ///< u_i >= 0; of an equation of either sign
 };
 
 enum class QpStatus {
@@ -113,6 +114,9 @@ class SmallQp {
   using Column = std::array<double, columns::kColumn>;
 
   std::size_t count() const noexcept { return answer_.active.size(); }
+  bool may_pull(std::size_t j) const noexcept {
+    return static_cast<std::size_t>(answer_.active[j].row) < problem_.equalities;
+  }
 
   void begin_at_active() noexcept;
   bool release_pulling() noexcept;

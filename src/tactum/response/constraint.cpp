@@ -11,6 +11,7 @@
 #include "tactum/response/field_pull.h"
 #include "tactum/response/free_bodies.h"
 #include "tactum/response/grasped_part.h"
+#include "tactum/response/joined_bodies.h"
 
 namespace tactum::inline v0_1 {
 namespace {
@@ -43,9 +44,10 @@ void add_bodies(bool at_rest, ConstraintStep& step) {
     const Pose& X_WB = step.bodies.X_WB[i];
     const Vec6 on =
         at_rest ? Vec6(Vec6::Zero()) : to_vector(step.bodies.V_WB[i] * step.dt_s + step.own.free.detour[i]);
-    problem.add_body(placed(step.world, step.bodies, b), X_WB.p, damped_metric(body, X_WB, step.dt_s), on,
-                     step.dt_s);
+    problem.add_body_and_joint(step.world, placed(step.world, step.bodies, b), X_WB.p,
+                               damped_metric(body, X_WB, step.dt_s), on, step.dt_s);
   }
+  problem.add_pair_joints(step.world, step.bodies, step.dt_s);
   problem.add_joint_rows(true);
 }
 
@@ -142,8 +144,8 @@ std::uint32_t limit_of_step(const ConstraintStep& step) {
   return turns > travels ? frame_flag::kTurnLimited : c.trust.limit;
 }
 
-/// Moves everything by the fraction `share` of the answer's step, on trial, and checks every gap there.
-bool open_after(double share, ConstraintStep& step) {
+/// Moves everything by the fraction `share` of the answer's step, on trial. False where some pose is no pose.
+bool try_step(double share, ConstraintStep& step) {
   ConstraintState& c = step.own.constraint;
   c.trial.X_WB = step.bodies.X_WB;  // same size: nothing is allocated
   for (const ProblemBody& problem_body : c.step_problem().bodies()) {
@@ -153,6 +155,14 @@ bool open_after(double share, ConstraintStep& step) {
         constrained_pose(step.world.bodies[i], advanced(step.bodies.X_WB[i], displacement, 1.0));
     if (!c.trial.X_WB[i].finite()) return false;
   }
+  return true;
+}
+
+/// The same, with the bodies on their joints, and every gap checked there.
+bool open_after(double share, ConstraintStep& step) {
+  ConstraintState& c = step.own.constraint;
+  if (!try_step(share, step)) return false;
+  join_trial(step);
   look_at_trial(0, step);
   for (Index p = 0; p < c.trial.gap_now.size(); ++p)
     if (closed_at_trial(p, step)) return false;
@@ -222,10 +232,24 @@ bool find_again(ConstraintStep& step) {
   return found;
 }
 
+/// Solves again with the errors that the answer's step leaves in joints between bodies, until none is left
+/// that matters. False when there is no answer.
+bool close_joints(ConstraintStep& step) {
+  if (step.own.constraint.step_problem().equalities() == 0) return true;
+  JointErrors errors;
+  while (errors.go_on() && try_step(1.0, step)) {
+    if (errors.closed(step.own.constraint.step_problem().correct_pair_joints(step.world,
+                                                                             step.own.constraint.trial.X_WB)))
+      return true;
+    if (!find_again(step)) return false;
+  }
+  return true;
+}
+
 /// Looks for a step towards where the hand wants the part, as far as everything stays open; returns the
 /// fraction of the answer that may be taken, whose pose is then the trial. Zero: none was found.
 double advance(ConstraintStep& step) {
-  if (!find_forces(step)) return 0.0;
+  if (!find_forces(step) || !close_joints(step)) return 0.0;
   if (step.gaps.blocked(step.grasped.body)) return 0.0;
   double share = 0.0;
   for (int round = 0; round <= kFeedbacks; ++round) {
@@ -233,7 +257,7 @@ double advance(ConstraintStep& step) {
       if (!(share > 0.0)) return 0.0;  // nothing may move: no exact gap can correct a row
       ++step.report.validation_retries;
       correct_rows(share, step);
-      if (!find_again(step)) break;
+      if (!find_again(step) || !close_joints(step)) break;
     }
     share = trusted_share(step);
     if (open_after(share, step)) return share;
@@ -372,6 +396,7 @@ void bound_constrained_motion(const MotionInput& input, const WorldState& bodies
     }
     if (grasped || own.free.near_grasped[i]) own.motion_bound[i] += c.trust.length_m;
   }
+  bound_joined(input, bodies, own.motion_bound);
 }
 
 void respond_constrained(ConstraintStep& step) noexcept {

@@ -33,6 +33,7 @@ FreeBodies::FreeBodies(const World& world, const FrameSettings& settings)
       sweeps(Index(settings.budget.max_contact_points), world.bodies.size()),
       momentum(world),
       near_grasped(world.bodies.size(), 0),
+      joined(world.bodies.size(), 0),
       detour(world.bodies.size()),
       A_contacts(world.bodies.size()),
       struck(world.bodies.size(), 0),
@@ -49,6 +50,7 @@ FreeBodies::FreeBodies(const World& world, const FrameSettings& settings)
       share(world.bodies.size(), 1.0),
       cut(world.bodies.size(), 0),
       settled(world.bodies.size(), 0) {
+  for (const PairJoint& pair : world.pair_joints) joined[Index(pair.body)] = joined[Index(pair.parent)] = 1;
   gathered.reserve(Index(settings.budget.max_contact_points));
   patch_asked.reserve(settings.budget.capacity.patches);
   patch_closed.reserve(settings.budget.capacity.patches);

@@ -138,6 +138,7 @@ struct FreeBodies {
   /// frame until find_islands(), of this frame from then on.
   std::vector<char> near_grasped;
 
+  std::vector<char> joined;  ///< of each body, whether a pair joint joins it to another
   /// Of each body, the displacement that impacts add to its velocity's in this frame (impacts.h); at the end
   /// of a frame what is left of its displacement, for the next one [m, rad].
   std::vector<Twist> detour;

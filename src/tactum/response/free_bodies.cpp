@@ -9,6 +9,7 @@
 #include "tactum/response/constraint_trial.h"
 #include "tactum/response/frame_impacts.h"
 #include "tactum/response/free_islands.h"
+#include "tactum/response/joined_bodies.h"
 #include "tactum/response/momentum.h"
 #include "tactum/response/waiting.h"
 
@@ -22,17 +23,6 @@ using Index = std::size_t;
 constexpr int kMostStops = 12;
 /// Exact tests of each gap of the grasped part's island that are kept for it.
 constexpr int kRoundsOfGrasped = 4;
-
-bool turns_freely(const Body& body) {
-  return body.joint.kind == JointKind::kFree || body.joint.kind == JointKind::kBall;
-}
-
-/// Inertia about the point it turns about: the centre of mass, or the ball it hangs on.
-Mat3 turning_inertia(const Body& body) {
-  if (body.joint.kind == JointKind::kFree) return body.inertia_B;
-  const Vec3 arm = body.X_WB.R.transpose() * (body.X_WB.p - body.joint.anchor_W);
-  return body.inertia_B + body.mass_kg * (arm.squaredNorm() * Mat3::Identity() - arm * arm.transpose());
-}
 
 /// Half a frame is gone back at the start by at most so many times the time in which the body's motion fades
 /// by e: farther back its velocity has no digits left.
@@ -71,6 +61,7 @@ void try_steps(ConstraintStep& step) {
           constrained_pose(step.world.bodies[i], advanced(X_WB, mean_twist(step, i), f.share[i] * step.dt_s));
     if (!X_trial.finite()) X_trial = X_WB;
   }
+  join_trial(step);
 }
 
 /// Whether the trial leaves a body where it is now.
@@ -125,6 +116,7 @@ void cut(bool halve, ConstraintStep& step) {
       f.cut[Index(body)] = 1;
     }
   }
+  cut_together(step);
 }
 
 /// Stops the bodies of islands that are not settled.
@@ -216,6 +208,7 @@ void find_islands(ConstraintStep& step) {
   };
   for (const ContactPatch& patch : step.patches)
     if (!yields(patch)) f.islands.join(patch.body_a, patch.body_b);
+  for (const PairJoint& pair : step.world.pair_joints) f.islands.join(pair.body, pair.parent);
   const int grasped = step.grasped.body;
   const int island = grasped < 0 ? -1 : f.islands.of(grasped);
   Index unknowns = 0;
@@ -225,7 +218,7 @@ void find_islands(ConstraintStep& step) {
         island >= 0 && f.islands.moves(static_cast<int>(i)) && f.islands.of(static_cast<int>(i)) == island;
     f.near_grasped[i] = near ? 1 : 0;
     f.alone &= near || !f.islands.moves(static_cast<int>(i));
-    if (near) unknowns += exact_unknowns_of(step.world.bodies[i].joint);
+    if (near) unknowns += exact_unknowns_of(step.world, step.world.bodies[i]);
   }
   if (grasped < 0) return;
   f.grasped_here = choose_solver(unknowns, true) != ContactSolver::kExact;
@@ -276,6 +269,7 @@ void begin_midway(const World& world, double dt_s, WorldState& state) noexcept {
     if (body.load.damps()) back_s = std::min(back_s, kFarthestBack / fastest_fading(body, state.X_WB[i]));
     drive(body, world.gravity_W, -back_s, state.X_WB[i], state.V_WB[i]);
   }
+  begin_joined(world, dt_s, state);
 }
 
 void pull_free_bodies(const MotionInput& input, WorldState& bodies) noexcept {

@@ -4,7 +4,9 @@
 #include <limits>
 
 #include "tactum/dynamics/body_load.h"
+#include "tactum/math/screw.h"
 #include "tactum/response/grasped_part.h"
+#include "tactum/response/joined_bodies.h"
 
 namespace tactum::inline v0_1 {
 namespace {
@@ -40,9 +42,11 @@ void assemble(bool exact, bool opening, IslandProblem& p) {
     }
     const Body& what = step.world.bodies[i];
     const Pose& X_WB = step.bodies.X_WB[i];
-    p.problem.add_body(placed(step.world, step.bodies, body), X_WB.p, damped_metric(what, X_WB, step.dt_s),
-                       to_vector(step.own.free.V_free[i] * step.dt_s + step.own.free.detour[i]), step.dt_s);
+    p.problem.add_body_and_joint(
+        step.world, placed(step.world, step.bodies, body), X_WB.p, damped_metric(what, X_WB, step.dt_s),
+        to_vector(step.own.free.V_free[i] * step.dt_s + step.own.free.detour[i]), step.dt_s);
   }
+  p.problem.add_pair_joints(step.world, step.bodies, step.dt_s);
   p.problem.add_joint_rows(exact);
   p.in_problem = {p.contacts, p.problem.rows()};
   for (ContactRow& row : p.contacts) {
@@ -76,6 +80,33 @@ double least_skin(const IslandProblem& p) {
   return least;
 }
 
+/// Sets the velocities of the bodies to those of the problem's answer.
+void set_velocities(const IslandProblem& p) {
+  const ConstraintStep& step = p.step;
+  for (const ProblemBody& body : p.problem.bodies()) {
+    const Twist displacement = to_twist(p.problem.displacement(body.body));
+    step.bodies.V_WB[Index(body.body)] =
+        (displacement - step.own.free.detour[Index(body.body)]) * (1.0 / step.dt_s);
+  }
+}
+
+/// Solves again, by `solve`, with the errors that the step leaves in the joints between bodies.
+template <class Solve>
+void close_joints(const IslandProblem& p, const Solve& solve) {
+  if (p.problem.equalities() == 0) return;
+  const ConstraintStep& step = p.step;
+  std::vector<Pose>& X_trial = p.step.own.constraint.trial.X_WB;
+  JointErrors errors;
+  while (errors.go_on()) {
+    set_velocities(p);
+    for (const int body : p.bodies)
+      X_trial[Index(body)] =
+          constrained_pose(step.world.bodies[Index(body)],
+                           advanced(step.bodies.X_WB[Index(body)], mean_twist(step, Index(body)), step.dt_s));
+    if (errors.closed(p.problem.correct_pair_joints(step.world, X_trial)) || !solve()) return;
+  }
+}
+
 /// The exact solution; false when there is none, or the iterations ran out.
 bool solve_exact(IslandProblem& p) {
   ConstraintState& c = p.step.own.constraint;
@@ -93,6 +124,13 @@ bool solve_exact(IslandProblem& p) {
     result = solve_exactly(p.in_problem, input, p.step.settings.budget.solver_iterations, start, c.friction,
                            p.problem);
     p.step.report.solver_iterations += result.iterations;
+    if (!result.solved) continue;
+    close_joints(p, [&] {
+      result =
+          solve_again(p.in_problem, p.step.settings.budget.solver_iterations, start, c.friction, p.problem);
+      p.step.report.solver_iterations += result.iterations;
+      return result.solved;
+    });
     if (result.solved) break;
   }
   if (!result.solved) {  // the sweeps that follow are to open what is too near
@@ -121,8 +159,13 @@ void solve_swept(IslandProblem& p) {
   assemble(false, true, p);
   sweeps.begin(p.in_problem, p.step.bodies.X_WB, c.anchors, c.rows.memory, p.step.dt_s, p.problem);
   // The error that is left moves nothing by more than the skin, and every step is tested before it is taken.
-  const SolverResult solved =
-      sweeps.solve(p.step.settings.budget.solver_iterations, least_skin(p), p.problem);
+  const int most = p.step.settings.budget.solver_iterations;
+  SolverResult solved = sweeps.solve(most, least_skin(p), p.problem);
+  close_joints(p, [&] {
+    const SolverResult again = sweeps.solve(most, least_skin(p), p.problem);
+    solved = {solved.iterations + again.iterations, again.converged};
+    return again.converged;
+  });
   p.step.report.solvers |= static_cast<int>(ContactSolver::kSweeps);
   p.step.report.solver_iterations += solved.iterations;
   if (!solved.converged) p.step.report.flags |= frame_flag::kSolverBounded;
@@ -139,20 +182,23 @@ void solve_island(IslandProblem& p) {
     return;
   }
   Index unknowns = 0;
-  bool coupled = false;
+  bool coupled_to_hand = false;
+  bool jointed = false;
   for (const int body : p.bodies) {
-    unknowns += exact_unknowns_of(step.world.bodies[Index(body)].joint);
-    coupled |= body == step.grasped.body;
+    const Body& what = step.world.bodies[Index(body)];
+    unknowns += exact_unknowns_of(step.world, what);
+    coupled_to_hand |= body == step.grasped.body;
+    jointed |= what.pair_joint >= 0;
   }
-  const bool exact = choose_solver(unknowns, coupled) == ContactSolver::kExact && solve_exact(p);
+  const bool exact =
+      choose_solver(unknowns, coupled_to_hand || jointed) == ContactSolver::kExact && solve_exact(p);
   if (!exact) solve_swept(p);
   for (const ContactRow& row : p.contacts) give(row, row.impulse / step.dt_s * row.n_BA_W, p);
+  if (coupled_to_hand) feel(displacement_of_handle(p.problem, step), p.step);
+  set_velocities(p);
+  FreeBodies& f = step.own.free;
   for (const ProblemBody& body : p.problem.bodies()) {
-    if (body.body == step.grasped.body) feel(displacement_of_handle(p.problem, step), p.step);
-    const Twist displacement = to_twist(p.problem.displacement(body.body));
-    FreeBodies& f = step.own.free;
     const Index i = Index(body.body);
-    step.bodies.V_WB[i] = (displacement - f.detour[i]) * (1.0 / step.dt_s);
     f.A_contacts[i] = (step.bodies.V_WB[i] - f.V_free[i]) * (1.0 / step.dt_s);
   }
 }
@@ -166,7 +212,9 @@ bool moves_here(const ConstraintStep& step, Index body) noexcept {
 }
 
 Twist mean_twist(const ConstraintStep& step, Index body) noexcept {
-  return step.bodies.V_WB[body] + step.own.free.detour[body] * (1.0 / step.dt_s);
+  Twist V = step.bodies.V_WB[body] + step.own.free.detour[body] * (1.0 / step.dt_s);
+  if (step.own.free.joined[body]) V.w += change_of_axis(step, body);
+  return V;
 }
 
 void begin_islands(ConstraintStep& step) noexcept {

@@ -33,8 +33,8 @@ void add_grasped(const Vec6& target, const ConstraintStep& step, ContactProblem&
   const GraspedBody as_body =
       grasped_body_of(step.world.bodies[grasped].load, step.grasped, X_WB,
                       step_metric(step.coupling, step.grasped, step.dt_s), target, step.dt_s);
-  problem.add_body(placed(step.world, step.bodies, step.grasped.body), as_body.centre_W, as_body.metric,
-                   as_body.target, step.dt_s);
+  problem.add_body_and_joint(step.world, placed(step.world, step.bodies, step.grasped.body), as_body.centre_W,
+                             as_body.metric, as_body.target, step.dt_s);
 }
 
 Vec6 displacement_of_handle(const ContactProblem& problem, const ConstraintStep& step) noexcept {

@@ -31,7 +31,8 @@ void begin_balance(ConstraintStep& step) noexcept {
     const Body& body = step.world.bodies[i];
     const int number = static_cast<int>(i);
     const bool counts = body.moves() && body.joint.kind == JointKind::kFree && !body.load.damps() &&
-                        number != step.grasped.body && step.own.free.islands.moves(number);
+                        !step.own.free.joined[i] && number != step.grasped.body &&
+                        step.own.free.islands.moves(number);
     momentum.counts[i] = counts ? 1 : 0;
     if (counts)
       momentum.due_Ns += body.mass_kg * (step.bodies.V_WB[i].v + 0.5 * step.dt_s * step.world.gravity_W) +

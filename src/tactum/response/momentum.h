@@ -4,7 +4,7 @@
 ///
 ///     after - before = (m g + F) h + sum of impulses from bodies that do not count
 ///
-/// Those that count are free, and neither grasped, damped nor asleep.
+/// Those that count are free, and neither joined to another body, nor grasped, damped or asleep.
 /// Impulses between the free bodies cancel, so only those from outside are summed, and an error anywhere
 /// shows. A body whose step was cut short has not gone where the forces would have had it, and forces along
 /// normals that shading bends are not those that kept its gaps open; such frames are marked, and their

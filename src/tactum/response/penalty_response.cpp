@@ -61,6 +61,7 @@ void limit_rest(const MotionInput& input, const Twist& V_first, double impact_s,
 /// Whether a body other than the grasped one may meet anything but that, or falls: then all of them move by
 /// impulses.
 bool others_meet(const World& world, int grasped) {
+  if (!world.pair_joints.empty()) return true;
   int others = 0;
   bool moves = false;
   for (Index i = 0; i < world.bodies.size(); ++i) {
@@ -131,7 +132,8 @@ PenaltyResponse::PenaltyResponse(const World& world, const FrameSettings& settin
   begin_midway(world, settings.dt_s, bodies);
   stiffness_.reserve(Index(settings.budget.max_contact_points));
   depth_scale_.reserve(settings.budget.capacity.patches);
-  forces_.reserve(Index(settings.budget.max_contact_points) + 4 * world.bodies.size());
+  forces_.reserve(Index(settings.budget.max_contact_points) +
+                  ContactProblem::kJointRows * world.bodies.size());
 }
 
 /// Adds a body with its target over a step of `h_s` seconds. The grasped part's target is the whole

@@ -29,6 +29,7 @@ void count_touches(ConstraintStep& step) {
     ++s.touches[Index(patch.body_b)];
     s.islands.join(patch.body_a, patch.body_b);
   }
+  for (const PairJoint& pair : step.world.pair_joints) s.islands.join(pair.body, pair.parent);
 }
 
 /// Whether a body that touches nothing is in balance: the velocities of a frame have half a frame's weight

@@ -6,6 +6,7 @@
 
 #include "tactum/base/frame_rate.h"
 #include "tactum/math/screw.h"
+#include "tactum/response/joined_bodies.h"
 #include "tactum/response/sleep.h"
 
 namespace tactum::inline v0_1 {
@@ -140,6 +141,7 @@ void defer_bodies(ConstraintStep& step) noexcept {
   watch_rest(step);
   std::fill(w.waits.begin(), w.waits.end(), 1);
   admit_bodies(step);
+  wait_together(step);
   const double fading = std::pow(kFading, step.dt_s / kReferenceStep_s);
   for (Index i = 0; i < step.world.bodies.size(); ++i) {
     w.waited[i] = w.waits[i] && !asleep(w, i) ? w.waited[i] + 1 : 0;

@@ -23,8 +23,15 @@ struct FreeJoint {
   static constexpr const char* kKind = "free";
 };
 
+/// Of every joint but the free one: the body that it is to.
+struct JointParent {
+  std::string parent = {};  ///< the name of another body of the scene; empty: the world
+  bool contact = false;     ///< the two may touch each other; only with a parent
+};
+
 struct FixedJoint {
   static constexpr const char* kKind = "fixed";
+  JointParent to = {};
 };
 
 struct HingeJoint {
@@ -36,6 +43,7 @@ struct HingeJoint {
   double stiffness_Nm_per_rad = 0.0;        ///< of a spring [N m/rad]
   double rest_rad = 0.0;                    ///< the angle it pulls to [rad]
   std::optional<Interval> limits_rad = {};  ///< about the pose at the start, which lies within [rad]
+  JointParent to = {};
 };
 
 struct SliderJoint {
@@ -46,6 +54,7 @@ struct SliderJoint {
   double stiffness_N_per_m = 0.0;         ///< of a spring [N/m]
   double rest_m = 0.0;                    ///< the position it pulls to [m]
   std::optional<Interval> limits_m = {};  ///< about the pose at the start, which lies within [m]
+  JointParent to = {};
 };
 
 struct BallJoint {
@@ -53,9 +62,20 @@ struct BallJoint {
   Vec3 anchor_m = Vec3::Zero();          ///< its centre, in P [m]
   double damping_Nms = 0.0;              ///< viscous [N m s/rad]
   std::optional<double> swing_rad = {};  ///< the largest angle it turns by; no limit when absent [rad]
+  JointParent to = {};
 };
 
 using JointDescription = std::variant<FreeJoint, FixedJoint, HingeJoint, SliderJoint, BallJoint>;
+
+/// The body that a joint is to; of a free body none.
+inline JointParent parent_of(const JointDescription& joint) {
+  return std::visit(
+      [](const auto& kind) {
+        if constexpr (requires { kind.to; }) return kind.to;
+        return JointParent{};
+      },
+      joint);
+}
 
 /// One of several shapes of a body.
 struct ComponentDescription {

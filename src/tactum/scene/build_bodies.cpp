@@ -89,7 +89,8 @@ void check_body(SceneBuilder& builder, const std::string& path, const BodyDescri
       builder.fail(item_path(path, "name"), "two bodies of one name", fmt::format("\"{}\"", body.name),
                    "a name of its own");
   const char* const moving = key_of_moving_body(body);
-  if (moving != nullptr && std::holds_alternative<FixedJoint>(body.joint))
+  if (moving != nullptr && std::holds_alternative<FixedJoint>(body.joint) &&
+      parent_of(body.joint).parent.empty())
     builder.fail(item_path(path, moving),
                  body.V_WB.v.isZero(0.0) && body.V_WB.w.isZero(0.0) ? "a fixed body has a load"
                                                                     : "a fixed body has a velocity",
@@ -109,7 +110,7 @@ void build_body(SceneBuilder& builder, const std::string& path, const BodyDescri
     spec.X_WP = part_pose(below, below.X_WB) * spec.X_WP;
   }
   spec.V_WB = body.V_WB;
-  spec.joint = std::visit(JointMaker(spec.X_WP), body.joint);
+  if (parent_of(body.joint).parent.empty()) spec.joint = std::visit(JointMaker(spec.X_WP), body.joint);
   spec.load = body.load;
   spec.material = body.material;
   const std::string item = item_path(path, "part");
@@ -126,12 +127,31 @@ void build_body(SceneBuilder& builder, const std::string& path, const BodyDescri
   if (const Result<int> added = scene.world.add(spec); !added) builder.fail(path, added.error());
 }
 
+/// Joins a body to its parent, which may stand before or behind it.
+void build_pair_joint(SceneBuilder& builder, const std::string& path, const BodyDescription& body,
+                      World& world) {
+  const JointParent to = parent_of(body.joint);
+  if (to.parent.empty()) return;
+  const std::string item = item_path(item_path(path, "joint"), "parent");
+  const int number = builder.find_body(item, body.name, world);
+  const int parent = builder.find_body(item, to.parent, world);
+  if (number < 0 || parent < 0) return;
+  const Body& what = world.bodies[static_cast<std::size_t>(number)];
+  const Joint joint = std::visit(JointMaker(part_pose(what, what.X_WB)), body.joint);
+  if (const Result<void> joined = world.join(number, parent, joint, to.contact); !joined)
+    builder.fail(item, joined.error());
+}
+
 }  // namespace
 
 void build_bodies(SceneBuilder& builder, Scene& scene) {
   std::size_t index = 0;
   for (const BodyDescription& body : builder.description().bodies)
     build_body(builder, item_path("", "body", index++), body, scene);
+  if (builder.errors()) return;
+  index = 0;
+  for (const BodyDescription& body : builder.description().bodies)
+    build_pair_joint(builder, item_path("", "body", index++), body, scene.world);
 }
 
 }  // namespace tactum::inline v0_1

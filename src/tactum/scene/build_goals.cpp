@@ -53,7 +53,7 @@ class GoalMaker {
   }
   int hinged_body(const char* key, const std::string& name) const {
     const int index = body(key, name);
-    if (index >= 0 && world_.bodies[static_cast<std::size_t>(index)].joint.kind != JointKind::kHinge)
+    if (index >= 0 && world_.joint_of(index).kind != JointKind::kHinge)
       builder_.fail(item_path(path_, key), "only a hinged body has an angle", fmt::format("\"{}\"", name),
                     "a body whose joint is a hinge");
     return index;

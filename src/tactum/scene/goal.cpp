@@ -66,6 +66,7 @@ void GoalRecord::watch(const World& world, const WorldState& state, int grasped,
   }
   for (Index b = 0; b < angles_.size(); ++b) {
     const Body& body = world.bodies[b];
+    if (body.pair_joint >= 0) angles_[b] = state.joints[b].now;  // followed over full turns
     if (body.joint.kind != JointKind::kHinge) continue;
     // The whole turns that bring the measured angle nearest to the last one.
     const double measured = hinge_angle(body, state.X_WB[b]);

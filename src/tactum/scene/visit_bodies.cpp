@@ -18,10 +18,18 @@ void visit_limits(ItemVisitor& visitor, const char* key, std::optional<Interval>
   });
 }
 
+void visit_parent(ItemVisitor& visitor, JointParent& to) {
+  visitor.text("parent", to.parent);
+  visitor.flag("contact", to.contact);
+  if (to.contact && to.parent.empty())
+    visitor.fail("contact", "contact with a parent in a joint that has none", "contact = true",
+                 "the name of a body as parent");
+}
+
 }  // namespace
 
 void visit_items(ItemVisitor&, FreeJoint&) {}
-void visit_items(ItemVisitor&, FixedJoint&) {}
+void visit_items(ItemVisitor& visitor, FixedJoint& joint) { visit_parent(visitor, joint.to); }
 
 void visit_items(ItemVisitor& visitor, HingeJoint& joint) {
   visitor.direction("axis", joint.axis, Need::kRequired);
@@ -31,6 +39,7 @@ void visit_items(ItemVisitor& visitor, HingeJoint& joint) {
   visitor.number("stiffness_Nm_per_rad", joint.stiffness_Nm_per_rad, kNotNegative);
   visitor.angle("rest_deg", joint.rest_rad);
   visit_limits(visitor, "limits_deg", joint.limits_rad, radians(1.0));
+  visit_parent(visitor, joint.to);
 }
 
 void visit_items(ItemVisitor& visitor, SliderJoint& joint) {
@@ -40,22 +49,18 @@ void visit_items(ItemVisitor& visitor, SliderJoint& joint) {
   visitor.number("stiffness_N_per_m", joint.stiffness_N_per_m, kNotNegative);
   visitor.number("rest_m", joint.rest_m);
   visit_limits(visitor, "limits_m", joint.limits_m, 1.0);
+  visit_parent(visitor, joint.to);
 }
 
 void visit_items(ItemVisitor& visitor, BallJoint& joint) {
   visitor.vector("anchor_m", joint.anchor_m);
   visitor.number("damping_Nms", joint.damping_Nms, kNotNegative);
   visitor.angle("swing_deg", joint.swing_rad, {0.0, 180.0});
+  visit_parent(visitor, joint.to);
 }
 
 void visit_items(ItemVisitor& visitor, JointDescription& joint) {
   visitor.kinds("kind", "joint", joint, Need::kRequired);
-  // A key of its own, so that a file that asks for it is told what cannot be, not that the key is unknown.
-  std::string parent;
-  visitor.text("parent", parent);
-  if (!parent.empty())
-    visitor.fail("parent", "a joint between two bodies that move is not supported",
-                 fmt::format("\"{}\"", parent), "a joint to the world, without parent");
 }
 
 void visit_items(ItemVisitor& visitor, ComponentDescription& component) {
