@@ -28,6 +28,9 @@ struct Resting {
         other_piece(is_a ? patch.piece_b : patch.piece_a) {
     const Pose& X_WA = X_WB[Index(patch.body_a)];
     const ContactPoint& point = patch.manifold.points[0];
+    const Feature& on_other = is_a ? patch.manifold.b : patch.manifold.a;
+    on_face = on_other.kind == FeatureKind::kFace;
+    rolls_over = patch.round && !on_face;
     normal_W = is_a ? Vec3(X_WA.R * patch.manifold.normal) : Vec3(-(X_WA.R * patch.manifold.normal));
     p_W = X_WA * (is_a ? point.p_a : point.p_b);
     p_other_W = X_WA * (is_a ? point.p_b : point.p_a);
@@ -37,6 +40,8 @@ struct Resting {
   int other;        ///< the body it rests on
   int piece;        ///< of the body
   int other_piece;  ///< of the other one
+  bool on_face;     ///< it rests on a face of the other one
+  bool rolls_over;  ///< a curved surface is near an edge or corner of the other one
   Vec3 normal_W;    ///< toward the body
   Vec3 p_W;         ///< the contact point on the body [m]
   Vec3 p_other_W;   ///< ... and on the other one [m]
@@ -121,7 +126,9 @@ struct OfBody {
 
   /// Makes the patch an implied one if the body, as it rests in `resting`, does not meet it.
   bool implies(const ContactPatch& resting, const Resting& r, const Resting& p, ContactPatch& patch) const {
-    if (r.normal_W.dot(p.normal_W) > kSameNormal) return false;
+    // A ball rolls over the edge of the next body without a step, however alike the normals are.
+    const bool alike = r.normal_W.dot(p.normal_W) > kSameNormal;
+    if (alike && !(r.on_face && p.rolls_over)) return false;
     const Plane plane = plane_of(resting, r, piece(r.other, r.other_piece), X_WB[Index(r.other)]);
     const Polytope& own = piece(body, p.piece);
     const Step step{plane.normal_W, -highest(own, X_WB[Index(body)], -plane.normal_W),
