@@ -242,7 +242,7 @@ void ContactFinder::emit_patch(Pair& pair, PairDistance found, const Pose& X_AB)
   const bool over_area = over_areas(pair.body_a, pair.body_b);
   const double of_facets = found.distance;
   StaticVector<ContactPoint, Manifold::kMostPoints> points;
-  const bool round = !over_area && found.certified() &&
+  const bool round = !over_area && !of_grasped(pair.body_a, pair.body_b) && found.certified() &&
                      meet_round({part_a.pieces[Index(pair.piece_a)], body_a.round(pair.piece_a)},
                                 {part_b.pieces[Index(pair.piece_b)], body_b.round(pair.piece_b)}, X_AB,
                                 margin, found, points);
