@@ -12,7 +12,7 @@
 #include "output.h"
 #include "tactum/haptics/coupling_gains.h"
 #include "tactum/response/field_pull.h"
-#include "tactum/response/penalty_limits.h"
+#include "tactum/response/penalty_response.h"
 #include "tactum/response/workspace_scale.h"
 #include "tactum/scene/builtin_scenes.h"
 #include "tactum/session/session.h"

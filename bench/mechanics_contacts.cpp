@@ -134,7 +134,7 @@ MechanicsCase roll() {
           .law = "5/7 g sin a t² / 2",
           .unit = "m",
           .right = 0.5 * 5.0 / 7.0 * kGravity * std::sin(kSlope),
-          .bounds = {.constraint = 0.4, .penalty = 0.4},
+          .bounds = {.constraint = 0.01, .penalty = 0.01},
           .free = seen};
 }
 

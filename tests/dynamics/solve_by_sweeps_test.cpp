@@ -69,7 +69,7 @@ struct Pile {
     return contacts;
   }
   void end(const RowsInProblem& contacts) {
-    sweeps.keep_anchors(contacts, X_WB, anchors);
+    sweeps.keep_anchors(contacts, X_WB, problem, anchors);
     anchors.end_frame([](int) { return true; });
     sweeps.end(rows, memory);
   }

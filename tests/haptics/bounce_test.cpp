@@ -220,6 +220,7 @@ void expect_oblique(double radius_m, double speed, double aside, double rate_Hz)
                                     << rate_Hz << " Hz");
   Sandbox box;
   box.settings.dt_s = 1.0 / rate_Hz;
+  box.settings.shading.on = false;  // the facets are the surface
   const Polytope shape = make_icosphere(2, radius_m);
   box.add(shape, {Mat3::Identity(), {-4.0 * radius_m, 0, 0}}, {{speed, 0, 0}, Vec3::Zero()});
   box.add(shape, {Mat3::Identity(), {0, aside * radius_m, 0}});
@@ -299,9 +300,9 @@ struct OnResting {
 
 /// A cube that falls on others, which lie on a floor, leaves them as it would leave the floor.
 void expect_bounces_on_resting(const OnResting& c) {
-  SCOPED_TRACE(testing::Message() << c.height_m << " m, " << c.rate_Hz << " Hz, e " << c.restitution
-                                  << " and " << c.of_others << ", " << c.size_m << " m on " << c.under
-                                  << " of " << c.under_m << " m, up " << c.up.transpose());
+  SCOPED_TRACE(::testing::Message() << c.height_m << " m, " << c.rate_Hz << " Hz, e " << c.restitution
+                                    << " and " << c.of_others << ", " << c.size_m << " m on " << c.under
+                                    << " of " << c.under_m << " m, up " << c.up.transpose());
   Sandbox box;
   const Mat3 R = Quat::FromTwoVectors(Vec3::UnitZ(), c.up.normalized()).toRotationMatrix();
   const auto at = [&](double z) { return Pose{R, R * Vec3(0, 0, z)}; };
@@ -361,7 +362,7 @@ TEST(Bounce, OnABodyThatLiesOnAFloorIsAsOnTheFloor) {
 /// What merely touches passes an impact on: only what carries is solved together with it.
 TEST(Bounce, ACradleOnAFloorPassesTheImpactOn) {
   for (const double rate_Hz : {500.0, 1000.0, 4000.0}) {
-    SCOPED_TRACE(testing::Message() << rate_Hz << " Hz");
+    SCOPED_TRACE(::testing::Message() << rate_Hz << " Hz");
     Sandbox box;
     box.world.gravity_W = {0, 0, -kGravity};
     box.settings.dt_s = 1.0 / rate_Hz;

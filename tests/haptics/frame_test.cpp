@@ -217,6 +217,7 @@ TEST(Frame, GraspingPullsNothing) {
 /// Pairs that are near at load time are known: the first frame has no walk from afar.
 TEST(Frame, TheFirstBeginsWithWhatIsNear) {
   Rig rig(2);
+  rig.settings.shading.on = false;  // the facets are the surface
   const Polytope ball = make_icosphere(3, 0.02);
   for (Body& body : rig.world.bodies) body.part = solid_of(ball);
   rig.world.bodies[1].joint.kind = JointKind::kFixed;

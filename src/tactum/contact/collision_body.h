@@ -1,6 +1,8 @@
 #pragma once
 /// A body as the contact finder sees it.
 
+#include <vector>
+
 #include "tactum/geometry/part.h"
 
 namespace tactum::inline v0_1 {
@@ -10,6 +12,15 @@ struct CollisionBody {
   const Part* part = nullptr;
   bool moves = true;         ///< two bodies that do not move are never tested
   int no_contact_with = -1;  ///< nor is this one with the body of this number; -1: none
+  /// Of each piece of the part: the curved surface that it has in contacts. Empty: none has one.
+  std::vector<RoundPiece> rounds = {};
+
+  /// Null where the facets of the piece are its surface.
+  const RoundPiece* round(int piece) const noexcept {
+    if (rounds.empty()) return nullptr;
+    const RoundPiece& round = rounds[static_cast<std::size_t>(piece)];
+    return round.kind == RoundKind::kNone ? nullptr : &round;
+  }
 };
 
 }  // namespace tactum::inline v0_1

@@ -6,6 +6,7 @@
 #include "tactum/collision/closest_features.h"
 #include "tactum/collision/manifold.h"
 #include "tactum/contact/motion_bound.h"
+#include "tactum/contact/round_contact.h"
 #include "tactum/contact/seams.h"
 
 namespace tactum::inline v0_1 {
@@ -31,7 +32,7 @@ void ContactFinder::list_due_pairs() noexcept {
   for (Index i = 0; i < pairs_.size(); ++i) {
     Pair& pair = pairs_[i];
     if (pair.free_until - accumulated_motion(pair.body_a, pair.body_b) >
-        tolerance(pair.body_a, pair.body_b)) {
+        facet_tolerance(pair.body_a, pair.body_b)) {
       pair.in_contact = false;
     } else {
       due_.push_back({static_cast<std::int32_t>(i), priority_of(pair.body_a, pair.body_b), pair.in_contact,
@@ -150,7 +151,7 @@ int ContactFinder::skip_still_valid(std::span<const Pose> X_WB) noexcept {
     // Measured between the two poses, the motion is less than the accumulated one.
     const double here = accumulated_motion(pair.body_a, pair.body_b);
     pair.free_until = std::max(pair.free_until, here + bound);
-    if (pair.free_until - here > tolerance(pair.body_a, pair.body_b)) {
+    if (pair.free_until - here > facet_tolerance(pair.body_a, pair.body_b)) {
       pair.in_contact = false;
       return true;
     }
@@ -168,13 +169,13 @@ int ContactFinder::skip_still_valid(std::span<const Pose> X_WB) noexcept {
 }
 
 /// Counts a pair that is not tested in this frame, and blocks its bodies where that is not safe: where they
-/// may move by `gap`, a lower bound of their distance [m], in this frame.
+/// may move by `gap`, a lower bound of the distance of their facets [m], in this frame.
 void ContactFinder::skip(int a, int b, double gap, std::int64_t last_checked) noexcept {
   const auto moves_by = [&](int body) {
     return bodies_[Index(body)].moves ? motion_bound_[Index(body)] : 0.0;
   };
   ++work_.unchecked;
-  if (gap > moves_by(a) + moves_by(b)) return;
+  if (gap > moves_by(a) + moves_by(b) + bulge(a, b)) return;
   ++work_.left_unproven;
   work_.left_of_grasped += of_grasped(a, b) ? 1 : 0;
   if (last_checked >= 0)
@@ -243,10 +244,20 @@ SeamCandidate ContactFinder::candidate_of(Pair& pair, const PairDistance& found,
 
 /// Makes a patch of the answer, when it is within the tolerance. Of a pair that was not tested in this frame
 /// the points and the normal are those of its last test, in A's frame, and the distance is a bound.
-void ContactFinder::emit_patch(Pair& pair, const PairDistance& found, const Pose& X_AB) noexcept {
-  const Part& part_a = *bodies_[Index(pair.body_a)].part;
-  const Part& part_b = *bodies_[Index(pair.body_b)].part;
+void ContactFinder::emit_patch(Pair& pair, PairDistance found, const Pose& X_AB) noexcept {
+  const CollisionBody& body_a = bodies_[Index(pair.body_a)];
+  const CollisionBody& body_b = bodies_[Index(pair.body_b)];
+  const Part& part_a = *body_a.part;
+  const Part& part_b = *body_b.part;
   const double margin = tolerance(pair.body_a, pair.body_b);
+  const bool over_area = over_areas(pair.body_a, pair.body_b);
+  const double of_facets = found.distance;
+  StaticVector<ContactPoint, Manifold::kMostPoints> points;
+  const bool apart = found.certified() && of_facets > 0.0;
+  const bool round = !over_area && !of_grasped(pair.body_a, pair.body_b) && apart &&
+                     meet_round({part_a.pieces[Index(pair.piece_a)], body_a.round(pair.piece_a)},
+                                {part_b.pieces[Index(pair.piece_b)], body_b.round(pair.piece_b)}, X_AB,
+                                margin, found, points);
   pair.in_contact = found.distance < margin;
   if (!pair.in_contact) {
     pair.shown = {};
@@ -257,7 +268,6 @@ void ContactFinder::emit_patch(Pair& pair, const PairDistance& found, const Pose
     return drop(pair.body_a, pair.body_b);
   const bool seams = !part_a.true_surface.single_piece() || !part_b.true_surface.single_piece();
   const bool internal = seams && !is_true_contact(part_a, pair.piece_a, part_b, pair.piece_b, X_AB, found);
-  const bool over_area = over_areas(pair.body_a, pair.body_b);
   if (seams && over_area) {
     candidates_.push_back(candidate_of(pair, found, internal));
     return;
@@ -272,11 +282,14 @@ void ContactFinder::emit_patch(Pair& pair, const PairDistance& found, const Pose
   patch.facets.b = part_b.groups.of_piece[Index(pair.piece_b)];
   patch.tolerance = margin;
   if (!over_area) {
-    patch.distance = found.distance;
+    // A curved surface may have been put into another one, by as much as its facets are open.
+    patch.distance = round ? std::max(found.distance, 0.0) : found.distance;
+    patch.round = round;
     patch.manifold.normal = found.normal;
     patch.manifold.a = found.a;
     patch.manifold.b = found.b;
     patch.manifold.points.push_back({found.p_a, found.p_b, found.distance, 1.0, 0});
+    if (round) patch.manifold.points = points;
     if (!internal || !(found.distance > 0.0)) return;
     SeamCandidate& candidate = internal_.emplace_back(candidate_of(pair, found, internal));
     candidate.patch = static_cast<int>(patches_.size()) - 1;

@@ -147,21 +147,34 @@ class ContactFinder final : public GapOracle {
   SeamCandidate candidate_of(Pair& pair, const PairDistance& found, bool internal) const noexcept;
   void settle_candidates(std::span<const Pose> X_WB) noexcept;
   void leave_out_implied(std::span<const Pose> X_WB) noexcept;
-  void emit_patch(Pair& pair, const PairDistance& found, const Pose& X_AB) noexcept;
+  void emit_patch(Pair& pair, PairDistance found, const Pose& X_AB) noexcept;
   GapAnswer distance_at(const ContactPatch& patch, std::span<const Pose> X_WB, double enough, int keep_back,
                         double& distance) noexcept;
   bool meet_by_surfaces(int a, int b) const noexcept {
     return bodies_[std::size_t(a)].part->is_surface() || bodies_[std::size_t(b)].part->is_surface();
   }
   void test_surfaces(const SweepAndPrune::Pair& near, std::span<const Pose> X_WB) noexcept;
-  void add_surface_patch(int a, int b, const SurfaceMinimum& minimum, bool second_end,
-                         double margin) noexcept;
+  std::size_t reduce_minima(int a, int b, double margin) noexcept;
+  bool test_ball(int a, int b, const Pose& X_AB, double margin) noexcept;
+  ContactPatch* add_surface_patch(int a, int b, const SurfaceMinimum& minimum, bool second_end,
+                                  double margin) noexcept;
+  /// Of a body that is a ball its centre, as a surface; else nothing.
+  static SurfaceTree core_of(const CollisionBody& body);
   void surface_distances_at(std::span<const ContactPatch> patches, std::span<const Pose> X_WB,
                             std::span<double> distance, std::span<GapAnswer> asked, int keep_back) noexcept;
   double accumulated_motion(int a, int b) const noexcept {
     return travel_[std::size_t(a)] + travel_[std::size_t(b)];
   }
   double tolerance(int a, int b) const noexcept;
+  /// The distance of facets within which pieces may be in contact: the curved surfaces that they stand for
+  /// are nearer by their bulges [m].
+  double facet_tolerance(int a, int b) const noexcept { return tolerance(a, b) + bulge(a, b); }
+  /// By how much curved surfaces are nearer than facets; the grasped part meets by its facets [m].
+  double bulge(int a, int b) const noexcept { return of_grasped(a, b) ? 0.0 : greatest_bulge(a, b); }
+  /// The same for lists that outlast a grasp [m].
+  double greatest_bulge(int a, int b) const noexcept {
+    return bulge_[std::size_t(a)] + bulge_[std::size_t(b)];
+  }
   BodyPair& list_of(const SweepAndPrune::Pair& near) noexcept {
     BodyPair& list = lists_[std::size_t(near.slot)];
     if (list.body_a != near.a || list.body_b != near.b) list = {near.a, near.b};
@@ -171,6 +184,8 @@ class ContactFinder final : public GapOracle {
   std::vector<CollisionBody> bodies_;
   std::vector<Aabb> part_box_;  // of the part, in its own frame
   std::vector<double> radius_;
+  std::vector<SurfaceTree> cores_;  // see core_of()
+  std::vector<double> bulge_;       // greatest of its pieces (round_piece.h) [m]
   std::vector<Aabb> fat_box_;       // in the world, grown
   std::vector<double> box_growth_;  // how far boxes and lists are grown [m]
   std::vector<double> travel_;      // accumulated motion of each body [m]

@@ -21,14 +21,19 @@ struct NeighbourFaces {
   bool a = false, b = false;
 };
 
-/// Two pieces nearer than their tolerance, or two triangles of surfaces with a local minimum of their
-/// distance. Manifold in A's body frame.
-struct ContactPatch {
+/// The two bodies that touch, and which of their pieces.
+struct PatchSides {
   int body_a = -1, body_b = -1;    ///< body_a < body_b
   int piece_a = -1, piece_b = -1;  ///< within their parts; triangles where two surfaces meet
   int pair = -1;                   ///< of pieces, in the finder's list
-  bool of_surfaces = false;        ///< the features of the manifold are those of SurfaceTree
+};
+
+/// Two pieces nearer than their tolerance, or two triangles of surfaces with a local minimum of their
+/// distance. Manifold in A's body frame.
+struct ContactPatch : PatchSides {
+  bool of_surfaces = false;  ///< the features of the manifold are those of SurfaceTree
   NeighbourFaces neighbour_face;
+  bool round = false;    ///< its points are those of curved surfaces (round_contact.h); without any: watched
   bool implied = false;  ///< by a contact with another body (flush_bodies.h): it has no force of its own
   FacetPair facets;
   double distance = 0.0;   ///< of the pieces, or of the local minimum; negative when they overlap [m]

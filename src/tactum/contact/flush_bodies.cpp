@@ -29,16 +29,21 @@ struct Resting {
       : is_a(patch.body_a == body), other(other_body(patch, body)) {
     const Pose& X_WA = X_WB[Index(patch.body_a)];
     const ContactPoint& point = patch.manifold.points[0];
+    const Feature& on_other = is_a ? patch.manifold.b : patch.manifold.a;
+    on_face = on_other.kind == FeatureKind::kFace;
+    rolls_over = patch.round && !on_face;
     normal_W = is_a ? Vec3(X_WA.R * patch.manifold.normal) : Vec3(-(X_WA.R * patch.manifold.normal));
     p_W = X_WA * (is_a ? point.p_a : point.p_b);
     p_other_W = X_WA * (is_a ? point.p_b : point.p_a);
   }
 
   bool is_a;
-  int other;       ///< the body it rests on
-  Vec3 normal_W;   ///< toward the body
-  Vec3 p_W;        ///< the contact point on the body [m]
-  Vec3 p_other_W;  ///< ... and on the other one [m]
+  int other;        ///< the body it rests on
+  bool on_face;     ///< it rests on a face of the other one
+  bool rolls_over;  ///< a curved surface is near an edge or corner of the other one
+  Vec3 normal_W;    ///< toward the body
+  Vec3 p_W;         ///< the contact point on the body [m]
+  Vec3 p_other_W;   ///< ... and on the other one [m]
 };
 
 /// What a body has at a contact: the whole piece, or, of a surface, the triangles at the feature.
@@ -83,7 +88,10 @@ struct Stretch {
 };
 
 /// Whether the contact can be one of those that imply or are implied.
-bool counts(const ContactPatch& patch) { return !patch.implied && !patch.manifold.points.empty(); }
+bool counts(const ContactPatch& patch) {
+  const bool ball_on_surface = patch.round && patch.of_surfaces;  // the ball has no feature there
+  return !patch.implied && !ball_on_surface && !patch.manifold.points.empty();
+}
 
 /// A plane  normal_W . p = height, with the normal toward the body that rests on it.
 struct Plane {
@@ -160,7 +168,9 @@ struct OfBody {
 
   /// Makes the patch an implied one if the body, as it rests in `resting`, does not meet it.
   bool implies(const ContactPatch& resting, const Resting& r, const Resting& p, ContactPatch& patch) const {
-    if (r.normal_W.dot(p.normal_W) > kSameNormal) return false;
+    // A ball rolls over the edge of the next body without a step, however alike the normals are.
+    const bool alike = r.normal_W.dot(p.normal_W) > kSameNormal;
+    if (alike && !(r.on_face && p.rolls_over)) return false;
     const Plane plane = plane_of(resting, r, stretch(r.other, resting, !r.is_a));
     const Stretch own = stretch(body, patch, p.is_a);
     const Step step{plane.normal_W, -own.highest(-plane.normal_W),

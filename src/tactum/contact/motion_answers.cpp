@@ -6,6 +6,7 @@
 #include "tactum/collision/penetration.h"
 #include "tactum/collision/time_of_impact.h"
 #include "tactum/contact/contact_finder.h"
+#include "tactum/contact/round_contact.h"
 #include "tactum/contact/seams.h"
 #include "tactum/math/screw.h"
 
@@ -43,6 +44,54 @@ double time_to_close(const TimeOfImpact& impact, const MovingPiece& A, const Mov
   const Vec3 n_W = rotated(X_WA.R, impact.closest.normal);
   const double closing = n_W.dot(velocity_at(B.V_W, p_W - X_WB.p) - velocity_at(A.V_W, p_W - X_WA.p));
   return closing > 0.0 ? impact.closest.distance / closing : 0.0;
+}
+
+/// Two pieces that move without turning, or turn about the centre of a ball, which changes nothing.
+struct Passage {
+  RoundSide a, b;
+  const Pose &X_WA, &X_W_B;
+  Vec3 v_a, v_b;          // [m/s]
+  PairDistance at_start;  // of the facets
+
+  struct Gap {
+    double distance = 0.0, rate = 0.0;  // [m, m/s]
+  };
+  /// After `t` seconds; of curved surfaces. False where the facets are the contact.
+  bool gap_at(double t, Gap& gap) const noexcept {
+    const Pose X_AB = relative_pose({X_WA.R, X_WA.p + t * v_a}, {X_W_B.R, X_W_B.p + t * v_b});
+    PairDistance found = at_start;
+    StaticVector<ContactPoint, Manifold::kMostPoints> points;
+    if (!meet_round(a, b, X_AB, 0.0, found, points)) return false;
+    gap = {found.distance, rotated(X_WA.R, found.normal).dot(v_a - v_b)};
+    return true;
+  }
+  /// Whether the gap stays above `gap_m`: it is a convex function of time, so its tangents are below it, and
+  /// the lowest place of two of them is where it is looked at next.
+  bool stays_open(double dt_s, double gap_m, int most_steps, int& steps) const noexcept {
+    double from_s = 0.0;
+    double to_s = dt_s;
+    Gap from, to;
+    steps = 2;
+    if (!gap_at(from_s, from) || !gap_at(to_s, to)) return false;
+    for (; from.distance > gap_m && to.distance > gap_m && steps < most_steps; ++steps) {
+      if (from.rate >= 0.0 || to.rate <= 0.0) return true;
+      const double t =
+          (to.distance - from.distance + from.rate * from_s - to.rate * to_s) / (from.rate - to.rate);
+      if (from.distance + from.rate * (t - from_s) > gap_m) return true;
+      Gap between;
+      if (!gap_at(t, between)) return false;
+      (between.rate < 0.0 ? from : to) = between;
+      (between.rate < 0.0 ? from_s : to_s) = t;
+    }
+    return false;
+  }
+};
+
+/// Whether a body's motion is a translation for its gaps: it does not turn, or is a ball about its origin.
+bool only_moves_along(const CollisionBody& body, const RoundPiece* round, const Twist& V) noexcept {
+  if (V.w.isZero(0.0)) return true;
+  return round != nullptr && round->kind == RoundKind::kSphere &&
+         round->center.norm() < tolerances::kCertificate * body.part->size;
 }
 
 }  // namespace
@@ -100,10 +149,26 @@ bool ContactFinder::passes(int patch, std::span<const Pose> X_WB, std::span<cons
   if (at.of_surfaces || tests_left_ <= 0) return false;
   const Index a = Index(at.body_a);
   const Index b = Index(at.body_b);
-  const TimeOfImpact impact =
-      time_of_impact(bodies_[a].part->pieces[Index(at.piece_a)], X_WB[a], V_WB[a],
-                     bodies_[b].part->pieces[Index(at.piece_b)], X_WB[b], V_WB[b], dt_s, gap_m,
-                     pairs_[Index(at.pair)].cache, std::min(tests_left_, kMostSteps));
+  const RoundPiece* const round_a = bodies_[a].round(at.piece_a);
+  const RoundPiece* const round_b = bodies_[b].round(at.piece_b);
+  if (at.round && only_moves_along(bodies_[a], round_a, V_WB[a]) &&
+      only_moves_along(bodies_[b], round_b, V_WB[b])) {
+    const Passage passage{{bodies_[a].part->pieces[Index(at.piece_a)], round_a},
+                          {bodies_[b].part->pieces[Index(at.piece_b)], round_b},
+                          X_WB[a],
+                          X_WB[b],
+                          V_WB[a].v,
+                          V_WB[b].v,
+                          pairs_[Index(at.pair)].last.found};
+    int steps = 0;
+    const bool open = passage.stays_open(dt_s, gap_m, std::min(tests_left_, kMostSteps), steps);
+    tests_left_ -= steps;
+    return open;
+  }
+  const TimeOfImpact impact = time_of_impact(bodies_[a].part->pieces[Index(at.piece_a)], X_WB[a], V_WB[a],
+                                             bodies_[b].part->pieces[Index(at.piece_b)], X_WB[b], V_WB[b],
+                                             dt_s, gap_m + bulge(at.body_a, at.body_b),
+                                             pairs_[Index(at.pair)].cache, std::min(tests_left_, kMostSteps));
   tests_left_ -= impact.steps;
   return impact.status == ImpactStatus::kMiss;
 }

@@ -42,10 +42,14 @@ ContactFinder::ContactFinder(std::vector<CollisionBody> bodies, std::span<const 
             radius = std::max(radius, vertex.norm());
             box.extend(vertex);
           }
+          double bulge = 0.0;
+          for (const RoundPiece& round : bodies_[i].rounds) bulge = std::max(bulge, round.bulge_m);
           radius_.push_back(radius);
-          part_box_.push_back(box);
+          bulge_.push_back(bulge);
+          cores_.push_back(core_of(bodies_[i]));
+          part_box_.push_back({box.min - Vec3::Constant(bulge), box.max + Vec3::Constant(bulge)});
           box_growth_.push_back(kBoxGrowth * radius);
-          fat_box_.push_back(turned(box, X_WB[i], box_growth_.back()));
+          fat_box_.push_back(turned(part_box_.back(), X_WB[i], box_growth_.back()));
         }
         return SweepAndPrune(fat_box_);
       }()),
@@ -113,7 +117,8 @@ bool ContactFinder::list_holds(const SweepAndPrune::Pair& near) noexcept {
   if (!may_touch(near)) return true;
   const BodyPair& list = list_of(near);
   const double moved = accumulated_motion(near.a, near.b) - list.accumulated_motion;
-  return list.renewal == renewal_ && moved + tolerance(near.a, near.b) <= list.range;
+  return list.renewal == renewal_ &&
+         moved + tolerance(near.a, near.b) + greatest_bulge(near.a, near.b) <= list.range;
 }
 
 void ContactFinder::renew_lists(std::span<const Pose> X_WB) noexcept {
@@ -131,8 +136,8 @@ void ContactFinder::renew_lists(std::span<const Pose> X_WB) noexcept {
     } else {
       const BodyPair old = list;
       list.accumulated_motion = accumulated_motion(near.a, near.b);
-      list.range =
-          tolerance(near.a, near.b) + std::min(box_growth_[Index(near.a)], box_growth_[Index(near.b)]);
+      list.range = tolerance(near.a, near.b) + greatest_bulge(near.a, near.b) +
+                   std::min(box_growth_[Index(near.a)], box_growth_[Index(near.b)]);
       list.cut_short =
           !collect(near.a, near.b, relative_pose(X_WB[Index(near.a)], X_WB[Index(near.b)]), list.range);
       append_pairs(near.a, near.b, old);

@@ -19,11 +19,95 @@ constexpr double kSurfaceDepth = 0.02;
 /// skins at least (kBoundMargin in constraint.cpp), so it is 0.6 skins at least.
 constexpr double kWatched = 0.15;
 
+/// A ball meets a surface where the surface is nearest to its centre, which a tetrahedron of this size stands
+/// for, as a fraction of the radius; the cones are inflated by as much, for normals on the border of two.
+constexpr double kCoreSize = 1e3 * tolerances::kSameNormal;
+
 /// For surfaces that were apart the first query is how far, up to so many tolerances: until they moved that
 /// far they need no other query.
 constexpr double kFarther = 8.0;
 
+/// Whether two minima are on one face of B, or on one edge or corner of it.
+bool same_on_b(const SurfaceMinimum& one, const SurfaceMinimum& other, const SurfaceTree& b) noexcept {
+  if (one.b.kind != other.b.kind) return false;
+  if (one.b.kind != FeatureKind::kFace) return one.b.index == other.b.index;
+  return b.group_of(one.b.index) == b.group_of(other.b.index);
+}
+
 }  // namespace
+
+SurfaceTree ContactFinder::core_of(const CollisionBody& body) {
+  if (body.rounds.size() != 1 || body.rounds[0].kind != RoundKind::kSphere) return {};
+  TriangleMesh mesh;
+  for (const Vec3& corner : {Vec3(1, 1, 1), Vec3(1, -1, -1), Vec3(-1, 1, -1), Vec3(-1, -1, 1)})
+    mesh.vertices.emplace_back(body.rounds[0].center + kCoreSize * body.rounds[0].radius_m * corner);
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}};
+  return SurfaceTree(mesh);
+}
+
+/// The contacts of a ball with a surface, each with its exact gap. False where neither body is a ball.
+bool ContactFinder::test_ball(int a, int b, const Pose& X_AB, double margin) noexcept {
+  const bool ball_is_a = !cores_[Index(a)].empty();
+  if (!ball_is_a && cores_[Index(b)].empty()) return false;
+  const int ball = ball_is_a ? a : b;
+  const SurfaceTree& surface = bodies_[Index(ball_is_a ? b : a)].part->tree;
+  const RoundPiece& round = bodies_[Index(ball)].rounds[0];
+  const Pose X = ball_is_a ? X_AB : X_AB.inverse();  // of the surface, in the ball
+  const MinimaQuery query{.max_distance = round.radius_m + margin, .depth = 0.0, .cone_inflation = kCoreSize};
+  const MinimaWork found = surface_minima(cores_[Index(ball)], surface, X, query, minima_);
+  work_.minima += found.minima;
+  work_.feature_steps += found.feature_pairs;
+  if (found.full) drop(a, b);
+  const auto known = [&](Index i) {
+    return std::any_of(minima_.begin(), minima_.begin() + static_cast<std::ptrdiff_t>(i),
+                       [&](const SurfaceMinimum& m) { return same_on_b(m, minima_[i], surface); });
+  };
+  for (Index i = 0; i < minima_.size(); ++i) {
+    SurfaceMinimum m = minima_[i];
+    if (known(i)) continue;
+    const Vec3 apart = round.center - m.p_b;
+    if (m.b.kind != FeatureKind::kFace) m.normal = apart.normalized();
+    m.distance = m.normal.dot(apart) - round.radius_m;
+    m.p_a = round.center - round.radius_m * m.normal;
+    m.p_b = m.p_a - m.distance * m.normal;
+    m.a = {FeatureKind::kVertex, 0};
+    m.triangle_a = 0;
+    if (!(m.distance < margin)) continue;
+    if (!ball_is_a) {
+      m = {.distance = m.distance,
+           .p_a = X_AB * m.p_b,
+           .p_b = X_AB * m.p_a,
+           .normal = rotated(X_AB.R, -m.normal),
+           .a = m.b,
+           .b = m.a,
+           .triangle_a = m.triangle_b,
+           .triangle_b = m.triangle_a};
+    }
+    ContactPatch* const patch = add_surface_patch(a, b, m, false, margin);
+    if (patch == nullptr) break;
+    patch->round = true;
+    patch->distance = std::max(m.distance, 0.0);  // the facets may still be open
+  }
+  return true;
+}
+
+/// Leaves the minima that carry a contact as all of them do, at the front; returns how many.
+std::size_t ContactFinder::reduce_minima(int a, int b, double margin) noexcept {
+  Index kept = minima_.size();
+  if (kept > kept_minima_) {
+    reduction_scratch_.resize(kept);  // within what was reserved
+    Vec3 center = Vec3::Zero();
+    for (const SurfaceMinimum& minimum : minima_) center += minimum.p_a / double(minima_.size());
+    const double radius = radius_[Index(a)] + radius_[Index(b)];
+    const ReductionReport reduced =
+        reduce_contacts(minima_, reduction_scratch_, kept_minima_,
+                        {.center = center, .max_translation = margin, .max_rotation = margin / radius});
+    kept = Index(reduced.kept);
+    work_.dropped_minima += reduced.dropped;
+    work_.dropped_error = std::max(work_.dropped_error, reduced.largest_error);
+  }
+  return kept;
+}
 
 void ContactFinder::test_surfaces(const SweepAndPrune::Pair& near, std::span<const Pose> X_WB) noexcept {
   const int a = near.a;
@@ -44,6 +128,10 @@ void ContactFinder::test_surfaces(const SweepAndPrune::Pair& near, std::span<con
       .depth = may_cross ? kSurfaceDepth * std::min(part_a.size, part_b.size) : kWatched * margin,
       .cone_inflation = tolerances::kConeInflation};
   const Pose X_AB = relative_pose(X_WB[Index(a)], X_WB[Index(b)]);
+  if (!may_cross && test_ball(a, b, X_AB, margin)) {
+    list.free_until = accumulated_motion(a, b) + (minima_.empty() ? margin : 0.0);
+    return;
+  }
   if (list.apart) {
     MinimaQuery farther = query;
     farther.max_distance *= kFarther;
@@ -61,19 +149,7 @@ void ContactFinder::test_surfaces(const SweepAndPrune::Pair& near, std::span<con
   if (found.full) drop(a, b);
   list.apart = minima_.empty();
   list.free_until = accumulated_motion(a, b) + (list.apart ? margin : 0.0);
-  Index kept = minima_.size();
-  if (kept > kept_minima_) {
-    reduction_scratch_.resize(kept);  // within what was reserved
-    Vec3 center = Vec3::Zero();
-    for (const SurfaceMinimum& minimum : minima_) center += minimum.p_a / double(minima_.size());
-    const double radius = radius_[Index(a)] + radius_[Index(b)];
-    const ReductionReport reduced =
-        reduce_contacts(minima_, reduction_scratch_, kept_minima_,
-                        {.center = center, .max_translation = margin, .max_rotation = margin / radius});
-    kept = Index(reduced.kept);
-    work_.dropped_minima += reduced.dropped;
-    work_.dropped_error = std::max(work_.dropped_error, reduced.largest_error);
-  }
+  const Index kept = reduce_minima(a, b, margin);
   for (Index i = 0; i < kept; ++i) {
     // Outside their true cones two edges may seem to have crossed that have not. Apart they count, however
     // near: the far end of an almost flat contact is such a pair, and the next step may find it in the cones.
@@ -85,9 +161,13 @@ void ContactFinder::test_surfaces(const SweepAndPrune::Pair& near, std::span<con
   }
 }
 
-void ContactFinder::add_surface_patch(int a, int b, const SurfaceMinimum& minimum, bool second_end,
-                                      double margin) noexcept {
-  if (patches_.size() == patches_.capacity()) return drop(a, b);
+/// Null where there is no room for it.
+ContactPatch* ContactFinder::add_surface_patch(int a, int b, const SurfaceMinimum& minimum, bool second_end,
+                                               double margin) noexcept {
+  if (patches_.size() == patches_.capacity()) {
+    drop(a, b);
+    return nullptr;
+  }
   ContactPatch& patch = patches_.emplace_back();
   patch.body_a = a;
   patch.body_b = b;
@@ -107,6 +187,7 @@ void ContactFinder::add_surface_patch(int a, int b, const SurfaceMinimum& minimu
   patch.manifold.b = minimum.b;
   patch.manifold.points.push_back(
       {minimum.p_a, minimum.p_b, minimum.distance, 1.0, point_id(minimum.a, minimum.b, second_end ? 1 : 0)});
+  return &patch;
 }
 
 void ContactFinder::surface_distances_at(std::span<const ContactPatch> patches, std::span<const Pose> X_WB,

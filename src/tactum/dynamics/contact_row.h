@@ -50,6 +50,7 @@ struct ContactRow : SurfacePair {
   double skin_m = 0.0;         ///< the gap at which the pair's contacts are kept [m]
   double asked = 0.0;          ///< by how much the step has to open it at least; negative: it may close [m]
   bool idle = false;           ///< implied by others, or passed by: asks nothing until a trial closes it
+  bool rolls = false;          ///< of a curved surface: in every frame other points of the bodies touch
   double friction = 0.0;       ///< Coulomb's coefficient [-]
   double margin = 0.0;         ///< delta, the contact margin of the pair [m]
   double stiffness = 0.0;      ///< k of the penalty law, the point's part of it; for rows that yield [N/m]

@@ -28,6 +28,12 @@ Vec3 apart(const FrictionPatch& patch, const Pose& X_WA, const Pose& X_W_B) {
   return difference - patch.place.n_BA_W * patch.place.n_BA_W.dot(difference);
 }
 
+/// Sets the displacement between the anchors; zero where it is too small to count.
+void set_apart(const Pose& X_WA, const Pose& X_W_B, FrictionPatch& patch) {
+  patch.anchor.apart_W = apart(patch, X_WA, X_W_B);
+  if (patch.anchor.apart_W.norm() <= settled_length(patch.place.skin_m)) patch.anchor.apart_W.setZero();
+}
+
 /// The point of one body in the frame of another.
 Vec3 carried(const Vec3& p, const Pose& X_W_from, const Pose& X_W_to) {
   return &X_W_from == &X_W_to ? p : Vec3(X_W_to.inverse() * (X_W_from * p));
@@ -45,10 +51,13 @@ const FrictionAnchor* take_anchor(const FrictionAnchors& anchors, std::span<cons
   const Pose& X_WA = X_WB[Index(patch.surfaces.body_a)];
   const Pose& X_W_B = X_WB[Index(patch.surfaces.body_b)];
   const FrictionAnchor* const last = anchors.find(patch, X_WB, kAnchorPlaneSkins * patch.place.skin_m);
-  if (last == nullptr) {
-    patch.anchor.on_A = X_WA.inverse() * patch.place.centre_W;
+  if (last == nullptr || patch.rolls) {
+    // The points that touched have turned away, and how far apart they are is no measure of a slide.
+    const Vec3 slid = last != nullptr && !last->slid ? last->apart_W : Vec3::Zero();
+    patch.anchor.on_A = X_WA.inverse() * (patch.place.centre_W + slid);
     patch.anchor.on_B = X_W_B.inverse() * patch.place.centre_W;
-    return nullptr;
+    set_apart(X_WA, X_W_B, patch);
+    return last;
   }
   const Pose& X_WA_last = X_WB[Index(last->surfaces.body_a)];
   const Vec3 centre = X_WA_last * last->centre_A;
@@ -60,23 +69,26 @@ const FrictionAnchor* take_anchor(const FrictionAnchors& anchors, std::span<cons
   }
   patch.anchor.on_A = carried(last->on_A, X_WA_last, X_WA);
   patch.anchor.on_B = carried(last->on_B, X_WB[Index(last->surfaces.body_b)], X_W_B);
-  patch.anchor.apart_W = apart(patch, X_WA, X_W_B);
-  if (patch.anchor.apart_W.norm() <= settled_length(patch.place.skin_m)) patch.anchor.apart_W.setZero();
+  set_apart(X_WA, X_W_B, patch);
   return last;
 }
 
 FrictionAnchor next_anchor(const FrictionPatch& patch, const Vec3& centre_W, bool pushed,
-                           std::span<const Pose> X_WB) noexcept {
+                           std::span<const Pose> X_WB, const ContactProblem& problem) noexcept {
   const Pose& X_WA = X_WB[Index(patch.surfaces.body_a)];
   const Pose& X_W_B = X_WB[Index(patch.surfaces.body_b)];
   const bool slid = patch.sliding.acts ? !patch.sliding.sticks : patch.slip.displacement_m > 0.0;
-  Vec3 on_A_W = centre_W;
-  if (patch.anchor.used && !slid) on_A_W += apart(patch, X_WA, X_W_B);
+  const Vec3 apart_W = patch.anchor.used && !slid ? apart(patch, X_WA, X_W_B) : Vec3::Zero();
+  const Vec3 on_A_W = centre_W + apart_W;
+  Vec3 rolled_W = Vec3::Zero();
+  if (patch.rolls && patch.anchor.used && !slid)
+    rolled_W = apart_W + slide_of(patch, problem).displacement - patch.anchor.apart_W;
   return {.surfaces = patch.surfaces,
           .n_A = rotated_back(X_WA.R, patch.place.n_BA_W),
           .on_A = X_WA.inverse() * on_A_W,
           .on_B = X_W_B.inverse() * centre_W,
           .centre_A = X_WA.inverse() * centre_W,
+          .apart_W = rolled_W,
           .radius_m = patch.place.radius_m,
           .sticking = patch.rows.sticking,
           .pushed = pushed,
@@ -116,6 +128,7 @@ void Friction::find_pushing(const RowsInProblem& contacts, const ContactProblem&
   std::array<double, kMostPatches> opening{};  // by how much the rows have to open
   for_pushing_rows([&](FrictionPatch& patch, const ContactRow& row, double force) {
     patch.load_N += force;
+    patch.rolls |= row.rolls;
     patch.place.centre_W += force * row.p_W;
     patch.place.n_BA_W += force * row.n_BA_W;
     patch.place.gap_m += force * row.distance;
@@ -137,6 +150,7 @@ void Friction::find_pushing(const RowsInProblem& contacts, const ContactProblem&
 void Friction::find_last_pushing(const RowsInProblem& contacts, const FrictionAnchors& anchors,
                                  std::span<const Pose> X_WB) noexcept {
   const Index pushing = patches_.size();
+  std::array<int, kMostPatches> rolling{};  // rows that roll
   for (const ContactRow& row : contacts.rows) {
     if (!(row.friction > 0.0) || gap_beyond(row.distance, row.skin_m) > 0.0) continue;
     FrictionPatch* found = patch_of(row.friction_surfaces());
@@ -156,6 +170,12 @@ void Friction::find_last_pushing(const RowsInProblem& contacts, const FrictionAn
       found = &patches_.back();
     } else if (found < patches_.begin() + pushing) {
       continue;
+    }
+    if (row.rolls) {  // it is where it touches now
+      Vec3& centre = found->place.centre_W;
+      const int count = ++rolling[static_cast<Index>(found - patches_.begin())];
+      centre = count == 1 ? row.p_W : Vec3(centre + (row.p_W - centre) / count);
+      found->rolls = true;
     }
     found->source_patch = row.patch;
     found->place.n_BA_W += row.n_BA_W;
@@ -419,7 +439,7 @@ void Friction::anchor_patches(const RowsInProblem& contacts, const ContactProble
     }
     const Vec3 centre = sum_N > 0.0 ? Vec3(moment / sum_N) : patch.place.centre_W;
     const bool pushed = loads.cone_N > 0.0 || (patch.sliding.acts && load > 0.0);
-    anchors.add(next_anchor(patch, centre, pushed, X_WB));
+    anchors.add(next_anchor(patch, centre, pushed, X_WB, problem));
   }
 }
 

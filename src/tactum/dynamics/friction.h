@@ -126,13 +126,15 @@ class Friction {
 };
 
 /// Sets the anchor of a patch, and its centre in the patch's plane, to the last frame's; a patch that had
-/// none is anchored at its centre. Returns the last frame's anchor, or null.
+/// none is anchored at its centre, and so is one that rolls, in every frame, with what it slid before.
+/// Returns the last frame's anchor, or null.
 const FrictionAnchor* take_anchor(const FrictionAnchors& anchors, std::span<const Pose> X_WB,
                                   FrictionPatch& patch) noexcept;
 
 /// The anchor of a patch for the next frame, when its forces had their centre at `centre_W` and the step
 /// began at X_WB: that of a patch that stuck goes with the centre, that of one that slid is set anew.
+/// `problem` has the answer.
 FrictionAnchor next_anchor(const FrictionPatch& patch, const Vec3& centre_W, bool pushed,
-                           std::span<const Pose> X_WB) noexcept;
+                           std::span<const Pose> X_WB, const ContactProblem& problem) noexcept;
 
 }  // namespace tactum::inline v0_1

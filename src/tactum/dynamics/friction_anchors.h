@@ -15,12 +15,13 @@ struct FrictionAnchor {
   Vec3 n_A = Vec3::Zero();                        ///< the patch's normal, in A's frame [-]
   Vec3 on_A = Vec3::Zero(), on_B = Vec3::Zero();  ///< the anchor in either body's frame [m]
   Vec3 centre_A = Vec3::Zero();                   ///< the centre of its forces, in A's frame [m]
-  double radius_m = 0.0;                          ///< of its forces about their centre [m]
-  std::uint32_t sticking = 0;                     ///< see PatchRows
-  bool pushed = false;                            ///< friction pushed
-  bool slid = false;                              ///< it is anchored anew, at its centre
-  Vec3 force_W = Vec3::Zero();                    ///< in the surface, on A; the sweeps begin with it [N]
-  double torque_Nm = 0.0;                         ///< ... and about the normal [N m]
+  Vec3 apart_W = Vec3::Zero();  ///< of a patch that rolls: what it slid without slipping [m]
+  double radius_m = 0.0;        ///< of its forces about their centre [m]
+  std::uint32_t sticking = 0;   ///< see PatchRows
+  bool pushed = false;          ///< friction pushed
+  bool slid = false;            ///< it is anchored anew, at its centre
+  Vec3 force_W = Vec3::Zero();  ///< in the surface, on A; the sweeps begin with it [N]
+  double torque_Nm = 0.0;       ///< ... and about the normal [N m]
 };
 
 class FrictionAnchors {

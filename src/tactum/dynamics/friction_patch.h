@@ -61,6 +61,7 @@ struct FrictionPatch {
   int source_patch = -1;     ///< ContactRow::patch of one of its rows
   double coefficient = 0.0;  ///< mu [-]
   double load_N = 0.0;       ///< N without friction; 0: the patch only pushed in the last frame [N]
+  bool rolls = false;        ///< a row of it does (ContactRow::rolls)
   bool acts = true;          ///< false: it was released in this frame
   PatchPlace place;
   PatchAnchor anchor;

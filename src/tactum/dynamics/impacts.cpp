@@ -121,7 +121,8 @@ class Impact {
       if (!meets && !holds(row)) continue;
       if (!corners_.push_back(row)) continue;
       ContactRow& corner = corners_.back();
-      corner.p_W += 0.5 * (moved_by(row.body_a, row.p_W) + moved_by(row.body_b, row.p_W));
+      corner.p_W += row.rolls ? contact_moved(row)
+                              : 0.5 * (moved_by(row.body_a, row.p_W) + moved_by(row.body_b, row.p_W));
       const double closing = approach(corner);
       corner.distance = 0.0;
       corner.skin_m = tolerances::kImpactSettled * speed / kSettledSkins;  // lengths are speeds here
@@ -230,6 +231,14 @@ class Impact {
       if (body == corner.body_b) v -= of_body;
     });
     return -corner.n_BA_W.dot(v);
+  }
+  /// How far the contact of curved surfaces has moved until the impact: along with the centre of what moves,
+  /// which turns beneath it.
+  Vec3 contact_moved(const ContactRow& row) const {
+    const auto along = [&](int body) { return moved_by(body, bodies_.X_WB[Index(body)].p); };
+    if (row.fixed_a) return along(row.body_b);
+    if (row.fixed_b) return along(row.body_a);
+    return 0.5 * (along(row.body_a) + along(row.body_b));
   }
   /// How far a point of a body has moved until the impact.
   Vec3 moved_by(int body, const Vec3& p_W) const {

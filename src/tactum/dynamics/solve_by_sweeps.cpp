@@ -64,6 +64,7 @@ void Sweeps::make_patches(const RowsInProblem& contacts, std::span<const Pose> X
     patch.place.skin_m = row(*first).skin_m;
     const double share = 1.0 / static_cast<double>(last - first);
     std::for_each(first, last, [&](int i) {
+      patch.rolls |= row(i).rolls;
       patch.place.centre_W += share * row(i).p_W;
       patch.place.n_BA_W += row(i).n_BA_W;
       rows_[contacts.first + Index(i)].patch = static_cast<int>(patches_.size()) - 1;
@@ -281,7 +282,7 @@ void Sweeps::end(std::span<ContactRow> rows, RowMemory& memory) const noexcept {
 }
 
 void Sweeps::keep_anchors(const RowsInProblem& contacts, std::span<const Pose> X_WB,
-                          FrictionAnchors& anchors) noexcept {
+                          const ContactProblem& problem, FrictionAnchors& anchors) noexcept {
   for (FrictionPatch& patch : patches_) patch.load_N = 0.0;
   const auto for_pushing_rows = [&](const auto& visit) {
     for (Index i = 0; i < contacts.rows.size(); ++i) {
@@ -303,7 +304,7 @@ void Sweeps::keep_anchors(const RowsInProblem& contacts, std::span<const Pose> X
     const double used = std::hypot(friction.along.now, friction.across.now, twisting);
     if (!(used < (1.0 - tolerances::kAtFrictionBound) * patch.coefficient * patch.load_N))
       patch.slip.displacement_m = kInfinity;
-    FrictionAnchor anchor = next_anchor(patch, patch.place.centre_W, used > 0.0, X_WB);
+    FrictionAnchor anchor = next_anchor(patch, patch.place.centre_W, used > 0.0, X_WB, problem);
     anchor.force_W = friction_force(i);
     anchor.torque_Nm = friction.about.now;
     anchors.add(anchor);

@@ -37,7 +37,7 @@ class Sweeps {
   /// Sets the rows' impulses and their states.
   void end(std::span<ContactRow> rows, RowMemory& memory) const noexcept;
   /// Stores the anchors. X_WB are the poses at the start of the step.
-  void keep_anchors(const RowsInProblem& contacts, std::span<const Pose> X_WB,
+  void keep_anchors(const RowsInProblem& contacts, std::span<const Pose> X_WB, const ContactProblem& problem,
                     FrictionAnchors& anchors) noexcept;
 
   /// The patches with friction, and the force in the surface on body_a of each [N].

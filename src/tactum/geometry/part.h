@@ -11,6 +11,7 @@
 #include "tactum/geometry/bvh.h"
 #include "tactum/geometry/mass_properties.h"
 #include "tactum/geometry/polytope.h"
+#include "tactum/geometry/round_piece.h"
 #include "tactum/geometry/surface_tree.h"
 #include "tactum/geometry/triangle_mesh.h"
 #include "tactum/geometry/true_surface.h"
@@ -28,6 +29,9 @@ struct PartNotes {
 /// together. Each piece is a group; of a part that is felt by its surface these are the coplanar groups of
 /// the triangles; the tree of the surface knows which triangle belongs to which.
 struct SurfaceGroups {
+  /// Of each piece: the sphere or cylinder that it was made to stand for. Empty: the facets are what was
+  /// meant.
+  std::vector<RoundPiece> rounds;
   std::vector<int> of_piece;  ///< of each piece: its group, 0 .. count - 1
   int count = 0;
 };

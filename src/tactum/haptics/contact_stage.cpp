@@ -9,10 +9,20 @@ namespace {
 
 using Index = std::size_t;
 
-std::vector<CollisionBody> collision_bodies(const World& world) {
+/// The curved surfaces of a part's pieces: those it was made with, else those that shading sees in facets.
+std::vector<RoundPiece> rounds_of(const Part& part, const Shading& shading) {
+  if (!part.groups.rounds.empty() || !shading.on) return part.groups.rounds;
+  std::vector<RoundPiece> rounds;
+  bool any = false;
+  for (const Polytope& piece : part.pieces)
+    any |= rounds.emplace_back(find_round_piece(piece, shading.crease_rad)).kind != RoundKind::kNone;
+  return any ? rounds : std::vector<RoundPiece>{};
+}
+
+std::vector<CollisionBody> collision_bodies(const World& world, const Shading& shading) {
   std::vector<CollisionBody> bodies;
   for (const Body& body : world.bodies)
-    bodies.push_back({body.part.get(), body.moves(), body.no_contact_with});
+    bodies.push_back({body.part.get(), body.moves(), body.no_contact_with, rounds_of(*body.part, shading)});
   return bodies;
 }
 
@@ -48,7 +58,7 @@ std::uint32_t flags_of(const ContactWork& work) {
 }  // namespace
 
 ContactStage::ContactStage(const World& world, const FrameSettings& settings, std::span<const Pose> X_WB)
-    : finder(collision_bodies(world), X_WB, settings.budget.capacity, settings.dt_s,
+    : finder(collision_bodies(world, settings.shading), X_WB, settings.budget.capacity, settings.dt_s,
              settings.workspace.scale),
       priority(world.bodies.size(), priority::kOther) {
   if (!settings.shading.on) return;

@@ -12,6 +12,10 @@ namespace {
 
 using Index = std::size_t;
 
+/// A curved surface that was put into another one, as one is whose facets were laid on a floor, rises out of
+/// it by a skin in this time, too slowly to leave the floor.
+constexpr double kRise_s = 1e-3;
+
 /// A name that a row keeps from frame to frame while the pair's patch has as many corners. It is not always
 /// the only one: bodies numbered from 64 on may share it with others, and so may the same features of several
 /// pairs of bodies that meet by their surfaces. A row that is taken for another one makes a solution
@@ -68,7 +72,8 @@ struct RowMaker {
   ConstraintStep& step;
 
   void add(const ContactPatch& patch, int number, bool own) const noexcept {
-    if (patch.manifold.points.empty() && (patch.manifold.a.index < 0 || patch.manifold.b.index < 0))
+    if (patch.manifold.points.empty() &&
+        (patch.round || patch.manifold.a.index < 0 || patch.manifold.b.index < 0))
       return;  // only watched
     ConstraintState& c = step.own.constraint;
     ContactRows& out = step.own.contact_rows;
@@ -78,18 +83,7 @@ struct RowMaker {
     const Pose& X_WA = step.bodies.X_WB[Index(patch.body_a)];
     const Pose X_AB = relative_pose(X_WA, step.bodies.X_WB[Index(patch.body_b)]);
     PatchCorners corners;
-    if (patch.of_surfaces || patch.implied) {
-      for (const ContactPoint& point : patch.manifold.points)
-        corners.push_back({0.5 * (point.p_a + point.p_b), point.distance});
-    } else {
-      const Polytope& A = step.world.bodies[Index(patch.body_a)].part->pieces[Index(patch.piece_a)];
-      const Polytope& B = step.world.bodies[Index(patch.body_b)].part->pieces[Index(patch.piece_b)];
-      if (other < 0) {
-        c.corner_memory.corners_of(A, B, X_AB, patch, corners);
-      } else {  // a grasped part hardly ever lies still to the bit
-        patch_corners(A, B, X_AB, patch.manifold, patch.distance, patch.tolerance, corners);
-      }
-    }
+    find_corners(patch, X_AB, other >= 0, corners);
     const Vec3 normal_W = X_WA.R * patch.manifold.normal;
     SurfacePair surfaces = surfaces_of(step.world, patch);
     surfaces.fixed_a = !step.world.bodies[Index(patch.body_a)].moves();
@@ -106,6 +100,7 @@ struct RowMaker {
     row.margin = patch.tolerance;
     row.skin_m = c.skin_of(patch);
     row.idle = patch.implied;
+    row.rolls = patch.round && !patch.implied;
     row.friction = step.settings.friction.between(patch.body_a, patch.body_b);
     row.impact.restitution = step.settings.impacts.restitution.between(patch.body_a, patch.body_b);
     row.impact.enabled = struck;
@@ -117,13 +112,35 @@ struct RowMaker {
       row.p_W = X_WA * corners[i].p_A;
       row.distance = corners[i].distance;
       row.asked = asked_of(row, c.opening_share);
+      if (patch.round) row.asked = std::min(row.asked, row.skin_m * step.dt_s / kRise_s);
       row.state = c.rows.memory.recall(name_of(patch, i));
       out.rows.push_back(row);
       if (!own || step.shading.empty()) continue;
+      if (patch.round) {
+        c.rows.shaded.push_back(normal_W);
+        continue;
+      }
       const Vec3 bent =
           bend(step.shading[Index(patch.body_a)], step.shading[Index(patch.body_b)], X_AB, patch, corners[i]);
       c.rows.bent |= !bent.isZero(0.0);
       c.rows.shaded.push_back(bent.isZero(0.0) ? normal_W : Vec3((normal_W + X_WA.R * bent).normalized()));
+    }
+  }
+
+ private:
+  void find_corners(const ContactPatch& patch, const Pose& X_AB, bool of_grasped,
+                    PatchCorners& corners) const noexcept {
+    if (patch.of_surfaces || patch.implied || patch.round) {
+      for (const ContactPoint& point : patch.manifold.points)
+        corners.push_back({0.5 * (point.p_a + point.p_b), point.distance});
+    } else {
+      const Polytope& A = step.world.bodies[Index(patch.body_a)].part->pieces[Index(patch.piece_a)];
+      const Polytope& B = step.world.bodies[Index(patch.body_b)].part->pieces[Index(patch.piece_b)];
+      if (!of_grasped) {
+        step.own.constraint.corner_memory.corners_of(A, B, X_AB, patch, corners);
+      } else {  // a grasped part hardly ever lies still to the bit
+        patch_corners(A, B, X_AB, patch.manifold, patch.distance, patch.tolerance, corners);
+      }
     }
   }
 };

@@ -63,6 +63,13 @@ void begin_impacts(ConstraintStep& step) {
   }
 }
 
+/// Whether the forces of the last frame's contacts are those on a body that rests: it is free, so that none of
+/// them is a joint's, and the hand does not press it.
+bool may_rest(const ConstraintStep& step, Index body) {
+  const Body& what = step.world.bodies[body];
+  return step.own.free.struck[body] && what.joint.kind == JointKind::kFree && what.pair_joint < 0;
+}
+
 /// Lets the forces of resting contacts act on, in bodies that still touch something.
 void show_resting(ConstraintStep& step) {
   FreeBodies& f = step.own.free;
@@ -70,8 +77,11 @@ void show_resting(ConstraintStep& step) {
   for (const ContactRow& row : step.own.contact_rows.rows) {
     if (row.idle || row.distance > 2.0 * row.skin_m) continue;
     for (const int body : {row.body_a, row.body_b})
-      if (f.struck[Index(body)]) f.A_seen[Index(body)] = f.A_contacts[Index(body)];
+      if (may_rest(step, Index(body))) f.A_seen[Index(body)] = f.A_contacts[Index(body)];
   }
+  for (const ContactRow& row : step.own.contact_rows.rows)
+    if (is_grasped(step, Index(row.body_a)) || is_grasped(step, Index(row.body_b)))
+      f.A_seen[Index(row.body_a)] = f.A_seen[Index(row.body_b)] = {};
   f.V_seen = step.bodies.V_WB;  // same size: nothing is allocated
   for (Index i = 0; i < f.A_seen.size(); ++i) {
     if (is_zero(f.A_seen[i])) continue;

@@ -169,7 +169,7 @@ void solve_swept(IslandProblem& p) {
   p.step.report.solvers |= static_cast<int>(ContactSolver::kSweeps);
   p.step.report.solver_iterations += solved.iterations;
   if (!solved.converged) p.step.report.flags |= frame_flag::kSolverBounded;
-  sweeps.keep_anchors(p.in_problem, p.step.bodies.X_WB, c.anchors);
+  sweeps.keep_anchors(p.in_problem, p.step.bodies.X_WB, p.problem, c.anchors);
   sweeps.end(p.contacts, c.rows.memory);
   for (Index i = 0; i < sweeps.patches().size(); ++i)
     report_friction(sweeps.patches()[i], sweeps.friction_force(i), sweeps.friction_torque(i), p);

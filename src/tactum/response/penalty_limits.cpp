@@ -1,4 +1,4 @@
-#include "tactum/response/penalty_limits.h"
+#include "tactum/response/penalty_response.h"
 
 #include <algorithm>
 

@@ -16,6 +16,7 @@
 /// grasped part push them beside that. Where there is only one other body, and on a joint, as of two gears,
 /// nothing but the grasped part can meet it: then all that moves is one problem of springs.
 
+#include <string>
 #include <vector>
 
 #include "tactum/base/grouped_indices.h"
@@ -77,5 +78,9 @@ class PenaltyResponse {
   bool cut_ = false;                    // the motion to the hand is cut to the threshold distance
   ReservedVector<double> depth_scale_;  // by patch
 };
+
+/// What this response leaves out of a scene, in a sentence for people: empty where that is nothing, and in the
+/// constraint response.
+std::string penalty_sentence(const FrameSettings& settings);
 
 }  // namespace tactum::inline v0_1

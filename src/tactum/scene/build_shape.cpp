@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "tactum/geometry/primitives.h"
+#include "tactum/mesh/round_part.h"
 #include "tactum/scene/scene_builder.h"
 
 namespace tactum::inline v0_1 {
@@ -19,6 +20,12 @@ Made shape_of(Result<std::vector<Polytope>> pieces) {
 }
 
 Made shape_of(const Polytope& piece) { return shape_of(std::vector<Polytope>{piece}); }
+
+Made shape_of(const RoundSolid& solid) {
+  Made shape = shape_of(solid.facets);
+  shape->stands_for = solid.surface;
+  return shape;
+}
 
 Made shape_of(Result<TriangleMesh> mesh) {
   if (!mesh) return mesh.error();
@@ -68,8 +75,9 @@ class PartMaker {
   }
   Made make(const SlottedPlatePart& part) const { return shape_of(slotted_plate_pieces(part.plate)); }
   Made make(const BoxPart& part) const { return shape_of(make_box(0.5 * part.size_m)); }
-  Made make(const SpherePart& part) const {
-    return shape_of(make_icosphere(part.subdivisions, part.radius_m));
+  Made make(const SpherePart& part) const { return shape_of(make_ball(part.radius_m, part.subdivisions)); }
+  Made make(const CylinderPart& part) const {
+    return shape_of(make_cylinder(part.radius_m, part.height_m, part.sides));
   }
   Made make(const EllipsoidPart& part) const {
     return shape_of(make_ellipsoid(part.subdivisions, part.radii_m));

@@ -87,10 +87,19 @@ struct BoxPart {
   Vec3 size_m = Vec3::Zero();  ///< whole sides [m]
 };
 
+/// Its surface is exact; facets are what is drawn.
 struct SpherePart {
   static constexpr const char* kKind = "sphere";
   double radius_m = 0.0;  ///< [m]
   int subdivisions = 2;   ///< of an icosahedron's facets, 0 to 5 [-]
+};
+
+/// A cylinder about z, exact as a sphere is.
+struct CylinderPart {
+  static constexpr const char* kKind = "cylinder";
+  double radius_m = 0.0;  ///< [m]
+  double height_m = 0.0;  ///< [m]
+  int sides = 32;         ///< facets around it, 8 to 1024 [-]
 };
 
 struct EllipsoidPart {
@@ -108,6 +117,6 @@ struct PrismPart {
 
 using PartDescription =
     std::variant<MeshPart, GearPart, PegPart, HoleBlockPart, BoltPart, NutPart, HexKeyPart, SocketPart,
-                 SlottedPlatePart, BoxPart, SpherePart, EllipsoidPart, PrismPart>;
+                 SlottedPlatePart, BoxPart, SpherePart, CylinderPart, EllipsoidPart, PrismPart>;
 
 }  // namespace tactum::inline v0_1

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "tactum/mesh/make_part.h"
+#include "tactum/mesh/round_part.h"
 
 namespace tactum::inline v0_1 {
 namespace {
@@ -12,6 +12,8 @@ Result<Part> built(const Shape& shape, double density_kg_per_m3) {
   options.name = shape.file;
   options.density_kg_per_m3 = density_kg_per_m3;
   options.about_center_of_mass = true;
+  if (shape.stands_for.kind != RoundKind::kNone)
+    return round_part({shape.pieces[0], shape.stands_for}, options);
   if (!shape.pieces.empty()) {
     std::vector<std::vector<Vec3>> clouds;
     for (const Polytope& piece : shape.pieces) clouds.push_back(piece.vertices);

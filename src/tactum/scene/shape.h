@@ -17,10 +17,11 @@
 namespace tactum::inline v0_1 {
 
 struct Shape {
-  std::vector<Polytope> pieces;                   ///< made by rule; empty for a mesh
-  std::string file;                               ///< where the mesh came from; empty when made by rule
-  ImportedMesh mesh;                              ///< in metres
-  bool given = false;                             ///< the mesh's groups are the convex pieces
+  std::vector<Polytope> pieces;  ///< made by rule; empty for a mesh
+  RoundPiece stands_for;         ///< of a ball or cylinder, whose facets are the only piece; kNone: of none
+  std::string file;              ///< where the mesh came from; empty when made by rule
+  ImportedMesh mesh;             ///< in metres
+  bool given = false;            ///< the mesh's groups are the convex pieces
   PieceSource piece_source = PieceSource::kAuto;  ///< from a mesh that is not given in pieces
   std::shared_ptr<const PartFile> prepared;       ///< instead of a mesh
 };

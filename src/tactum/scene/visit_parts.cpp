@@ -117,6 +117,12 @@ void visit_items(ItemVisitor& visitor, SpherePart& part) {
   visitor.integer("subdivisions", part.subdivisions, 0, 5);
 }
 
+void visit_items(ItemVisitor& visitor, CylinderPart& part) {
+  visitor.number("radius_m", part.radius_m, kPositive, Need::kRequired);
+  visitor.number("height_m", part.height_m, kPositive, Need::kRequired);
+  visitor.integer("sides", part.sides, 8, 1024);
+}
+
 void visit_items(ItemVisitor& visitor, EllipsoidPart& part) {
   visitor.sizes("radii_m", part.radii_m);
   visitor.integer("subdivisions", part.subdivisions, 0, 5);
