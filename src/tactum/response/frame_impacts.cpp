@@ -63,14 +63,15 @@ void begin_impacts(ConstraintStep& step) {
   }
 }
 
-/// Whether the forces of the last frame's contacts are those on a body that rests: it is free, so that none of
-/// them is a joint's, and the hand does not press it.
+/// Whether the forces that the last frame found for the body are those of contacts alone: it is free, so that
+/// none of them is a joint's.
 bool may_rest(const ConstraintStep& step, Index body) {
   const Body& what = step.world.bodies[body];
   return step.own.free.struck[body] && what.joint.kind == JointKind::kFree && what.pair_joint < 0;
 }
 
-/// Lets the forces of resting contacts act on, in bodies that still touch something.
+/// Lets the forces of resting contacts act on, in bodies that still touch something and that the hand does
+/// not press.
 void show_resting(ConstraintStep& step) {
   FreeBodies& f = step.own.free;
   std::fill(f.A_seen.begin(), f.A_seen.end(), Twist{});

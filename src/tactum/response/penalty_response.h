@@ -79,8 +79,8 @@ class PenaltyResponse {
   ReservedVector<double> depth_scale_;  // by patch
 };
 
-/// What this response leaves out of a scene, in a sentence for people: empty where that is nothing, and in the
-/// constraint response.
+/// What this response leaves out of a scene, in a sentence for people: empty where that is nothing, and in
+/// the constraint response.
 std::string penalty_sentence(const FrameSettings& settings);
 
 }  // namespace tactum::inline v0_1
