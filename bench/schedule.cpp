@@ -254,7 +254,7 @@ TimeModel fitted(const std::vector<Frame>& frames, Index terms) {
   return model;
 }
 
-std::string number(double value) { return fmt::format("{:.0f}", value); }
+std::string rounded(double value) { return fmt::format("{:.0f}", value); }
 
 }  // namespace
 
@@ -358,11 +358,11 @@ Table table_of(const std::vector<ScheduleRow>& rows) {
     table.rows.push_back(
         {fmt::format("{:g}", row.share), fmt::format("{}", row.budget), fmt::format("{}", row.most_tests),
          fmt::format("{}", row.most_near), fmt::format("{:.2g} N", row.force_error_mean_N),
-         fmt::format("{:.2g} N", row.force_error_max_N), number(row.unchecked_mean),
-         fmt::format("{}", row.unchecked_max), number(row.unproven_mean), fmt::format("{}", row.unproven_max),
-         number(row.waiting_mean), fmt::format("{} frames", row.longest_wait),
-         fmt::format("{}", row.left_of_grasped), length_text(row.overlap_m), time_text(row.p50_us * 1e3),
-         time_text(row.p99_us * 1e3)});
+         fmt::format("{:.2g} N", row.force_error_max_N), rounded(row.unchecked_mean),
+         fmt::format("{}", row.unchecked_max), rounded(row.unproven_mean),
+         fmt::format("{}", row.unproven_max), rounded(row.waiting_mean),
+         fmt::format("{} frames", row.longest_wait), fmt::format("{}", row.left_of_grasped),
+         length_text(row.overlap_m), time_text(row.p50_us * 1e3), time_text(row.p99_us * 1e3)});
   return table;
 }
 
@@ -371,8 +371,8 @@ Table table_of(const std::vector<ModelRow>& rows) {
   table.rows.push_back(
       {"bodies", "N", "K", "M", "points x sweeps", "measured", "paper's model", "with sweeps"});
   for (const ModelRow& row : rows)
-    table.rows.push_back({fmt::format("{}", row.bodies), number(row.pieces), number(row.tests),
-                          number(row.patches), number(row.sweeps), time_text(row.measured_us * 1e3),
+    table.rows.push_back({fmt::format("{}", row.bodies), rounded(row.pieces), rounded(row.tests),
+                          rounded(row.patches), rounded(row.sweeps), time_text(row.measured_us * 1e3),
                           time_text(row.paper_us * 1e3), time_text(row.swept_us * 1e3)});
   return table;
 }

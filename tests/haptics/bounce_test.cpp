@@ -220,7 +220,6 @@ void expect_oblique(double radius_m, double speed, double aside, double rate_Hz)
                                     << rate_Hz << " Hz");
   Sandbox box;
   box.settings.dt_s = 1.0 / rate_Hz;
-  box.settings.shading.on = false;  // the facets are the surface
   const Polytope shape = make_icosphere(2, radius_m);
   box.add(shape, {Mat3::Identity(), {-4.0 * radius_m, 0, 0}}, {{speed, 0, 0}, Vec3::Zero()});
   box.add(shape, {Mat3::Identity(), {0, aside * radius_m, 0}});

@@ -254,10 +254,10 @@ void ContactFinder::emit_patch(Pair& pair, PairDistance found, const Pose& X_AB)
   const double of_facets = found.distance;
   StaticVector<ContactPoint, Manifold::kMostPoints> points;
   const bool apart = found.certified() && of_facets > 0.0;
+  const RoundSide side_a{part_a.pieces[Index(pair.piece_a)], body_a.round(pair.piece_a)};
+  const RoundSide side_b{part_b.pieces[Index(pair.piece_b)], body_b.round(pair.piece_b)};
   const bool round = !over_area && !of_grasped(pair.body_a, pair.body_b) && apart &&
-                     meet_round({part_a.pieces[Index(pair.piece_a)], body_a.round(pair.piece_a)},
-                                {part_b.pieces[Index(pair.piece_b)], body_b.round(pair.piece_b)}, X_AB,
-                                margin, found, points);
+                     meet_round(side_a, side_b, X_AB, margin, found, points);
   pair.in_contact = found.distance < margin;
   if (!pair.in_contact) {
     pair.shown = {};

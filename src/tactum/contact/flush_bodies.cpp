@@ -46,8 +46,8 @@ struct Resting {
   Vec3 p_other_W;   ///< ... and on the other one [m]
 };
 
-/// What a body has at a contact: the whole piece, or, of a surface, the triangles at the feature.
-struct Stretch {
+/// The shape of a body at a contact: the whole piece, or, of a surface, the triangles at the feature.
+struct TouchedShape {
   const Part& part;
   const Pose& X_WB;
   int piece;        ///< -1: of a surface
@@ -101,7 +101,7 @@ struct Plane {
 
 /// The plane of the face on which the body rests; where it rests on an edge or corner, that of the contact.
 /// The face is taken because the contact's normal may be that of the body's own face, which leans.
-Plane plane_of(const ContactPatch& patch, const Resting& r, const Stretch& others) {
+Plane plane_of(const ContactPatch& patch, const Resting& r, const TouchedShape& others) {
   const Plane of_contact{r.normal_W, r.normal_W.dot(r.p_other_W)};
   if (others.piece < 0) return of_contact;
   const Polytope& convex = others.part.pieces[Index(others.piece)];
@@ -122,7 +122,7 @@ struct Step {
 
 /// Gives an implied contact the normal of the plane, and the points at which its body would meet the step:
 /// where it is nearest, and the lowest vertices that are no farther from there than the motion may lead.
-void take_step(const Resting& implied, const Step& step, const Stretch& own, const Pose& X_WA,
+void take_step(const Resting& implied, const Step& step, const TouchedShape& own, const Pose& X_WA,
                ContactPatch& patch) {
   const Vec3& n = step.normal_W;
   const auto add = [&](const Vec3& p_W) {
@@ -160,7 +160,7 @@ struct OfBody {
   int body;
 
   /// What a body has at a contact, of which `is_a` states which side is the body's.
-  Stretch stretch(int of, const ContactPatch& patch, bool is_a) const {
+  TouchedShape touched_shape(int of, const ContactPatch& patch, bool is_a) const {
     return {*bodies[Index(of)].part, X_WB[Index(of)],
             patch.of_surfaces ? -1 : (is_a ? patch.piece_a : patch.piece_b),
             is_a ? patch.manifold.a : patch.manifold.b};
@@ -171,10 +171,10 @@ struct OfBody {
     // A ball rolls over the edge of the next body without a step, however alike the normals are.
     const bool alike = r.normal_W.dot(p.normal_W) > kSameNormal;
     if (alike && !(r.on_face && p.rolls_over)) return false;
-    const Plane plane = plane_of(resting, r, stretch(r.other, resting, !r.is_a));
-    const Stretch own = stretch(body, patch, p.is_a);
+    const Plane plane = plane_of(resting, r, touched_shape(r.other, resting, !r.is_a));
+    const TouchedShape own = touched_shape(body, patch, p.is_a);
     const Step step{plane.normal_W, -own.highest(-plane.normal_W),
-                    stretch(p.other, patch, !p.is_a).highest(plane.normal_W),
+                    touched_shape(p.other, patch, !p.is_a).highest(plane.normal_W),
                     kRiddenStep * bodies[Index(body)].part->size};
     if (step.top > plane.height + step.ridden_m) return false;
     // A part that has entered the body it rests on may lean, and is then deeper beside it.

@@ -167,7 +167,7 @@ bool ContactFinder::passes(int patch, std::span<const Pose> X_WB, std::span<cons
   }
   const TimeOfImpact impact = time_of_impact(bodies_[a].part->pieces[Index(at.piece_a)], X_WB[a], V_WB[a],
                                              bodies_[b].part->pieces[Index(at.piece_b)], X_WB[b], V_WB[b],
-                                             dt_s, gap_m + bulge(at.body_a, at.body_b),
+                                             dt_s, gap_m + (at.round ? bulge(at.body_a, at.body_b) : 0.0),
                                              pairs_[Index(at.pair)].cache, std::min(tests_left_, kMostSteps));
   tests_left_ -= impact.steps;
   return impact.status == ImpactStatus::kMiss;

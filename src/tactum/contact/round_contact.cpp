@@ -15,7 +15,7 @@ using Index = std::size_t;
 /// Lines whose directions differ by a smaller sine lie along each other.
 constexpr double kAlong = 1e5 * tolerances::kSameNormal;
 /// A walk to the closest feature crosses a few features from those of the facets.
-constexpr int kMostSteps = 64;
+constexpr int kMostWalkSteps = 64;
 
 /// Where a round piece is nearest to the other one, all in the frame of the other.
 struct Meeting {
@@ -109,7 +109,7 @@ bool meet_ball(const Polytope& P, const Core& core, Feature at, Meeting& m) noex
   for (int steps = 0;; ++steps) {
     const Feature next = step_towards(P, c, at);
     if (next == at) break;
-    if (steps == kMostSteps) return false;
+    if (steps == kMostWalkSteps) return false;
     at = next;
   }
   m.on_other = at;
@@ -128,14 +128,14 @@ bool meet_ball(const Polytope& P, const Core& core, Feature at, Meeting& m) noex
 }
 
 /// The stretch of a cylinder's line over a face, by its distances along the axis.
-struct Stretch {
+struct LineStretch {
   double from, to;
   bool cut_from = false, cut_to = false;  ///< it ends at a side of the face, not at the cylinder's end
 };
 
-Stretch stretch_over(const Polytope& P, const Polytope::Face& face, const Core& core,
-                     const Vec3& line) noexcept {
-  Stretch over{-core.half_length, core.half_length};
+LineStretch stretch_over(const Polytope& P, const Polytope::Face& face, const Core& core,
+                         const Vec3& line) noexcept {
+  LineStretch over{-core.half_length, core.half_length};
   for (int slot = face.first; slot < face.first + face.count; ++slot) {
     const Polytope::Side& side = side_at(P, slot);
     const double out = beyond(side, line);
@@ -162,7 +162,7 @@ bool meet_face(const Polytope& P, int number, const Core& core, double margin, M
   const double length = square.norm();
   if (2.0 * core.radius * length < margin || !(face.normal.dot(core.center) > face.offset)) return false;
   const Vec3 line = core.center - (core.radius / length) * square;
-  const Stretch over = stretch_over(P, face, core, line);
+  const LineStretch over = stretch_over(P, face, core, line);
   if (!(over.from <= over.to)) return false;
   const bool crosses = lean > 0.0 ? over.cut_from : over.cut_to;
   if (crosses && std::abs(lean) > kAlong) return false;
@@ -290,6 +290,7 @@ Feature corner_at(const Polytope& P, const Feature& at) noexcept {
 bool meet_round(const RoundSide& a, const RoundSide& b, const Pose& X_AB, double margin, PairDistance& found,
                 StaticVector<ContactPoint, Manifold::kMostPoints>& points) noexcept {
   if (a.round == nullptr && b.round == nullptr) return false;
+  if (a.round != nullptr && b.round != nullptr && !a.round->made && !b.round->made) return false;
   Meeting m;
   bool round_is_a = true;
   Feature on_a = corner_at(a.piece, found.a);

@@ -37,11 +37,11 @@ bool meet_smoothly(const Polytope& piece, const Polytope::Edge& edge, double cos
 }
 
 /// The largest distance from a point, less the smallest, of the corners; without what is along `across`.
-struct Spread {
+struct Radii {
   double least, most;
 };
-Spread spread_of(const Polytope& piece, const Vec3& from, const Vec3& across) {
-  Spread spread{1e300, 0.0};
+Radii spread_of(const Polytope& piece, const Vec3& from, const Vec3& across) {
+  Radii spread{1e300, 0.0};
   for (const Vec3& vertex : piece.vertices) {
     const Vec3 p = vertex - from;
     const double distance = (p - across * across.dot(p)).norm();
@@ -58,7 +58,7 @@ RoundPiece sphere_of(const Polytope& piece, double cosine) {
     if (!meet_smoothly(piece, edge, cosine)) return {};
   RoundPiece round;
   round.center = middle_of(piece, Vec3::Zero());
-  const Spread spread = spread_of(piece, round.center, Vec3::Zero());
+  const Radii spread = spread_of(piece, round.center, Vec3::Zero());
   if (spread.most - spread.least > noise_of(piece)) return {};
   round.radius_m = spread.most;
   for (const Polytope::Face& face : piece.faces) {
@@ -85,7 +85,7 @@ RoundPiece cylinder_of(const Polytope& piece, double cosine) {
   };
   for (const Vec3& vertex : piece.vertices)
     if (std::abs(std::abs(round.axis.dot(vertex - round.center)) - round.half_length_m) > noise) return {};
-  const Spread spread = spread_of(piece, round.center, round.axis);
+  const Radii spread = spread_of(piece, round.center, round.axis);
   if (spread.most - spread.least > noise) return {};
   round.radius_m = spread.most;
   for (const Polytope::Edge& edge : piece.edges)

@@ -23,6 +23,7 @@ struct RoundPiece {
   Vec3 axis = Vec3::UnitZ();   ///< of a cylinder, unit [-]
   double radius_m = 0.0;       ///< [m]
   double half_length_m = 0.0;  ///< of a cylinder [m]
+  bool made = false;           ///< as a ball or cylinder; false: recognised in the facets
   double bulge_m = 0.0;        ///< greatest distance of the curved surface from the facets [m]
 };
 

@@ -41,6 +41,7 @@ Result<Part> round_part(const RoundSolid& solid, const PartOptions& options) {
     const double depth = face.offset - face.normal.dot(surface.center);
     if (!end) surface.bulge_m = std::max(surface.bulge_m, surface.radius_m - depth);
   }
+  surface.made = true;
   part->groups.rounds = {surface};
   part->mass.center = surface.center;
   set_mass(surface, options.density_kg_per_m3, part->mass);

@@ -75,7 +75,10 @@ class PartMaker {
   }
   Made make(const SlottedPlatePart& part) const { return shape_of(slotted_plate_pieces(part.plate)); }
   Made make(const BoxPart& part) const { return shape_of(make_box(0.5 * part.size_m)); }
-  Made make(const SpherePart& part) const { return shape_of(make_ball(part.radius_m, part.subdivisions)); }
+  Made make(const SpherePart& part) const {
+    return shape_of(make_icosphere(part.subdivisions, part.radius_m));
+  }
+  Made make(const BallPart& part) const { return shape_of(make_ball(part.radius_m, part.subdivisions)); }
   Made make(const CylinderPart& part) const {
     return shape_of(make_cylinder(part.radius_m, part.height_m, part.sides));
   }

@@ -87,14 +87,20 @@ struct BoxPart {
   Vec3 size_m = Vec3::Zero();  ///< whole sides [m]
 };
 
-/// Its surface is exact; facets are what is drawn.
 struct SpherePart {
   static constexpr const char* kKind = "sphere";
   double radius_m = 0.0;  ///< [m]
   int subdivisions = 2;   ///< of an icosahedron's facets, 0 to 5 [-]
 };
 
-/// A cylinder about z, exact as a sphere is.
+/// A true ball: its surface is exact; facets are what is drawn.
+struct BallPart {
+  static constexpr const char* kKind = "ball";
+  double radius_m = 0.0;  ///< [m]
+  int subdivisions = 2;   ///< as of a sphere, of what is drawn [-]
+};
+
+/// A cylinder about z, exact as a ball is.
 struct CylinderPart {
   static constexpr const char* kKind = "cylinder";
   double radius_m = 0.0;  ///< [m]
@@ -117,6 +123,6 @@ struct PrismPart {
 
 using PartDescription =
     std::variant<MeshPart, GearPart, PegPart, HoleBlockPart, BoltPart, NutPart, HexKeyPart, SocketPart,
-                 SlottedPlatePart, BoxPart, SpherePart, CylinderPart, EllipsoidPart, PrismPart>;
+                 SlottedPlatePart, BoxPart, SpherePart, BallPart, CylinderPart, EllipsoidPart, PrismPart>;
 
 }  // namespace tactum::inline v0_1

@@ -117,6 +117,11 @@ void visit_items(ItemVisitor& visitor, SpherePart& part) {
   visitor.integer("subdivisions", part.subdivisions, 0, 5);
 }
 
+void visit_items(ItemVisitor& visitor, BallPart& part) {
+  visitor.number("radius_m", part.radius_m, kPositive, Need::kRequired);
+  visitor.integer("subdivisions", part.subdivisions, 0, 5);
+}
+
 void visit_items(ItemVisitor& visitor, CylinderPart& part) {
   visitor.number("radius_m", part.radius_m, kPositive, Need::kRequired);
   visitor.number("height_m", part.height_m, kPositive, Need::kRequired);
