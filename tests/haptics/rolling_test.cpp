@@ -227,9 +227,9 @@ TEST(Rolling, ABallLeavesTheFloorWithoutSpin) {
       }
 }
 
-/// Two equal true balls meet aside, without friction: what is along the line of their centres is exchanged. The
-/// line is taken at the start of the frame of the impact, so it is right to the first order of the step. (Two
-/// balls of facets meet by these: Bounce.ABallHitAside.)
+/// Two equal true balls meet aside, without friction: what is along the line of their centres is exchanged.
+/// The line is taken at the start of the frame of the impact, so it is right to the first order of the step.
+/// (Two balls of facets meet by these: Bounce.ABallHitAside.)
 TEST(Rolling, BallsThatMeetAsideExchangeTheirSpeedAlongTheirCentres) {
   const double r = 0.02;
   const Form form = Form::kTrueBall;
