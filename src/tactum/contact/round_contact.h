@@ -30,8 +30,8 @@ struct RoundSide {
 /// The exact contact of two pieces of which one or both are round, from what was found for their facets.
 /// `found` becomes the nearest point, and `points` has every point nearer than `margin` [m], at most two; the
 /// features of the round pieces are vertices. False, with nothing changed, where the facets are the contact:
-/// neither is round, both are so by their facets alone, a cylinder stands on its end or its rim meets an edge,
-/// or an axis or centre is inside the other piece.
+/// neither is round, both are so by their facets alone, a cylinder stands on its end or its rim meets an
+/// edge, or an axis or centre is inside the other piece.
 bool meet_round(const RoundSide& a, const RoundSide& b, const Pose& X_AB, double margin, PairDistance& found,
                 StaticVector<ContactPoint, Manifold::kMostPoints>& points) noexcept;
 
