@@ -33,9 +33,8 @@ std::vector<Setting> settings() {
     for (const double rate_Hz : {500.0, 1000.0, 2000.0, 4000.0}) all.push_back({response, 1.0 / rate_Hz});
     for (const double size : {0.1, 30.0}) all.push_back({response, 0.001, size});
     all.push_back({response, 0.001, 1.0, true});
-    if (testing::kSanitized) return all;
   }
-  return all;
+  return testing::sampled(all, 5);
 }
 
 std::string name_of(const Setting& s) {
@@ -188,6 +187,8 @@ TEST(JoinedMotion, ADoublePendulumKeepsItsEnergyForAMinute) {
   for (const ResponseModel response : {ResponseModel::kConstraint, ResponseModel::kPenalty})
     for (const JointKind kind : {JointKind::kHinge, JointKind::kBall})
       for (const double size : {1.0, 10.0}) {
+        const bool small = response == ResponseModel::kConstraint && size == 1.0;
+        if (testing::kSanitized && !small) continue;
         if (response == ResponseModel::kPenalty && size != 1.0) continue;  // the same code moves them
         const Setting setting{response, 0.001, size};
         SCOPED_TRACE(name_of(setting) + (kind == JointKind::kHinge ? " hinge" : " ball"));
