@@ -10,7 +10,7 @@
 namespace tactum {
 namespace {
 
-struct Job {
+struct FeelJob {
   bench::FeelOptions options;
   bool alone = false;
   std::string json, markdown, svg;
@@ -21,7 +21,7 @@ void put(const std::string& path, const std::string& name, const bench::Table& t
     fail({"cannot write the file", "", "", path});
 }
 
-void run(Job& job) {
+void run_feel(FeelJob& job) {
   job.options.peers = !job.alone;
   const bench::FeelReport report =
       bench_feel(job.options, [](const std::string& what) { fmt::print(stderr, "{}\n", what); });
@@ -47,7 +47,7 @@ void run(Job& job) {
 }  // namespace
 
 void add_bench_feel(CLI::App& parent) {
-  auto job = std::make_shared<Job>();
+  auto job = std::make_shared<FeelJob>();
   CLI::App* command = parent.add_subcommand(
       "feel", "What is felt against analytic truth, beside rigid-body engines with a virtual coupling");
   std::vector<std::string> names;
@@ -63,7 +63,7 @@ void add_bench_feel(CLI::App& parent) {
   command->add_option("--markdown", job->markdown,
                       "write the tables to this file, between its marks (docs/benchmarks.md)");
   command->add_option("--svg", job->svg, "draw the pegs into this file");
-  command->callback([job] { run(*job); });
+  command->callback([job] { run_feel(*job); });
 }
 
 }  // namespace tactum

@@ -14,7 +14,7 @@ namespace tactum {
 namespace {
 
 /// What is asked for, and where the results go.
-struct Job {
+struct QueryJob {
   bench::PairsOptions options;
   std::string json, markdown, svg;
 };
@@ -23,7 +23,7 @@ void report_progress(const std::string& what) { fmt::print(stderr, "{}\n", what)
 
 /// The tables for people, the rows for machines; `mark` names the place in the Markdown page.
 template <class Rows>
-void put_out(const Job& job, const std::string& mark, const Rows& rows, const std::string& text,
+void put_out(const QueryJob& job, const std::string& mark, const Rows& rows, const std::string& text,
              const std::string& markdown) {
   if (job.json != "-") fmt::print("{}", text);
   if (!job.json.empty()) {
@@ -35,7 +35,7 @@ void put_out(const Job& job, const std::string& mark, const Rows& rows, const st
     fail({"cannot write the file", "", "", job.markdown});
 }
 
-void run_pairs(const Job& job) {
+void run_pairs(const QueryJob& job) {
   const bench::PairsReport report = bench_pairs(job.options, report_progress);
   const std::string how = fmt::format("{}\nDistances proved by the referee: {} of {} poses.\n", report.how,
                                       report.proved, report.recorded);
@@ -48,7 +48,7 @@ void run_pairs(const Job& job) {
     fail({"cannot write the file", "", "", job.svg});
 }
 
-void run_penetration(const Job& job) {
+void run_penetration(const QueryJob& job) {
   const bench::PairsReport report = bench_penetration(job.options, report_progress);
   const std::string how =
       fmt::format("{}\nDepths proved to be the smallest by the referee: {} of {} poses.\n", report.how,
@@ -59,14 +59,14 @@ void run_penetration(const Job& job) {
           summary.markdown() + "\n" + how);
 }
 
-void run_manifold(const Job& job) {
+void run_manifold(const QueryJob& job) {
   const bench::ManifoldReport report = bench_manifold(job.options, report_progress);
   const bench::Table table = table_of(report);
   put_out(job, "manifold", report.rows, table.text() + "\n" + report.how + "\n",
           table.markdown() + "\n" + report.how + "\n");
 }
 
-void run_impact(const Job& job) {
+void run_impact(const QueryJob& job) {
   const bench::ImpactReport report = bench_impact(job.options, report_progress);
   const bench::Table table = table_of(report);
   put_out(job, "impact", report.rows, table.text() + "\n" + report.how + "\n",
@@ -75,8 +75,8 @@ void run_impact(const Job& job) {
 
 /// A subcommand with the options that all four have.
 CLI::App* add_command(CLI::App& parent, const std::string& name, const std::string& what,
-                      std::span<const bench::Pair> pairs, const std::shared_ptr<Job>& job,
-                      void (*run)(const Job&)) {
+                      std::span<const bench::Pair> pairs, const std::shared_ptr<QueryJob>& job,
+                      void (*run)(const QueryJob&)) {
   CLI::App* command = parent.add_subcommand(name, what);
   command->add_option("--shapes", job->options.shapes, "pairs by name, with commas")
       ->delimiter(',')
@@ -97,7 +97,7 @@ CLI::App* add_command(CLI::App& parent, const std::string& name, const std::stri
   return command;
 }
 
-void add_peer_options(CLI::App& command, Job& job) {
+void add_peer_options(CLI::App& command, QueryJob& job) {
   command.add_option("--engines", job.options.engines, "with commas")
       ->delimiter(',')
       ->check(CLI::IsMember(bench::engine_names()));
@@ -113,7 +113,7 @@ void add_peer_options(CLI::App& command, Job& job) {
       ->capture_default_str();
 }
 
-void add_regimes(CLI::App& command, Job& job, const std::vector<bench::Regime>& regimes) {
+void add_regimes(CLI::App& command, QueryJob& job, const std::vector<bench::Regime>& regimes) {
   std::vector<std::string> names;
   for (const bench::Regime& regime : regimes) names.push_back(regime.name);
   command.add_option("--regimes", job.options.regimes, "with commas")
@@ -124,7 +124,7 @@ void add_regimes(CLI::App& command, Job& job, const std::vector<bench::Regime>& 
 }  // namespace
 
 void add_bench_pairs(CLI::App& parent) {
-  auto job = std::make_shared<Job>();
+  auto job = std::make_shared<QueryJob>();
   CLI::App* command =
       add_command(parent, "pairs", "Distances of convex pieces, beside FCL, libccd, Bullet and ODE",
                   bench::distance_pairs(), job, run_pairs);
@@ -134,7 +134,7 @@ void add_bench_pairs(CLI::App& parent) {
 }
 
 void add_bench_penetration(CLI::App& parent) {
-  auto job = std::make_shared<Job>();
+  auto job = std::make_shared<QueryJob>();
   CLI::App* command =
       add_command(parent, "penetration", "Depths of overlaps, and how often they are the smallest",
                   bench::depth_pairs(), job, run_penetration);
@@ -144,12 +144,12 @@ void add_bench_penetration(CLI::App& parent) {
 
 void add_bench_manifold(CLI::App& parent) {
   add_command(parent, "manifold", "Contact patches, and how steady they are", bench::patch_pairs(),
-              std::make_shared<Job>(), run_manifold);
+              std::make_shared<QueryJob>(), run_manifold);
 }
 
 void add_bench_impact(CLI::App& parent) {
   add_command(parent, "impact", "Times of impact, and how tight they are", bench::impact_pairs(),
-              std::make_shared<Job>(), run_impact);
+              std::make_shared<QueryJob>(), run_impact);
 }
 
 }  // namespace tactum

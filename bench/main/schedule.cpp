@@ -10,7 +10,7 @@
 namespace tactum {
 namespace {
 
-struct Job {
+struct ScheduleJob {
   bench::ScheduleOptions options;
   std::string json, markdown;
 };
@@ -19,7 +19,7 @@ void put(const std::string& path, const std::string& name, const std::string& te
   if (!bench::write_between_marks(path, name, text)) fail({"cannot write the file", "", "", path});
 }
 
-void run(const Job& job) {
+void run_schedule(const ScheduleJob& job) {
   const Result<bench::ScheduleReport> report =
       bench_schedule(job.options, [](const std::string& what) { fmt::print(stderr, "{}\n", what); });
   if (!report) fail(report.error());
@@ -36,7 +36,7 @@ void run(const Job& job) {
 }  // namespace
 
 void add_bench_schedule(CLI::App& parent) {
-  auto job = std::make_shared<Job>();
+  auto job = std::make_shared<ScheduleJob>();
   CLI::App* command = parent.add_subcommand(
       "schedule",
       "A heap with less budget than pairs: force error and unchecked pairs, and the time of a frame");
@@ -53,7 +53,7 @@ void add_bench_schedule(CLI::App& parent) {
   command->add_option("--json", job->json, "write the rows to this file (- for standard output, alone)");
   command->add_option("--markdown", job->markdown,
                       "write the tables to this file, between its marks (docs/benchmarks.md)");
-  command->callback([job] { run(*job); });
+  command->callback([job] { run_schedule(*job); });
 }
 
 }  // namespace tactum

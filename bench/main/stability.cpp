@@ -11,12 +11,12 @@
 namespace tactum {
 namespace {
 
-struct Job {
+struct StabilityJob {
   bench::StabilityOptions options;
   std::string json, svg;
 };
 
-void run(const Job& job) {
+void run_stability(const StabilityJob& job) {
   const Result<std::vector<bench::WallRow>> rows =
       bench_stability(job.options, [](const std::string& device) { fmt::print(stderr, "{}\n", device); });
   if (!rows) fail(rows.error());
@@ -40,7 +40,7 @@ void run(const Job& job) {
 }  // namespace
 
 void add_bench_stability(CLI::App& parent) {
-  auto job = std::make_shared<Job>();
+  auto job = std::make_shared<StabilityJob>();
   CLI::App* command = parent.add_subcommand(
       "stability", "The stiffest walls that simulated devices hold in a hand, beside the passivity bound");
   command->add_option("--device", job->options.devices, "a preset, several times; by default all");
@@ -49,7 +49,7 @@ void add_bench_stability(CLI::App& parent) {
       ->check(CLI::Range(0.0, SimulatedDevice::kMaxDelay_s));
   command->add_option("--json", job->json, "write the rows to this file (- for standard output)");
   command->add_option("--svg", job->svg, "draw them into this file");
-  command->callback([job] { run(*job); });
+  command->callback([job] { run_stability(*job); });
 }
 
 }  // namespace tactum

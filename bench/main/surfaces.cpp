@@ -12,12 +12,12 @@
 namespace tactum {
 namespace {
 
-struct Job {
+struct SurfacesJob {
   bench::SurfacesOptions options;
   std::string json, markdown;
 };
 
-void run(const Job& job) {
+void run_surfaces(const SurfacesJob& job) {
   const bench::SurfacesReport report =
       bench_surfaces(job.options, [](const std::string& what) { fmt::print(stderr, "{}\n", what); });
   const bench::Table table = table_of(report);
@@ -35,7 +35,7 @@ void run(const Job& job) {
 }  // namespace
 
 void add_bench_surfaces(CLI::App& parent) {
-  auto job = std::make_shared<Job>();
+  auto job = std::make_shared<SurfacesJob>();
   CLI::App* command =
       parent.add_subcommand("surfaces", "All minima of two triangle surfaces, beside FCL and Bullet");
   if (const char* data = std::getenv("TACTUM_DATA")) job->options.data = data;
@@ -58,7 +58,7 @@ void add_bench_surfaces(CLI::App& parent) {
   command->add_option(
       "--markdown", job->markdown,
       "write the table to this file, between its marks when it has them (docs/benchmarks.md)");
-  command->callback([job] { run(*job); });
+  command->callback([job] { run_surfaces(*job); });
 }
 
 }  // namespace tactum
