@@ -15,6 +15,10 @@ function(tactum_layer name)
       PRIVATE ${LAYER_PRIVATELY} $<BUILD_INTERFACE:tactum_warnings>)
     if(LAYER_HOT)
       target_compile_options(tactum_${name} PRIVATE "$<$<CONFIG:Release>:-O3;-fno-tree-slp-vectorize;-fno-math-errno;-fno-trapping-math>")
+      # Joined, g++ -O3 takes minutes and gigabytes for the feature walks: it puts them into each other.
+      if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_BUILD_TYPE STREQUAL "Release")
+        set_property(TARGET tactum_${name} PROPERTY UNITY_BUILD OFF)
+      endif()
     endif()
   else()  # a layer of headers only
     set(scope INTERFACE)

@@ -7,14 +7,27 @@ file; with TACTUM_FULL=1 every source of src/, app/ and viewer/server/.
 import json
 import os
 import pathlib
+import re
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+JOINED = re.compile(r'^#include "([^"]+)"$', re.MULTILINE)
 OWN = ("src/", "app/", "viewer/server/")
 HEART = ("src/tactum/base/", "src/tactum/devices/", "src/tactum/loop/", "src/tactum/response/", "src/tactum/haptics/",
          "src/tactum/contact/shading.cpp")
+
+
+def each_source(database):
+    """The entries of a compilation database with those of joined files taken apart, one for each source."""
+    entries = []
+    for entry in database:
+        joined = pathlib.Path(entry["directory"], entry["file"])
+        sources = JOINED.findall(joined.read_text()) if joined.name.startswith("unity_") else [entry["file"]]
+        for source in sources:
+            entries.append(entry | {"file": source, "command": entry["command"].replace(entry["file"], source)})
+    return entries
 
 
 def chosen_sources(database, full):
@@ -36,14 +49,17 @@ def main(arguments):
     if not arguments:
         sys.exit(__doc__)
     build = pathlib.Path(arguments[0]).resolve()
-    database = json.loads((build / "compile_commands.json").read_text())
+    database = each_source(json.loads((build / "compile_commands.json").read_text()))
+    separate = build / "tidy"
+    separate.mkdir(exist_ok=True)
+    (separate / "compile_commands.json").write_text(json.dumps(database))
     paths = arguments[1:] or chosen_sources(database, os.environ.get("TACTUM_FULL") == "1")
     every_header = build / "tests/headers/every_header.cpp"
     if not arguments[1:] and every_header.exists():
         paths = [str(every_header)] + paths
     workers = len(os.sched_getaffinity(0))
     with ThreadPoolExecutor(workers) as pool:
-        results = list(pool.map(lambda path: check(build, path), paths))
+        results = list(pool.map(lambda path: check(separate, path), paths))
     bad = [result for result in results if result[0] != 0]
     for _, path, said in bad:
         print(f"-- {path}\n{said}")
