@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <optional>
 #include <thread>
 
 #include "commands.h"
 #include "output.h"
+#include "referee_watch.h"
 #include "tactum/haptics/coupling_gains.h"
 #include "tactum/response/field_pull.h"
 #include "tactum/response/penalty_response.h"
@@ -33,17 +35,21 @@ struct FeelOptions {
   std::string response;
   std::string json;
   bool virtual_clock = false;
+  bool referee = false;
   bool view = false;
   int port = 0;
 };
 
-/// Times the frames of a virtual run, keeps the status line alive, and passes Ctrl-C on.
+/// Times the frames of a virtual run, has them judged where there is a referee, keeps the status line alive,
+/// and passes Ctrl-C on.
 class VirtualWatch final : public LoopObserver {
  public:
-  VirtualWatch(Session& session, MinimumOfReplays& times) : session_(session), times_(times) {}
+  VirtualWatch(Session& session, RefereeWatch* referee, MinimumOfReplays& times)
+      : session_(session), referee_(referee), times_(times) {}
   bool after_frame(const FrameRecord& record) noexcept override {
     times_.add(static_cast<std::size_t>(record.tick.index),
                static_cast<std::int64_t>(record.frame_time_s * 1e9));
+    if (referee_ != nullptr) referee_->look(record.tick.index);
     if (record.tick.index % kFramesPerLook == 0) status_.show(session_, session_.poll());
     return !interrupted();
   }
@@ -51,6 +57,7 @@ class VirtualWatch final : public LoopObserver {
  private:
   static constexpr std::uint64_t kFramesPerLook = 1000;
   Session& session_;
+  RefereeWatch* referee_;
   MinimumOfReplays& times_;
   StatusLine status_;
 };
@@ -81,21 +88,22 @@ Scene scene_of(const FeelOptions& options) {
   return std::move(*scene);
 }
 
-void run_virtually(Session& session, std::uint64_t frames, MinimumOfReplays& times) {
-  VirtualWatch watch(session, times);
+void run_virtually(Session& session, std::uint64_t frames, RefereeWatch* referee, MinimumOfReplays& times) {
+  VirtualWatch watch(session, referee, times);
   const Result<VirtualRun> run = session.run_virtual(frames, &watch);
   if (!run) fail(run.error());
 }
 
 /// Runs the session, and repeats it as many times as wanted.
-Summary feel_virtually(const FeelOptions& options, Session& session, std::uint64_t frames) {
+Summary feel_virtually(const FeelOptions& options, Session& session, std::uint64_t frames,
+                       RefereeWatch* referee) {
   MinimumOfReplays times(frames);
-  run_virtually(session, frames, times);
+  run_virtually(session, frames, referee, times);
   for (int replay = 1; replay < options.replays && !interrupted(); ++replay) {
     const std::unique_ptr<Session> again = open_session(options, scene_of(options));
     StageClock stages;  // so that every run does the same
     again->time_stages(&stages);
-    run_virtually(*again, frames, times);
+    run_virtually(*again, frames, nullptr, times);
     if (!interrupted() && again->record().hash() != session.record().hash())
       fail({"a replay went another way", fmt::format("hash {:016x}", again->record().hash()),
             fmt::format("{:016x} as in the first run", session.record().hash()), options.scene});
@@ -156,14 +164,19 @@ void report_what_is_felt(std::FILE* out, const Session& session, const std::stri
 }
 
 void sum_up(std::FILE* out, const FeelOptions& options, const Session& session, const Summary& times,
-            const StageClock& stages) {
+            const StageClock& stages, const RefereeWatch* referee) {
   print_summary(out, session, times, stages);
+  if (referee != nullptr) fmt::print(out, "referee          {}\n", referee->sentence());
   if (options.replays > 1 && !interrupted())
     fmt::print(out, "replays          {} runs, the same to the bit; each frame counts with its fastest\n",
                options.replays);
   if (!options.json.empty()) {
     nlohmann::ordered_json summary = summary_json(session, times, stages);
     summary["replays"] = options.replays;
+    if (referee != nullptr) {  // its word counts
+      summary["penetrating_frames"] = referee->crossing_frames();
+      summary["referee"] = {{"judged_frames", referee->judged_frames()}, {"verdict", referee->sentence()}};
+    }
     write_json(options.json, summary);
   }
   if (session.loop_status().device_lost)
@@ -184,7 +197,7 @@ void feel_with_pages(const FeelOptions& options, Scene scene, std::FILE* out) {
   const Summary times = options.virtual_clock
                             ? feel_viewed_virtually(viewer, frames_asked_for(options, viewer.session()))
                             : run_viewed(viewer, asked);
-  sum_up(out, options, viewer.session(), times, viewer.stages());
+  sum_up(out, options, viewer.session(), times, viewer.stages(), nullptr);
 }
 
 void feel(const FeelOptions& options) {
@@ -201,9 +214,12 @@ void feel(const FeelOptions& options) {
   session.time_stages(&stages);
   report_what_is_felt(out, session, options.hand);
   const std::uint64_t frames = frames_asked_for(options, session);
+  std::optional<RefereeWatch> judges;
+  if (options.referee) judges.emplace(session);
+  RefereeWatch* const referee = judges ? &*judges : nullptr;
   const Summary times =
-      options.virtual_clock ? feel_virtually(options, session, frames) : feel_live(session, frames);
-  sum_up(out, options, session, times, stages);
+      options.virtual_clock ? feel_virtually(options, session, frames, referee) : feel_live(session, frames);
+  sum_up(out, options, session, times, stages, referee);
 }
 
 }  // namespace
@@ -239,11 +255,17 @@ void add_feel(CLI::App& app) {
           ->check(CLI::Range(1, 1000))
           ->needs(virtual_clock)
           ->capture_default_str();
+  CLI::Option* referee = command
+                             ->add_flag("--referee", options->referee,
+                                        "judge every frame by exact signs and topology: does any surface "
+                                        "cross another, has anything got inside, or out of what it hangs in?")
+                             ->needs(virtual_clock);
   CLI::Option* view = command->add_flag(
       "--view", options->view,
       "serve a page that shows it, and on which the mouse is the hand; without a duration until "
       "interrupted, else until no page is open");
   replays->excludes(view);
+  referee->excludes(view);
   command->add_option("--port", options->port, "of the page; by default one that is free")
       ->check(CLI::Range(1, 65535))
       ->needs("--view");

@@ -1,0 +1,52 @@
+#include "referee_watch.h"
+
+#include <fmt/format.h>
+
+#include <vector>
+
+namespace tactum {
+namespace {
+
+std::vector<RefereedBody> bodies_of(const World& world) {
+  std::vector<RefereedBody> bodies;
+  for (const Body& body : world.bodies)
+    bodies.push_back({&body.part->surface, body.moves(), body.no_contact_with});
+  return bodies;
+}
+
+const char* what_is_wrong(const Crossing& crossing) {
+  if (crossing.surfaces_cross) return "cross";
+  return crossing.inside ? "do not cross, but a piece of one has got inside the other"
+                         : "do not cross, but hang in each other otherwise than at the start";
+}
+
+}  // namespace
+
+RefereeWatch::RefereeWatch(const Session& session)
+    : session_(session), referee_(bodies_of(session.scene().world), session.state().world.X_WB) {}
+
+void RefereeWatch::look(std::uint64_t frame) {
+  ++judged_;
+  const std::vector<Crossing> faults = referee_.judge(session_.state().world.X_WB);
+  if (faults.empty()) return;
+  if (crossing_++ > 0) return;
+  first_ = faults.front();
+  first_frame_ = frame;
+}
+
+std::string RefereeWatch::name(int body) const {
+  return session_.scene().world.bodies[static_cast<std::size_t>(body)].name;
+}
+
+std::string RefereeWatch::sentence() const {
+  const std::string start = referee_.crossing_at_start() == 0
+                                ? ""
+                                : fmt::format("; {} pairs of bodies cross at the start and were not judged",
+                                              referee_.crossing_at_start());
+  if (crossing_ == 0) return fmt::format("{} frames judged: no surfaces have crossed{}", judged_, start);
+  return fmt::format("{} of {} frames are wrong, the first at {:.4f} s: '{}' and '{}' {}{}", crossing_,
+                     judged_, static_cast<double>(first_frame_) / session_.rate_Hz(), name(first_.body_a),
+                     name(first_.body_b), what_is_wrong(first_), start);
+}
+
+}  // namespace tactum
