@@ -15,7 +15,6 @@ std::string limits_of(std::uint32_t flags, ResponseModel response) {
   std::vector<const char*> limits;
   if (flags & frame_flag::kStepLimited)
     limits.push_back(response == ResponseModel::kPenalty ? "penalty.max_step_m" : "constraint.max_step_m");
-  if (flags & frame_flag::kSurfaceStepLimited) limits.push_back("constraint.max_step_on_surfaces_m");
   if (flags & frame_flag::kTurnLimited) limits.push_back("constraint.max_turn_deg");
   return fmt::format("{}", fmt::join(limits, " and "));
 }
@@ -37,6 +36,10 @@ std::vector<std::string> frame_notes(const Session& session) {
     notes.emplace_back("the contact solver did not always converge: raise solver_iterations");
   if (record.flags & frame_flag::kUncertified)
     notes.push_back(fmt::format("{} distances had no certificate", record.sum("work.uncertified")));
+  if (record.flags & frame_flag::kPathUnproven)
+    notes.push_back(fmt::format(
+        "{} steps of two surfaces were tested at their ends only, and held short: raise max_path_tests",
+        record.sum("unproven_paths")));
   if (record.lagging_frames > 0)
     notes.push_back(fmt::format(
         "in {} of {} frames the held part lagged behind a hand that was faster than it may follow: raise {}",

@@ -20,6 +20,7 @@ STANDS_ON = {
     "mesh": ["geometry"],
     "parts": ["geometry"],
     "surface": ["geometry"],
+    "referee": ["geometry"],
     "collision": ["geometry"],
     "contact": ["collision", "surface"],
     "dynamics": ["geometry"],

@@ -170,5 +170,29 @@ TEST(Friction, OfADrawnCrateIsThatOfTheWeightWhichTheHandDoesNotCarry) {
         }
 }
 
+/// A square block is pressed on a plate and twisted about its normal until it slides. Under an even pressure
+/// friction resists with the lever a (root 2 + ln(1 + root 2)) / 6 = 0.3826 a; loads at the corners alone,
+/// which a rigid block may have as well, give a / root 2 = 0.7071 a. The torque is between the two.
+TEST(Friction, OfATwistedBlockLiesBetweenEvenPressureAndLoadsAtTheCorners) {
+  const double even = (std::sqrt(2.0) + std::log(1.0 + std::sqrt(2.0))) / 6.0;
+  for (const bool surface : {false, true}) {
+    for (const double size : {0.5, 1.0, 3.0}) {
+      for (const double mu : {0.1, 0.3}) {
+        for (const double sense : {1.0, -1.0}) {
+          BoxOnBox rig(surface, false, size, mu);
+          rig.step({});
+          rig.go(at(0, 0, -0.001 * size - 0.002), 300);
+          rig.go(at(0, 0, -0.001 * size - 0.002, {0, 0, 0.4 * sense}), 1500);
+          const Wrench& felt = rig.report.coupling;
+          const double lever = -sense * felt.t.z() / (mu * felt.f.z() * 0.020 * size);
+          EXPECT_GT(lever, 0.99 * even) << surface << ' ' << size << ' ' << mu;
+          EXPECT_LT(lever, 1.01 * std::sqrt(0.5)) << surface << ' ' << size << ' ' << mu;
+          EXPECT_EQ(rig.penetrating_frames, 0);
+        }
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace tactum

@@ -92,6 +92,11 @@ class OverPlane final : public GapOracle {
   bool passes(int, std::span<const Pose>, std::span<const Twist>, double, double) noexcept override {
     return false;
   }
+  PathWork prove_paths(std::span<const Pose>, std::span<const BodyTurn>, std::span<const char>, int,
+                       std::span<double> free) noexcept override {
+    std::fill(free.begin(), free.end(), 1.0);  // a plane is not passed between two poses above it
+    return {};
+  }
   bool capacity_reached() const noexcept override { return false; }
   int tests_left() const noexcept override { return 1000; }
   bool budget_limited() const noexcept override { return false; }

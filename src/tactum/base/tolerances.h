@@ -60,6 +60,14 @@ inline constexpr double kPatchArea = 1e-14;
 /// lower value costs steps: each halves the rest, at worst.
 inline constexpr double kImpactGap = 1e-7;
 
+/// The search for how far a path is free ends at this fraction of the path before what it meets: the next
+/// frame begins there, at a gap that is as small a part of the step.
+inline constexpr double kPathEnd = 1e-4;
+
+/// The rounding error of a determinant of three differences of points, as a fraction of the sum of the
+/// products' magnitudes [Shewchuk 1997].
+inline constexpr double kDeterminantError = 7.8e-16;
+
 /// Vertices nearer than this fraction of the mesh's size are one vertex. STL stores single precision (6e-8).
 inline constexpr double kWeld = 1e-9;
 
@@ -127,9 +135,8 @@ inline constexpr double kPenetrating = 1e-9;
 
 /// The normal cones of features are widened by this angle [rad] in the search for contacts: with the true
 /// cones only the lowest corner of a flat contact counts, and sliding over a plane of many pieces sticks. It
-/// is the largest turn of a part of 7.5 mm radius in a step of Constraint::max_step_on_surfaces_m. A smaller
-/// part may turn farther: then contacts may be missing among the rows, and the tests of the pose on trial
-/// refuse the step.
+/// is the turn of a part of 7.5 mm radius in a step of 0.03 mm. A part may turn farther: then contacts may be
+/// missing among the rows, and the tests of the step on trial refuse it.
 inline constexpr double kConeInflation = 0.004;
 
 /// Unit normals that differ by less than this are one: a corner's mean normal is then the face's own, to the

@@ -111,8 +111,10 @@ void ContactFinder::leave_out_implied(std::span<const Pose> X_WB) noexcept {
   };
   for (ContactPatch& patch : patches_) patch.implied |= stays(patch);  // such a contact is not looked at
   flush_bodies_.mark_implied(bodies_, X_WB, patches_);
-  for (ContactPatch& patch : patches_)
+  for (ContactPatch& patch : patches_) {
     if (stays(patch)) patch.implied = false;
+    if (patch.pair >= 0) pairs_[Index(patch.pair)].implied = patch.implied;
+  }
   if (points_ == PatchPoints::kQuadrature)
     patches_.erase(std::remove_if(patches_.begin(), patches_.end(),
                                   [&](const ContactPatch& patch) {
@@ -216,6 +218,7 @@ void ContactFinder::answer(Pair& pair, const Pose& X_AB, Answer& into) noexcept 
 }
 
 void ContactFinder::test(Pair& pair, const Pose& X_AB) noexcept {
+  pair.implied = false;
   answer(pair, X_AB, pair.last);
   pair.trial.certified = false;
   ++work_.exact_tests;

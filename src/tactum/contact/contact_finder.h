@@ -46,6 +46,7 @@
 #include "tactum/contact/seam_settler.h"
 #include "tactum/contact/steady_contact.h"
 #include "tactum/contact/sweep_and_prune.h"
+#include "tactum/math/relative_motion.h"
 #include "tactum/surface/surface_minima.h"
 
 namespace tactum::inline v0_1 {
@@ -89,6 +90,8 @@ class ContactFinder final : public GapOracle {
                            double dt_s) noexcept override;
   bool passes(int patch, std::span<const Pose> X_WB, std::span<const Twist> V_WB, double dt_s,
               double gap_m) noexcept override;
+  PathWork prove_paths(std::span<const Pose> X_WB, std::span<const BodyTurn> turn,
+                       std::span<const char> asked, int most_tests, std::span<double> free) noexcept override;
   const ContactWork& work() const noexcept { return work_; }
   /// Largest distance of a point of body i from its origin [m].
   double radius(int i) const noexcept { return radius_[static_cast<std::size_t>(i)]; }
@@ -110,6 +113,7 @@ class ContactFinder final : public GapOracle {
     Answer trial;                    ///< of a test at a trial pose, which the pair need not have taken
     double free_until = -1e300;      ///< accumulated motion at which the distance may have shrunk to zero [m]
     std::int64_t last_checked = -1;  ///< frame
+    bool implied = false;            ///< its contact is ContactPatch::implied, and has no force of its own
     bool in_contact = false;         ///< nearer than its tolerance when it was last looked at
   };
   /// The pieces of two near bodies: pairs_[first, first + count), sorted by piece.
@@ -122,6 +126,24 @@ class ContactFinder final : public GapOracle {
     std::int64_t renewal = -1;   ///< number of the renewal it was last part of: an older one is not in pairs_
     double free_until = -1e300;  ///< of two surfaces: as in Pair
     bool apart = false;          ///< ... and nothing was within the tolerance at the last query
+    double nearest = 0.0;  ///< ... a lower bound of their distance in this frame, where both are trusted [m]
+    std::int64_t unproven_until =
+        0;  ///< frame up to which no path is proven: the last one took too many tests
+  };
+
+  /// Two triangles of surfaces that have ended a path (prove_paths): no minimum of the distance stood for
+  /// them.
+  struct MetTriangles {
+    std::int32_t body_a = -1, body_b = -1, triangle_a = -1, triangle_b = -1;
+  };
+
+  /// The path of a body from the frame's start to another pose.
+  struct BodyPath {
+    RelativeMotion motion;  ///< as the world sees it
+    Pose to;                ///< where it ends, without the error of the turn
+    double travel = 0.0;    ///< a bound of how far its points go [m]
+
+    Pose at(double s) const noexcept { return s < 1.0 ? motion.at(s) : to; }
   };
 
   void move_boxes(std::span<const Pose> X_WB) noexcept;
@@ -162,6 +184,12 @@ class ContactFinder final : public GapOracle {
   static SurfaceTree core_of(const CollisionBody& body);
   void surface_distances_at(std::span<const ContactPatch> patches, std::span<const Pose> X_WB,
                             std::span<double> distance, std::span<GapAnswer> asked, int keep_back) noexcept;
+  BodyPath path_of(int body, const RelativeMotion& motion, const Pose& to) const noexcept;
+  double path_free(const Pair& pair, const BodyPath& a, const BodyPath& b) const noexcept;
+  double path_free(const SweepAndPrune::Pair& near, int most_tests, PathWork& work) noexcept;
+  void remember(const MetTriangles& met) noexcept;
+  void add_met_triangles(int a, int b, const Pose& X_AB, double margin) noexcept;
+  double distance_of_met(const ContactPatch& patch, const Pose& X_AB) const noexcept;
   double accumulated_motion(int a, int b) const noexcept {
     return travel_[std::size_t(a)] + travel_[std::size_t(b)];
   }
@@ -185,13 +213,17 @@ class ContactFinder final : public GapOracle {
   std::vector<Aabb> part_box_;  // of the part, in its own frame
   std::vector<double> radius_;
   std::vector<SurfaceTree> cores_;  // see core_of()
+  std::vector<char> trusted_;       // its surface is closed and outward: cones see all of it
   std::vector<double> bulge_;       // greatest of its pieces (round_piece.h) [m]
   std::vector<Aabb> fat_box_;       // in the world, grown
   std::vector<double> box_growth_;  // how far boxes and lists are grown [m]
   std::vector<double> travel_;      // accumulated motion of each body [m]
   std::vector<Pose> last_X_WB_;     // at which travel_ was last added to
   SweepAndPrune sweep_;
-  std::vector<BodyPair> lists_;  // by slot of a near pair
+  std::vector<BodyPair> lists_;       // by slot of a near pair
+  int unproven_frames_ = 0;           // kUnproven_s in frames
+  std::vector<BodyPath> paths_;       // by body: see prove_paths()
+  ReservedVector<MetTriangles> met_;  // those that may be contacts
   ReservedVector<Pair> pairs_, renewed_;
   ReservedVector<std::pair<std::int32_t, std::int32_t>> near_pieces_;  // of the two bodies being tested
   ReservedVector<DuePair> due_;

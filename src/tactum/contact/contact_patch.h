@@ -32,6 +32,7 @@ struct PatchSides {
 /// distance. Manifold in A's body frame.
 struct ContactPatch : PatchSides {
   bool of_surfaces = false;  ///< the features of the manifold are those of SurfaceTree
+  bool met = false;          ///< of two triangles that met where no minimum of the distance stood for them
   NeighbourFaces neighbour_face;
   bool round = false;    ///< its points are those of curved surfaces (round_contact.h); without any: watched
   bool implied = false;  ///< by a contact with another body (flush_bodies.h): it has no force of its own

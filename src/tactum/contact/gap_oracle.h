@@ -34,6 +34,18 @@ inline bool turns_in(double dt_s, const Twist& V_WA, const Twist& V_WB) noexcept
   return (V_WA.w.norm() + V_WB.w.norm()) * dt_s > kLeastTurn;
 }
 
+/// How a body turns on its path from one pose to another.
+struct BodyTurn {
+  Vec3 turn = Vec3::Zero();     ///< about which axis and how far, full turns included [rad]
+  Vec3 pivot_W = Vec3::Zero();  ///< the point that goes on a line: its origin, or a point of its hinge [m]
+};
+
+/// The work of proving paths.
+struct PathWork {
+  int tests = 0;     ///< nodes and pairs of leaves of surfaces looked at
+  int unproven = 0;  ///< pairs of surfaces whose path was tested at its end only
+};
+
 class GapOracle {
  public:
   virtual ~GapOracle() = default;
@@ -65,11 +77,20 @@ class GapOracle {
   /// the tests of time_of_impact.h for pairs that may touch in that time, and nothing for others.
   virtual FirstImpact first_impact(std::span<const Pose> X_WB, std::span<const Twist> V_WB,
                                    double dt_s) noexcept = 0;
-  /// Whether the two pieces of a patch stay farther apart than `gap_m` while their bodies move for `dt_s` as
-  /// advanced(X_WB, V_WB, t), from the poses where the patch was found; false where that is not known, as of
-  /// surfaces without pieces, or where no test is left. Costs the tests of time_of_impact.h.
+  /// Whether the two pieces of a patch stay apart, curved ones by more than `gap_m`, while their bodies move
+  /// for `dt_s` as advanced(X_WB, V_WB, t), from the poses where the patch was found; false where that is not
+  /// known, as of surfaces without pieces, or where no test is left. Costs the tests of time_of_impact.h.
   virtual bool passes(int patch, std::span<const Pose> X_WB, std::span<const Twist> V_WB, double dt_s,
                       double gap_m) noexcept = 0;
+  /// How far bodies may go on their paths from where the frame found them to other poses without touching:
+  /// the path is proven, not its end, with any turn. `turn` has an entry per body, and `asked` whether it is
+  /// asked for. `free[i]` becomes the fraction of the path of body i that is proven, 1 for the others. Pairs
+  /// of pieces that overlap already are left out. Pieces cost next to nothing: what the frame has found near
+  /// settles nearly all of them. Of surfaces whose proof would take more than `most_tests` nothing is proven,
+  /// for a while, but what distances_at() finds at the end.
+  virtual PathWork prove_paths(std::span<const Pose> X_WB, std::span<const BodyTurn> turn,
+                               std::span<const char> asked, int most_tests,
+                               std::span<double> free) noexcept = 0;
   /// Whether something found no memory in this frame, in a trial too.
   virtual bool capacity_reached() const noexcept = 0;
   /// Exact tests that are left of the frame's budget.

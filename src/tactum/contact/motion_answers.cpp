@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "tactum/base/tolerances.h"
+#include "tactum/collision/closest_features.h"
 #include "tactum/collision/penetration.h"
 #include "tactum/collision/time_of_impact.h"
 #include "tactum/contact/contact_finder.h"
@@ -32,6 +33,9 @@ struct MovingPiece {
 
 /// Steps allowed for a pair. A slow roll just over a surface would take many, and its impact is then early.
 constexpr int kMostSteps = 16;
+
+/// A body slides along another where it comes nearer by less than this fraction of the gap in a frame.
+constexpr double kSlides = 0.01;
 
 /// How long the gap that is left at a hit takes to close; 0 where there was no hit, or nothing approaches.
 /// The gap is so small that the motion is a line, and where the search stops in it depends on how parts are
@@ -164,6 +168,23 @@ bool ContactFinder::passes(int patch, std::span<const Pose> X_WB, std::span<cons
     const bool open = passage.stays_open(dt_s, gap_m, std::min(tests_left_, kMostSteps), steps);
     tests_left_ -= steps;
     return open;
+  }
+  // A body that only slides along another passes through a gap as narrow as one likes.
+  if (!at.round && V_WB[a].w.isZero(0.0) && V_WB[b].w.isZero(0.0)) {
+    const auto path = [&](Index body) {
+      const RelativeMotion motion{X_WB[body], V_WB[body] * dt_s, X_WB[body].p};
+      return path_of(static_cast<int>(body), motion, motion.at(1.0));
+    };
+    --tests_left_;
+    const Pair& pair = pairs_[Index(at.pair)];
+    if (path_free(pair, path(a), path(b)) < 1.0) return false;
+    const Pose X_WA = advanced(X_WB[a], V_WB[a], dt_s);
+    PairCache cache = pair.cache;
+    const PairDistance end = closest_features(bodies_[a].part->pieces[Index(at.piece_a)],
+                                              bodies_[b].part->pieces[Index(at.piece_b)],
+                                              relative_pose(X_WA, advanced(X_WB[b], V_WB[b], dt_s)), cache);
+    const double closing_m = rotated(X_WA.R, end.normal).dot(V_WB[b].v - V_WB[a].v) * dt_s;
+    return end.certified() && end.distance > 0.0 && closing_m < kSlides * end.distance;
   }
   const TimeOfImpact impact = time_of_impact(bodies_[a].part->pieces[Index(at.piece_a)], X_WB[a], V_WB[a],
                                              bodies_[b].part->pieces[Index(at.piece_b)], X_WB[b], V_WB[b],

@@ -6,6 +6,7 @@
 
 #include "tactum/contact/contact_finder.h"
 #include "tactum/contact/motion_bound.h"
+#include "tactum/geometry/mesh_report.h"
 
 namespace tactum::inline v0_1 {
 namespace {
@@ -15,6 +16,20 @@ using Index = std::size_t;
 /// Boxes and lists of near pairs are grown by this fraction of the smaller body's radius beyond the
 /// tolerance: with more they are renewed less often but hold more pairs.
 constexpr double kBoxGrowth = 0.05;
+
+/// Pairs of triangles that are remembered as contacts: where a part lies on a face wound the wrong way, some.
+constexpr Index kMostMet = 256;
+
+/// For so long no proof is tried after one that took too many tests.
+constexpr double kUnproven_s = 1.0;
+
+/// Whether a surface is closed, in one piece and wound outward: only then is every place where something can
+/// touch it in a normal cone.
+bool closed_outward(const Part& part) {
+  if (part.surface.triangles.empty()) return false;
+  const MeshReport report = report_mesh(part.surface, 0.0);
+  return report.closed && report.oriented && report.components == 1 && report.volume > 0.0;
+}
 
 /// The axis-aligned box around a turned box.
 Aabb turned(const Aabb& box, const Pose& X, double grown) {
@@ -47,6 +62,7 @@ ContactFinder::ContactFinder(std::vector<CollisionBody> bodies, std::span<const 
           radius_.push_back(radius);
           bulge_.push_back(bulge);
           cores_.push_back(core_of(bodies_[i]));
+          trusted_.push_back(closed_outward(part) ? 1 : 0);
           part_box_.push_back({box.min - Vec3::Constant(bulge), box.max + Vec3::Constant(bulge)});
           box_growth_.push_back(kBoxGrowth * radius);
           fat_box_.push_back(turned(part_box_.back(), X_WB[i], box_growth_.back()));
@@ -56,7 +72,10 @@ ContactFinder::ContactFinder(std::vector<CollisionBody> bodies, std::span<const 
       flush_bodies_(bodies_.size(), capacity.patches),
       steady_(dt_s, scale),
       head_start_(frames_in(kHeadStart_s, dt_s)) {
+  unproven_frames_ = frames_in(kUnproven_s, dt_s);
   travel_.assign(bodies_.size(), 0.0);
+  paths_.resize(bodies_.size());
+  met_.reserve(kMostMet);
   lists_.resize(sweep_.room());
   pairs_.reserve(capacity.pairs);
   renewed_.reserve(capacity.pairs);

@@ -128,6 +128,7 @@ void ContactFinder::test_surfaces(const SweepAndPrune::Pair& near, std::span<con
       .depth = may_cross ? kSurfaceDepth * std::min(part_a.size, part_b.size) : kWatched * margin,
       .cone_inflation = tolerances::kConeInflation};
   const Pose X_AB = relative_pose(X_WB[Index(a)], X_WB[Index(b)]);
+  list.nearest = 0.0;
   if (!may_cross && test_ball(a, b, X_AB, margin)) {
     list.free_until = accumulated_motion(a, b) + (minima_.empty() ? margin : 0.0);
     return;
@@ -140,7 +141,7 @@ void ContactFinder::test_surfaces(const SweepAndPrune::Pair& near, std::span<con
     ++work_.surface_queries;
     work_.feature_steps += work.feature_pairs;
     list.free_until = accumulated_motion(a, b) + clearance;
-    if (clearance > margin) return;
+    if (clearance > margin) return add_met_triangles(a, b, X_AB, margin);
   }
   const MinimaWork found = surface_minima(part_a.tree, part_b.tree, X_AB, query, minima_);
   ++work_.surface_queries;
@@ -149,6 +150,9 @@ void ContactFinder::test_surfaces(const SweepAndPrune::Pair& near, std::span<con
   if (found.full) drop(a, b);
   list.apart = minima_.empty();
   list.free_until = accumulated_motion(a, b) + (list.apart ? margin : 0.0);
+  list.nearest = margin;
+  for (const SurfaceMinimum& minimum : minima_) list.nearest = std::min(list.nearest, minimum.distance);
+  if (found.full) list.nearest = 0.0;
   const Index kept = reduce_minima(a, b, margin);
   for (Index i = 0; i < kept; ++i) {
     // Outside their true cones two edges may seem to have crossed that have not. Apart they count, however
@@ -159,6 +163,7 @@ void ContactFinder::test_surfaces(const SweepAndPrune::Pair& near, std::span<con
     const bool second_end = i > 0 && minima_[i - 1].a == minima_[i].a && minima_[i - 1].b == minima_[i].b;
     add_surface_patch(a, b, minima_[i], second_end, margin);
   }
+  if (!may_cross) add_met_triangles(a, b, X_AB, margin);
 }
 
 /// Null where there is no room for it.
@@ -208,6 +213,11 @@ void ContactFinder::surface_distances_at(std::span<const ContactPatch> patches, 
     return;
   }
   std::fill(distance.begin(), distance.end(), query.max_distance);
+  for (Index i = 0; i < patches.size(); ++i) {
+    if (!patches[i].met) continue;
+    distance[i] = distance_of_met(patches[i], X_AB);
+    asked[i] = GapAnswer::kExact;
+  }
   const auto nearest = std::min_element(patches.begin(), patches.end(),
                                         [](const auto& p, const auto& q) { return p.distance < q.distance; });
   for (const SurfaceMinimum& minimum : minima_) {

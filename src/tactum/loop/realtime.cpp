@@ -14,7 +14,7 @@ namespace tactum::inline v0_1 {
 namespace {
 
 constexpr unsigned long kWakeUpTolerance_ns = 1;   // the kernel's default is 50 us
-constexpr std::size_t kStackToTouch = 256 * 1024;  // bytes; the deepest frame uses a few KB
+constexpr std::size_t kStackToTouch = 512 * 1024;  // bytes; a walk down the trees of two surfaces uses 200 KB
 constexpr std::size_t kPage = 4096;
 
 void touch_stack() noexcept {

@@ -26,6 +26,10 @@ constexpr double kBoundMargin = 4.0;
 /// not where the forces would have it: that one would be the same however far the hand goes away.
 constexpr double kStands_s = 0.002;
 
+/// The longest step while a path between two surfaces takes too many tests to be proven, in a scene of a
+/// hand's size: their minima at its end then show a crossing.
+constexpr double kUnprovenStep_m = 3e-5;
+
 /// Adds the bodies of the island and their targets: the grasped part's leads to the hand, the others' on
 /// along their motion; `at_rest` all targets are where the bodies are. The grasped part comes first, which
 /// keep_forces() and report_rows() rely on.
@@ -148,9 +152,12 @@ std::uint32_t limit_of_step(const ConstraintStep& step) {
 bool try_step(double share, ConstraintStep& step) {
   ConstraintState& c = step.own.constraint;
   c.trial.X_WB = step.bodies.X_WB;  // same size: nothing is allocated
+  std::fill(c.trial.goes.begin(), c.trial.goes.end(), 0);
   for (const ProblemBody& problem_body : c.step_problem().bodies()) {
     const Index i = Index(problem_body.body);
     const Twist displacement = to_twist(c.step_problem().displacement(problem_body.body) * share);
+    c.trial.goes[i] = 1;
+    c.trial.turn[i] = turn_of(step.world.bodies[i], step.bodies.X_WB[i], displacement.w);
     c.trial.X_WB[i] =
         constrained_pose(step.world.bodies[i], advanced(step.bodies.X_WB[i], displacement, 1.0));
     if (!c.trial.X_WB[i].finite()) return false;
@@ -158,15 +165,25 @@ bool try_step(double share, ConstraintStep& step) {
   return true;
 }
 
-/// The same, with the bodies on their joints, and every gap checked there.
-bool open_after(double share, ConstraintStep& step) {
+/// What a step on trial is found to be.
+struct Trial {
+  bool open = false;       // every gap is, at its end
+  double path_free = 1.0;  // the fraction of the path there that is proven to be free; 1 unless `open`
+
+  bool passed() const { return open && path_free == 1.0; }
+};
+
+/// Tries a step, with the bodies on their joints: every gap at its end is tested, and then the path there.
+Trial look_after(double share, ConstraintStep& step) {
   ConstraintState& c = step.own.constraint;
-  if (!try_step(share, step)) return false;
+  if (!try_step(share, step)) return {};
   join_trial(step);
   look_at_trial(0, step);
   for (Index p = 0; p < c.trial.gap_now.size(); ++p)
-    if (closed_at_trial(p, step)) return false;
-  return true;
+    if (closed_at_trial(p, step)) return {};
+  const double path_free = least_path_free(step);
+  c.trust.unproven |= c.trial.path_unproven;
+  return {true, path_free};
 }
 
 void take_trial(ConstraintStep& step) {
@@ -188,7 +205,7 @@ void restore(ConstraintStep& step) {
   c.rows.first = add_contact_rows(true, c.problem, step);
   if (!solve_frictionless(c.rows.first, c.problem, step)) return;
   const double share = trusted_share(step);
-  if (!open_after(share, step)) return;
+  if (!look_after(share, step).passed()) return;
   for (const ProblemBody& body : c.problem.bodies())  // the step that follows has what is left of the bound
     step.own.motion_bound[Index(body.body)] -= share * extent_of(step, body).travel_m;
   for (ContactRow& row : own_rows(step)) row.distance = gap_at_trial(row, step);
@@ -252,7 +269,8 @@ double advance(ConstraintStep& step) {
   if (!find_forces(step) || !close_joints(step)) return 0.0;
   if (step.gaps.blocked(step.grasped.body)) return 0.0;
   double share = 0.0;
-  for (int round = 0; round <= kFeedbacks; ++round) {
+  Trial trial;
+  for (int round = 0; round <= kFeedbacks && !trial.open; ++round) {
     if (round > 0) {
       if (!(share > 0.0)) return 0.0;  // nothing may move: no exact gap can correct a row
       ++step.report.validation_retries;
@@ -260,13 +278,15 @@ double advance(ConstraintStep& step) {
       if (!find_again(step) || !close_joints(step)) break;
     }
     share = trusted_share(step);
-    if (open_after(share, step)) return share;
+    trial = look_after(share, step);
+    if (trial.passed()) return share;
   }
   share = std::min(share, trusted_share(step));  // a correction that failed has left another answer
-  for (int halving = 0; halving < kBacktracks; ++halving) {
+  for (int shorter = 0; shorter < kBacktracks; ++shorter) {
     ++step.report.validation_retries;
-    share *= 0.5;
-    if (open_after(share, step)) return share;
+    share *= trial.open ? kOfFreePath * trial.path_free : 0.5;
+    trial = look_after(share, step);
+    if (trial.passed()) return share;
   }
   return 0.0;
 }
@@ -310,13 +330,19 @@ void update_trust_length(ConstraintStep& step) {
     const Twist& V_WB = step.bodies.V_WB[i];
     travel = std::max(travel, step.dt_s * (V_WB.v.norm() + V_WB.w.norm() * step.radius_m[i]));
   }
-  const bool on_surfaces = step.work.minima > 0;
-  const double most = on_surfaces ? step.limits.step_on_surfaces_m : step.limits.step_m;
+  const auto near = [&](int body) { return step.own.free.near_grasped[Index(body)] != 0; };
+  const bool on_surfaces =
+      std::any_of(step.patches.begin(), step.patches.end(), [&](const ContactPatch& patch) {
+        return patch.of_surfaces && (near(patch.body_a) || near(patch.body_b));
+      });
   StepTrust& trust = step.own.constraint.trust;
-  trust.length_m = std::clamp(kTrustGrowth * travel, std::min(step.limits.least_step_m, most), most);
-  trust.limit = trust.length_m < most ? 0
-                : on_surfaces         ? frame_flag::kSurfaceStepLimited
-                                      : frame_flag::kStepLimited;
+  const double most = trust.unproven
+                          ? std::min(step.limits.step_m, kUnprovenStep_m * step.settings.workspace.scale)
+                          : step.limits.step_m;
+  trust.unproven = false;
+  const double least = step.limits.least_step_m * (on_surfaces ? Constraint::kLeastOnSurfaces : 1.0);
+  trust.length_m = std::clamp(kTrustGrowth * travel, std::min(least, most), most);
+  trust.limit = trust.length_m < most ? 0 : frame_flag::kStepLimited;
 }
 
 /// The number of points at which something pushes the body: corners, and the centre of a patch whose load is

@@ -145,6 +145,36 @@ struct RowMaker {
   }
 };
 
+/// The body of a row that moves where the other one is fixed; -1: both move.
+int alone_moving(const ContactRow& row) noexcept {
+  return row.fixed_a ? row.body_b : row.fixed_b ? row.body_a : -1;
+}
+
+/// Where fixed bodies leave a body less room than two skins, it is to stand in the middle: rows that both ask
+/// for a skin would push against each other without end, and shoot the body out where their normals lean.
+void share_room(std::span<ContactRow> rows, double opening_share) noexcept {
+  constexpr double kTight = 0.5;      // of the skin
+  constexpr double kOpposite = -0.9;  // cosine of two normals
+  StaticVector<Index, 32> tight;
+  for (Index r = 0; r < rows.size() && tight.size() < 32; ++r)
+    if (!rows[r].idle && rows[r].distance < kTight * rows[r].skin_m && alone_moving(rows[r]) >= 0)
+      tight.push_back(r);
+  for (Index i = 0; i < tight.size(); ++i) {
+    for (Index k = 0; k < i; ++k) {
+      const ContactRow& p = rows[tight[i]];
+      const ContactRow& q = rows[tight[k]];
+      if (alone_moving(p) != alone_moving(q)) continue;
+      const double cosine = p.n_BA_W.dot(q.n_BA_W) * (p.fixed_a == q.fixed_a ? 1.0 : -1.0);
+      if (!(cosine < kOpposite)) continue;
+      const double skin_m = std::max(0.5 * (p.distance + q.distance), 0.0);
+      for (const Index r : {tight[i], tight[k]}) {
+        rows[r].skin_m = std::min(rows[r].skin_m, skin_m);
+        rows[r].asked = std::min(rows[r].asked, asked_of(rows[r], opening_share));
+      }
+    }
+  }
+}
+
 }  // namespace
 
 void make_corner_rows(ConstraintStep& step) noexcept {
@@ -163,6 +193,7 @@ void make_corner_rows(ConstraintStep& step) noexcept {
   for (Index p = 0; p < patches.size() && !out.full; ++p)
     if (!step.own.free.of_grasped(patches[p])) maker.add(patches[p], static_cast<int>(p), false);
   c.rows.count = out.rows.size();
+  share_room({out.rows.data() + c.rows.own, c.rows.count - c.rows.own}, c.opening_share);
   c.planes.find(out.rows);
 }
 

@@ -22,6 +22,9 @@ ConstraintState::ConstraintState(const World& world, const FrameSettings& settin
     skin_m.push_back(body.moves() ? tolerances::kSkin * body.part->size : 0.0);
   const Index most_patches = settings.budget.capacity.patches;
   trial.X_WB.resize(world.bodies.size());
+  trial.goes.assign(world.bodies.size(), 0);
+  trial.turn.resize(world.bodies.size());
+  trial.path_free.assign(world.bodies.size(), 1.0);
   trial.gap_now.reserve(most_patches);
   trial.gap.reserve(most_patches);
   trial.gap_least.reserve(most_patches);
@@ -54,6 +57,7 @@ FreeBodies::FreeBodies(const World& world, const FrameSettings& settings)
   gathered.reserve(Index(settings.budget.max_contact_points));
   patch_asked.reserve(settings.budget.capacity.patches);
   patch_closed.reserve(settings.budget.capacity.patches);
+  patch_passed.reserve(settings.budget.capacity.patches);
 }
 
 Waiting::Waiting(const World& world, const FrameSettings& settings)

@@ -61,12 +61,19 @@ struct TrialPose {
   ReservedVector<double> gap;      ///< at the trial [m]
   ReservedVector<double> gap_least;      ///< the least gap that is accepted at the trial [m]
   ReservedVector<GapAnswer> gap_answer;  ///< how the gap at the trial is known
+  // Of each body: whether it is on its path to the trial, how it turns on it, and the fraction of that path
+  // that is proven free [-].
+  std::vector<char> goes;
+  std::vector<BodyTurn> turn;
+  std::vector<double> path_free;
+  bool path_unproven = false;  ///< ... for want of tests some of it was tested at its end only
 };
 
 /// How far the island's steps are trusted, from the outcome of the last ones.
 struct StepTrust {
   double length_m = 0.0;           ///< the trust region radius of the next frame [m]
   std::uint32_t limit = 0;         ///< frame_flag of the limit that it has reached; 0: it may grow
+  bool unproven = false;           ///< a path of this frame was tested at its end only
   int consecutive_rejections = 0;  ///< frames in a row in which no step could be taken [-]
 };
 
@@ -168,6 +175,7 @@ struct FreeBodies {
   std::vector<char> settled;            ///< an island's step has been found open
   ReservedVector<char> patch_asked;     ///< patches whose gap is asked for, in either kind of island
   ReservedVector<char> patch_closed;    ///< ... and is not open
+  ReservedVector<char> patch_passed;    ///< the bodies slide by each other there (frame_impacts.cpp)
 };
 
 /// Which bodies are deferred (waiting.h); one entry per body.

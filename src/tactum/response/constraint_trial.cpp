@@ -27,7 +27,9 @@ void look_at_trial(int keep_back, ConstraintStep& step) noexcept {
   ConstraintState& c = step.own.constraint;
   for (Index p = 0; p < c.trial.gap_now.size(); ++p) {
     c.trial.gap_answer[p] = step.own.free.patch_asked[p] ? GapAnswer::kAsked : GapAnswer::kNotAsked;
-    c.trial.gap_least[p] = least_gap(c.trial.gap_now[p], c.skin_of(step.patches[p]));
+    const double skin = c.skin_of(step.patches[p]);
+    c.trial.gap_least[p] =
+        step.own.free.patch_passed[p] ? 0.5 * kPassingGap * skin : least_gap(c.trial.gap_now[p], skin);
   }
   step.report.validation_tests +=
       step.gaps.distances_at(c.trial.X_WB, c.trial.gap, c.trial.gap_answer, c.trial.gap_least, keep_back);
@@ -40,6 +42,27 @@ bool closed_at_trial(std::size_t patch, const ConstraintStep& step) noexcept {
   if (!step.own.free.patch_asked[patch]) return false;
   if (trial.gap_answer[patch] == GapAnswer::kExact) return !(trial.gap[patch] >= trial.gap_least[patch]);
   return trial.gap_answer[patch] != GapAnswer::kProven;
+}
+
+BodyTurn turn_of(const Body& body, const Pose& X_WB, const Vec3& turn) noexcept {
+  const JointKind kind = body.joint.kind;
+  const bool about_anchor = kind == JointKind::kHinge || kind == JointKind::kBall;
+  return {turn, about_anchor ? body.joint.anchor_W : X_WB.p};
+}
+
+double least_path_free(ConstraintStep& step) noexcept {
+  TrialPose& trial = step.own.constraint.trial;
+  const PathWork work =
+      step.gaps.prove_paths(trial.X_WB, trial.turn, trial.goes,
+                            step.settings.budget.max_path_tests - step.report.path_tests, trial.path_free);
+  trial.path_unproven = work.unproven > 0;
+  step.report.path_tests += work.tests;
+  step.report.unproven_paths += work.unproven;
+  if (work.unproven > 0) step.report.flags |= frame_flag::kPathUnproven;
+  double least = 1.0;
+  for (Index i = 0; i < trial.goes.size(); ++i)
+    if (trial.goes[i]) least = std::min(least, trial.path_free[i]);
+  return least;
 }
 
 }  // namespace tactum::inline v0_1

@@ -25,11 +25,10 @@ inline constexpr std::uint32_t kMotionUndone =
 inline constexpr std::uint32_t kNoHand =
     1u << 5;  ///< no valid sample yet: the scene stands still, nothing is felt
 /// The grasped part lags behind the hand, by ...
-inline constexpr std::uint32_t kStepLimited = 1u << 7;  ///< Constraint::max_step_m or Penalty::max_step_m
-inline constexpr std::uint32_t kSurfaceStepLimited = 1u << 8;  ///< Constraint::max_step_on_surfaces_m
-inline constexpr std::uint32_t kTurnLimited = 1u << 9;         ///< Constraint::max_turn_rad
-inline constexpr std::uint32_t kLags =
-    kStepLimited | kSurfaceStepLimited | kTurnLimited;  ///< any of the three
+inline constexpr std::uint32_t kStepLimited = 1u << 7;   ///< Constraint::max_step_m or Penalty::max_step_m
+inline constexpr std::uint32_t kPathUnproven = 1u << 8;  ///< at its end only: WorkBudget::max_path_tests
+inline constexpr std::uint32_t kTurnLimited = 1u << 9;   ///< Constraint::max_turn_rad
+inline constexpr std::uint32_t kLags = kStepLimited | kTurnLimited;  ///< any of them
 }  // namespace frame_flag
 
 /// Dry friction of one frame, over all patches that push (constraint response); friction_use.h has it by
@@ -71,6 +70,8 @@ struct FrameReport {
   int solvers = 0;             ///< which solvers were at work: bits of ContactSolver (solver_choice.h)
   int active_constraints = 0;  ///< rows that hold the bodies (constraint response)
   int validation_tests = 0;    ///< exact tests of poses before they were taken
+  int path_tests = 0;          ///< of nodes and leaves of surfaces, in proofs that steps cross nothing
+  int unproven_paths = 0;      ///< pairs of surfaces whose step was tested at its end only
   int validation_retries = 0;  ///< steps that were not taken as they came
   int waiting = 0;             ///< bodies that were deferred for want of budget (waiting.h)
   int asleep = 0;              ///< bodies that rest, and were not tested

@@ -56,9 +56,9 @@ void try_steps(ConstraintStep& step) {
     Pose& X_trial = step.own.constraint.trial.X_WB[i];
     const Pose& X_WB = step.bodies.X_WB[i];
     X_trial = X_WB;
-    if (f.share[i] > 0.0)
-      X_trial =
-          constrained_pose(step.world.bodies[i], advanced(X_WB, mean_twist(step, i), f.share[i] * step.dt_s));
+    const Twist on = mean_twist(step, i) * (f.share[i] * step.dt_s);
+    step.own.constraint.trial.turn[i] = turn_of(step.world.bodies[i], X_WB, on.w);
+    if (f.share[i] > 0.0) X_trial = constrained_pose(step.world.bodies[i], advanced(X_WB, on, 1.0));
     if (!X_trial.finite()) X_trial = X_WB;
   }
   join_trial(step);
@@ -117,6 +117,24 @@ void cut(bool halve, ConstraintStep& step) {
     }
   }
   cut_together(step);
+}
+
+/// Cuts the steps of the bodies whose path to the trial is not proven to be free, to what is proven of it.
+/// False when there are some.
+bool cut_at_paths(ConstraintStep& step) {
+  FreeBodies& f = step.own.free;
+  TrialPose& trial = step.own.constraint.trial;
+  for (Index i = 0; i < f.share.size(); ++i) trial.goes[i] = moves_here(step, i) && f.share[i] > 0.0 ? 1 : 0;
+  if (least_path_free(step) == 1.0) return true;
+  std::fill(f.cut.begin(), f.cut.end(), 0);
+  for (Index i = 0; i < f.share.size(); ++i) {
+    if (!trial.goes[i] || trial.path_free[i] == 1.0) continue;
+    f.share[i] *= kOfFreePath * trial.path_free[i];
+    f.cut[i] = 1;
+    f.settled[Index(f.islands.of(static_cast<int>(i)))] = 0;
+  }
+  cut_together(step);
+  return false;
 }
 
 /// Stops the bodies of islands that are not settled.
@@ -305,8 +323,15 @@ void move_free_bodies(ConstraintStep& step) noexcept {
     try_steps(step);
     if (cuts > kBacktracks + kMostStops) break;  // stay() has stopped the rest
     const int tests = step.report.validation_tests;
-    if (look(all, keep_back, step)) break;
+    const bool open = look(all, keep_back, step);
+    if (open && cut_at_paths(step)) break;
     ++step.report.validation_retries;
+    if (open) {
+      all = false;
+      round = kFeedbacks;
+      if (++cuts > kBacktracks + kMostStops) stay(step);
+      continue;
+    }
     // Another solution takes as many tests as this one.
     all = round < kFeedbacks && step.gaps.tests_left() - keep_back >= step.report.validation_tests - tests;
     if (all) {
@@ -339,6 +364,7 @@ void begin_step(ConstraintStep& step) noexcept {
   TrialPose& trial = step.own.constraint.trial;
   trial.gap_now.clear();
   for (const ContactPatch& patch : step.patches) trial.gap_now.push_back(patch.distance);
+  step.own.free.patch_passed.assign(trial.gap_now.size(), 0);  // within what was reserved
   trial.gap.resize(trial.gap_now.size());
   trial.gap_least.resize(trial.gap_now.size());
   trial.gap_answer.resize(trial.gap_now.size());

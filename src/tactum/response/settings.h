@@ -55,11 +55,11 @@ struct Constraint {
   /// Farthest that a point of the grasped part goes in 1 ms; the opening of gaps below the skin comes before
   /// it [m].
   double max_step_m = 1e-3;
-  double least_step_m = 5e-5;  ///< the least that the limit sinks to; from there it doubles [m]
-  /// ... while surfaces without pieces touch: the number of contacts within a step, and the time to find
-  /// them, grow with the step.
-  double max_step_on_surfaces_m = 3e-5;  ///< [m]
-  double max_turn_rad = 0.020;           ///< farthest that the grasped part turns in 1 ms [rad]
+  /// The least that the limit sinks to, from which it doubles; kLeastOnSurfaces of it while surfaces without
+  /// pieces touch: the number of contacts within a step, and the time to find them, grow with the step [m].
+  double least_step_m = 5e-5;
+  static constexpr double kLeastOnSurfaces = 0.6;
+  double max_turn_rad = 0.020;  ///< farthest that the grasped part turns in 1 ms [rad]
 };
 
 /// A coefficient for every pair of bodies (scene files give it for pairs of materials).
@@ -101,7 +101,10 @@ struct Shading {
 
 /// The budget of a frame; part of the recorded input, never a clock reading.
 struct WorkBudget {
-  int max_exact_tests = 4096;      ///< exact tests a frame (paper 4.2: the array of fixed length) [-]
+  int max_exact_tests = 4096;  ///< exact tests a frame (paper 4.2: the array of fixed length) [-]
+  /// Tests of nodes and leaves a frame in the proof that surfaces do not cross on their paths, some 0.2 us
+  /// each. Where that is not enough, steps are short, and are tested at their ends only [-].
+  int max_path_tests = 2048;
   int max_contact_points = 2048;   ///< contact points a frame [-]
   ContactFinderCapacity capacity;  ///< near pairs and patches there is memory for
   /// Sweeps of the contact solver, or rows added and dropped, at most in each solution; a frame has several

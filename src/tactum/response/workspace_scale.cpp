@@ -28,7 +28,6 @@ StepLimits step_limits(const FrameSettings& settings, double radius_m) noexcept 
   const double larger = penalty ? scale : std::max(scale, radius_m / kHandRadius_m);
   const double steps = settings.dt_s / kReferenceStep_s;
   return {.step_m = (penalty ? settings.penalty.max_step_m : c.max_step_m) * larger * steps,
-          .step_on_surfaces_m = c.max_step_on_surfaces_m * larger,
           .least_step_m = c.least_step_m * scale,
           .turn_rad = c.max_turn_rad * steps};
 }

@@ -28,10 +28,9 @@ Wrench at_device(const Wrench& in_scene, double scale) noexcept;
 
 /// How far the grasped part may go in one frame, in the scene.
 struct StepLimits {
-  double step_m = 0.0;              ///< most that any point of it travels [m]
-  double step_on_surfaces_m = 0.0;  ///< ... while surfaces without pieces touch; constraint response [m]
-  double least_step_m = 0.0;        ///< what the trust region radius sinks to; constraint response [m]
-  double turn_rad = 0.0;            ///< most that it turns; constraint response [rad]
+  double step_m = 0.0;        ///< most that any point of it travels [m]
+  double least_step_m = 0.0;  ///< what the trust region radius sinks to; constraint response [m]
+  double turn_rad = 0.0;      ///< most that it turns; constraint response [rad]
 };
 
 /// The limits for a part whose farthest point is `radius_m` from its origin, 0 when nothing is grasped. The

@@ -67,7 +67,7 @@ constexpr FlagName kFrameFlags[] = {
   {frame_flag::kMotionUndone, "a motion was no number and was undone"},
   {frame_flag::kNoHand, "no valid sample of the hand yet"},
   {frame_flag::kStepLimited, "the held part lags behind the hand: raise max_step_m"},
-  {frame_flag::kSurfaceStepLimited, "the held part lags behind the hand: raise max_step_on_surfaces_m"},
+  {frame_flag::kPathUnproven, "a step of two surfaces was tested at its end only: raise max_path_tests"},
   {frame_flag::kTurnLimited, "the held part lags behind the hand: raise max_turn_deg"},
 };
 // clang-format on
