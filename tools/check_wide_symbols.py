@@ -3,8 +3,8 @@
 
 Files called *_wide.cpp are compiled with -mavx2. An inline function that one of them and another file define is one
 symbol to the linker, which keeps either; kept from the wide file it would stop the program on a processor without AVX2.
-So of the symbols that a wide file shows to others each must be its own: the table of its kernels (kWide), or a kernel of
-its width (KernelsOf<...>), and no other file of the libraries BUILD/libtactum_*.a may define it.
+So of the symbols that a wide file shows to others each must be its own: the table of its kernels (kWide...), or a kernel of
+its width (...KernelsOf<...>), and no other file of the libraries BUILD/libtactum_*.a may define it.
 """
 import pathlib
 import re
@@ -14,7 +14,8 @@ import sys
 # libtactum_math.a:column_kernels_wide.cpp.o:0000000000000000 W tactum::columns::KernelsOf<4ul>::dot(double const*)
 SYMBOL = re.compile(r"^[^:]+:(?P<file>[^:]+):[0-9a-f]* (?P<kind>\S) (?P<name>.+)$")
 SHOWN_KINDS = "ABCDGRSTuVvWwi"  # of nm: global, unique or weak
-OWN = re.compile(r"\bKernelsOf<|::kWide$")
+TABLE = re.compile(r"::kWide\w*$")
+OWN = re.compile(r"\b\w*KernelsOf<|" + TABLE.pattern)
 NO_CODE = re.compile(r"^DW\.ref\.")  # the address of a routine of the language, the same in every file
 
 
@@ -36,7 +37,7 @@ def leaks(files):
         for symbol in sorted(symbols):
             if not OWN.search(symbol):
                 yield f"{name} shows {symbol}, which is no kernel of its own"
-            elif symbol in elsewhere and not symbol.endswith("kWide"):
+            elif symbol in elsewhere and not TABLE.search(symbol):
                 yield f"{name} shows {symbol}, which another file defines too"
 
 
