@@ -93,8 +93,8 @@ TEST(Heap, StaysWithinATenthOfItsPairsAndEntersNothing) {
     watch.budget = 380;
   } else if (testing::kSanitized) {  // a sanitized build looks for faults of memory
     options = {.bodies = 8, .width_m = 0.08, .calm_s = 0.2};
-    watch.budget = 60;  // the grasped jack has up to 52 pairs that are due at once
-    times_near = 3;
+    watch.budget = 90;  // the grasped jack may have more than 60 pairs that are due at once
+    times_near = 2;
   } else {
     options = {.bodies = 40, .width_m = 0.12, .calm_s = 0.6};
     watch.budget = 100;

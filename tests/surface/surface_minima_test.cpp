@@ -236,7 +236,7 @@ TEST(SurfaceMinima, OfRealPartsAreThoseOfEveryPairOfFeatures) {
     const Surface surface_a(a);
     const Surface surface_b(b);
     const std::size_t step = testing::full_run() ? 5 : testing::effort(100, 800);
-    for (std::size_t i = step / 3; i < motion->frame.size(); i += step) {
+    for (std::size_t i = 33; i < motion->frame.size(); i += step) {
       SCOPED_TRACE(i);
       const Pose X = relative_pose(motion->X_WA[i], motion->X_WB[i]);
       found += expect_as_referee(a, b, X, {real.max_distance, 0.0, 4e-3});
