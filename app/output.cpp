@@ -37,9 +37,10 @@ std::vector<std::string> frame_notes(const Session& session) {
   if (record.flags & frame_flag::kUncertified)
     notes.push_back(fmt::format("{} distances had no certificate", record.sum("work.uncertified")));
   if (record.flags & frame_flag::kPathUnproven)
-    notes.push_back(fmt::format(
-        "{} steps of two surfaces were tested at their ends only, and held short: raise max_path_tests",
-        record.sum("unproven_paths")));
+    notes.push_back(
+        fmt::format("{} steps of two surfaces were tested at their ends only, those of the held part kept "
+                    "short: raise max_path_tests",
+                    record.sum("unproven_paths")));
   if (record.lagging_frames > 0)
     notes.push_back(fmt::format(
         "in {} of {} frames the held part lagged behind a hand that was faster than it may follow: raise {}",

@@ -115,6 +115,7 @@ void ContactFinder::test_surfaces(const SweepAndPrune::Pair& near, std::span<con
   if (!bodies_[Index(a)].moves && !bodies_[Index(b)].moves) return;
   const double margin = tolerance(a, b);
   BodyPair& list = list_of(near);
+  list.nearest = 0.0;  // until this frame has found it
   if (list.free_until - accumulated_motion(a, b) > margin) return;
   if (tests_left_ <= 0) return skip(a, b, list.free_until - accumulated_motion(a, b), frame_);
   --tests_left_;
@@ -128,7 +129,6 @@ void ContactFinder::test_surfaces(const SweepAndPrune::Pair& near, std::span<con
       .depth = may_cross ? kSurfaceDepth * std::min(part_a.size, part_b.size) : kWatched * margin,
       .cone_inflation = tolerances::kConeInflation};
   const Pose X_AB = relative_pose(X_WB[Index(a)], X_WB[Index(b)]);
-  list.nearest = 0.0;
   if (!may_cross && test_ball(a, b, X_AB, margin)) {
     list.free_until = accumulated_motion(a, b) + (minima_.empty() ? margin : 0.0);
     return;

@@ -4,32 +4,11 @@
 
 #include <array>
 
+#include "tactum/surface/kept.h"
 #include "tactum/surface/surface_minima_features.h"
 #include "tactum/surface/surface_minima_lanes.h"
 
 namespace tactum::inline v0_1 {
-
-/// Values turned into the other's frame, kept for the pairs that follow, which mostly need the same again.
-/// The room is filled as far as it is used.
-template <class Value, std::size_t Room>
-class Kept {
- public:
-  Kept() noexcept { key_.fill(~0U); }  // NOLINT(cppcoreguidelines-pro-type-member-init)
-  /// The value with this key, which make(value) makes when it is not there.
-  template <class Make>
-  const Value& get(std::uint32_t key, const Make& make) noexcept {
-    const std::size_t slot = key % Room;
-    if (key_[slot] != key) {
-      key_[slot] = key;
-      make(value_[slot]);
-    }
-    return value_[slot];
-  }
-
- private:
-  std::array<std::uint32_t, Room> key_;
-  std::array<Value, Room> value_;
-};
 
 /// Everything is in the frame of the other surface, from its center.
 class SurfaceWalk {

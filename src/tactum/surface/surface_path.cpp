@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "tactum/base/tolerances.h"
+#include "tactum/surface/kept.h"
 #include "tactum/surface/surface_path_lanes.h"
 #include "tactum/surface/triangle_path.h"
 
@@ -54,26 +55,6 @@ struct FloatPose {
   float operator()(Index i, const std::array<float, 3>& v) const noexcept {
     return R[i][0] * v[0] + R[i][1] * v[1] + R[i][2] * v[2] + p[i];
   }
-};
-
-/// A few results of make(key, value), kept for the pairs that follow. The room is filled as it is used.
-template <class Value, std::size_t Room>
-class KeptOfPath {
- public:
-  KeptOfPath() noexcept { key_.fill(~0U); }  // NOLINT(cppcoreguidelines-pro-type-member-init)
-  template <class Make>
-  const Value& get(std::uint32_t key, const Make& make) noexcept {
-    const std::size_t slot = key % Room;
-    if (key_[slot] != key) {
-      key_[slot] = key;
-      make(value_[slot]);
-    }
-    return value_[slot];
-  }
-
- private:
-  std::array<std::uint32_t, Room> key_;
-  std::array<Value, Room> value_;
 };
 
 class PathWalk {
@@ -345,8 +326,8 @@ class PathWalk {
   double turn_;            // over the motion [rad]
   lanes::PathTurn float_turn_;
   SurfacePath path_;
-  KeptOfPath<EightBoxes, 64> kept_a_, kept_b_;
-  KeptOfPath<EightTriangles, 64> leaves_a_, leaves_b_;
+  Kept<EightBoxes, 64> kept_a_, kept_b_;
+  Kept<EightTriangles, 64> leaves_a_, leaves_b_;
 };
 
 }  // namespace
