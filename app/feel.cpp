@@ -19,6 +19,7 @@
 #include "tactum/scene/builtin_scenes.h"
 #include "tactum/session/session.h"
 #include "tactum/telemetry/statistics.h"
+#include "trace_file.h"
 #include "viewer/server/viewer.h"
 #include "watch.h"
 
@@ -34,22 +35,31 @@ struct FeelOptions {
   std::string hand;
   std::string response;
   std::string json;
+  std::string trace;
+  bool trace_bodies = false;
   bool virtual_clock = false;
   bool referee = false;
   bool view = false;
   int port = 0;
 };
 
-/// Times the frames of a virtual run, has them judged where there is a referee, keeps the status line alive,
-/// and passes Ctrl-C on.
+/// What looks at every frame of a run, where it was asked for; null where not.
+struct Watchers {
+  RefereeWatch* referee = nullptr;
+  TraceFile* trace = nullptr;
+};
+
+/// Times the frames of a virtual run, passes them to those who watch, keeps the status line alive, and passes
+/// Ctrl-C on.
 class VirtualWatch final : public LoopObserver {
  public:
-  VirtualWatch(Session& session, RefereeWatch* referee, MinimumOfReplays& times)
-      : session_(session), referee_(referee), times_(times) {}
+  VirtualWatch(Session& session, const Watchers& watchers, MinimumOfReplays& times)
+      : session_(session), watchers_(watchers), times_(times) {}
   bool after_frame(const FrameRecord& record) noexcept override {
     times_.add(static_cast<std::size_t>(record.tick.index),
                static_cast<std::int64_t>(record.frame_time_s * 1e9));
-    if (referee_ != nullptr) referee_->look(record.tick.index);
+    if (watchers_.referee != nullptr) watchers_.referee->look(record.tick.index);
+    if (watchers_.trace != nullptr) watchers_.trace->drain();
     if (record.tick.index % kFramesPerLook == 0) status_.show(session_, session_.poll());
     return !interrupted();
   }
@@ -57,7 +67,7 @@ class VirtualWatch final : public LoopObserver {
  private:
   static constexpr std::uint64_t kFramesPerLook = 1000;
   Session& session_;
-  RefereeWatch* referee_;
+  Watchers watchers_;
   MinimumOfReplays& times_;
   StatusLine status_;
 };
@@ -88,22 +98,23 @@ Scene scene_of(const FeelOptions& options) {
   return std::move(*scene);
 }
 
-void run_virtually(Session& session, std::uint64_t frames, RefereeWatch* referee, MinimumOfReplays& times) {
-  VirtualWatch watch(session, referee, times);
+void run_virtually(Session& session, std::uint64_t frames, const Watchers& watchers,
+                   MinimumOfReplays& times) {
+  VirtualWatch watch(session, watchers, times);
   const Result<VirtualRun> run = session.run_virtual(frames, &watch);
   if (!run) fail(run.error());
 }
 
 /// Runs the session, and repeats it as many times as wanted.
 Summary feel_virtually(const FeelOptions& options, Session& session, std::uint64_t frames,
-                       RefereeWatch* referee) {
+                       const Watchers& watchers) {
   MinimumOfReplays times(frames);
-  run_virtually(session, frames, referee, times);
+  run_virtually(session, frames, watchers, times);
   for (int replay = 1; replay < options.replays && !interrupted(); ++replay) {
     const std::unique_ptr<Session> again = open_session(options, scene_of(options));
     StageClock stages;  // so that every run does the same
     again->time_stages(&stages);
-    run_virtually(*again, frames, nullptr, times);
+    run_virtually(*again, frames, {}, times);
     if (!interrupted() && again->record().hash() != session.record().hash())
       fail({"a replay went another way", fmt::format("hash {:016x}", again->record().hash()),
             fmt::format("{:016x} as in the first run", session.record().hash()), options.scene});
@@ -112,13 +123,14 @@ Summary feel_virtually(const FeelOptions& options, Session& session, std::uint64
 }
 
 /// Runs the loop's own thread until the frames are done, the device is gone or the user stops it.
-Summary feel_live(Session& session, std::uint64_t frames) {
+Summary feel_live(Session& session, std::uint64_t frames, TraceFile* trace) {
   if (const Result<void> started = session.start(frames); !started) fail(started.error());
   for (const std::string& sentence : session.privileges().sentences) fmt::print(stderr, "{}\n", sentence);
   StatusLine status;
   while (session.loop_status().running && !interrupted()) {
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
     status.show(session, session.poll());
+    if (trace != nullptr) trace->drain();
   }
   session.stop();
   session.poll();
@@ -164,9 +176,15 @@ void report_what_is_felt(std::FILE* out, const Session& session, const std::stri
 }
 
 void sum_up(std::FILE* out, const FeelOptions& options, const Session& session, const Summary& times,
-            const StageClock& stages, const RefereeWatch* referee) {
+            const StageClock& stages, const Watchers& watchers) {
+  const RefereeWatch* referee = watchers.referee;
   print_summary(out, session, times, stages);
   if (referee != nullptr) fmt::print(out, "referee          {}\n", referee->sentence());
+  if (watchers.trace != nullptr)
+    fmt::print(out, "trace            {} frames in {}{}\n", watchers.trace->rows(), options.trace,
+               watchers.trace->lost() == 0
+                   ? ""
+                   : fmt::format("; {} more are lost, since the disk was too slow", watchers.trace->lost()));
   if (options.replays > 1 && !interrupted())
     fmt::print(out, "replays          {} runs, the same to the bit; each frame counts with its fastest\n",
                options.replays);
@@ -197,7 +215,7 @@ void feel_with_pages(const FeelOptions& options, Scene scene, std::FILE* out) {
   const Summary times = options.virtual_clock
                             ? feel_viewed_virtually(viewer, frames_asked_for(options, viewer.session()))
                             : run_viewed(viewer, asked);
-  sum_up(out, options, viewer.session(), times, viewer.stages(), nullptr);
+  sum_up(out, options, viewer.session(), times, viewer.stages(), {});
 }
 
 void feel(const FeelOptions& options) {
@@ -216,10 +234,13 @@ void feel(const FeelOptions& options) {
   const std::uint64_t frames = frames_asked_for(options, session);
   std::optional<RefereeWatch> judges;
   if (options.referee) judges.emplace(session);
-  RefereeWatch* const referee = judges ? &*judges : nullptr;
-  const Summary times =
-      options.virtual_clock ? feel_virtually(options, session, frames, referee) : feel_live(session, frames);
-  sum_up(out, options, session, times, stages, referee);
+  std::optional<TraceFile> trace;
+  if (!options.trace.empty()) trace.emplace(options.trace, session, frames, options.trace_bodies);
+  const Watchers watchers{judges ? &*judges : nullptr, trace ? &*trace : nullptr};
+  const Summary times = options.virtual_clock ? feel_virtually(options, session, frames, watchers)
+                                              : feel_live(session, frames, watchers.trace);
+  if (trace) trace->finish();
+  sum_up(out, options, session, times, stages, watchers);
 }
 
 }  // namespace
@@ -260,12 +281,24 @@ void add_feel(CLI::App& app) {
                                         "judge every frame by exact signs and topology: does any surface "
                                         "cross another, has anything got inside, or out of what it hangs in?")
                              ->needs(virtual_clock);
+  CLI::Option* trace = command
+                           ->add_option("--trace", options->trace,
+                                        "write every frame to this CSV file, a column for each quantity "
+                                        "(docs/trace.md)")
+                           ->check([](const std::string& path) {
+                             return path.ends_with(".csv")
+                                        ? std::string()
+                                        : "expected a name that ends in .csv, found " + path;
+                           });
+  command->add_flag("--trace-bodies", options->trace_bodies, "... with the pose and twist of every body")
+      ->needs(trace);
   CLI::Option* view = command->add_flag(
       "--view", options->view,
       "serve a page that shows it, and on which the mouse is the hand; without a duration until "
       "interrupted, else until no page is open");
   replays->excludes(view);
   referee->excludes(view);
+  trace->excludes(view);
   command->add_option("--port", options->port, "of the page; by default one that is free")
       ->check(CLI::Range(1, 65535))
       ->needs("--view");

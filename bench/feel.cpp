@@ -29,7 +29,6 @@ std::shared_ptr<const Part> part_of(const std::vector<FeelPiece>& pieces) {
 class Ours final : public FeelEngine {
  public:
   explicit Ours(const FeelScene& scene) {
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
     X_start_ = scene.hand->at(0.0).X_DH;
     World world;
     world.bodies.resize(2);
@@ -44,7 +43,7 @@ class Ours final : public FeelEngine {
     settings.coupling = scene.coupling;
     settings.coupling.damping_Ns_per_m = 0.0;
     settings.coupling.damping_Nms_per_rad = 0.0;
-    settings.smoothing = {kInfinity, kInfinity};
+    settings.smoothing.on = false;
     settings.workspace.X_WD.p = X_start_.p;
     const double mu = scene.friction;
     if (mu > 0.0) settings.friction = {{0.0, mu, mu, 0.0}, 2};

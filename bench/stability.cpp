@@ -88,7 +88,7 @@ WallTrial try_wall(const WallSetup& setup, double stiffness, double seconds) {
   PortSettings port;  // only watches
   port.damping_Ns_per_m = setup.turning ? 0.0 : damping(setup, true);
   port.damping_Nms_per_rad = setup.turning ? damping(setup, true) : 0.0;
-  port.credit_J = port.credit_turning_J = kMade_J;
+  port.credit_J = kMade_J;
   PortState state;
   PortReport report;
   PortInput input;
@@ -102,12 +102,10 @@ WallTrial try_wall(const WallSetup& setup, double stiffness, double seconds) {
     device.read(now_s, sample);
     // The wrench that acted over the last step, after the delay: the hand received this one.
     input.sent = device.motor_wrench();
-    input.wanted = wall(setup, stiffness, sample.X_DH);
-    (setup.turning ? input.spring_turning_J : input.spring_J) =
-        stored(setup, stiffness, sample.X_DH, input.wanted);
+    input.felt = input.wanted = wall(setup, stiffness, sample.X_DH);
+    input.stored.total_J = stored(setup, stiffness, sample.X_DH, input.wanted);
     device.write(passive_wrench(port, state, sample, input, report));
-    trial.lowest_J =
-        std::min(trial.lowest_J, setup.turning ? report.energy_balance_turning_J : report.energy_balance_J);
+    trial.lowest_J = std::min(trial.lowest_J, report.balance_J);
     if (now_s < kPressed_s) continue;
     const auto third = static_cast<std::size_t>(3.0 * (now_s - kPressed_s) / (seconds - kPressed_s));
     const double speed = setup.turning ? device.true_twist().w.norm() : device.true_twist().v.norm();

@@ -1,6 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <fstream>
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "app/program.h"
 
@@ -25,6 +28,42 @@ TEST(FeelCommand, TheSummaryForMachinesHasItsKeys) {
   EXPECT_EQ(summary["frame_hash"].get<std::string>().size(), 16u);
   EXPECT_TRUE(summary["goal_met"].is_boolean());
   EXPECT_GT(summary["colliding_frames"], 1000);
+}
+
+TEST(FeelCommand, ATraceHasARowForEachFrame) {
+  const ScratchFolder folder;
+  const std::string path = folder / "run.csv";
+  const ProgramRun run =
+      run_tactum("feel block-on-plate --virtual-clock --updates 1500 --trace-bodies --trace " + path);
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NE(run.out.find("1500 frames in " + path), std::string::npos) << run.out;
+  std::ifstream file(path);
+  std::string line, head, names;
+  while (std::getline(file, line) && line.starts_with("#")) head += line + "\n";
+  names = line;
+  for (const char* part :
+       {"# scene: block-on-plate\n", "# frames: 1500\n", "# rate_Hz: 1000\n", "# date: 20",
+        "# setting coupling.stiffness_N_per_m = 600\n", "# setting response = constraint\n"})
+    EXPECT_NE(head.find(part), std::string::npos) << part << head;
+  for (const char* name : {"time_s,", ",hand_qw,", ",sent_fx_N,", ",energy_balance_J,", ",block_vx_m_per_s,"})
+    EXPECT_NE(names.find(name), std::string::npos) << name;
+  int rows = 0;
+  const auto commas = std::count(names.begin(), names.end(), ',');
+  for (; std::getline(file, line); ++rows) ASSERT_EQ(std::count(line.begin(), line.end(), ','), commas);
+  EXPECT_EQ(rows, 1500);
+  const ProgramRun live = run_tactum("feel block-on-plate --updates 200 --trace " + path);
+  EXPECT_EQ(live.exit_code, 0) << live.err;
+  EXPECT_NE(live.out.find("frames in " + path), std::string::npos) << live.out;
+}
+
+TEST(FeelCommand, ATraceThatCannotBeWrittenIsAnError) {
+  const ProgramRun folder =
+      run_tactum("feel block-on-plate --virtual-clock --updates 10 --trace /nowhere/run.csv");
+  EXPECT_NE(folder.exit_code, 0);
+  EXPECT_NE(folder.err.find("cannot write the trace"), std::string::npos) << folder.err;
+  const ProgramRun ending = run_tactum("feel block-on-plate --virtual-clock --updates 10 --trace run.txt");
+  EXPECT_NE(ending.exit_code, 0);
+  EXPECT_NE(ending.err.find(".csv"), std::string::npos) << ending.err;
 }
 
 TEST(FeelCommand, TheSameTwiceAndADurationInsteadOfUpdates) {

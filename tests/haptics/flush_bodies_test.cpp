@@ -67,8 +67,7 @@ struct Floor {
     settings.response = c.response;
     settings.dt_s = 1.0 / c.rate_Hz;
     settings.coupling.damping_Ns_per_m = settings.coupling.damping_Nms_per_rad = 0.0;
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    settings.smoothing = {kInfinity, kInfinity};
+    settings.smoothing.on = false;
     const int bodies = static_cast<int>(world.bodies.size());
     if (c.mu > 0.0)
       settings.friction = {std::vector<double>(static_cast<std::size_t>(bodies * bodies), c.mu), bodies};

@@ -35,7 +35,11 @@ TEST(FramePath, NoStepOfTheSmoothedWrenchIsLongerThanSet) {
       BlockRig rig;
       rig.settings.response = response;
       rig.settings.dt_s = 1.0 / c.rate_Hz;
-      rig.settings.smoothing = {c.step_N, c.step_N * 0.02, true};
+      constexpr double kInfinity = std::numeric_limits<double>::infinity();
+      rig.settings.smoothing = {.max_force_N_per_s = 1e3 * c.step_N,
+                                .max_torque_Nm_per_s = 20.0 * c.step_N,
+                                .beyond_hand_N_per_s = kInfinity,
+                                .beyond_hand_Nm_per_s = kInfinity};
       rig.step({});
       rig.go(at(0, 0, -0.003), 500);
       const double most_N = c.step_N * 1000.0 / c.rate_Hz;
@@ -262,8 +266,7 @@ struct Pushed {
 };
 
 /// The hand moves to and fro in free space. Whatever the stage generates, no more than the credit of the
-/// balance is given to the hand: the port takes the rest out before the wrench is sent. (It can take out one
-/// credit a frame, here 1 W.)
+/// balance is given to the hand: what the stage adds fades as its tank runs dry.
 TEST(FramePath, TheHandIsGivenNoEnergyThatAStageGenerates) {
   for (const ResponseModel response : kResponses)
     for (const Pushed& c : {Pushed{}, Pushed{.gain_Ns_per_m = 5.0}, Pushed{.rate_Hz = 4000.0},
@@ -279,7 +282,6 @@ TEST(FramePath, TheHandIsGivenNoEnergyThatAStageGenerates) {
       FrameSettings settings = settings_for(device, c.rate_Hz);
       settings.response = response;
       settings.tool.body = 0;
-      settings.port.max_injected_Ns_per_m = 4.0 * c.gain_Ns_per_m;
       const auto simulation = std::move(*Simulation::make(std::move(world), settings));
       PushOn stage(c.gain_Ns_per_m, settings.dt_s);
       simulation->set_force_stage(&stage);

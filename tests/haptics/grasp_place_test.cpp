@@ -50,7 +50,6 @@ class Wheel : public Sandbox {
   explicit Wheel(const Case& c, double torque_Nm = 0.0, double friction_Nm = 0.0,
                  double centre_fraction = 0.25)
       : case_(c), X_WA_{exp_rotation(Vec3(0.4, -0.3, 0.8)), Vec3(0.1, -0.05, 0.2)} {
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
     const Joint hinge{
         .kind = JointKind::kHinge, .axis_W = X_WA_.R.col(2), .anchor_W = X_WA_.p, .friction = friction_Nm};
     add_body(world, {.part = solid_of(make_prism(48, c.radius_m, 0.3 * c.radius_m)),
@@ -67,7 +66,7 @@ class Wheel : public Sandbox {
     }
     settings.tool.centre_fraction = centre_fraction;
     settings.coupling.damping_Ns_per_m = settings.coupling.damping_Nms_per_rad = 0.0;
-    settings.smoothing = {kInfinity, kInfinity};
+    settings.smoothing.on = false;
     settings.workspace.X_WD = {X_WA_.R, X_WA_ * Vec3(c.taken_m(), 0, 0)};
     settle(true);
   }

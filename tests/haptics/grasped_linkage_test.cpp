@@ -20,7 +20,6 @@ const Vec3 kRod(0.002, 0.05, 0.002);  // half a rod of 0.1 m along y [m]
 class GraspedPair {
  public:
   GraspedPair(double dt_s, double size, const Joint& joint, const Vec3& gravity_W, bool holds_child) {
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
     World world;
     world.gravity_W = gravity_W;
     const Vec3 half = size * kRod;
@@ -31,7 +30,7 @@ class GraspedPair {
     FrameSettings settings;
     settings.dt_s = dt_s;
     settings.tool.body = 0;
-    settings.smoothing = {kInfinity, kInfinity};
+    settings.smoothing.on = false;
     simulation_ = std::move(*Simulation::make(std::move(world), settings));
   }
   static Vec3 hung(double size) { return {0.02 * size, -0.1 * size, 0.0}; }

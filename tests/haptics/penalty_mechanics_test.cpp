@@ -67,11 +67,10 @@ class OnFloor {
                              .X_WP = {Mat3::Identity(), *bar_at}});
       settings.tool.body = bar;
     }
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
     const int n = static_cast<int>(world.bodies.size());
     settings.response = ResponseModel::kPenalty;
     settings.dt_s = 1.0 / c.rate_Hz;
-    settings.smoothing = {kInfinity, kInfinity};
+    settings.smoothing.on = false;
     if (c.mu > 0.0) settings.friction = {std::vector<double>(static_cast<std::size_t>(n * n), c.mu), n};
     settings.impacts.restitution = {std::vector<double>(static_cast<std::size_t>(n * n), c.e), n};
     simulation_ = std::move(*Simulation::make(world, settings));
@@ -116,11 +115,10 @@ TEST(PenaltyMechanics, TheWeightOfTheGraspedPartIsFelt) {
     World world;
     world.gravity_W = {0, 0, -kGravity};
     add_body(world, {.part = solid_box(grasp.size_m * Vec3(0.5, 0.4, 0.3)), .mass_kg = grasp.mass_kg});
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
     FrameSettings settings;
     settings.response = ResponseModel::kPenalty;
     settings.dt_s = 1.0 / grasp.rate_Hz;
-    settings.smoothing = {kInfinity, kInfinity};
+    settings.smoothing.on = false;
     settings.tool.body = 0;
     settings.tool.X_BH.p = grasp.handle;
     const auto simulation = std::move(*Simulation::make(world, settings));

@@ -16,7 +16,6 @@ struct Hand : Sandbox {
   int near_block, far_block;
 
   Hand() {
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
     world.gravity_W = {0, 0, -9.81};
     add_fixed(make_box({0.2, 0.2, 0.01}), at(0, 0, -0.01));
     near_block = add(make_box({0.01, 0.01, 0.01}), at(0, 0, 0.01001));
@@ -24,7 +23,7 @@ struct Hand : Sandbox {
     rub(0.3);
     settings.tool.picks = true;
     settings.workspace.X_WD.p = {0, 0, 0.05};
-    settings.smoothing = {kInfinity, kInfinity};
+    settings.smoothing.on = false;
   }
   /// The handle goes to a place in the world in so many frames; the largest step of the raw force.
   double go(const Vec3& p_W, int frames, bool pressed) {

@@ -173,8 +173,8 @@ class WallFrame final : public HapticFrame {
     input.period_s = tick.period_s;
     input.late = tick.late;
     input.stop = tick.stop;
-    SafetyReport report;
-    const Wrench F = safe_wrench(limits_, state_, input, report);
+    std::uint32_t flags = 0;
+    const Wrench F = safe_wrench(limits_, state_, input, flags);
     sum = sum + F;
     return F;
   }

@@ -149,7 +149,7 @@ struct Hand {
                                 .turned_W = {},
                                 .in_field = false,
                                 .field = {}};
-      const MotionInput motion = motion_input(world, settings, grasped, radius);
+      const MotionInput motion = motion_input(world, settings, grasped, radius, 1.0);
       const std::span<const double> bound = response.bound_motion(motion, bodies);
       const double margin = std::max(bound[0] + bound[1], settings.penalty.min_tolerance_m);
       margin_m = margin;
@@ -289,7 +289,7 @@ TEST(Response, NothingIsFeltOfAPartThatIsNotHeld) {
                               .turned_W = {},
                               .in_field = false,
                               .field = {}};
-    const MotionInput motion = motion_input(hand.world, hand.settings, nothing, radius);
+    const MotionInput motion = motion_input(hand.world, hand.settings, nothing, radius, 1.0);
     response.bound_motion(motion, hand.bodies);
     const std::vector<Pose> start = hand.bodies.X_WB;
     const ContactWork work;

@@ -84,10 +84,10 @@ TEST(SettingTable, SmoothingThatIsOffKeepsItsLimits) {
     setting_table()[static_cast<std::size_t>(setting_called(key))].set(settings.frame, settings.safety,
                                                                        value);
   };
-  set("smoothing.max_force_step_N", 0.25);
+  set("smoothing.max_force_N_per_s", 250);
   set("smoothing.on", 0.0);
   set("smoothing.on", 1.0);
-  EXPECT_EQ(settings.frame.smoothing.max_force_step_N, 0.25);
+  EXPECT_EQ(settings.frame.smoothing.max_force_N_per_s, 250.0);
 }
 
 /// "0.001 to 5", "true, false", "penalty, constraint".

@@ -18,7 +18,6 @@ struct Rig {
   int penetrating_frames = 0;
 
   explicit Rig(std::size_t bodies) {
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
     world.bodies.resize(bodies);
     // The tests give the bodies parts of several sizes; the wrench must not depend on their inertia.
     world.bodies[0].mass_kg = 0.05;
@@ -26,7 +25,7 @@ struct Rig {
     settings.tool.body = 0;
     settings.coupling.damping_Ns_per_m = 0.0;
     settings.coupling.damping_Nms_per_rad = 0.0;
-    settings.smoothing = {kInfinity, kInfinity};
+    settings.smoothing.on = false;
   }
   const FrameState& begun() {
     if (!simulation) simulation = std::move(*Simulation::make(world, settings));

@@ -84,6 +84,8 @@ class SimulatedDevice final : public Device {
   double slept_s() const noexcept { return slept_s_; }              ///< time jumped over [s]
   long saturated_writes() const noexcept { return saturated_writes_; }
   long watchdog_trips() const noexcept { return watchdog_trips_; }
+  /// From now on another hand holds the handle, or none (no_hand()).
+  void hold_with(HandModel hand) noexcept { hand_ = std::move(hand); }
   /// Puts the handle somewhere with a velocity, after open: the start of an experiment.
   void place(const Pose& X_DH, const Twist& V_DH) noexcept;
 

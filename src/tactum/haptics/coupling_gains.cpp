@@ -15,16 +15,6 @@ namespace {
 constexpr double kUsed = 0.5;         // the fraction of the bound that is used
 constexpr double kDamperShare = 0.1;  // fraction of the hand's damping that becomes the coupling's damper
 
-/// Of a handle whose inertia is not given: the lightest of the presets.
-constexpr double kLightest_kg = 0.045;
-constexpr double kLightest_kg_m2 = 2e-5;  // [kg m^2]
-
-/// Damping that is computed from the displacement of one frame is itself late by half a frame; a tenth of m /
-/// T is far from where that oscillates. And one encoder step of noise must not push by more than this
-/// fraction of the limit.
-constexpr double kInjectedShare = 0.1;
-constexpr double kNoiseShare = 0.05;
-
 /// Lever between turning and pushing for a handle that cannot be turned: k_r = k_t (0.2 m)^2, four times that
 /// of a fist, so that a part of a hand's size gives way in translation first.
 constexpr double kLever_m = 0.2;
@@ -48,16 +38,23 @@ double chosen(const GainBounds& bounds, double stiffest) {
   return stiffest > 0.0 ? std::min(limit, stiffest) : limit;
 }
 
-double injected(double inertia, double force, double step, double period_s) {
-  const double by_inertia = kInjectedShare * inertia / period_s;
-  return step > 0.0 ? std::min(by_inertia, kNoiseShare * force * period_s / step) : by_inertia;
-}
-
 HandModel loose_hand() { return *hand_model("loose"); }
 
-std::string share(double used, double bound, const char* unit) {
-  if (!(bound > 0.0)) return fmt::format("none is allowed ({} {})", used, unit);
-  return fmt::format("{:.0f} % of {:.3g} {}", 100.0 * used / bound, bound, unit);
+/// One half of the coupling beside its bounds: what a loose hand allows, and the device alone.
+struct Margin {
+  double used, in_hand, alone;
+  const char* unit;
+
+  bool in_loose_hand() const { return used <= in_hand; }
+  bool released() const { return used <= alone; }
+  std::string share() const {
+    return fmt::format("{:.0f} % of {:.3g} {}", 100.0 * used / in_hand, in_hand, unit);
+  }
+  std::string limit_alone() const { return fmt::format("{:.3g} {}", alone, unit); }
+};
+
+std::string joined(const std::string& a, const char* between, const std::string& b) {
+  return b.empty() ? a : a + between + b;
 }
 
 }  // namespace
@@ -95,18 +92,16 @@ CouplingGains coupling_gains(const DeviceInfo& info, double rate_Hz) {
   return gains;
 }
 
-PortSettings port_settings(const DeviceInfo& info, double rate_Hz) {
+PortSettings port_settings(const DeviceInfo& info) {
   const HandleDynamics& handle = info.handle;
-  const double period_s = 1.0 / rate_Hz;
   PortSettings port;
   port.actuates_torque = info.actuates_torque;
+  port.keeps_balance = true;
   port.damping_Ns_per_m = handle.damping_Ns_per_m;
   port.damping_Nms_per_rad = handle.damping_Nms_per_rad;
-  port.max_injected_Ns_per_m = injected(handle.mass_kg > 0.0 ? handle.mass_kg : kLightest_kg,
-                                        info.max_force_N, handle.encoder_step_m, period_s);
-  port.max_injected_Nms_per_rad =
-      injected(handle.inertia_kg_m2 > 0.0 ? handle.inertia_kg_m2 : kLightest_kg_m2, info.max_torque_Nm,
-               handle.encoder_step_rad, period_s);
+  port.friction_N = handle.friction_N;
+  port.friction_Nm = handle.friction_Nm;
+  port.delay_s = handle.delay_s;
   return port;
 }
 
@@ -122,22 +117,29 @@ std::string scale_sentence(const Coupling& coupling, double scale) {
 std::string margin_sentence(const Coupling& coupling, const DeviceInfo& info, double rate_Hz) {
   const double period_s = 1.0 / rate_Hz;
   const HandModel hand = loose_hand();
+  const HandleDynamics& handle = info.handle;
   const auto allowed = [&](double damping, double damper) {
-    return stiffness_allowed(damping, damper, period_s, info.handle.delay_s);
+    return stiffness_allowed(damping, damper, period_s, handle.delay_s);
   };
-  std::string text = fmt::format(
-      "coupling {:.3g} N/m: {} in a loose hand, {} alone", coupling.stiffness_N_per_m,
-      share(coupling.stiffness_N_per_m,
-            allowed(info.handle.damping_Ns_per_m + hand.damping_Ns_per_m, coupling.damping_Ns_per_m), "N/m"),
-      share(coupling.stiffness_N_per_m, allowed(info.handle.damping_Ns_per_m, 0.0), "N/m"));
-  if (!info.actuates_torque) return text + "; rotation follows, no torque is sent";
-  return text + fmt::format("; {:.3g} N m/rad: {}, {}", coupling.stiffness_Nm_per_rad,
-                            share(coupling.stiffness_Nm_per_rad,
-                                  allowed(info.handle.damping_Nms_per_rad + hand.damping_Nms_per_rad,
-                                          coupling.damping_Nms_per_rad),
-                                  "N m/rad"),
-                            share(coupling.stiffness_Nm_per_rad,
-                                  allowed(info.handle.damping_Nms_per_rad, 0.0), "N m/rad"));
+  const Margin push{coupling.stiffness_N_per_m,
+                    allowed(handle.damping_Ns_per_m + hand.damping_Ns_per_m, coupling.damping_Ns_per_m),
+                    allowed(handle.damping_Ns_per_m, 0.0), "N/m"};
+  const Margin turn{
+      coupling.stiffness_Nm_per_rad,
+      allowed(handle.damping_Nms_per_rad + hand.damping_Nms_per_rad, coupling.damping_Nms_per_rad),
+      allowed(handle.damping_Nms_per_rad, 0.0), "N m/rad"};
+  const bool turns = info.actuates_torque;
+  std::string text = fmt::format("coupling {:.3g} N/m", push.used);
+  if (turns) text += fmt::format(" and {:.3g} N m/rad", turn.used);
+  const bool in_hand = push.in_loose_hand() && (!turns || turn.in_loose_hand());
+  text += fmt::format("; {} in a loose hand ({}), ", in_hand ? "stable" : "not stable",
+                      joined(push.share(), " and ", turns ? turn.share() : ""));
+  const bool alone = push.released() && (!turns || turn.released());
+  text += alone ? "and when it is let go of"
+                : fmt::format("let go of, this device alone holds up to {} without swinging",
+                              joined(push.limit_alone(), " and ", turns ? turn.limit_alone() : ""));
+  if (!in_hand || !alone) text += "; where it swings, its stiffness is led down";
+  return turns ? text : text + "; turns of the hand are followed, no torque is sent";
 }
 
 }  // namespace tactum::inline v0_1

@@ -52,13 +52,14 @@ struct CouplingGains {
 CouplingGains coupling_gains(const DeviceInfo& info, double rate_Hz);
 
 /// The settings of the passivity stage for this device.
-PortSettings port_settings(const DeviceInfo& info, double rate_Hz);
+PortSettings port_settings(const DeviceInfo& info);
 
 /// What a workspace scale other than one makes of a coupling in the scene, in a sentence for people; else
 /// empty.
 std::string scale_sentence(const Coupling& coupling, double scale);
 
-/// Which fraction of the bounds a coupling uses, in a sentence for people.
+/// Whether a coupling is stable on this device in a loose hand and when it is let go of, with the fraction of
+/// the bounds that it uses, in a sentence for people.
 std::string margin_sentence(const Coupling& coupling, const DeviceInfo& info, double rate_Hz);
 
 }  // namespace tactum::inline v0_1

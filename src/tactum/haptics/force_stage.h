@@ -4,9 +4,9 @@
 ///
 ///   contacts, coupling -> smoothing -> the caller's stage -> passivity -> safety -> device
 ///
-/// The stages behind it watch its wrench as they watch the rest: energy that it generates is damped as far as
-/// PortSettings allows, and no limit of safety.h can be passed. FrameReport::smoothed is the wrench before
-/// this stage, FrameReport::shown the commanded wrench.
+/// The stages behind it watch its wrench as they watch the rest: what it adds fades when it has given the
+/// hand more energy than it took (passivity.h), and no limit of safety.h can be passed.
+/// FrameReport::smoothed is the wrench before this stage, FrameReport::shown the commanded wrench.
 
 #include "tactum/devices/device.h"
 #include "tactum/response/frame_report.h"

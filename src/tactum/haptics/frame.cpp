@@ -1,23 +1,9 @@
 #include "tactum/haptics/frame.h"
 
 #include "tactum/dynamics/body_load.h"
-#include "tactum/response/energy.h"
+#include "tactum/haptics/show_stage.h"
 
 namespace tactum::inline v0_1 {
-namespace {
-
-/// The handle where the step has left it; none while nothing is grasped.
-PlacedHandle report_grasp(const GraspedPart& grasped, const WorldState& bodies, FrameReport& report) {
-  report.X_WH = grasped.X_WH;
-  if (grasped.body < 0) return {};
-  const PlacedHandle handle = handle_at(grasped, bodies.X_WB[static_cast<std::size_t>(grasped.body)]);
-  report.X_WH_proxy = handle.X_WH_proxy;
-  report.X_WH_proxy.p += grasped.beside_W;
-  report.field = grasped.field.at_centre;
-  return handle;
-}
-
-}  // namespace
 
 Wrench haptic_frame(const World& world, const FrameSettings& settings, const DeviceSample& sample,
                     const FrameTick& tick, FrameState& state, FrameReport& report) noexcept {
@@ -29,13 +15,14 @@ Wrench haptic_frame(const World& world, const FrameSettings& settings, const Dev
   Wrench felt;
   // The pose of the probe, the grasped part, and the load of force fields on it.
   const GraspedPart grasped = track_hand(world, settings, sample, bodies.X_WB, state.hand);
-  report.grasped_body = grasped.body;
-  if (!grasped.hand_known) report.flags |= frame_flag::kNoHand;
+  report_hand(grasped, report);
   state.ended(Stage::kHand);
 
   if (grasped.hand_known) {
     // The motion bounds of this frame.
-    const MotionInput motion = motion_input(world, settings, grasped, contacts.finder.radii());
+    const double stiffness_share = state.port.booked.share;
+    const MotionInput motion =
+        motion_input(world, settings, grasped, contacts.finder.radii(), stiffness_share);
     const std::span<const double> motion_bound = state.response.bound_motion(motion, bodies);
     state.ended(Stage::kVelocities);
 
@@ -59,19 +46,19 @@ Wrench haptic_frame(const World& world, const FrameSettings& settings, const Dev
     felt = state.response.felt(step, handle);
   }
   report.coupling = felt;
-  report.smoothed = smooth_wrench(settings.smoothing, settings.dt_s, state.smoothing,
-                                  to_device(settings.workspace, state.hand, felt));
 
-  // The caller's own wrench, then passivity, then safety: all at the handle, device axes.
-  PortInput port{.wanted = report.smoothed, .sent = state.safety.sent, .dt_s = settings.dt_s};
-  const double outside_work_J = state.hand.field.given_J + state.load_work_J;
-  add_stored_energy(world, settings, bodies, grasped.body, handle.to_hand, outside_work_J,
-                    state.response.pending_J(), port);
-  if (state.force_stage != nullptr) port.wanted = state.force_stage->apply(port.wanted, sample, report);
-  const Wrench passive = passive_wrench(settings.port, state.port, sample, port, report.port);
-  SafetyReport safety;
-  report.shown = safe_wrench(settings.safety, state.safety, safety_input(sample, tick, passive), safety);
-  report.safety = safety.flags;
+  // What the device can exert of it, smoothed, then the caller's own wrench: device axes from here on.
+  const Wrench at_handle = to_device(settings.workspace, state.hand, felt);
+  report.smoothed = smooth_for_device(settings, grasped, sample, at_handle, state, report.safety);
+  Wrench wanted = report.smoothed;
+  if (state.force_stage) wanted = state.force_stage->apply(wanted, sample, report);
+
+  // The energy balance of the port, then safety.
+  const StoredEnergy stored = stored_in_scene(world, settings, grasped, handle, at_handle, state);
+  const PortInput port = port_input(settings, wanted, report.smoothed, stored, state);
+  report.passive = passive_wrench(settings.port, state.port, sample, port, report.port);
+  const SafetyInput input = safety_input(sample, tick, report.passive);
+  report.shown = safe_wrench(settings.safety, state.safety, input, report.safety);
   state.ended(Stage::kShow);
   return report.shown;
 }

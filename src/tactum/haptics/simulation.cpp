@@ -51,7 +51,7 @@ FrameSettings settings_for(const DeviceInfo& info, double rate_Hz) {
   FrameSettings settings;
   settings.dt_s = 1.0 / rate_Hz;
   settings.safety = safety_limits(info);
-  settings.port = port_settings(info, rate_Hz);
+  settings.port = port_settings(info);
   settings.coupling = coupling_gains(info, rate_Hz).coupling;
   return settings;
 }

@@ -8,97 +8,105 @@
 namespace tactum::inline v0_1 {
 namespace {
 
-/// One of the two balances over one step.
-struct Step {
-  Vec3 displacement;  // made since the last frame
-  Vec3 sent;          // force (torque) that acted meanwhile
-  double damping;     // the device's own
-  double given_J;     // by the scene's bodies
-  double highest_J;   // upper bound of the balance
-  double credit_J;
-  double max_injected;
-  double dt_s;
-};
+constexpr double kMostChange_N_per_s = 20.0;
+constexpr double kMostChange_Nm_per_s = 0.4;  // the same at a lever of 20 mm
+constexpr double kFastest_per_s = 5.0;        // fall of the share
+constexpr double kLeastShare = 0.01;          // so that the scene is never lost
 
-void book(const Step& step, double& energy_balance_J) noexcept {
-  const double passed_J = -step.sent.dot(step.displacement) +
-                          step.damping * step.displacement.squaredNorm() / step.dt_s + step.given_J;
-  energy_balance_J = std::clamp(energy_balance_J + passed_J, -step.credit_J, step.highest_J);
+/// Below this the coupling's spring is at rest [J]: 600 N/m stretched by 2 um.
+constexpr double kAtRest_J = 1e-9;
+
+/// The balance that a port begins with, so that the first touch is not a debt [J].
+constexpr double kFirst_J = 2e-4;
+
+/// A deficit is kept up to this part of what the spring holds. It is there to soften a coupling until it
+/// generates no more; a debt that grew faster than the stiffness may sink would soften it far beyond that.
+constexpr double kMostDebt = 0.1;
+
+/// The mean wrench of the scene that acted on the handle since the last frame: commands come later by the
+/// delay.
+Wrench acted(const PortSettings& settings, const SentHistory& history, double dt_s) noexcept {
+  const double frames = std::clamp(settings.delay_s / dt_s, 0.0, SentHistory::kLongestDelay - 1.0);
+  const int whole = static_cast<int>(frames);
+  const double rest = frames - whole;
+  const auto back = [&history](int count) {
+    const int size = SentHistory::kLongestDelay + 1;
+    return history.wrenches[static_cast<std::size_t>((history.newest - count + size) % size)];
+  };
+  const Wrench command = back(whole);
+  return rest > 0.0 ? command * (1.0 - rest) + back(whole + 1) * rest : command;
 }
 
-/// Adds the work of the wrench, and of the controller's part of it, over a displacement.
-void add_up(const Vec3& displacement, const Vec3& sent, const Vec3& damper, EnergyTotals& total) noexcept {
-  const double work_J = sent.dot(displacement);
+/// Adds the work of a force (torque) over a displacement.
+void add_up(const Vec3& displacement, const Vec3& force, EnergyTotals& total) noexcept {
+  const double work_J = force.dot(displacement);
   (work_J > 0.0 ? total.to_hand_J : total.from_hand_J) += std::abs(work_J);
-  total.damped_J -= damper.dot(displacement);
 }
 
-/// A thread turns one kind of work into the other: a deficit of one balance is covered by the other as far as
-/// it can.
-void settle(double& energy_balance_J, double& other_J) noexcept {
-  const double paid_J = std::max(0.0, std::min(-energy_balance_J, other_J));
-  energy_balance_J += paid_J;
-  other_J -= paid_J;
+/// What the device itself eats at least, of a displacement in one frame.
+double dissipated(double damping, double friction, const Vec3& displacement, double dt_s) noexcept {
+  return damping * displacement.squaredNorm() / dt_s + friction * displacement.norm();
 }
 
-/// The damping to add.
-double injected(const Step& step, double energy_balance_J) noexcept {
-  const double length_sq = step.displacement.squaredNorm();
-  if (!(energy_balance_J < 0.0) || length_sq == 0.0) return 0.0;
-  // a |V|^2 dt = - balance, with V = displacement / dt; a huge quotient is cut to what is allowed
-  return std::min(-energy_balance_J * step.dt_s / length_sq, step.max_injected);
+void book(const PortSettings& settings, PortState& state, const Pose& X_DH, const PortInput& input) noexcept {
+  const Twist moved = twist_between(state.X_DH, X_DH, 1.0);
+  const double added_J = input.ramp * (state.added.f.dot(moved.v) + state.added.t.dot(moved.w));
+  state.tank_J = std::min(state.tank_J - added_J, kTank_J);
+  if (input.ramp < 1.0) return;  // what a ramp stores or gives is not booked
+  const Wrench F = acted(settings, state.history, input.dt_s);
+  add_up(moved.v, F.f, state.booked.total);
+  add_up(moved.w, F.t, state.booked.total_turning);
+  const double passed_J =
+      -F.f.dot(moved.v) - F.t.dot(moved.w) +
+      dissipated(settings.damping_Ns_per_m, settings.friction_N, moved.v, input.dt_s) +
+      dissipated(settings.damping_Nms_per_rad, settings.friction_Nm, moved.w, input.dt_s) -
+      (input.stored.total_J - state.booked.stored_J);
+  const double before_J = state.booked.balance_J;
+  state.booked.balance_J = std::min(before_J + passed_J, settings.credit_J);
+  state.booked.generated_J += std::max(0.0, std::min(0.0, before_J) - state.booked.balance_J);
+  if (settings.keeps_balance)
+    state.booked.balance_J = std::max(state.booked.balance_J, -kMostDebt * input.stored.spring_J);
+}
+
+/// Lowers the share while energy is missing; raises it while the spring is at rest.
+void move_share(PortState& state, const PortInput& input) noexcept {
+  const StoredEnergy& stored = input.stored;
+  if (stored.spring_J < kAtRest_J) {
+    state.booked.share = std::min(1.0, state.booked.share + input.dt_s / kRestored_s);
+    return;
+  }
+  if (!(state.booked.balance_J < 0.0)) return;
+  double fall = std::min(-state.booked.balance_J / stored.spring_J, kFastest_per_s * input.dt_s);
+  if (stored.force_N > 0.0) fall = std::min(fall, kMostChange_N_per_s * input.dt_s / stored.force_N);
+  if (stored.torque_Nm > 0.0) fall = std::min(fall, kMostChange_Nm_per_s * input.dt_s / stored.torque_Nm);
+  const double share = std::max(kLeastShare, state.booked.share * (1.0 - fall));
+  state.booked.paid_J += stored.spring_J * (1.0 - share / state.booked.share);
+  state.booked.share = share;
 }
 
 }  // namespace
 
 Wrench passive_wrench(const PortSettings& settings, PortState& state, const DeviceSample& sample,
                       const PortInput& input, PortReport& report) noexcept {
-  Wrench F = input.wanted;
-  if (!settings.actuates_torque) F.t.setZero();
-  report = {};
+  SentHistory& history = state.history;
+  history.newest = (history.newest + 1) % (SentHistory::kLongestDelay + 1);
+  history.wrenches[static_cast<std::size_t>(history.newest)] =
+      Wrench{input.sent.f, settings.actuates_torque ? input.sent.t : state.unfelt_Nm} - state.added;
+  state.unfelt_Nm = input.unfelt_Nm;
   if (sample.valid && plausible(sample.X_DH) && input.dt_s > 0.0) {
-    const Twist displacement = state.known ? twist_between(state.X_DH, sample.X_DH, 1.0) : Twist{};
-    const double given_J = state.known ? std::max(0.0, state.bodies_J - input.bodies_J) : 0.0;
-    const Step moved{displacement.v,
-                     input.sent.f,
-                     settings.damping_Ns_per_m,
-                     given_J,
-                     settings.credit_J + input.spring_J,
-                     settings.credit_J,
-                     settings.max_injected_Ns_per_m,
-                     input.dt_s};
-    const Step turned{displacement.w,
-                      input.sent.t,
-                      settings.damping_Nms_per_rad,
-                      given_J,
-                      settings.credit_turning_J + input.spring_turning_J,
-                      settings.credit_turning_J,
-                      settings.actuates_torque ? settings.max_injected_Nms_per_rad : 0.0,
-                      input.dt_s};
-    add_up(displacement.v, input.sent.f, state.damper.f, state.total);
-    add_up(displacement.w, input.sent.t, state.damper.t, state.total_turning);
-    book(moved, state.energy_balance_J);
-    book(turned, state.energy_balance_turning_J);
-    if (settings.actuates_torque) {
-      settle(state.energy_balance_J, state.energy_balance_turning_J);
-      settle(state.energy_balance_turning_J, state.energy_balance_J);
-    }
-    report.injected_Ns_per_m = injected(moved, state.energy_balance_J);
-    report.injected_Nms_per_rad = injected(turned, state.energy_balance_turning_J);
-    state.damper = {-report.injected_Ns_per_m / input.dt_s * displacement.v,
-                    -report.injected_Nms_per_rad / input.dt_s * displacement.w};
-    F = F + state.damper;
+    if (state.known) book(settings, state, sample.X_DH, input);
+    if (state.known && settings.keeps_balance) move_share(state, input);
+    if (!state.known) state.booked.balance_J = std::min(kFirst_J, settings.credit_J);
     state.X_DH = sample.X_DH;
-    state.bodies_J = input.bodies_J;
+    state.booked.stored_J = input.stored.total_J;
     state.known = true;
-  } else {
-    state.damper = {};
   }
-  report.total = state.total;
-  report.total_turning = state.total_turning;
-  report.energy_balance_J = state.energy_balance_J;
-  report.energy_balance_turning_J = state.energy_balance_turning_J;
-  return F;
+  const double left = 2.0 * (settings.credit_J + state.tank_J) / settings.credit_J;
+  const double added_share = settings.keeps_balance ? std::clamp(left, 0.0, 1.0) : 1.0;
+  state.added = (input.wanted - input.felt) * added_share;
+  state.booked.added_share = added_share;
+  report = state.booked;
+  return added_share < 1.0 ? input.felt + state.added : input.wanted;
 }
 
 }  // namespace tactum::inline v0_1

@@ -1,33 +1,45 @@
 #pragma once
-/// The passivity observer and controller [Hannaford and Ryu 2002]: a scene that is felt must not generate
-/// energy. Sampling, delay, encoder steps and an explicit response can; the hand would feel it as buzzing or
-/// as a wall that kicks. The observer keeps a balance of the energy that passed the port between device and
-/// program, one for translation and one for rotation:
+/// The energy balance of the port between device and program, and what keeps it: a scene that is felt must
+/// not generate energy. Sampling, delay, encoder steps and an explicit response can; the hand would feel it
+/// as buzzing, or as a wall that kicks. Over every step, with the wrench (f, t) that acted meanwhile and the
+/// displacement (dp, da) of the handle,
 ///
-///   balance += - f . dp             work of the hand: the wrench sent last, over the displacement since
-///           + b |dp|^2 / dt         dissipated by the device's own damping meanwhile, at least
-///           + energy that the scene's moving bodies gave up (a weight that is lowered, a body that hits)
-///   balance <= credit + energy in the coupling's spring        what was dissipated long ago cannot come back
-///   balance >= - credit                                        nor is a debt kept that cannot be paid soon
+///   balance += - f . dp - t . da                         work of the hand
+///            + b |dp|^2 / dt + c |dp| + (same of da)     which the device's own damping b and friction c eat
+///            - (change of everything that the scene has stored)
+///   balance <= credit                                    what was dissipated long ago cannot come back
 ///
-///   balance < 0:  wrench - a V,   a = min(- balance / (|V|^2 dt), the most allowed),  V = dp / dt
+/// The store is one, and whole: the coupling's stretch and twist, bodies, their joints' springs, the springs
+/// of contacts, impacts that are still to be felt (response/energy.h). So what comes in by one axis may leave
+/// by another: a block that is tilted takes work in by turning and gives it back by pushing. The work is
+/// exact, not an estimate [Hannaford and Ryu 2002]: a wrench is constant over its step, so its work is f . dp
+/// whatever the path was.
 ///
-/// so the controller takes the surplus out during the next step, and does nothing as long as there is none.
-/// The energy passed is exact, not an estimate: the wrench is constant over the step, so its work is f . dp
-/// whatever the path was. Differences from the paper are: the two bounds of the balance (without the upper
-/// one, a minute of rubbing would pay for a long burst of buzzing), the known damping, and the bodies'
-/// energy. Six axes are two balances: work along one direction may pay for another, as in an isotropic spring
-/// it must. Where torque is driven too, a balance below zero is paid from the other: a nut that is turned
-/// pulls the hand along its axis, and that energy was not generated.
+/// While the balance is not negative the wrench passes untouched, to the bit. When it is, energy has come out
+/// of the port that nobody put in, and the coupling's spring pays for it: its stiffness, translation and
+/// rotation alike, is lowered until what its stretch holds has sunk by as much,
 ///
-/// Two things are coarser than that. The energy that bodies gave up is credited to both balances, to each
-/// in full. And after samples that were left out the displacement of all these frames is taken with the
-/// wrench sent last, as if made in one dt. All energies are those at the device; the caller divides those of
-/// the scene by the workspace scale (response/energy.h).
+///   share -= share * min( - balance / spring,  20 N/s dt / |f|,  20 Nm/s (0.02 m) dt / |t|,  5 dt/s )
 ///
-/// A handle whose rotation is sensed but cannot be driven gets no torque; its balance of rotation never sinks
-/// below zero. Cost: one rotation vector and two dozen products. No clock, no allocation; the device's
-/// samples are its only input from the hand.
+/// so the force that is felt changes by no more than 20 N/s for it, always towards zero, and never in free
+/// air, where the spring has nothing. A stiffness that sinks is passive by itself [Ferraguti 2013]. It comes
+/// back only where the spring is at rest, which costs no energy, within kRestored_s. A damper in its place
+/// has to push with b V in every frame, and its V is the noise of the encoders
+/// (docs/algorithms/stability.md).
+///
+/// A handle whose rotation is sensed but cannot be driven is turned by the hand for nothing, while the
+/// coupling's twist holds what the turn would have cost. That work, of the torque that nobody feels, is
+/// booked as if it had been felt: the turn is a motion that the scene is given, like that of a driven body,
+/// and what it stores may push the hand. No loop is closed through it, since no force turns the handle.
+///
+/// What the caller's own stage adds has no spring that could pay. It has a tank instead: the work that the
+/// hand does against it fills the tank up to kTank_J, what it gives the hand comes out of it, and it is
+/// passed on as it is while half a credit is left, and fades to nothing as the tank runs dry.
+///
+/// Start and stop ramps change the wrench without work; what they store or give is not booked. All energies
+/// are those at the device. Cost: one rotation vector and two dozen products. No clock, no allocation.
+
+#include <array>
 
 #include "tactum/devices/device.h"
 #include "tactum/math/spatial.h"
@@ -36,52 +48,77 @@ namespace tactum::inline v0_1 {
 
 /// The properties of the device's port, from coupling_gains.h. The defaults only watch.
 struct PortSettings {
-  bool actuates_torque = true;             ///< false: torque is computed, not sent
-  double damping_Ns_per_m = 0.0;           ///< the device's own [N s/m]
-  double damping_Nms_per_rad = 0.0;        ///< [N m s/rad]
-  double max_injected_Ns_per_m = 0.0;      ///< most that the controller adds; 0: it only watches [N s/m]
-  double max_injected_Nms_per_rad = 0.0;   ///< [N m s/rad]
-  double credit_J = 1e-3;                  ///< bounds of the balance of translation [J]
-  double credit_turning_J = 1e-4 /* J */;  ///< ... and of rotation [J]
+  bool actuates_torque = true;       ///< false: torque is computed, not sent
+  bool keeps_balance = false;        ///< false: it only watches
+  double damping_Ns_per_m = 0.0;     ///< the device's own [N s/m]
+  double damping_Nms_per_rad = 0.0;  ///< [N m s/rad]
+  double friction_N = 0.0;           ///< the device's own, Coulomb [N]
+  double friction_Nm = 0.0;          ///< [N m]
+  double delay_s = 0.0;    ///< from a write to the motors, at most SentHistory::kLongestDelay frames [s]
+  double credit_J = 1e-3;  ///< the most that the balance holds [J]
 };
+
+/// The most that the tank of the caller's stage holds: a spring of 600 N/m stretched by 13 mm [J].
+inline constexpr double kTank_J = 0.05;
+
+/// The stiffness comes back within this, while nothing is touched [s].
+inline constexpr double kRestored_s = 10.0;
 
 /// Work that has passed one half of the port since the start; unlike the balance never cut [J].
 struct EnergyTotals {
   double from_hand_J = 0.0;  ///< that the hand put in, moving against the wrench [J]
   double to_hand_J = 0.0;    ///< that it was given, moved along by the wrench [J]
-  double damped_J = 0.0;     ///< that the controller's damping took out, before limits and ramps [J]
-};
-
-struct PortState {
-  double energy_balance_J = 0.0;          ///< of translation; negative: energy was generated [J]
-  double energy_balance_turning_J = 0.0;  ///< of rotation [J]
-  double bodies_J = 0.0;                  ///< energy of the scene's moving bodies in the last frame [J]
-  Pose X_DH;                              ///< of the last good sample [m]
-  bool known = false;                     ///< there has been one
-  EnergyTotals total, total_turning;
-  Wrench damper;  ///< the controller's part of the last wrench, axes of D, at the handle [N, N m]
-};
-
-struct PortInput {
-  Wrench wanted;                  ///< axes of D, at the handle [N, N m]
-  Wrench sent;                    ///< in the last frame, after safety [N, N m]
-  double spring_J = 0.0;          ///< stored in the coupling's stretch, and in impacts still to be felt [J]
-  double spring_turning_J = 0.0;  ///< ... and its twist [J]
-  double bodies_J = 0.0;          ///< energy of the scene's moving bodies, from any zero [J]
-  double dt_s = 0.001;            ///< time from frame to frame [s]
 };
 
 struct PortReport {
-  double energy_balance_J = 0.0;          ///< [J]
-  double energy_balance_turning_J = 0.0;  ///< [J]
-  double injected_Ns_per_m = 0.0;         ///< damping added in this frame [N s/m]
-  double injected_Nms_per_rad = 0.0;      ///< [N m s/rad]
-  EnergyTotals total;                     ///< of translation
-  EnergyTotals total_turning;             ///< of rotation
+  double balance_J = 0.0;      ///< negative: energy was generated [J]
+  double stored_J = 0.0;       ///< by the scene [J]
+  double generated_J = 0.0;    ///< below a balance of zero, since the start [J]
+  double paid_J = 0.0;         ///< by the coupling's spring, since the start [J]
+  double share = 1.0;          ///< of the coupling's stiffness, from the next frame on, (0, 1] [-]
+  double added_share = 1.0;    ///< of what the caller's stage adds, in this frame [-]
+  EnergyTotals total;          ///< of translation
+  EnergyTotals total_turning;  ///< of rotation
 };
 
-/// The wrench, damped so that it generates no energy, as far as the settings allow. A sample that is invalid
-/// or implausible is left out: its displacement is not known.
+/// The wrenches of the scene that were sent in the last frames, a ring: on a device with a delay an older one
+/// acts.
+struct SentHistory {
+  static constexpr int kLongestDelay = 64;  ///< frames
+  std::array<Wrench, kLongestDelay + 1> wrenches{};
+  int newest = 0;  ///< its place in the ring
+};
+
+struct PortState {
+  PortReport booked;              ///< as far as it has come
+  double tank_J = 0.0;            ///< of the caller's stage, beyond the credit it begins with [J]
+  Wrench added;                   ///< what was passed on of that stage in the last frame [N, N m]
+  Vec3 unfelt_Nm = Vec3::Zero();  ///< PortInput::unfelt_Nm of the last frame [N m]
+  Pose X_DH;                      ///< of the last good sample [m]
+  bool known = false;             ///< there has been one
+  SentHistory history;
+};
+
+/// What the scene has stored after the frame's step.
+struct StoredEnergy {
+  double total_J = 0.0;    ///< everything, from any zero [J]
+  double spring_J = 0.0;   ///< the coupling's part of it [J]
+  double force_N = 0.0;    ///< of the coupling's spring [N]
+  double torque_Nm = 0.0;  ///< ... and of its twist [N m]
+};
+
+struct PortInput {
+  Wrench felt;    ///< of the scene, as the device can exert it, axes of D, at the handle [N, N m]
+  Wrench wanted;  ///< the same with what the caller's own stage has added (force_stage.h) [N, N m]
+  Wrench sent;    ///< in the last frame, after safety [N, N m]
+  Vec3 unfelt_Nm = Vec3::Zero();  ///< torque of the scene that a device without torque cannot exert [N m]
+  StoredEnergy stored;
+  double ramp = 1.0;    ///< of the start and stop ramps, by which the last wrench was scaled: 0 to 1 [-]
+  double dt_s = 0.001;  ///< time from frame to frame [s]
+};
+
+/// The wrench that is passed on to safety, and the share of the stiffness for the next frame, in `state`. A
+/// sample that is invalid or implausible is left out: its displacement is not known.
 Wrench passive_wrench(const PortSettings& settings, PortState& state, const DeviceSample& sample,
                       const PortInput& input, PortReport& report) noexcept;
 

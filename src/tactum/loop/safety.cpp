@@ -123,33 +123,41 @@ SafetyInput safety_input(const DeviceSample& sample, const FrameTick& tick, cons
           .stop = tick.stop};
 }
 
+Wrench within_limits(const SafetyLimits& limits, const Wrench& F, std::uint32_t& flags) noexcept {
+  Wrench within = F;
+  if (limits.max_force_N > 0.0 && limit_length(within.f, limits.max_force_N)) flags |= kForceLimited;
+  if (limits.max_torque_Nm > 0.0 && limit_length(within.t, limits.max_torque_Nm)) flags |= kTorqueLimited;
+  return within;
+}
+
 Wrench safe_wrench(const SafetyLimits& limits, SafetyState& state, const SafetyInput& input,
-                   SafetyReport& report) noexcept {
-  report.flags = faults(limits, state, input);
-  if (report.flags != 0) {
+                   std::uint32_t& flags) noexcept {
+  const std::uint32_t found = faults(limits, state, input);
+  flags |= found;
+  if (found != 0) {
     state.gain = 0.0;
     state.sent = {};
     return state.sent;
   }
-  report.flags |= move_gain(limits, state, input);
+  flags |= move_gain(limits, state, input);
   if (input.stop && state.gain <= 0.0) {
-    report.flags |= kStopped;
+    flags |= kStopped;
     state.sent = {};
     return state.sent;
   }
   Wrench F = input.wanted;
-  if (limit_length(F.f, limits.max_force_N)) report.flags |= kForceLimited;
-  if (limit_length(F.t, limits.max_torque_Nm)) report.flags |= kTorqueLimited;
+  if (limit_length(F.f, limits.max_force_N)) flags |= kForceLimited;
+  if (limit_length(F.t, limits.max_torque_Nm)) flags |= kTorqueLimited;
   F = F * state.gain;
   if (limit_step(state.sent.f, F.f, limits.max_force_slew_N_per_s * input.period_s)) {
-    report.flags |= kForceSlewed;
+    flags |= kForceSlewed;
   }
   if (limit_step(state.sent.t, F.t, limits.max_torque_slew_Nm_per_s * input.period_s)) {
-    report.flags |= kTorqueSlewed;
+    flags |= kTorqueSlewed;
   }
   // The last wrench may lie outside limits that were tightened since; a slewed one must not.
-  if (limit_length(F.f, limits.max_force_N)) report.flags |= kForceLimited;
-  if (limit_length(F.t, limits.max_torque_Nm)) report.flags |= kTorqueLimited;
+  if (limit_length(F.f, limits.max_force_N)) flags |= kForceLimited;
+  if (limit_length(F.t, limits.max_torque_Nm)) flags |= kTorqueLimited;
   state.sent = F;
   return F;
 }

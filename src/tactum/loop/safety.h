@@ -60,7 +60,7 @@ struct SafetySettings {
 SafetyLimits safety_limits(const DeviceInfo& info) noexcept;
 SafetyLimits tightened(const SafetyLimits& limits, const SafetySettings& settings) noexcept;
 
-/// Which limit acted, as bits of SafetyReport::flags.
+/// Which limit acted, as bits of FrameReport::safety.
 namespace safety_flag {
 inline constexpr std::uint32_t kForceLimited = 1u << 0;  ///< raise nothing: the device's or the user's limit
 inline constexpr std::uint32_t kTorqueLimited = 1u << 1;
@@ -112,12 +112,12 @@ struct SafetyState {
   bool measured = false;    ///< there has been one
 };
 
-struct SafetyReport {
-  std::uint32_t flags = 0;  ///< safety_flag
-};
+/// The part of a wrench that the limits allow, for the stages before safety. A limit of zero, as of a device
+/// without torque, is left to safe_wrench. Sets the flags of the limits that act.
+Wrench within_limits(const SafetyLimits& limits, const Wrench& F, std::uint32_t& flags) noexcept;
 
-/// The wrench that may be sent.
+/// The wrench that may be sent. Adds the flags of what acts (safety_flag) to `flags`.
 Wrench safe_wrench(const SafetyLimits& limits, SafetyState& state, const SafetyInput& input,
-                   SafetyReport& report) noexcept;
+                   std::uint32_t& flags) noexcept;
 
 }  // namespace tactum::inline v0_1

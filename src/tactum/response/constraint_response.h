@@ -28,7 +28,7 @@ class ConstraintResponse {
     return {memory_.constraint.friction_uses.begin(), memory_.constraint.friction_uses.end()};
   }
   /// Energy of impacts that is still to be felt [J].
-  double pending_J() const noexcept { return memory_.impulses.pending_J(); }
+  double stored_J() const noexcept { return memory_.impulses.pending_J(); }
   /// Whether rows were dropped for want of room.
   bool rows_full() const noexcept { return memory_.contact_rows.full; }
   /// Its memory, for tests and displays that look inside.

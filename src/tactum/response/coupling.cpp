@@ -14,8 +14,7 @@ constexpr double kRodStiffness = 1e-3;
 }  // namespace
 
 Wrench coupling_wrench(const Coupling& coupling, const GraspedPart& grasped, const Twist& to_hand,
-                       const Twist& V_WH_proxy) noexcept {
-  const Twist rate = V_WH_proxy - grasped.V_WH;
+                       const Twist& rate) noexcept {
   return {
       coupling.damping_Ns_per_m * rate.v - coupling.stiffness_N_per_m * to_hand.v,
       coupling.damping_Nms_per_rad * passed_on(grasped, rate.w) - coupling.stiffness_Nm_per_rad * to_hand.w};

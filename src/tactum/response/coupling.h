@@ -10,9 +10,10 @@
 namespace tactum::inline v0_1 {
 
 /// The wrench that the hand feels, at the handle, world axes: it pulls and turns towards the proxy, the
-/// handle on the part, from which the hand is `to_hand` away (handle_at) and which moves with V_WH_proxy.
+/// handle on the part, from which the hand is `to_hand` away (handle_at) and which moves with `rate` as the
+/// hand sees it.
 Wrench coupling_wrench(const Coupling& coupling, const GraspedPart& grasped, const Twist& to_hand,
-                       const Twist& V_WH_proxy) noexcept;
+                       const Twist& rate) noexcept;
 
 /// The stiffness of the coupling over one frame, at the handle: F = K (x - x*), spring and damper together.
 struct GraspMetric {

@@ -1,38 +1,83 @@
 #include "tactum/response/energy.h"
 
-#include "tactum/math/screw.h"
+#include <algorithm>
+#include <limits>
 
 namespace tactum::inline v0_1 {
+namespace {
 
-double bodies_energy(const World& world, const WorldState& bodies, int grasped) noexcept {
+using Index = std::size_t;
+
+/// Of a joint's spring.
+double spring_energy(const Joint& joint, double position) noexcept {
+  const double stretch = position - joint.rest;
+  return 0.5 * joint.stiffness * stretch * stretch;
+}
+
+/// One half of the coupling.
+struct Spring {
   double energy_J = 0.0;
-  for (std::size_t i = 0; i < world.bodies.size(); ++i) {
+  double force = 0.0;
+};
+
+/// A spring that is stretched, with `supported` the largest force that the hand can feel of it, and whose
+/// force the device limits.
+Spring felt_spring(double stiffness, double stretch, double supported, double limit) noexcept {
+  const double force = std::min(stiffness * stretch, supported);
+  stretch = stiffness > 0.0 ? force / stiffness : 0.0;
+  if (!(force > limit)) return {0.5 * force * stretch, force};
+  return {limit * (stretch - 0.5 * limit / stiffness), limit};
+}
+
+}  // namespace
+
+double bodies_energy(const World& world, std::span<const Pose> X_WB_start, const WorldState& bodies,
+                     int grasped) noexcept {
+  double energy_J = 0.0;
+  for (Index i = 0; i < world.bodies.size(); ++i) {
     const Body& body = world.bodies[i];
     if (!body.moves()) continue;
     const Pose& X_WB = bodies.X_WB[i];
-    if (static_cast<int>(i) == grasped) {  // it has weight, but the hand does not feel its inertia
-      energy_J -= body.mass_kg * world.gravity_W.dot(X_WB.p);
-      continue;
+    const bool is_grasped = static_cast<int>(i) == grasped;
+    const Joint& joint = world.joint_of(static_cast<int>(i));
+    if (joint.stiffness > 0.0) {
+      const JointPosition& at = bodies.joints[i];
+      energy_J += spring_energy(joint, is_grasped ? at.now : 0.5 * (at.now + at.before));
     }
+    const Vec3 p_W = is_grasped ? X_WB.p : Vec3(0.5 * (X_WB.p + X_WB_start[i].p));
+    energy_J -= body.mass_kg * world.gravity_W.dot(p_W);
+    if (is_grasped) continue;
     const Twist& V_WB = bodies.V_WB[i];
     const Vec3 w_B = X_WB.R.transpose() * V_WB.w;
-    energy_J += 0.5 * body.mass_kg * V_WB.v.squaredNorm() + 0.5 * w_B.dot(body.inertia_B * w_B) -
-                body.mass_kg * world.gravity_W.dot(X_WB.p);
+    energy_J += 0.5 * body.mass_kg * V_WB.v.squaredNorm() + 0.5 * w_B.dot(body.inertia_B * w_B);
   }
   return energy_J;
 }
 
-void add_stored_energy(const World& world, const FrameSettings& settings, const WorldState& bodies,
-                       int grasped, const Twist& to_hand, double outside_work_J, double pending_J,
-                       PortInput& port) noexcept {
-  // The work of a field on the grasped part is taken from the field, as that on a falling weight is from
-  // gravity; a vortex does work without end. So does a constant torque, and damping takes it.
+StoredEnergy stored_energy(const EnergySource& source) noexcept {
+  const FrameSettings& settings = source.settings;
   const double scale = settings.workspace.scale;
-  port.bodies_J = (bodies_energy(world, bodies, grasped) - outside_work_J) / scale;
-  if (grasped < 0) return;
-  const Coupling coupling = in_scene(settings.coupling, scale);
-  port.spring_J = (0.5 * coupling.stiffness_N_per_m * to_hand.v.squaredNorm() + pending_J) / scale;
-  port.spring_turning_J = 0.5 * coupling.stiffness_Nm_per_rad * to_hand.w.squaredNorm() / scale;
+  StoredEnergy stored;
+  stored.total_J = (bodies_energy(source.world, source.X_WB_start, source.bodies, source.grasped) -
+                    source.outside_work_J + source.response_J) /
+                   scale;
+  if (source.grasped < 0) return stored;
+  constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+  const Coupling coupling = softened(settings.coupling, source.share);
+  const Spring pushed = felt_spring(coupling.stiffness_N_per_m, source.to_hand.v.norm() / scale,
+                                    std::max(source.felt.f.norm(), source.smoothed.f.norm()) +
+                                        coupling.damping_Ns_per_m * source.V_WH.v.norm() / scale,
+                                    settings.safety.max_force_N);
+  // A torque that the device cannot exert is limited by nothing.
+  const Spring turned = felt_spring(coupling.stiffness_Nm_per_rad, source.to_hand.w.norm(),
+                                    std::max(source.felt.t.norm(), source.smoothed.t.norm()) +
+                                        coupling.damping_Nms_per_rad * source.V_WH.w.norm(),
+                                    settings.port.actuates_torque ? settings.safety.max_torque_Nm : kNoLimit);
+  stored.spring_J = pushed.energy_J + turned.energy_J;
+  stored.force_N = pushed.force;
+  stored.torque_Nm = turned.force;
+  stored.total_J += stored.spring_J;
+  return stored;
 }
 
 }  // namespace tactum::inline v0_1

@@ -1,5 +1,8 @@
 #pragma once
-/// The energy that a scene has stored, for the balance of the passivity stage: in springs and moving bodies.
+/// The energy that a scene has stored, for the balance of the passivity stage: in the coupling, in moving
+/// bodies, in the springs of their joints, and in what the response still owes.
+
+#include <span>
 
 #include "tactum/loop/passivity.h"
 #include "tactum/response/settings.h"
@@ -7,17 +10,37 @@
 
 namespace tactum::inline v0_1 {
 
-/// Kinetic energy of the bodies that move, and their height against gravity from the world's origin [J]. Of
-/// the grasped part only the height is counted: it has weight, but no inertia that the hand could feel.
-double bodies_energy(const World& world, const WorldState& bodies, int grasped) noexcept;
+/// Kinetic energy of the bodies that move, their height against gravity from the world's origin, and that of
+/// their joints' springs [J]. A body's velocity is that of the middle of the frame, so its height and its
+/// joint are taken there too, halfway from `X_WB_start`. Of the grasped part only height and joint are
+/// counted, at the frame's end: it has weight, but no inertia that the hand could feel.
+double bodies_energy(const World& world, std::span<const Pose> X_WB_start, const WorldState& bodies,
+                     int grasped) noexcept;
 
-/// Fills the energies of the port's input, after the response: of the bodies, of the coupling's stretch
-/// between the handle on the grasped part and the hand (`to_hand`), and of the impulses that are still to be
-/// felt (`pending_J`). `outside_work_J` is the work of force fields on the grasped part and of the loads of
-/// all bodies (work_of_loads). All become energies at the device, those of the scene over the workspace scale
-/// (workspace_scale.h).
-void add_stored_energy(const World& world, const FrameSettings& settings, const WorldState& bodies,
-                       int grasped, const Twist& to_hand, double outside_work_J, double pending_J,
-                       PortInput& port) noexcept;
+/// What a frame has to tell of its energy.
+struct EnergySource {
+  const World& world;
+  const FrameSettings& settings;
+  std::span<const Pose> X_WB_start;  ///< of the bodies, where the frame began [m]
+  const WorldState& bodies;
+  int grasped = -1;             ///< the body; -1: none
+  Twist to_hand;                ///< from the handle on the grasped part to the hand [m, rad]
+  Twist V_WH;                   ///< of the hand [m/s, rad/s]
+  Wrench felt;                  ///< what the response lets the hand feel, as the device has it [N, N m]
+  Wrench smoothed;              ///< the same smoothed, also of a torque that the device cannot exert [N, N m]
+  double share = 1.0;           ///< of the coupling's stiffness in this frame [-]
+  double outside_work_J = 0.0;  ///< of force fields on the grasped part and of the loads of all bodies [J]
+  double response_J = 0.0;      ///< stored by the response: Response::stored_J() [J]
+};
+
+/// All energies as those at the device, those of the scene over the workspace scale (workspace_scale.h). The
+/// work of a field on the grasped part is taken from the field, as that on a falling weight is from gravity;
+/// a vortex does work without end. So does a constant torque, and damping takes it.
+///
+/// The coupling's spring counts as it is felt. A part that lags because its steps are kept short is far from
+/// the hand, and no force tells of it: no more of a stretch counts than the force, felt or still smoothed,
+/// and the coupling's damper at the hand's velocity can hold. And it counts as the device can exert it: a
+/// stretch x beyond the force limit f gives back f x - f^2 / (2 k).
+StoredEnergy stored_energy(const EnergySource& source) noexcept;
 
 }  // namespace tactum::inline v0_1

@@ -170,7 +170,8 @@ void apply_impacts(ConstraintStep& step) noexcept {
   show_resting(step);
   clear_blocked_rests(step);
   leave_out_passed(step);
-  const double energy_J = grasped < 0 ? 0.0 : bodies_energy(step.world, step.bodies, grasped);
+  const double energy_J =
+      grasped < 0 ? 0.0 : bodies_energy(step.world, step.bodies.X_WB, step.bodies, grasped);
   ImpactsOnGrasped impacts(grasped, grasped < 0 ? Vec3::Zero() : X_WB[Index(grasped)] * step.grasped.X_BH.p,
                            step.own.free.momentum);
   const std::vector<Twist>& detour = step.own.free.detour;
@@ -184,8 +185,9 @@ void apply_impacts(ConstraintStep& step) noexcept {
   step.report.impacts = result.hits;
   if (!result.converged) step.report.flags |= frame_flag::kSolverBounded;
   if (impacts.sum())
-    step.own.impulses.add(step.settings.impacts, step.dt_s, *impacts.sum(),
-                          std::max(0.0, energy_J - bodies_energy(step.world, step.bodies, grasped)));
+    step.own.impulses.add(
+        step.settings.impacts, step.dt_s, *impacts.sum(),
+        std::max(0.0, energy_J - bodies_energy(step.world, step.bodies.X_WB, step.bodies, grasped)));
 }
 
 }  // namespace tactum::inline v0_1

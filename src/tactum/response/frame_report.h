@@ -44,6 +44,7 @@ struct FrameReport {
   std::uint32_t flags = 0;   ///< frame_flag
   std::uint32_t safety = 0;  ///< safety_flag
   int grasped_body = -1;     ///< the body that is grasped; -1: none
+  int hold = 0;              ///< how the hand holds it: a Hold (step_input.h)
   Pose X_WH;                 ///< pose of the probe [m]
   Pose X_WH_proxy;           ///< pose of the handle on the grasped part; identity when nothing is grasped [m]
   Wrench restoring;  ///< contact forces on the grasped part, at its centre of mass, world axes [N, N m]
@@ -52,8 +53,10 @@ struct FrameReport {
   /// the penalty response that of the coupling, in the constraint response Response::felt(). It is that of
   /// the scene, see workspace_scale.h [N, N m].
   Wrench coupling;
-  Wrench smoothed;  ///< the same after smoothing, at the handle, device axes [N, N m]
-  PortReport port;  ///< energy that passed between hand and scene, and what the passivity controller did
+  /// The same within what the device can exert, after smoothing, at the handle, device axes [N, N m].
+  Wrench smoothed;
+  PortReport port;  ///< energy that passed between hand and scene, and the stiffness that it leaves
+  Wrench passive;   ///< with the caller's own stage, before safety, at the handle, device axes [N, N m]
   Wrench shown;     ///< after safety, at the handle, device axes: the wrench that was sent [N, N m]
   double tolerance_m = 0.0;     ///< largest delta of a pair in contact; 0 without contact [m]
   double min_distance_m = 0.0;  ///< smallest signed distance of the pairs in contact; 0 without contact [m]

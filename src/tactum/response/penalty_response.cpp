@@ -311,6 +311,7 @@ void PenaltyResponse::move_by_springs(const StepInput& input, GapOracle& gaps, W
   const double impact_s = first_impact(input, rows, gaps, bodies.V_WB);
   const double rest_s = input.dt_s - impact_s;
   const int grasped = input.grasped.body;
+  stored_J_ = 0.0;
   if (impact_s > 0.0) {
     advance_distances(rows, bodies.X_WB, bodies.V_WB, impact_s);
     advance(input, impact_s, bodies);
@@ -320,8 +321,11 @@ void PenaltyResponse::move_by_springs(const StepInput& input, GapOracle& gaps, W
     const Twist V_first = grasped < 0 ? Twist{} : bodies.V_WB[Index(grasped)];
     solve(input, rest_s, bodies, report);
     report.contact_points = static_cast<int>(rows.size());
-    for (const ContactRow& row : rows)
+    for (const ContactRow& row : rows) {
       report.grasped_contact_points += row.body_a == grasped || row.body_b == grasped ? 1 : 0;
+      const double force_N = row.impulse / rest_s;
+      stored_J_ += 0.5 * force_N * force_N / row.stiffness;
+    }
     if (grasped >= 0) report.restoring = contact_wrench(rows, grasped, bodies.X_WB[Index(grasped)].p, rest_s);
     if (grasped >= 0) limit_rest(input, V_first, impact_s, rest_s, bodies.V_WB[Index(grasped)]);
     advance(input, rest_s, bodies);
@@ -352,13 +356,17 @@ void PenaltyResponse::step(const StepInput& input, GapOracle& gaps, WorldState& 
   report.validation_tests = tests_before - gaps.tests_left();
 }
 
-Wrench PenaltyResponse::felt(const StepInput& input, const PlacedHandle& handle) const noexcept {
+Wrench PenaltyResponse::felt(const StepInput& input, const PlacedHandle& handle) noexcept {
   const GraspedPart& grasped = input.grasped;
+  if (grasped.body != rate_of_) rate_ = {};
+  rate_of_ = grasped.body;
   if (grasped.body < 0) return {};
   // The velocity is that of the whole frame's displacement, not of the last part after an impact.
   const Pose X_WH_before = input.X_WB_start[Index(grasped.body)] * grasped.X_BH;
   const Twist V_WH_proxy = twist_between(X_WH_before, handle.X_WH_proxy, input.dt_s);
-  return coupling_wrench(input.coupling, grasped, handle.to_hand, V_WH_proxy);
+  constexpr double kFilter_s = 0.005;  // half of what devices take for a velocity
+  rate_ = rate_ + (V_WH_proxy - grasped.V_WH - rate_) * (input.dt_s / (kFilter_s + input.dt_s));
+  return coupling_wrench(input.coupling, grasped, handle.to_hand, rate_);
 }
 
 }  // namespace tactum::inline v0_1

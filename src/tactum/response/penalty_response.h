@@ -42,11 +42,16 @@ class PenaltyResponse {
   std::span<const double> bound_motion(const MotionInput& input, WorldState& bodies) noexcept;
   /// Moves everything that moves, and puts every pose back on its joint. Fills the report's response fields.
   void step(const StepInput& input, GapOracle& gaps, WorldState& bodies, FrameReport& report) noexcept;
-  /// The wrench of the coupling from the hand to the grasped part, at the handle, world axes [N, N m].
-  Wrench felt(const StepInput& input, const PlacedHandle& handle) const noexcept;
+  /// The wrench of the coupling from the hand to the grasped part, at the handle, world axes [N, N m]. Its
+  /// damper sees the rate at which the two move apart, filtered: the velocity of the hand is one over some
+  /// milliseconds, that of the part is one over the frame, in which a step of an encoder is a leap. Once a
+  /// frame.
+  Wrench felt(const StepInput& input, const PlacedHandle& handle) noexcept;
 
   /// The contacts of the last step.
   std::span<const ContactRow> rows() const noexcept { return contacts_.rows; }
+  /// Energy of the contacts' springs, at the end of the last step [J].
+  double stored_J() const noexcept { return stored_J_; }
   /// Whether rows were dropped for want of room.
   bool rows_full() const noexcept { return contacts_.full || memory_.contact_rows.full; }
 
@@ -65,6 +70,9 @@ class PenaltyResponse {
 
   ContactRows contacts_;
   ConstraintMemory memory_;   // of the bodies that move by impulses
+  double stored_J_ = 0.0;     // of the contacts' springs [J]
+  Twist rate_;                // of the grasped part, as the hand sees it, filtered [m/s, rad/s]
+  int rate_of_ = -1;          // the body whose rate it is; -1: none
   std::vector<char> pushed_;  // by body: the grasped part was near it in the last frame
   // Scratch of one frame.
   bool by_impulses_ = false;  // the other bodies move by impulses

@@ -62,9 +62,8 @@ std::span<const FrictionUse> Response::friction_uses() const noexcept {
   return model != nullptr ? model->friction_uses() : std::span<const FrictionUse>{};
 }
 
-double Response::pending_J() const noexcept {
-  const ConstraintResponse* const model = constraint();
-  return model != nullptr ? model->pending_J() : 0.0;
+double Response::stored_J() const noexcept {
+  return std::visit([](const auto& model) { return model.stored_J(); }, model_);
 }
 
 }  // namespace tactum::inline v0_1

@@ -31,8 +31,9 @@ class Response {
   std::span<const ContactRow> rows() const noexcept;
   /// Friction at the contacts that have it, by ContactRow::friction_patch; empty in the penalty response.
   std::span<const FrictionUse> friction_uses() const noexcept;
-  /// Energy of impacts that is still to be felt [J].
-  double pending_J() const noexcept;
+  /// Energy that the response holds beside bodies and coupling: of impacts that are still to be felt, and of
+  /// the penalty response's contact springs [J].
+  double stored_J() const noexcept;
 
   /// The constraint response, if it is the one; else null. For tests and displays that look inside.
   const ConstraintResponse* constraint() const noexcept { return std::get_if<ConstraintResponse>(&model_); }

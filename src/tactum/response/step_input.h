@@ -71,15 +71,16 @@ struct MotionInput {
   StepLimits limits;                 ///< of the grasped part
 };
 
+/// `share`: of the coupling's stiffness that the port's energy balance leaves (loop/passivity.h).
 inline MotionInput motion_input(const World& world, const FrameSettings& settings, const GraspedPart& grasped,
-                                std::span<const double> radius_m) noexcept {
+                                std::span<const double> radius_m, double share) noexcept {
   const double radius = grasped.body < 0 ? 0.0 : radius_m[static_cast<std::size_t>(grasped.body)];
   return {world,
           settings,
           grasped,
           radius_m,
           settings.dt_s,
-          in_scene(settings.coupling, settings.workspace.scale),
+          in_scene(softened(settings.coupling, share), settings.workspace.scale),
           step_limits(settings, radius)};
 }
 

@@ -20,6 +20,13 @@
 
 namespace tactum::inline v0_1 {
 
+/// A coupling with a share of its stiffness; its dampers stay.
+inline Coupling softened(Coupling coupling, double share) noexcept {
+  coupling.stiffness_N_per_m *= share;
+  coupling.stiffness_Nm_per_rad *= share;
+  return coupling;
+}
+
 /// The coupling between probe and proxy in the scene.
 Coupling in_scene(const Coupling& at_device, double scale) noexcept;
 

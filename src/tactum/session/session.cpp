@@ -128,6 +128,7 @@ Wrench Session::run(const DeviceSample& sample, const FrameTick& tick) noexcept 
   if (!tick.stop) record_.add(report_, state_.world);
   goals_.watch(scene_.world, state_.world, state_.hand.grasp.body, state_.response.rows());
   if (feed_ != nullptr) feed_->take({report_, state_, scene_.settings}, stage_clock_);
+  if (trace_ != nullptr) trace_->take({report_, state_, scene_.settings}, stage_clock_);
   // A full ring means that nothing was polled for seconds: the newest glance is then lost, the frame is not.
   glances_.push({report_.index, report_.shown.f.norm(), report_.shown.t.norm(), report_.contact_points,
                  (report_.X_WH_proxy.p - report_.X_WH.p).norm(), report_.safety});

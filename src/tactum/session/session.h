@@ -22,6 +22,7 @@
 #include "tactum/telemetry/frame_feed.h"
 #include "tactum/telemetry/run_record.h"
 #include "tactum/telemetry/statistics.h"
+#include "tactum/telemetry/trace.h"
 
 namespace tactum::inline v0_1 {
 
@@ -93,6 +94,8 @@ class Session final : private HapticFrame {
   const FrameState& state() const noexcept { return state_; }
   /// Shows every frame to `feed`; set before the run, null for none.
   void show_to(FrameFeed* feed) noexcept { feed_ = feed; }
+  /// Traces every frame; set before the run, null for none.
+  void trace_to(FrameTrace* trace) noexcept { trace_ = trace; }
   /// Puts a stage of the caller's before passivity and safety; set before the run, null for none.
   void set_force_stage(ForceStage* stage) noexcept { state_.force_stage = stage; }
   /// Takes the times of the stages of every frame; set before the run, null for none.
@@ -115,6 +118,7 @@ class Session final : private HapticFrame {
   SpscRing<SessionCommand> commands_;
   std::atomic<bool> wrench_at_zero_{false};
   FrameFeed* feed_ = nullptr;
+  FrameTrace* trace_ = nullptr;
   FrameState state_;
   StageClock* stage_clock_ = nullptr;
   FrameReport report_;

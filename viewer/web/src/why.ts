@@ -14,8 +14,9 @@ const energyRows: [string, string, string][] = [
   ["", "", ""],
   ["from the hand", "energy_from_hand_J", "work the hand put in, moving against the wrench"],
   ["to the hand", "energy_to_hand_J", "work the hand was given, moved along by the wrench"],
-  ["taken out by the controller", "energy_damped_J", "by the damping that the passivity controller added"],
-  ["energy balance now", "port_energy_balance_J", "what the scene may give back; below zero, energy was made and the controller takes it out"],
+  ["generated", "energy_generated_J", "energy that came out and that nobody put in"],
+  ["paid by the coupling", "energy_paid_J", "of it, what its spring gave up as its stiffness was lowered"],
+  ["energy balance now", "port_energy_balance_J", "taken in and not stored; below zero, energy was generated and the coupling pays for it"],
 ];
 
 const size = (v: number[]) => Math.hypot(v[0], v[1], v[2]);

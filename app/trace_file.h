@@ -1,0 +1,43 @@
+#pragma once
+/// Writes the trace of a run (telemetry/trace.h) as CSV, for tactum feel --trace.
+
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tactum/session/session.h"
+
+namespace tactum {
+
+class TraceFile {
+ public:
+  /// Opens the file, and writes the head: comment lines that begin with '#' (scene, device, settings, frames,
+  /// date), then the names of the columns. Fails with a sentence where that cannot be. From here on the
+  /// session's frames are traced; it must outlive this.
+  TraceFile(const std::string& path, Session& session, std::uint64_t frames, bool bodies);
+  ~TraceFile();
+  TraceFile(const TraceFile&) = delete;
+  TraceFile& operator=(const TraceFile&) = delete;
+
+  /// Writes what the frames have left since the last call; at least once in FrameTrace::kFrames frames.
+  void drain();
+  /// Writes the rest. Fails with a sentence when the disk did not take all of it.
+  void finish();
+
+  std::uint64_t rows() const { return rows_; }
+  std::uint64_t lost() const { return trace_.dropped(); }
+
+ private:
+  struct Close {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+  std::string path_;
+  Session& session_;
+  FrameTrace trace_;
+  std::vector<double> row_;
+  std::uint64_t rows_ = 0;
+  std::unique_ptr<std::FILE, Close> file_;
+};
+
+}  // namespace tactum

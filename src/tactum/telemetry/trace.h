@@ -1,0 +1,59 @@
+#pragma once
+/// A run as a table: one row a frame, one column a number. Everything that the report of a frame has, the
+/// poses of hand and proxy, the wrench after every stage, and, if wanted, every body. Columns are named
+/// `quantity_axis_unit`: hand_px_m, sent_fx_N, sent_tx_Nm, body_vz_m_per_s.
+///
+///   loop thread    take(frame) --- every frame ---> ring of rows ---> pop, in order ---> CSV
+///
+/// Vectors have the axes of the world W, wrenches act on the hand at the handle, as the device has them
+/// (workspace_scale.h); only device_* is the pose of the handle in the frame of the device D. The columns of
+/// a trace are a function of its scene: a program finds them by name.
+
+#include <atomic>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tactum/telemetry/channels.h"
+#include "tactum/telemetry/run_record.h"
+
+namespace tactum::inline v0_1 {
+
+struct TraceColumn {
+  std::string name;     ///< "sent_fx_N"
+  std::string meaning;  ///< one line
+};
+
+class FrameTrace {
+ public:
+  static constexpr std::size_t kFrames = 4096;  ///< four seconds at 1 kHz until they are popped
+
+  /// `bodies`: the pose and twist of every body as well. Allocates everything that it will ever need.
+  FrameTrace(const World& world, double dt_s, bool bodies);
+
+  const std::vector<TraceColumn>& columns() const noexcept { return columns_; }
+  std::size_t width() const noexcept { return columns_.size(); }
+  /// The place of a column; -1 when there is none of this name.
+  int column(std::string_view name) const noexcept;
+
+  /// The loop's thread, after the frame. `clock` may be null: the times of stages are then zero. No
+  /// allocation, no lock, no clock. When the ring is full the row is lost and counted.
+  void take(const FrameSource& frame, const StageClock* clock) noexcept;
+
+  /// One other thread: the oldest row that was not popped, `width()` numbers; false when there is none.
+  bool pop(std::span<double> row) noexcept;
+  std::uint64_t dropped() const noexcept { return dropped_.load(std::memory_order_relaxed); }
+
+ private:
+  std::vector<TraceColumn> columns_;
+  double dt_s_;
+  bool bodies_;
+  Pose X_WH_proxy_before_;  // for the velocity of the proxy
+  bool proxy_known_ = false;
+  std::vector<double> rows_;
+  std::atomic<std::size_t> head_{0}, tail_{0};
+  std::atomic<std::uint64_t> dropped_{0};
+};
+
+}  // namespace tactum::inline v0_1
