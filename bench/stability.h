@@ -72,6 +72,25 @@ Result<std::vector<WallRow>> bench_stability(const StabilityOptions& options,
 
 nlohmann::ordered_json to_json(const WallRow& row);
 
+/// A hand that presses a block onto a plate, through the coupling that is chosen for the device and the whole
+/// frame, and opens.
+struct ReleaseRow {
+  std::string device;
+  double pressed_N = 0.0;       ///< force before [N]
+  double peak_m_per_s = 0.0;    ///< fastest speed of the handle afterwards [m/s]
+  double rest_s = 0.0;          ///< from then on it is slower than 1 mm/s [s]
+  bool at_rest = false;         ///< it came to rest
+  double largest_step_N = 0.0;  ///< of the sent force afterwards [N]
+  double slew_limit_N = 0.0;    ///< what the device's slew limit allows in a frame [N]
+  double least_share = 1.0;     ///< of the coupling's stiffness [-]
+  double travelled_m = 0.0;     ///< from where it was let go of to where it rests [m]
+};
+
+/// Pressed with `force_N`, or four fifths of what the device can exert; let go of after a second.
+ReleaseRow release_pressed(const SimulatedDeviceModel& device, double force_N = 5.0, double rate_Hz = 1000.0);
+
+nlohmann::ordered_json to_json(const ReleaseRow& row);
+
 /// Stiffness against rate and against delay, simulated and bound: an SVG file's text.
 std::string z_width_plot(const std::vector<WallRow>& rows);
 

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "support/effort.h"
 
 namespace tactum::bench {
@@ -84,6 +86,20 @@ TEST(Stability, ThePictureHasACurveForEveryRate) {
   EXPECT_NE(svg.find("a, pressed"), std::string::npos);
   EXPECT_NE(svg.find("4 kHz"), std::string::npos);
   EXPECT_EQ(svg.find("nan"), std::string::npos);
+}
+
+TEST(Stability, AHandleThatIsReleasedWhilePressedComesToRestWithoutAStep) {
+  for (const SimulatedDeviceModel& model : simulated_device_presets())
+    for (const double force_N : {1.0, 5.0})
+      for (const double rate_Hz : {1000.0, 4000.0}) {
+        SCOPED_TRACE(::testing::Message() << model.name << ", " << force_N << " N, " << rate_Hz << " Hz");
+        const ReleaseRow row = release_pressed(model, force_N, rate_Hz);
+        EXPECT_GT(row.pressed_N, 0.6 * std::min(force_N, 0.8 * model.max_force_N));
+        EXPECT_TRUE(row.at_rest) << "it still moves after " << row.rest_s << " s";
+        EXPECT_LE(row.largest_step_N, row.slew_limit_N);
+        EXPECT_GT(row.peak_m_per_s, 0.01) << "it is pushed away";
+        EXPECT_LT(row.peak_m_per_s, 1.0);
+      }
 }
 
 }  // namespace
