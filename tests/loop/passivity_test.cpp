@@ -378,6 +378,31 @@ TEST(Passivity, ARampIsNotBooked) {
   }
 }
 
+TEST(Passivity, WhatIsNotANumberLeavesTheBalanceAsItWas) {
+  for (int bad = 0; bad < 4; ++bad) {
+    Spring spring;
+    spring.settings.keeps_balance = true;
+    spring.go({});
+    spring.go({Mat3::Identity(), {1e-4, 0, 0}});
+    const PortReport before = spring.report;
+    DeviceSample sample;
+    sample.valid = true;
+    sample.X_DH.p.x() = 2e-4;
+    PortInput input;
+    input.sent = spring.sent;
+    (bad == 0   ? input.felt.f.x()
+     : bad == 1 ? input.wanted.f.x()
+     : bad == 2 ? input.unfelt_Nm.x()
+                : input.stored.total_J) = std::nan("");
+    passive_wrench(spring.settings, spring.state, sample, input, spring.report);
+    EXPECT_EQ(spring.report.balance_J, before.balance_J) << bad;
+    spring.go({Mat3::Identity(), {3e-4, 0, 0}});
+    EXPECT_TRUE(std::isfinite(spring.report.balance_J)) << bad;
+    EXPECT_EQ(spring.report.added_share, 1.0) << bad;
+    EXPECT_EQ(spring.sent.f.x(), -1000.0 * 3e-4) << bad;
+  }
+}
+
 TEST(Passivity, ABadSampleIsNotBooked) {
   Spring spring;
   spring.go({});

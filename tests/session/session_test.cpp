@@ -14,6 +14,7 @@
 #include "support/allocation_guard.h"
 #include "support/real_data.h"
 #include "tactum/haptics/coupling_gains.h"
+#include "tactum/haptics/setting_table.h"
 #include "tactum/scene/builtin_scenes.h"
 #include "tactum/scene/scene_file.h"
 
@@ -244,6 +245,46 @@ TEST(Session, WithTheChosenCouplingEveryDeviceReachesTheGoalsOfTheBlock) {
     EXPECT_TRUE((*session)->goals().all_met()) << device;
     EXPECT_EQ((*session)->record().penetrating_frames, 0u) << device;
     EXPECT_EQ((*session)->record().flags & ~(frame_flag::kLags | frame_flag::kPathUnproven), 0u) << device;
+  }
+}
+
+/// Asks for another stiffness while the hand presses.
+class StiffnessChange final : public LoopObserver {
+ public:
+  StiffnessChange(Session& session, double to_N_per_m) : session_(session), to_N_per_m_(to_N_per_m) {}
+  bool after_frame(const FrameRecord& record) noexcept override {
+    const FrameReport& report = session_.last_report();
+    if (record.tick.index == 2500) {
+      pressed_N = report.shown.f.norm();
+      SessionCommand command;
+      command.kind = SessionCommand::Kind::kSet;
+      command.setting = setting_called("coupling.stiffness_N_per_m");
+      command.value = to_N_per_m_;
+      asked = session_.ask(command);
+    }
+    least_share = std::min(least_share, report.port.share);
+    return true;
+  }
+  double pressed_N = 0.0, least_share = 1.0;
+  bool asked = false;
+
+ private:
+  Session& session_;
+  double to_N_per_m_;
+};
+
+TEST(Session, AStifferCouplingThatIsAskedForWhilePressedIsNotTakenForGeneratedEnergy) {
+  for (const double to_N_per_m : {4000.0, 200.0}) {
+    Result<Scene> scene = open_scene("block-on-plate");
+    ASSERT_TRUE(scene);
+    auto session = Session::open(std::move(*scene), {});
+    ASSERT_TRUE(session);
+    StiffnessChange change(**session, to_N_per_m);
+    ASSERT_TRUE((*session)->run_virtual(3000, &change));
+    EXPECT_TRUE(change.asked);
+    EXPECT_GT(change.pressed_N, 0.5);
+    EXPECT_EQ(change.least_share, 1.0);
+    EXPECT_EQ((*session)->scene().settings.coupling.stiffness_N_per_m, to_N_per_m);
   }
 }
 

@@ -84,6 +84,13 @@ void move_share(PortState& state, const PortInput& input) noexcept {
   state.booked.share = share;
 }
 
+/// Whether a frame can be booked. What is not a number would stay in the balance for ever; safety sends zero.
+bool is_finite(const PortInput& input) noexcept {
+  const StoredEnergy& stored = input.stored;
+  return input.felt.finite() && input.wanted.finite() && input.unfelt_Nm.allFinite() &&
+         std::isfinite(stored.total_J + stored.spring_J + stored.force_N + stored.torque_Nm);
+}
+
 }  // namespace
 
 Wrench passive_wrench(const PortSettings& settings, PortState& state, const DeviceSample& sample,
@@ -92,6 +99,12 @@ Wrench passive_wrench(const PortSettings& settings, PortState& state, const Devi
   history.newest = (history.newest + 1) % (SentHistory::kLongestDelay + 1);
   history.wrenches[static_cast<std::size_t>(history.newest)] =
       Wrench{input.sent.f, settings.actuates_torque ? input.sent.t : state.unfelt_Nm} - state.added;
+  if (!is_finite(input)) {
+    state.added = {};
+    state.unfelt_Nm.setZero();
+    report = state.booked;
+    return input.wanted;
+  }
   state.unfelt_Nm = input.unfelt_Nm;
   if (sample.valid && plausible(sample.X_DH) && input.dt_s > 0.0) {
     if (state.known) book(settings, state, sample.X_DH, input);
