@@ -48,7 +48,7 @@ TEST(SceneFeel, WhatIsSentIsWhatWasComputedAndNoStepIsSentThatTheHandDidNotMake)
     EXPECT_LT(row.generated_J, 1e-4);
     EXPECT_TRUE(row.least_share == 1.0 || row.response == "penalty") << "nothing was generated";
   }
-  EXPECT_GT(felt_N, 0.2) << "the computed force has steps that must not reach the hand";
+  EXPECT_GT(felt_N, testing::effort(0.2, 0.1)) << "the computed force has steps that must not reach the hand";
 }
 
 /// A block on a plate, through a coupling that is too stiff for the device, in a hand that presses.

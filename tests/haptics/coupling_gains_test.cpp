@@ -98,8 +98,8 @@ TEST(CouplingGains, TheMarginIsToldInWords) {
   const std::string premium = margin_sentence(Coupling{}, info_of("premium-1.5-6dof"), 1000.0);
   EXPECT_EQ(
       premium,
-      "coupling 600 N/m and 0.3 N m/rad; stable in a loose hand (15 % of 4.1e+03 N/m and 1 % of 20.8 N "
-      "m/rad), let go of, this device alone holds up to 100 N/m and 0.2 N m/rad without swinging; where it "
+      "coupling 600 N/m and 0.3 N m/rad; stable in a loose hand (15 % of 4100 N/m and 1 % of 20.8 N "
+      "m/rad); let go of, this device alone holds up to 100 N/m and 0.2 N m/rad without swinging; where it "
       "swings, its stiffness is led down");
   const std::string strong = margin_sentence(Coupling{}, info_of("virtuose-6d"), 1000.0);
   EXPECT_NE(strong.find("m/rad), and when it is let go of"), std::string::npos) << strong;

@@ -40,6 +40,12 @@ double chosen(const GainBounds& bounds, double stiffest) {
 
 HandModel loose_hand() { return *hand_model("loose"); }
 
+/// Three digits, without an exponent.
+std::string digits(double value) {
+  const double unit = value < 1000.0 ? 0.0 : std::pow(10.0, std::floor(std::log10(value)) - 2.0);
+  return unit > 0.0 ? fmt::format("{:.0f}", unit * std::round(value / unit)) : fmt::format("{:.3g}", value);
+}
+
 /// One half of the coupling beside its bounds: what a loose hand allows, and the device alone.
 struct Margin {
   double used, in_hand, alone;
@@ -48,9 +54,10 @@ struct Margin {
   bool in_loose_hand() const { return used <= in_hand; }
   bool released() const { return used <= alone; }
   std::string share() const {
-    return fmt::format("{:.0f} % of {:.3g} {}", 100.0 * used / in_hand, in_hand, unit);
+    return fmt::format("{:.0f} % of {} {}", 100.0 * used / in_hand, digits(in_hand), unit);
   }
-  std::string limit_alone() const { return fmt::format("{:.3g} {}", alone, unit); }
+  std::string text() const { return digits(used) + " " + unit; }
+  std::string limit_alone() const { return digits(alone) + " " + unit; }
 };
 
 std::string joined(const std::string& a, const char* between, const std::string& b) {
@@ -129,14 +136,13 @@ std::string margin_sentence(const Coupling& coupling, const DeviceInfo& info, do
       allowed(handle.damping_Nms_per_rad + hand.damping_Nms_per_rad, coupling.damping_Nms_per_rad),
       allowed(handle.damping_Nms_per_rad, 0.0), "N m/rad"};
   const bool turns = info.actuates_torque;
-  std::string text = fmt::format("coupling {:.3g} N/m", push.used);
-  if (turns) text += fmt::format(" and {:.3g} N m/rad", turn.used);
+  std::string text = "coupling " + joined(push.text(), " and ", turns ? turn.text() : "");
   const bool in_hand = push.in_loose_hand() && (!turns || turn.in_loose_hand());
-  text += fmt::format("; {} in a loose hand ({}), ", in_hand ? "stable" : "not stable",
+  text += fmt::format("; {} in a loose hand ({})", in_hand ? "stable" : "not stable",
                       joined(push.share(), " and ", turns ? turn.share() : ""));
   const bool alone = push.released() && (!turns || turn.released());
-  text += alone ? "and when it is let go of"
-                : fmt::format("let go of, this device alone holds up to {} without swinging",
+  text += alone ? ", and when it is let go of"
+                : fmt::format("; let go of, this device alone holds up to {} without swinging",
                               joined(push.limit_alone(), " and ", turns ? turn.limit_alone() : ""));
   if (!in_hand || !alone) text += "; where it swings, its stiffness is led down";
   return turns ? text : text + "; turns of the hand are followed, no torque is sent";
