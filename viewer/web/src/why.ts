@@ -158,7 +158,10 @@ export class Why {
 
   private showEnergy(samples: Samples, sample: number) {
     const [head, ...rows] = energyRows.map(([name, key, meaning]) => {
-      const value = (suffix: string) => withUnit(samples.at(samples.column(key.replace("_J", suffix)), sample), "J");
+      const value = (suffix: string) => {
+        const column = samples.column(key.replace("_J", suffix));
+        return column < 0 ? "" : withUnit(samples.at(column, sample), "J"); // the balance is one, of both
+      };
       return key === "" ? make("tr", {}, ...["", "moving", "turning"].map((text) => make("th", { scope: "col" }, text)))
         : make("tr", { title: meaning }, make("td", {}, name), make("td", { class: "number" }, value("_J")), make("td", { class: "number" }, value("_turning_J")));
     });
