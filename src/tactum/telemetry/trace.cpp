@@ -1,5 +1,7 @@
 #include "tactum/telemetry/trace.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <chrono>
@@ -16,9 +18,9 @@ namespace {
 /// A frame and what only the trace knows of it.
 struct Row {
   const FrameSource& frame;
-  double dt_s;
-  Twist V_WH_proxy;
-  const StageClock* clock;
+  double dt_s = 0.0;
+  Twist V_WH_proxy = {};
+  const StageClock* clock = nullptr;
 };
 
 constexpr const char* kAxes[] = {"x", "y", "z"};
@@ -32,7 +34,7 @@ struct Names {
   }
   template <class Value>
   void vector(const std::string& before, const std::string& unit, const std::string& meaning, const Value&) {
-    for (const char* axis : kAxes) columns.push_back({before + axis + "_" + unit, meaning});
+    for (const char* axis : kAxes) columns.push_back({fmt::format("{}{}_{}", before, axis, unit), meaning});
   }
   template <class Value>
   void turn(const std::string& before, const std::string& meaning, const Value&) {
