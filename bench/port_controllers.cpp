@@ -95,7 +95,7 @@ class Softening final : public Controller {
   explicit Softening(const SimulatedDevice& device)
       : settings_(port_settings(device.info())), most_(device.info().max_force_N) {}
   double force(double stiffness, double x, double sent, const DeviceSample& sample) override {
-    const double k = stiffness * state_.booked.share;
+    const double k = stiffness * state_.booked.stiffness_share;
     PortInput input;
     input.felt.f.x() = input.wanted.f.x() = spring(k, x, most_);
     input.sent.f.x() = sent;

@@ -1,6 +1,5 @@
 #include "bench/port_referee.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -8,22 +7,11 @@ namespace tactum::bench {
 namespace {
 
 using Numbers = std::span<const double>;
-using Quaternion = Eigen::Quaterniond;
-
-Vec3 vector_at(Numbers row, int column) {
-  const auto i = static_cast<std::size_t>(column);
-  return {row[i], row[i + 1], row[i + 2]};
-}
-
-Quaternion turn_at(Numbers row, int column) {
-  const auto i = static_cast<std::size_t>(column);
-  return Quaternion(row[i], row[i + 1], row[i + 2], row[i + 3]).normalized();
-}
 
 double number_at(Numbers row, int column) { return row[static_cast<std::size_t>(column)]; }
 
 /// The rotation vector of a quaternion, at most half a turn long.
-Vec3 rotation_vector(Quaternion q) {
+Vec3 rotation_vector(Quat q) {
   if (q.w() < 0.0) q.coeffs() = -q.coeffs();
   const double s = q.vec().norm();
   return s < 1e-300 ? Vec3(Vec3::Zero()) : Vec3(q.vec() * (2.0 * std::atan2(s, q.w()) / s));
@@ -39,12 +27,12 @@ Vec3 followed(const Vec3& turn, const Vec3& last) {
 }
 
 /// The rest of a turn without its turn about an axis, which comes first: q = rest * turn about the axis.
-Quaternion untwisted(const Quaternion& q, const Vec3& axis) {
+Quat untwisted(const Quat& q, const Vec3& axis) {
   const double along = q.vec().dot(axis);
   const double size = std::hypot(q.w(), along);
   if (size < 1e-12) return q;
   const Vec3 v = axis * (along / size);
-  return q * Quaternion(q.w() / size, v.x(), v.y(), v.z()).conjugate();
+  return q * Quat(q.w() / size, v.x(), v.y(), v.z()).conjugate();
 }
 
 /// What a spring whose force is limited gives back from this stretch.
@@ -74,7 +62,7 @@ PortReferee::PortReferee(const World& world, const FrameSettings& settings, cons
   at_.hand_v = column("hand_vx_m_per_s");
   at_.hand_w = column("hand_wx_rad_per_s");
   at_.computed_t = column("computed_tx_Nm");
-  at_.share = column("energy_share");
+  at_.share = column("energy_stiffness_share");
   at_.grasped = column("grasped_body");
   at_.hold = column("hold");
   at_.field_f = column("field_fx_N");
@@ -98,7 +86,7 @@ double PortReferee::spring_energy(Numbers row, std::size_t body, bool grasped) {
   if (joint.kind == JointKind::kSlider) {
     angle.now = (vector_at(row, at_.body_p[body]) - start.p).dot(joint.axis_W);
   } else {
-    const Vec3 turn = rotation_vector(turn_at(row, at_.body_q[body]) * Quaternion(start.R).conjugate());
+    const Vec3 turn = rotation_vector(turn_at(row, at_.body_q[body]) * Quat(start.R).conjugate());
     angle.now =
         followed(joint.axis_W * turn.dot(joint.axis_W), joint.axis_W * angle.before).dot(joint.axis_W);
   }

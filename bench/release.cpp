@@ -15,20 +15,21 @@ constexpr double kAfterRelease_s = 6.0;  // and so long it is watched afterwards
 constexpr double kDropped_m = 0.002;     // the block begins so far above the plate
 constexpr double kAtRest_m_per_s = 1e-3;
 
-std::shared_ptr<const Part> part_of_box(const Vec3& half_m) {
-  return std::make_shared<const Part>(*part_from_clouds({make_box(half_m).vertices}));
-}
-
-World block_over_plate() {
+/// A block over a plate whose top is at z = 0.
+Result<World> block_over_plate() {
+  const auto box = [](const Vec3& half_m) {
+    return std::make_shared<const Part>(
+        *part_from_clouds({make_box(half_m).vertices}, {.about_center_of_mass = true}));
+  };
   World world;
-  world.bodies.resize(2);
-  world.bodies[0].part = part_of_box({0.02, 0.02, 0.02});
-  world.bodies[0].mass_kg = 0.1;
-  world.bodies[0].inertia_B = 3e-5 * Mat3::Identity();
-  world.bodies[0].X_WB.p.z() = 0.02 + kDropped_m;
-  world.bodies[1].part = part_of_box({0.2, 0.2, 0.01});
-  world.bodies[1].joint.kind = JointKind::kFixed;
-  world.bodies[1].X_WB.p.z() = -0.01;
+  const Result<int> block = world.add({.part = box({0.02, 0.02, 0.02}),
+                                       .mass_kg = 0.1,
+                                       .X_WP = {Mat3::Identity(), {0, 0, 0.02 + kDropped_m}}});
+  if (!block) return block.error();
+  const Result<int> plate = world.add({.part = box({0.2, 0.2, 0.01}),
+                                       .X_WP = {Mat3::Identity(), {0, 0, -0.01}},
+                                       .joint = {.kind = JointKind::kFixed}});
+  if (!plate) return plate.error();
   return world;
 }
 
@@ -48,7 +49,9 @@ ReleaseRow release_pressed(const SimulatedDeviceModel& model, double force_N, do
   auto motion = std::make_shared<ScriptedMotion>();
   motion->move_to(0.7 * kUntilRelease_s, {Mat3::Identity(), {0, 0, -aim_m}}).hold(kUntilRelease_s);
   SimulatedDevice device(model, hand, motion);
-  Result<std::unique_ptr<Simulation>> made = Simulation::make(block_over_plate(), settings);
+  Result<World> world = block_over_plate();
+  if (!world) return row;
+  Result<std::unique_ptr<Simulation>> made = Simulation::make(std::move(*world), settings);
   if (!made || !device.open()) return row;
   Simulation& simulation = **made;
   row.slew_limit_N = settings.safety.max_force_slew_N_per_s * settings.dt_s;
@@ -71,7 +74,7 @@ ReleaseRow release_pressed(const SimulatedDeviceModel& model, double force_N, do
       const double speed = device.true_twist().v.norm();
       row.peak_m_per_s = std::max(row.peak_m_per_s, speed);
       row.largest_step_N = std::max(row.largest_step_N, (next.f - sent.f).norm());
-      row.least_share = std::min(row.least_share, simulation.report().port.share);
+      row.least_share = std::min(row.least_share, simulation.report().port.stiffness_share);
       if (speed > kAtRest_m_per_s) row.rest_s = now_s - kUntilRelease_s;
     }
     sent = next;

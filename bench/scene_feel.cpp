@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -21,11 +20,6 @@ constexpr double kToAndFro_N = 0.02;
 constexpr double kChanged_N = 0.01;
 constexpr double kChanged_Nm = 2e-4;
 constexpr std::size_t kExplainedWithin = 15;  // frames
-
-Vec3 vector_at(std::span<const double> row, int column) {
-  const auto i = static_cast<std::size_t>(column);
-  return {row[i], row[i + 1], row[i + 2]};
-}
 
 /// Counts the steps of one stage's wrench.
 class StepCounter {
@@ -79,7 +73,7 @@ class SceneJudge final : public LoopObserver {
         device_p_(trace.column("device_px_m")),
         device_q_(trace.column("device_qw")),
         ramping_(trace.column("ramping")),
-        share_(trace.column("energy_share")) {
+        share_(trace.column("energy_stiffness_share")) {
     // Of the farthest point of what may be held from the handle, wherever it is held.
     const World& world = session.scene().world;
     for (std::size_t i = 0; i < world.bodies.size(); ++i)
@@ -148,7 +142,7 @@ class SceneJudge final : public LoopObserver {
   double lever_m_ = 0.0;
   bool ramped_ = true, known_ = false;
   Vec3 p_ = Vec3::Zero();
-  Eigen::Quaterniond q_ = Eigen::Quaterniond::Identity();
+  Quat q_ = Quat::Identity();
   std::array<double, kExplainedWithin> made_N_{};
   std::size_t next_ = 0;
 };

@@ -353,7 +353,7 @@ TEST(BodyLoad, TheWorkOfAForceOnTheGraspedPartIsCounted) {
     for (int i = 0; i < static_cast<int>(0.2 / c.dt_s); ++i) grasped.step(X);
     for (int i = 0; i < static_cast<int>(0.5 / c.dt_s); ++i) {
       X.p.x() += std::min(0.2, 2.0 * i * c.dt_s) * c.dt_s;  // no hand starts at once
-      share = std::min(share, grasped.step(X).port.share);
+      share = std::min(share, grasped.step(X).port.stiffness_share);
     }
     EXPECT_EQ(share, 1.0);
     EXPECT_GT(grasped.simulation->report().port.total.to_hand_J, 0.15);

@@ -110,7 +110,7 @@ TEST(FieldPull, AWellGivesBackWhatItTookAndAVortexGivesEveryTurn) {
     for (int i = 1; i <= 2000; ++i) {
       const double angle = 2.0 * kPi * i / 2000.0;
       rig.step(above({0.02 * std::cos(angle), 0.02 * std::sin(angle), 0.0}));
-      EXPECT_EQ(rig.report.port.share, 1.0) << "what a field gives is taken from the coupling";
+      EXPECT_EQ(rig.report.port.stiffness_share, 1.0) << "what a field gives is taken from the coupling";
       EXPECT_GT(rig.report.port.balance_J, -1e-4);
     }
     for (int i = 0; i < 300; ++i) rig.step(rig.X_DH);

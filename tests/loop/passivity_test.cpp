@@ -34,7 +34,7 @@ struct Spring {
     sample.valid = true;
     sample.X_DH = X_DH;
     PortInput input;
-    const double share = state.booked.share;
+    const double share = state.booked.stiffness_share;
     const Vec3 turn = log_rotation(X_DH.R);
     input.felt = input.wanted = {-share * K * X_DH.p, -share * K_turning * turn};
     input.sent = sent;
@@ -154,7 +154,7 @@ TEST(Passivity, WhereNoEnergyIsMadeTheWrenchPassesUntouched) {
     spring.go(X);
     ASSERT_EQ(spring.sent.f, Vec3(-spring.K * X.p)) << i;
     ASSERT_EQ(spring.sent.t, Vec3(-spring.K_turning * log_rotation(X.R))) << i;
-    ASSERT_EQ(spring.report.share, 1.0);
+    ASSERT_EQ(spring.report.stiffness_share, 1.0);
   }
 }
 
@@ -168,7 +168,7 @@ TEST(Passivity, TheSpringPaysForGeneratedEnergyWithoutAStep) {
   for (int i = 0; i < 3000; ++i) {
     const double x = 1e-3 + 2e-4 * std::sin(0.2 * kPi * i);
     spring.go({Mat3::Identity(), {x, 0, 0}});
-    const double now = spring.K * spring.report.share;
+    const double now = spring.K * spring.report.stiffness_share;
     ASSERT_LE((stiffness - now) * x, 20.0 * kPeriod_s * (1.0 + 1e-9)) << "the felt force changes by 20 N/s";
     ASSERT_LE(now, stiffness);
     stiffness = now;
@@ -176,7 +176,7 @@ TEST(Passivity, TheSpringPaysForGeneratedEnergyWithoutAStep) {
   EXPECT_LT(stiffness, 210.0);
   EXPECT_GT(stiffness, 100.0) << "no softer than it must be";
   for (int i = 0; i < 10000; ++i) spring.go({});
-  EXPECT_EQ(spring.report.share, 1.0) << "in free air it comes back";
+  EXPECT_EQ(spring.report.stiffness_share, 1.0) << "in free air it comes back";
 }
 
 /// A spring that keeps a simulated device on a plane from both sides, like a part in a slot, knocked at in a
@@ -222,15 +222,15 @@ Swung swing(const Swing& c) {
     x_before = device.true_pose().p;
     PortInput input;
     const double x = sample.X_DH.p.x();
-    const double k = stiffness * state.booked.share, most = model.max_force_N;
+    const double k = stiffness * state.booked.stiffness_share, most = model.max_force_N;
     input.felt.f.x() = input.wanted.f.x() = std::clamp(-k * x, -most, most);
     const double load = input.felt.f.norm();
     input.stored = {load * (std::abs(x) - 0.5 * load / k), load * (std::abs(x) - 0.5 * load / k), load, 0.0};
     input.sent = sent;
-    const double share = state.booked.share;
+    const double share = state.booked.stiffness_share;
     sent = passive_wrench(settings, state, sample, input, report);
     result.change_N_per_s =
-        std::max(result.change_N_per_s, load * (share - state.booked.share) / share / kPeriod_s);
+        std::max(result.change_N_per_s, load * (share - state.booked.stiffness_share) / share / kPeriod_s);
     device.write(sent);
   }
   return result;
@@ -289,7 +289,7 @@ TEST(Passivity, EnergyThatBodiesGiveUpIsNoneThatWasMade) {
       if (bodies_known) input.stored.total_J = 1.0 * sample.X_DH.p.z();
       input.sent = passive_wrench(settings, state, sample, input, report);
     }
-    EXPECT_EQ(report.share == 1.0, bodies_known);
+    EXPECT_EQ(report.stiffness_share == 1.0, bodies_known);
   }
 }
 
@@ -320,7 +320,7 @@ TEST(Passivity, WhatComesInByOneAxisMayLeaveByAnother) {
         input.sent = passive_wrench(settings, state, sample, input, report);
         ASSERT_EQ(input.sent.t.z() != 0.0, torque);
       }
-      EXPECT_EQ(report.share == 1.0, share == 1.0) << "torque " << torque;
+      EXPECT_EQ(report.stiffness_share == 1.0, share == 1.0) << "torque " << torque;
     }
 }
 
@@ -374,7 +374,7 @@ TEST(Passivity, ARampIsNotBooked) {
     input.felt.f.x() = 1.0;
     passive_wrench(spring.settings, spring.state, sample, input, spring.report);
     ASSERT_EQ(spring.report.balance_J, first_J);
-    ASSERT_EQ(spring.report.share, 1.0);
+    ASSERT_EQ(spring.report.stiffness_share, 1.0);
   }
 }
 
@@ -445,7 +445,7 @@ TEST(Passivity, AHandleThatCannotBeTurnedIsSentNoTorqueAndItsRotationFollows) {
     ASSERT_EQ(report.smoothed.t.norm(), 0.0);
     ASSERT_EQ(report.shown.t.norm(), 0.0);
     ASSERT_EQ(report.safety & safety_flag::kTorqueLimited, 0u) << "not wanted, so not limited";
-    ASSERT_EQ(report.port.share, 1.0) << "no energy comes out of a motor that is not there";
+    ASSERT_EQ(report.port.stiffness_share, 1.0) << "no energy comes out of a motor that is not there";
   }
   EXPECT_GT(computed, 1e-3) << "it is computed and can be shown on a screen";
   EXPECT_GT(report.shown.f.norm(), 0.5);

@@ -262,7 +262,7 @@ class StiffnessChange final : public LoopObserver {
       command.value = to_N_per_m_;
       asked = session_.ask(command);
     }
-    least_share = std::min(least_share, report.port.share);
+    least_share = std::min(least_share, report.port.stiffness_share);
     return true;
   }
   double pressed_N = 0.0, least_share = 1.0;

@@ -73,7 +73,7 @@ TEST(Trace, ARowIsTheFrame) {
     EXPECT_EQ(number_at(trace, row, "in_contact"), 1.0);
     EXPECT_EQ(number_at(trace, row, "ramping"), 0.0);
     EXPECT_EQ(number_at(trace, row, "energy_balance_J"), report.port.balance_J);
-    EXPECT_EQ(number_at(trace, row, "energy_share"), report.port.share);
+    EXPECT_EQ(number_at(trace, row, "energy_stiffness_share"), report.port.stiffness_share);
     EXPECT_EQ(number_at(trace, row, "grasped_contact_points"), report.grasped_contact_points);
     const Vec3 moved = vector_at(trace, row, "proxy_px_m") - vector_at(trace, before, "proxy_px_m");
     EXPECT_LT((vector_at(trace, row, "proxy_vx_m_per_s") - 1000.0 * moved).norm(), 1e-9);

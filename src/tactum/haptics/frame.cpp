@@ -20,7 +20,7 @@ Wrench haptic_frame(const World& world, const FrameSettings& settings, const Dev
 
   if (grasped.hand_known) {
     // The motion bounds of this frame.
-    const double stiffness_share = state.port.booked.share;
+    const double stiffness_share = state.port.booked.stiffness_share;
     const MotionInput motion =
         motion_input(world, settings, grasped, contacts.finder.radii(), stiffness_share);
     const std::span<const double> motion_bound = state.response.bound_motion(motion, bodies);
@@ -49,13 +49,15 @@ Wrench haptic_frame(const World& world, const FrameSettings& settings, const Dev
 
   // What the device can exert of it, smoothed, then the caller's own wrench: device axes from here on.
   const Wrench at_handle = to_device(settings.workspace, state.hand, felt);
-  report.smoothed = smooth_for_device(settings, grasped, sample, at_handle, state, report.safety);
+  const WrenchStep by_hand =
+      explained_by_hand(settings, grasped, contacts.finder.radii(), sample, state.port);
+  report.smoothed = smooth_for_device(settings, by_hand, at_handle, state.smoothing, report.safety);
   Wrench wanted = report.smoothed;
   if (state.force_stage) wanted = state.force_stage->apply(wanted, sample, report);
 
   // The energy balance of the port, then safety.
   const StoredEnergy stored = stored_in_scene(world, settings, grasped, handle, at_handle, state);
-  const PortInput port = port_input(settings, wanted, report.smoothed, stored, state);
+  const PortInput port = port_input(settings, wanted, report.smoothed, stored, state.smoothing, state.safety);
   report.passive = passive_wrench(settings.port, state.port, sample, port, report.port);
   const SafetyInput input = safety_input(sample, tick, report.passive);
   report.shown = safe_wrench(settings.safety, state.safety, input, report.safety);

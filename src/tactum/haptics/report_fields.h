@@ -82,7 +82,7 @@ inline constexpr std::tuple kFields{
     {"energy_generated_J", "Generated", "generated energy"}}},
   Of<&R::port, &P::paid_J>{{"port.paid_J", "J", "of it, given up by the coupling's spring as its stiffness was lowered", kLargest,
     {"energy_paid_J", "Paid by the coupling", "generated energy"}}},
-  Of<&R::port, &P::share>{{"port.share", "", "of the coupling's stiffness that the energy balance leaves", kNothing,
+  Of<&R::port, &P::stiffness_share>{{"port.stiffness_share", "", "of the coupling's stiffness that the energy balance leaves", kNothing,
     {"stiffness_share", "Stiffness in use", "stiffness"}}},
   Of<&R::port, &P::added_share>{{"port.added_share", "", "of what the caller's own stage adds that is passed on"}},
   Of<&R::port, &P::total, &E::from_hand_J>{{"port.total.from_hand_J", "J",

@@ -5,22 +5,6 @@
 
 namespace tactum::inline v0_1 {
 
-namespace {
-
-/// By how much the displacement of the handle since the last good sample can change the felt wrench, as the
-/// device has it.
-WrenchStep explained_by_hand(const FrameSettings& settings, const GraspedPart& grasped,
-                             const DeviceSample& sample, const FrameState& state) {
-  if (!state.port.known || !sample.valid || !plausible(sample.X_DH)) return {};
-  double lever_m = 0.0;  // of the farthest point that is grasped
-  if (grasped.body >= 0)
-    lever_m = state.contacts.finder.radii()[static_cast<std::size_t>(grasped.body)] + grasped.X_BH.p.norm();
-  return explained_by(twist_between(state.port.X_DH, sample.X_DH, 1.0), settings.coupling.stiffness_N_per_m,
-                      settings.coupling.stiffness_Nm_per_rad, lever_m / settings.workspace.scale);
-}
-
-}  // namespace
-
 void report_hand(const GraspedPart& grasped, FrameReport& report) noexcept {
   report.grasped_body = grasped.body;
   report.hold = static_cast<int>(grasped.hold);
@@ -38,13 +22,20 @@ PlacedHandle report_grasp(const GraspedPart& grasped, const WorldState& bodies,
   return handle;
 }
 
-Wrench smooth_for_device(const FrameSettings& settings, const GraspedPart& grasped,
-                         const DeviceSample& sample, const Wrench& at_handle, FrameState& state,
-                         std::uint32_t& safety_flags) noexcept {
+WrenchStep explained_by_hand(const FrameSettings& settings, const GraspedPart& grasped,
+                             std::span<const double> radius_m, const DeviceSample& sample,
+                             const PortState& port) noexcept {
+  if (!port.known || !sample.valid || !plausible(sample.X_DH)) return {};
+  double lever_m = 0.0;  // of the farthest point that is grasped
+  if (grasped.body >= 0) lever_m = radius_m[static_cast<std::size_t>(grasped.body)] + grasped.X_BH.p.norm();
+  return explained_by(twist_between(port.X_DH, sample.X_DH, 1.0), settings.coupling.stiffness_N_per_m,
+                      settings.coupling.stiffness_Nm_per_rad, lever_m / settings.workspace.scale);
+}
+
+Wrench smooth_for_device(const FrameSettings& settings, const WrenchStep& by_hand, const Wrench& at_handle,
+                         SmoothingState& state, std::uint32_t& safety_flags) noexcept {
   const Wrench within = within_limits(settings.safety, at_handle, safety_flags);
-  const WrenchStep explained = explained_by_hand(settings, grasped, sample, state);
-  const Wrench smoothed =
-      smooth_wrench(settings.smoothing, settings.dt_s, explained, state.smoothing, within);
+  const Wrench smoothed = smooth_wrench(settings.smoothing, settings.dt_s, by_hand, state, within);
   return settings.port.actuates_torque ? smoothed : Wrench{smoothed.f, Vec3::Zero()};
 }
 
@@ -60,19 +51,20 @@ StoredEnergy stored_in_scene(const World& world, const FrameSettings& settings, 
                         .V_WH = grasped.V_WH,
                         .felt = felt,
                         .smoothed = state.smoothing.shown,
-                        .share = state.port.booked.share,
+                        .share = state.port.booked.stiffness_share,
                         .outside_work_J = state.hand.field.given_J + state.load_work_J,
                         .response_J = state.response.stored_J()});
 }
 
 PortInput port_input(const FrameSettings& settings, const Wrench& wanted, const Wrench& smoothed,
-                     const StoredEnergy& stored, const FrameState& state) noexcept {
+                     const StoredEnergy& stored, const SmoothingState& smoothing,
+                     const SafetyState& safety) noexcept {
   return {.felt = smoothed,
           .wanted = wanted,
-          .sent = state.safety.sent,
-          .unfelt_Nm = state.smoothing.shown.t - smoothed.t,
+          .sent = safety.sent,
+          .unfelt_Nm = smoothing.shown.t - smoothed.t,
           .stored = stored,
-          .ramp = state.safety.gain,
+          .ramp = safety.gain,
           .dt_s = settings.dt_s};
 }
 

@@ -3,6 +3,7 @@
 /// exert of the felt wrench, smoothed, and the energy that the scene has stored.
 
 #include <cstdint>
+#include <span>
 
 #include "tactum/haptics/frame_state.h"
 #include "tactum/response/step_input.h"
@@ -15,12 +16,17 @@ void report_hand(const GraspedPart& grasped, FrameReport& report) noexcept;
 /// Reports the probe and the handle where the step has left them; the handle, none while nothing is grasped.
 PlacedHandle report_grasp(const GraspedPart& grasped, const WorldState& bodies, FrameReport& report) noexcept;
 
-/// What the device can exert of the felt wrench (`at_handle`, as the device has it), smoothed; the state is
-/// that of the smoothing, and the last pose of the handle. Torque is smoothed also where the device drives
-/// none (SmoothingState::shown). Sets the safety flags of limits that act.
-Wrench smooth_for_device(const FrameSettings& settings, const GraspedPart& grasped,
-                         const DeviceSample& sample, const Wrench& at_handle, FrameState& state,
-                         std::uint32_t& safety_flags) noexcept;
+/// By how much the displacement of the handle since the last good sample, which the port remembers, can
+/// change the felt wrench, as the device has it. `radius_m` is that of each body.
+WrenchStep explained_by_hand(const FrameSettings& settings, const GraspedPart& grasped,
+                             std::span<const double> radius_m, const DeviceSample& sample,
+                             const PortState& port) noexcept;
+
+/// What the device can exert of the felt wrench (`at_handle`, as the device has it), smoothed. Torque is
+/// smoothed also where the device drives none (SmoothingState::shown). Sets the safety flags of limits that
+/// act.
+Wrench smooth_for_device(const FrameSettings& settings, const WrenchStep& by_hand, const Wrench& at_handle,
+                         SmoothingState& state, std::uint32_t& safety_flags) noexcept;
 
 /// The energy of the scene after the step, the handle on the grasped part being where it has come to, and
 /// `felt` what the response lets the hand feel, as the device has it.
@@ -30,6 +36,7 @@ StoredEnergy stored_in_scene(const World& world, const FrameSettings& settings, 
 
 /// What the energy balance of the port needs to know: `wanted` is the smoothed wrench with the caller's own.
 PortInput port_input(const FrameSettings& settings, const Wrench& wanted, const Wrench& smoothed,
-                     const StoredEnergy& stored, const FrameState& state) noexcept;
+                     const StoredEnergy& stored, const SmoothingState& smoothing,
+                     const SafetyState& safety) noexcept;
 
 }  // namespace tactum::inline v0_1

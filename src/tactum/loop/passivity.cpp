@@ -52,7 +52,7 @@ void book(const PortSettings& settings, PortState& state, const Pose& X_DH, cons
   const Twist moved = twist_between(state.X_DH, X_DH, 1.0);
   const double added_J = input.ramp * (state.added.f.dot(moved.v) + state.added.t.dot(moved.w));
   state.tank_J = std::min(state.tank_J - added_J, kTank_J);
-  if (input.ramp < 1.0) return;  // what a ramp stores or gives is not booked
+  if (input.ramp < 1.0 || !input.stored.same_coupling(state.stored)) return;  // changed without work
   const Wrench F = acted(settings, state.history, input.dt_s);
   add_up(moved.v, F.f, state.booked.total);
   add_up(moved.w, F.t, state.booked.total_turning);
@@ -60,7 +60,7 @@ void book(const PortSettings& settings, PortState& state, const Pose& X_DH, cons
       -F.f.dot(moved.v) - F.t.dot(moved.w) +
       dissipated(settings.damping_Ns_per_m, settings.friction_N, moved.v, input.dt_s) +
       dissipated(settings.damping_Nms_per_rad, settings.friction_Nm, moved.w, input.dt_s) -
-      (input.stored.total_J - state.booked.stored_J);
+      (input.stored.total_J - state.stored.total_J);
   const double before_J = state.booked.balance_J;
   state.booked.balance_J = std::min(before_J + passed_J, settings.credit_J);
   state.booked.generated_J += std::max(0.0, std::min(0.0, before_J) - state.booked.balance_J);
@@ -72,16 +72,16 @@ void book(const PortSettings& settings, PortState& state, const Pose& X_DH, cons
 void move_share(PortState& state, const PortInput& input) noexcept {
   const StoredEnergy& stored = input.stored;
   if (stored.spring_J < kAtRest_J) {
-    state.booked.share = std::min(1.0, state.booked.share + input.dt_s / kRestored_s);
+    state.booked.stiffness_share = std::min(1.0, state.booked.stiffness_share + input.dt_s / kRestored_s);
     return;
   }
   if (!(state.booked.balance_J < 0.0)) return;
   double fall = std::min(-state.booked.balance_J / stored.spring_J, kFastest_per_s * input.dt_s);
   if (stored.force_N > 0.0) fall = std::min(fall, kMostChange_N_per_s * input.dt_s / stored.force_N);
   if (stored.torque_Nm > 0.0) fall = std::min(fall, kMostChange_Nm_per_s * input.dt_s / stored.torque_Nm);
-  const double share = std::max(kLeastShare, state.booked.share * (1.0 - fall));
-  state.booked.paid_J += stored.spring_J * (1.0 - share / state.booked.share);
-  state.booked.share = share;
+  const double share = std::max(kLeastShare, state.booked.stiffness_share * (1.0 - fall));
+  state.booked.paid_J += stored.spring_J * (1.0 - share / state.booked.stiffness_share);
+  state.booked.stiffness_share = share;
 }
 
 /// Whether a frame can be booked. What is not a number would stay in the balance for ever; safety sends zero.
@@ -111,6 +111,7 @@ Wrench passive_wrench(const PortSettings& settings, PortState& state, const Devi
     if (state.known && settings.keeps_balance) move_share(state, input);
     if (!state.known) state.booked.balance_J = std::min(kFirst_J, settings.credit_J);
     state.X_DH = sample.X_DH;
+    state.stored = input.stored;
     state.booked.stored_J = input.stored.total_J;
     state.known = true;
   }

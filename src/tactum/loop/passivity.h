@@ -19,7 +19,7 @@
 /// of the port that nobody put in, and the coupling's spring pays for it: its stiffness, translation and
 /// rotation alike, is lowered until what its stretch holds has sunk by as much,
 ///
-///   share -= share * min( - balance / spring,  20 N/s dt / |f|,  20 Nm/s (0.02 m) dt / |t|,  5 dt/s )
+///   share -= share * min( - balance / spring,  20 N/s dt / |f|,  0.4 N m/s dt / |t|,  5 dt/s )
 ///
 /// so the force that is felt changes by no more than 20 N/s for it, always towards zero, and never in free
 /// air, where the spring has nothing. A stiffness that sinks is passive by itself [Ferraguti 2013]. It comes
@@ -36,8 +36,9 @@
 /// hand does against it fills the tank up to kTank_J, what it gives the hand comes out of it, and it is
 /// passed on as it is while half a credit is left, and fades to nothing as the tank runs dry.
 ///
-/// Start and stop ramps change the wrench without work; what they store or give is not booked. All energies
-/// are those at the device. Cost: one rotation vector and two dozen products. No clock, no allocation.
+/// Start and stop ramps change the wrench without work, and so does a user who sets another stiffness; what
+/// they store or give is not booked. All energies are those at the device. Cost: one rotation vector and two
+/// dozen products. No clock, no allocation.
 
 #include <array>
 
@@ -71,14 +72,14 @@ struct EnergyTotals {
 };
 
 struct PortReport {
-  double balance_J = 0.0;      ///< negative: energy was generated [J]
-  double stored_J = 0.0;       ///< by the scene [J]
-  double generated_J = 0.0;    ///< below a balance of zero, since the start [J]
-  double paid_J = 0.0;         ///< by the coupling's spring, since the start [J]
-  double share = 1.0;          ///< of the coupling's stiffness, from the next frame on, (0, 1] [-]
-  double added_share = 1.0;    ///< of what the caller's stage adds, in this frame [-]
-  EnergyTotals total;          ///< of translation
-  EnergyTotals total_turning;  ///< of rotation
+  double balance_J = 0.0;        ///< negative: energy was generated [J]
+  double stored_J = 0.0;         ///< by the scene [J]
+  double generated_J = 0.0;      ///< below a balance of zero, since the start [J]
+  double paid_J = 0.0;           ///< by the coupling's spring, since the start [J]
+  double stiffness_share = 1.0;  ///< of the coupling's stiffness, from the next frame on, (0, 1] [-]
+  double added_share = 1.0;      ///< of what the caller's stage adds, in this frame [-]
+  EnergyTotals total;            ///< of translation
+  EnergyTotals total_turning;    ///< of rotation
 };
 
 /// The wrenches of the scene that were sent in the last frames, a ring: on a device with a delay an older one
@@ -89,22 +90,29 @@ struct SentHistory {
   int newest = 0;  ///< its place in the ring
 };
 
-struct PortState {
-  PortReport booked;              ///< as far as it has come
-  double tank_J = 0.0;            ///< of the caller's stage, beyond the credit it begins with [J]
-  Wrench added;                   ///< what was passed on of that stage in the last frame [N, N m]
-  Vec3 unfelt_Nm = Vec3::Zero();  ///< PortInput::unfelt_Nm of the last frame [N m]
-  Pose X_DH;                      ///< of the last good sample [m]
-  bool known = false;             ///< there has been one
-  SentHistory history;
-};
-
 /// What the scene has stored after the frame's step.
 struct StoredEnergy {
   double total_J = 0.0;    ///< everything, from any zero [J]
   double spring_J = 0.0;   ///< the coupling's part of it [J]
   double force_N = 0.0;    ///< of the coupling's spring [N]
   double torque_Nm = 0.0;  ///< ... and of its twist [N m]
+  /// The coupling's stiffness as it is set, whatever share of it is in use [N/m, N m/rad].
+  double stiffness_N_per_m = 0.0, stiffness_Nm_per_rad = 0.0;
+
+  bool same_coupling(const StoredEnergy& other) const {
+    return stiffness_N_per_m == other.stiffness_N_per_m && stiffness_Nm_per_rad == other.stiffness_Nm_per_rad;
+  }
+};
+
+struct PortState {
+  PortReport booked;              ///< as far as it has come
+  StoredEnergy stored;            ///< in the last frame
+  double tank_J = 0.0;            ///< of the caller's stage, beyond the credit it begins with [J]
+  Wrench added;                   ///< what was passed on of that stage in the last frame [N, N m]
+  Vec3 unfelt_Nm = Vec3::Zero();  ///< PortInput::unfelt_Nm of the last frame [N m]
+  Pose X_DH;                      ///< of the last good sample [m]
+  bool known = false;             ///< there has been one
+  SentHistory history;
 };
 
 struct PortInput {

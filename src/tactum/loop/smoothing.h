@@ -32,9 +32,9 @@ namespace tactum::inline v0_1 {
 struct SmoothingSettings {
   double max_force_N_per_s = 500.0;   ///< F_max of the force over the time of a frame, at most [N/s]
   double max_torque_Nm_per_s = 10.0;  ///< F_max of the torque [N m/s]
-  double beyond_hand_N_per_s = 45.0;  ///< ... also where the hand's motion explains less [N/s]
+  double beyond_hand_N_per_s = 45.0;  ///< the limit where the hand's motion explains less [N/s]
   double beyond_hand_Nm_per_s = 0.9;  ///< ... of the torque: the same at a lever of 20 mm [N m/s]
-  double reversal_N_per_s = 19.0;     ///< ... of a step against the last one [N/s]
+  double reversal_N_per_s = 19.0;     ///< the limit of a step against the last one [N/s]
   double reversal_Nm_per_s = 0.38;    ///< the same of the torque [N m/s]
   bool on = true;                     ///< false: the computed force is shown
 };

@@ -58,6 +58,8 @@ StoredEnergy stored_energy(const EnergySource& source) noexcept {
   const FrameSettings& settings = source.settings;
   const double scale = settings.workspace.scale;
   StoredEnergy stored;
+  stored.stiffness_N_per_m = settings.coupling.stiffness_N_per_m;
+  stored.stiffness_Nm_per_rad = settings.coupling.stiffness_Nm_per_rad;
   stored.total_J = (bodies_energy(source.world, source.X_WB_start, source.bodies, source.grasped) -
                     source.outside_work_J + source.response_J) /
                    scale;

@@ -113,7 +113,6 @@ void Session::obey(const SessionCommand& command) noexcept {
       if (!setting.live || !in_range(setting, command.value)) return;
       setting.set(scene_.settings, scene_.safety, command.value);
       scene_.settings.safety = tightened(device_limits_, scene_.safety);
-      state_.port.known = false;  // what a stiffer spring stores at once is nothing that the hand put in
       return;
     }
   }

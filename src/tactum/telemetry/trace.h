@@ -25,6 +25,17 @@ struct TraceColumn {
   std::string meaning;  ///< one line
 };
 
+/// Three numbers of a row, from a column on.
+inline Vec3 vector_at(std::span<const double> row, int column) {
+  const auto i = static_cast<std::size_t>(column);
+  return {row[i], row[i + 1], row[i + 2]};
+}
+/// The quaternion of an orientation, from its column _qw on.
+inline Quat turn_at(std::span<const double> row, int column) {
+  const auto i = static_cast<std::size_t>(column);
+  return Quat(row[i], row[i + 1], row[i + 2], row[i + 3]).normalized();
+}
+
 class FrameTrace {
  public:
   static constexpr std::size_t kFrames = 4096;  ///< four seconds at 1 kHz until they are popped
@@ -52,8 +63,9 @@ class FrameTrace {
   Pose X_WH_proxy_before_;  // for the velocity of the proxy
   bool proxy_known_ = false;
   std::vector<double> rows_;
-  std::atomic<std::size_t> head_{0}, tail_{0};
+  alignas(64) std::atomic<std::size_t> head_{0};  // the loop's line
   std::atomic<std::uint64_t> dropped_{0};
+  alignas(64) std::atomic<std::size_t> tail_{0};  // the reader's
 };
 
 }  // namespace tactum::inline v0_1
