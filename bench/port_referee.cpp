@@ -135,7 +135,7 @@ double PortReferee::stored(Numbers row) {
        coupling.damping_Ns_per_m * vector_at(row, at_.hand_v).norm() / scale) /
       k;
   const double felt_turn =
-      (std::max(vector_at(row, at_.computed_t).norm(), vector_at(row, at_.unfelt).norm()) +
+      (std::max(turns ? vector_at(row, at_.computed_t).norm() : 0.0, vector_at(row, at_.unfelt).norm()) +
        coupling.damping_Nms_per_rad * vector_at(row, at_.hand_w).norm()) /
       k_r;
   return energy_J + given_back(k, std::min(stretch, felt), settings_.safety.max_force_N) +

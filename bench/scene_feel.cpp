@@ -122,12 +122,12 @@ class SceneJudge final : public LoopObserver {
     const Vec3 p = vector_at(row_, device_p_);
     const double moved = known_ ? (p - p_).norm() : 0.0;
     p_ = p;
-    known_ = true;
     const Eigen::Quaterniond q(
         row_[static_cast<std::size_t>(device_q_)], row_[static_cast<std::size_t>(device_q_) + 1],
         row_[static_cast<std::size_t>(device_q_) + 2], row_[static_cast<std::size_t>(device_q_) + 3]);
     const double turned = known_ ? q_.angularDistance(q) : 0.0;
     q_ = q;
+    known_ = true;
     made_N_[next_++ % kExplainedWithin] = settings_.coupling.stiffness_N_per_m * (moved + lever_m_ * turned);
     return *std::max_element(made_N_.begin(), made_N_.end());
   }

@@ -70,11 +70,12 @@ StoredEnergy stored_energy(const EnergySource& source) noexcept {
                                     std::max(source.felt.f.norm(), source.smoothed.f.norm()) +
                                         coupling.damping_Ns_per_m * source.V_WH.v.norm() / scale,
                                     settings.safety.max_force_N);
-  // A torque that the device cannot exert is limited by nothing.
+  // A torque that the device cannot exert is limited by nothing, and only smoothed does it count at all.
+  const bool turns = settings.port.actuates_torque;
   const Spring turned = felt_spring(coupling.stiffness_Nm_per_rad, source.to_hand.w.norm(),
-                                    std::max(source.felt.t.norm(), source.smoothed.t.norm()) +
+                                    std::max(turns ? source.felt.t.norm() : 0.0, source.smoothed.t.norm()) +
                                         coupling.damping_Nms_per_rad * source.V_WH.w.norm(),
-                                    settings.port.actuates_torque ? settings.safety.max_torque_Nm : kNoLimit);
+                                    turns ? settings.safety.max_torque_Nm : kNoLimit);
   stored.spring_J = pushed.energy_J + turned.energy_J;
   stored.force_N = pushed.force;
   stored.torque_Nm = turned.force;
