@@ -6,7 +6,7 @@
 #include "app/program.h"
 #include "bench/pairs.h"
 
-namespace tactum {
+namespace tactum::bench_test {
 namespace {
 
 using testing::ProgramRun;
@@ -107,4 +107,4 @@ TEST(BenchCommand, ImpactsAreNeverLate) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::bench_test

@@ -15,7 +15,7 @@
 #include "support/effort.h"
 #include "support/real_data.h"
 
-namespace tactum {
+namespace tactum::clearance_test {
 namespace {
 
 using testing::ProgramRun;
@@ -202,4 +202,4 @@ TEST(InspectCommand, ReportsTheCube) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::clearance_test

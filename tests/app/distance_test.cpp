@@ -5,7 +5,7 @@
 
 #include "app/program.h"
 
-namespace tactum {
+namespace tactum::distance_test {
 namespace {
 
 using testing::ProgramRun;
@@ -105,4 +105,4 @@ TEST(DistanceCommand, RoundedRotationsAreMendedAndTold) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::distance_test

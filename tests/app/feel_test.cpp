@@ -7,7 +7,7 @@
 
 #include "app/program.h"
 
-namespace tactum {
+namespace tactum::feel_test {
 namespace {
 
 using testing::ProgramRun;
@@ -207,4 +207,4 @@ TEST(ScenesCommand, ListsThem) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::feel_test

@@ -5,7 +5,7 @@
 
 #include "app/program.h"
 
-namespace tactum {
+namespace tactum::prepare_test {
 namespace {
 
 using testing::ProgramRun;
@@ -121,4 +121,4 @@ TEST(PrepareCommand, ADamagedPartIsRefusedWithItsReason) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::prepare_test

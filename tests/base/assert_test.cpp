@@ -16,7 +16,7 @@ void fail_again(void*) noexcept {
   TACTUM_DEMAND(1 + 1 == 3);
 }
 
-class AssertDeathTest : public testing::Test {
+class AssertDeathTest : public ::testing::Test {
  protected:
   AssertDeathTest() { testing::FLAGS_gtest_death_test_style = "threadsafe"; }
 };

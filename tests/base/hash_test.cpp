@@ -28,7 +28,7 @@ std::uint64_t hash_of_numbers(double first, double second) {
 }
 
 template <class AnyHash>
-class NumberHash : public testing::Test {};
+class NumberHash : public ::testing::Test {};
 using NumberHashes = testing::Types<Hash, FrameHash>;
 TYPED_TEST_SUITE(NumberHash, NumberHashes);
 

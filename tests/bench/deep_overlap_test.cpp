@@ -11,7 +11,7 @@
 #include "support/effort.h"
 #include "tactum/collision/penetration.h"
 
-namespace tactum::bench {
+namespace tactum::bench::deep_overlap_test {
 namespace {
 
 TEST(DeepOverlap, FewDepthsOfCoarsePiecesAreNotTheSmallest) {
@@ -43,4 +43,4 @@ TEST(DeepOverlap, FewDepthsOfCoarsePiecesAreNotTheSmallest) {
 }
 
 }  // namespace
-}  // namespace tactum::bench
+}  // namespace tactum::bench::deep_overlap_test

@@ -10,7 +10,7 @@
 #include "tactum/geometry/primitives.h"
 #include "tactum/math/screw.h"
 
-namespace tactum::bench {
+namespace tactum::bench::feel_test {
 namespace {
 
 FeelRow ours(const std::string& name) {
@@ -108,4 +108,4 @@ TEST(Feel, ThePictureShowsEveryEngine) {
 }
 
 }  // namespace
-}  // namespace tactum::bench
+}  // namespace tactum::bench::feel_test

@@ -10,7 +10,7 @@
 #include "support/sandbox.h"
 #include "tactum/math/screw.h"
 
-namespace tactum::bench {
+namespace tactum::bench::free_motion_test {
 namespace {
 
 /// One world, moved by either.
@@ -50,7 +50,7 @@ struct Both {
   }
 };
 
-class AgainstOde : public testing::Test {
+class AgainstOde : public ::testing::Test {
  protected:
   void SetUp() override {
     if (!has_ode()) GTEST_SKIP() << "built without ODE (libode-dev): there is nothing to compare with";
@@ -115,4 +115,4 @@ TEST_F(AgainstOde, ABlockSlidesDownAnInclineAlike) {
 }
 
 }  // namespace
-}  // namespace tactum::bench
+}  // namespace tactum::bench::free_motion_test

@@ -14,7 +14,7 @@
 #include "support/effort.h"
 #include "tactum/haptics/simulation.h"
 
-namespace tactum::bench {
+namespace tactum::bench::heap_test {
 namespace {
 
 /// An ideal device that follows the scene's hand.
@@ -128,4 +128,4 @@ TEST(Heap, StaysWithinATenthOfItsPairsAndEntersNothing) {
 }
 
 }  // namespace
-}  // namespace tactum::bench
+}  // namespace tactum::bench::heap_test

@@ -10,7 +10,7 @@
 #include "bench/measure.h"
 #include "oracles/exhaustive.h"
 
-namespace tactum::bench {
+namespace tactum::bench::referee_test {
 namespace {
 
 Recording two_boxes(double gap_m) {
@@ -206,4 +206,4 @@ TEST(Meter, ReplaysUntilEveryPoseHasHadACoreOfItsOwn) {
 }
 
 }  // namespace
-}  // namespace tactum::bench
+}  // namespace tactum::bench::referee_test

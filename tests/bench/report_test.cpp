@@ -10,7 +10,7 @@
 #include "bench/pairs_plot.h"
 #include "bench/svg.h"
 
-namespace tactum::bench {
+namespace tactum::bench::report_test {
 namespace {
 
 Row row(const std::string& engine, double median_ns, double error_m, int missed) {
@@ -78,4 +78,4 @@ TEST(Plot, NamesEveryEngineAndMarksTheInaccurate) {
 }
 
 }  // namespace
-}  // namespace tactum::bench
+}  // namespace tactum::bench::report_test

@@ -12,7 +12,7 @@
 #include "tactum/haptics/coupling_gains.h"
 #include "tactum/haptics/simulation.h"
 
-namespace tactum::bench {
+namespace tactum::bench::scene_feel_test {
 namespace {
 
 /// Those of the scenes that are there, as far as they are not slow.
@@ -26,9 +26,11 @@ SceneFeelOptions sample_of_scenes() {
     return options;
   }
   options.scenes = {"block-on-plate", "lock", "peg-1mm", "moving-objects"};
-  options.devices = {"premium-1.5-6dof", "touch", "virtuose-6d"};
+  options.devices = {"premium-1.5-6dof", "touch"};
+  if (!testing::kSanitized) options.devices.push_back("virtuose-6d");
   options.hands = {"loose", "firm"};
   options.most_s = testing::effort(6.6, 1.5);
+  if (testing::kSanitized) options.hands = {"loose"};
   return options;
 }
 
@@ -112,4 +114,4 @@ TEST(PortReferee, SeesAWallThatSwingsAndSeesItComeToRest) {
 }
 
 }  // namespace
-}  // namespace tactum::bench
+}  // namespace tactum::bench::scene_feel_test

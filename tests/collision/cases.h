@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "support/effort.h"
+#include "support/rotation_between.h"
 #include "tactum/base/random.h"
 #include "tactum/geometry/hull.h"
 #include "tactum/geometry/primitives.h"
@@ -98,7 +99,7 @@ enum class Making {
 
 /// A rotation that takes unit `from` to unit `to`, then turned about `to` by `angle`.
 inline Mat3 turning(const Vec3& from, const Vec3& to, double angle) {
-  return exp_rotation(to * angle) * Quat::FromTwoVectors(from, to).normalized().toRotationMatrix();
+  return exp_rotation(to * angle) * testing::rotation_between(from, to);
 }
 
 /// A gap from the whole range that matters, relative to the size: 0, +-1e-14 ... +-1.

@@ -9,7 +9,7 @@
 #include "tactum/math/screw.h"
 #include "tactum/mesh/make_part.h"
 
-namespace tactum {
+namespace tactum::add_body_test {
 namespace {
 
 /// The part about its centre of mass, made from points that are moved by `offset`.
@@ -132,4 +132,4 @@ TEST(AddBody, NonsenseIsToldAndChangesNothing) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::add_body_test

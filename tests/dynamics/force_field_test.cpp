@@ -13,7 +13,7 @@
 #include "tactum/base/random.h"
 #include "tactum/math/screw.h"
 
-namespace tactum {
+namespace tactum::force_field_test {
 namespace {
 
 const DipoleField kDipole{.moment_Nm3 = 2e-6, .core_m = 0.01};
@@ -432,4 +432,4 @@ TEST(FieldPoints, AreSpreadEvenlyAndAlwaysTheSame) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::force_field_test

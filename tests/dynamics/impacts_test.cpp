@@ -7,7 +7,7 @@
 
 #include "random_bodies.h"
 
-namespace tactum {
+namespace tactum::impacts_test {
 namespace {
 
 using test::random_body;
@@ -192,4 +192,4 @@ TEST(Impacts, EachHasItsTime) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::impacts_test

@@ -9,7 +9,7 @@
 #include "tactum/dynamics/solve_penalty.h"
 #include "tactum/math/screw.h"
 
-namespace tactum {
+namespace tactum::joint_test {
 namespace {
 
 Vec3 random_vector(Random& random, double size) {
@@ -155,7 +155,7 @@ Twist joint_alone(const Body& body, const Pose& X_WB, const Twist& V) {
 
 /// A hinge or slider of unit mobility, for which mass and inertia are set to 1, 0.02 from its start, after a
 /// millisecond.
-class AfterJoint : public testing::TestWithParam<JointKind> {
+class AfterJoint : public ::testing::TestWithParam<JointKind> {
  protected:
   AfterJoint() {
     body_.mass_kg = 1.0;
@@ -213,7 +213,7 @@ TEST_P(AfterJoint, DamperActsAtTheEndOfTheStep) {
   EXPECT_NEAR(rate_after(0.3), 0.3 / (1.0 + 0.001 * 2.0), 1e-12);
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, AfterJoint, testing::Values(JointKind::kHinge, JointKind::kSlider),
+INSTANTIATE_TEST_SUITE_P(Kinds, AfterJoint, ::testing::Values(JointKind::kHinge, JointKind::kSlider),
                          [](const auto& kind) {
                            return std::string(kind.param == JointKind::kHinge ? "Hinge" : "Slider");
                          });
@@ -241,4 +241,4 @@ TEST(Joint, FixedBodiesStay) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::joint_test

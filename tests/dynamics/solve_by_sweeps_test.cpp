@@ -7,7 +7,7 @@
 #include "random_bodies.h"
 #include "tactum/dynamics/solve_exactly.h"
 
-namespace tactum {
+namespace tactum::solve_by_sweeps_test {
 namespace {
 
 constexpr double kStep = 1e-3;
@@ -206,4 +206,4 @@ TEST(SolveBySweeps, AgreesWithTheExactSolver) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::solve_by_sweeps_test

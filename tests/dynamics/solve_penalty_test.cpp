@@ -8,7 +8,7 @@
 #include "random_bodies.h"
 #include "tactum/dynamics/step.h"
 
-namespace tactum {
+namespace tactum::solve_penalty_test {
 namespace {
 
 using test::random_body;
@@ -186,4 +186,4 @@ TEST(Step, AContactClosesAfterItsDistanceOverItsSpeed) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::solve_penalty_test

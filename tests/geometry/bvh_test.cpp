@@ -8,7 +8,7 @@
 #include "tactum/base/random.h"
 #include "tactum/math/screw.h"
 
-namespace tactum {
+namespace tactum::bvh_test {
 namespace {
 
 Vec3 random_vector(Random& random, double size) {
@@ -136,4 +136,4 @@ TEST(Bvh, TheVisitorStopsTheWalk) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::bvh_test

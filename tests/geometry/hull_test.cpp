@@ -9,7 +9,7 @@
 #include "tactum/geometry/primitives.h"
 #include "tactum/math/screw.h"
 
-namespace tactum {
+namespace tactum::hull_test {
 namespace {
 
 Vec3 random_vector(Random& random, double size) {
@@ -114,4 +114,4 @@ TEST(Hull, FlatAndThinPoints) {
 TEST(DirectionTable, StaysBelowOneKilobyte) { EXPECT_LT(sizeof(Polytope::direction_table), 1024u); }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::hull_test

@@ -5,7 +5,7 @@
 #include "support/sample_meshes.h"
 #include "tactum/math/screw.h"
 
-namespace tactum {
+namespace tactum::mass_properties_test {
 namespace {
 
 using testing::box_mesh;
@@ -91,4 +91,4 @@ TEST(MassProperties, OpenTurnedAndFlatSurfacesAreTold) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::mass_properties_test

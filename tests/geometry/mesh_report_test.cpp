@@ -14,7 +14,7 @@
 #include "tactum/geometry/weld.h"
 #include "tactum/mesh/mesh_import.h"
 
-namespace tactum {
+namespace tactum::mesh_report_test {
 namespace {
 
 using testing::box_mesh;
@@ -197,4 +197,4 @@ TEST(MeshReport, RoundingOpensNoHoles) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::mesh_report_test

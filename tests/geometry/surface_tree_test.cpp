@@ -4,7 +4,9 @@
 
 #include <cstring>
 #include <set>
+#include <vector>
 
+#include "support/effort.h"
 #include "support/real_data.h"
 #include "support/sample_meshes.h"
 #include "support/surface_shapes.h"
@@ -12,7 +14,7 @@
 #include "tactum/geometry/weld.h"
 #include "tactum/mesh/mesh_import.h"
 
-namespace tactum {
+namespace tactum::surface_tree_test {
 namespace {
 
 std::array<std::set<std::int32_t>, 3> features_of(const SurfaceTree& tree) {
@@ -121,7 +123,8 @@ TEST(SurfaceTree, TakesAtMost120BytesATriangle) {
 
 TEST(SurfaceTree, OfRealPartsTakesAtMost120BytesATriangle) {
   TACTUM_NEEDS_REAL_DATA();
-  for (const char* name : {"industreal_gear_small.obj", "factory_bolt_m16_loose.obj", "spot.obj"}) {
+  for (const char* name : testing::sampled(
+           std::vector{"industreal_gear_small.obj", "factory_bolt_m16_loose.obj", "spot.obj"}, 3)) {
     const Result<ImportedMesh> mesh = import_mesh(testing::find_real(name).string());
     ASSERT_TRUE(mesh) << name;
     WeldOptions options;
@@ -179,4 +182,4 @@ TEST(SurfaceTree, TakesMeshesThatAreNoSolids) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::surface_tree_test

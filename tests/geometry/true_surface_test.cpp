@@ -18,7 +18,7 @@
 #include "tactum/parts/gear.h"
 #include "tactum/parts/generated_parts.h"
 
-namespace tactum {
+namespace tactum::true_surface_test {
 namespace {
 
 std::vector<Vec3> box_corners(const Vec3& low, const Vec3& high) {
@@ -167,4 +167,4 @@ TEST(TrueSurface, OfRealParts) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::true_surface_test

@@ -12,7 +12,7 @@
 #include "tactum/math/screw.h"
 #include "tactum/response/energy.h"
 
-namespace tactum {
+namespace tactum::body_load_test {
 namespace {
 
 struct Case {
@@ -40,7 +40,7 @@ struct Case {
 std::vector<Case> cases() {
   std::vector<Case> all;
   for (const ResponseModel response : {ResponseModel::kConstraint, ResponseModel::kPenalty})
-    for (const double rate_Hz : {500.0, 1000.0, 4000.0})
+    for (const double rate_Hz : testing::frame_rates_Hz())
       for (const double size_m : {0.005, 0.1, 2.0})
         for (const double mass_kg : {0.002, 0.5}) all.push_back({response, 1.0 / rate_Hz, size_m, mass_kg});
   return testing::sampled(all, 5);
@@ -393,4 +393,4 @@ TEST(BodyLoad, APushedBodyResistsByItsDamping) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::body_load_test

@@ -10,7 +10,7 @@
 #include "support/solid_box.h"
 #include "tactum/haptics/simulation.h"
 
-namespace tactum {
+namespace tactum::capacity_test {
 namespace {
 
 /// A square plate of n by n boxes side by side, with its centre in the origin, or the surface of it.
@@ -104,7 +104,7 @@ TEST(Capacity, WithoutRoomNothingIsEntered) {
 TEST(Capacity, WithRoomTheBlockComesToTheFloor) {
   for (const bool grasped : {true, false})
     for (const bool surface : {true, false}) {
-      SCOPED_TRACE(testing::Message() << "grasped " << grasped << ", surface " << surface);
+      SCOPED_TRACE(::testing::Message() << "grasped " << grasped << ", surface " << surface);
       const Outcome outcome = pressed({"ample", {}, 2, 2, surface, grasped});
       EXPECT_FALSE(outcome.flagged);
       EXPECT_GE(outcome.lowest_m, 0.0);
@@ -113,4 +113,4 @@ TEST(Capacity, WithRoomTheBlockComesToTheFloor) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::capacity_test

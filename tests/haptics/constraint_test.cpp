@@ -9,7 +9,7 @@
 #include "tactum/haptics/frame.h"
 #include "tactum/math/screw.h"
 
-namespace tactum {
+namespace tactum::constraint_test {
 namespace {
 
 TEST(Constraint, PressedFlatTheForceIsTheCouplingsAlone) {
@@ -149,4 +149,4 @@ TEST(Constraint, AStepIsNeverLongerThanSet) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::constraint_test

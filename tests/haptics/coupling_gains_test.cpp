@@ -7,7 +7,7 @@
 
 #include "tactum/devices/simulated_device.h"
 
-namespace tactum {
+namespace tactum::coupling_gains_test {
 namespace {
 
 DeviceInfo info_of(const std::string& preset) {
@@ -122,4 +122,4 @@ TEST(PortSettings, AreWhatTheDeviceTellsOfItself) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::coupling_gains_test

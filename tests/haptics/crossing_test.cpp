@@ -17,7 +17,7 @@
 #include "tactum/mesh/make_part.h"
 #include "tactum/referee/crossing_referee.h"
 
-namespace tactum {
+namespace tactum::crossing_test {
 namespace {
 
 constexpr double kGravity = 9.81;  // [m/s^2]
@@ -250,4 +250,4 @@ TEST(Crossing, ACubePassesATunnelThatLeavesItAMicrometre) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::crossing_test

@@ -7,7 +7,7 @@
 #include "tactum/haptics/simulation.h"
 #include "tactum/math/screw.h"
 
-namespace tactum {
+namespace tactum::far_body_test {
 namespace {
 
 /// A block in the hand over a plate, and a body far away, of half `size` m, unless that is zero.
@@ -50,7 +50,7 @@ TEST(FarBody, ChangesNothing) {
     for (const double rate_Hz : {500.0, 2000.0})
       for (const double size : {0.005, 5.0, 50.0})
         for (const JointKind joint : {JointKind::kFree, JointKind::kHinge, JointKind::kBall}) {
-          SCOPED_TRACE(testing::Message()
+          SCOPED_TRACE(::testing::Message()
                        << int(response) << " " << rate_Hz << " Hz " << size << " m, joint " << int(joint));
           const auto alone = block_and_far_body(response, rate_Hz, 0.0, joint);
           const auto both = block_and_far_body(response, rate_Hz, size, joint);
@@ -68,4 +68,4 @@ TEST(FarBody, ChangesNothing) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::far_body_test

@@ -8,7 +8,7 @@
 #include "support/allocation_guard.h"
 #include "support/block_rig.h"
 
-namespace tactum {
+namespace tactum::field_pull_test {
 namespace {
 
 const DipoleField kDipole{.moment_Nm3 = 2e-6, .core_m = 0.01};
@@ -185,4 +185,4 @@ TEST(FieldPull, TheSentenceWarnsOfSteepFields) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::field_pull_test

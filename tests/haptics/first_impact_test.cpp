@@ -11,7 +11,7 @@
 #include "tactum/haptics/simulation.h"
 #include "tactum/math/screw.h"
 
-namespace tactum {
+namespace tactum::first_impact_test {
 namespace {
 
 /// A hand turns a bar about y, at the largest step, over a plate whose top is at z = 0. Turned by `a` from
@@ -163,4 +163,4 @@ TEST(FirstImpact, WithoutBudgetItIsThePublishedEstimate) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::first_impact_test

@@ -7,13 +7,14 @@
 
 #include "support/add_body.h"
 #include "support/block_rig.h"
+#include "support/rotation_between.h"
 #include "support/sandbox.h"
 #include "support/solid_box.h"
 #include "tactum/geometry/primitives.h"
 #include "tactum/haptics/force_stage.h"
 #include "tactum/haptics/simulation.h"
 
-namespace tactum {
+namespace tactum::frame_path_test {
 namespace {
 
 constexpr std::array kResponses = {ResponseModel::kConstraint, ResponseModel::kPenalty};
@@ -30,8 +31,8 @@ TEST(FramePath, NoStepOfTheSmoothedWrenchIsLongerThanSet) {
   for (const ResponseModel response : kResponses)
     for (const Smoothed& c : {Smoothed{}, Smoothed{.step_N = 0.1}, Smoothed{.depth = 0.005},
                               Smoothed{.rate_Hz = 500.0}, Smoothed{.rate_Hz = 4000.0}}) {
-      SCOPED_TRACE(testing::Message() << "response " << int(response) << ", " << c.step_N << " N, " << c.depth
-                                      << " m, " << c.rate_Hz << " Hz");
+      SCOPED_TRACE(::testing::Message() << "response " << int(response) << ", " << c.step_N << " N, "
+                                        << c.depth << " m, " << c.rate_Hz << " Hz");
       BlockRig rig;
       rig.settings.response = response;
       rig.settings.dt_s = 1.0 / c.rate_Hz;
@@ -79,8 +80,8 @@ TEST(FramePath, AFacetedBarPushesAlongItsRadius) {
   for (const ResponseModel response : kResponses)
     for (const Bar& c : {Bar{}, Bar{.sides = 12}, Bar{.sides = 60, .beside = -0.7}, Bar{.radius_m = 0.2},
                          Bar{.depth = 1e-3}, Bar{.rate_Hz = 500.0}, Bar{.rate_Hz = 4000.0}}) {
-      SCOPED_TRACE(testing::Message() << "response " << int(response) << ", " << c.sides << " sides of "
-                                      << c.radius_m << " m, at " << c.beside << ", " << c.rate_Hz << " Hz");
+      SCOPED_TRACE(::testing::Message() << "response " << int(response) << ", " << c.sides << " sides of "
+                                        << c.radius_m << " m, at " << c.beside << ", " << c.rate_Hz << " Hz");
       const double half_rad = kPi / c.sides;
       const double top = c.radius_m * std::cos(half_rad);
       const double beside_m = c.beside * c.radius_m * std::sin(half_rad);
@@ -91,8 +92,7 @@ TEST(FramePath, AFacetedBarPushesAlongItsRadius) {
       const double half_m = 0.004;
       const Vec3 corner_B(-half_m, -half_m, -half_m);
       rig.world.bodies[0].part = solid_box({half_m, half_m, half_m});
-      rig.world.bodies[0].X_WB.R =
-          Eigen::Quaterniond::FromTwoVectors(corner_B, -Vec3::UnitZ()).toRotationMatrix();
+      rig.world.bodies[0].X_WB.R = testing::rotation_between(corner_B.normalized(), -Vec3::UnitZ());
       const Vec3 start(beside_m, 0.0, top + 1e-4);
       rig.world.bodies[0].X_WB.p = start - rig.world.bodies[0].X_WB.R * corner_B;
       rig.settings.tool.X_BH.p = corner_B;
@@ -129,8 +129,8 @@ TEST(FramePath, TheMarginHoldsTheTurnOfABody) {
           Turning{.rate_rad_per_s = 20.0, .rate_Hz = 4000.0}, Turning{.grasped = true}}) {
       // The margin of a grasped part in the constraint response is the length that its steps are trusted for.
       if (c.grasped && response == ResponseModel::kConstraint) continue;
-      SCOPED_TRACE(testing::Message() << "response " << int(response) << ", " << c.length_m << " m, "
-                                      << c.rate_rad_per_s << " rad/s, " << c.rate_Hz << " Hz");
+      SCOPED_TRACE(::testing::Message() << "response " << int(response) << ", " << c.length_m << " m, "
+                                        << c.rate_rad_per_s << " rad/s, " << c.rate_Hz << " Hz");
       const double dt_s = 1.0 / c.rate_Hz;
       const Vec3 half_m = 0.5 * c.length_m * Vec3(1.0, 0.1, 0.1);
       const double arc_m = half_m.norm() * c.rate_rad_per_s * dt_s;
@@ -173,8 +173,8 @@ TEST(FramePath, TheJointOfAGraspedPartIsFelt) {
           GraspedJoint{.kind = kHinge, .stiffness = 0.05, .hand = -0.2, .rate_Hz = 2000.0},
           GraspedJoint{.stiffness = 0.0, .damping = 20.0},
           GraspedJoint{.kind = kHinge, .stiffness = 0.0, .damping = 0.02, .hand = 0.5}}) {
-      SCOPED_TRACE(testing::Message() << "response " << int(response) << ", joint " << int(c.kind) << ", "
-                                      << c.stiffness << ", " << c.damping << ", " << c.rate_Hz << " Hz");
+      SCOPED_TRACE(::testing::Message() << "response " << int(response) << ", joint " << int(c.kind) << ", "
+                                        << c.stiffness << ", " << c.damping << ", " << c.rate_Hz << " Hz");
       Rig rig(1);
       rig.settings.response = response;
       rig.settings.dt_s = 1.0 / c.rate_Hz;
@@ -225,8 +225,8 @@ TEST(FramePath, ACubeBouncesOnAJointedPlateAsOnAFixedOne) {
   for (const Bounce& c :
        {Bounce{}, Bounce{.kind = JointKind::kSlider}, Bounce{.size_m = 0.1, .height_m = 0.2},
         Bounce{.restitution = 1.0}, Bounce{.rate_Hz = 500.0}, Bounce{.height_m = 0.01, .rate_Hz = 4000.0}}) {
-    SCOPED_TRACE(testing::Message() << "joint " << int(c.kind) << ", " << c.size_m << " m, e "
-                                    << c.restitution << ", " << c.rate_Hz << " Hz");
+    SCOPED_TRACE(::testing::Message() << "joint " << int(c.kind) << ", " << c.size_m << " m, e "
+                                      << c.restitution << ", " << c.rate_Hz << " Hz");
     const Vec3 axis = c.kind == JointKind::kHinge ? Vec3::UnitZ() : Vec3::UnitX();
     const double fixed = speed_after_bounce(c, {.kind = JointKind::kFixed});
     const double jointed = speed_after_bounce(c, {.kind = c.kind, .axis_W = axis});
@@ -271,8 +271,8 @@ TEST(FramePath, TheHandIsGivenNoEnergyThatAStageGenerates) {
   for (const ResponseModel response : kResponses)
     for (const Pushed& c : {Pushed{}, Pushed{.gain_Ns_per_m = 5.0}, Pushed{.rate_Hz = 4000.0},
                             Pushed{.frequency_Hz = 3.0}, Pushed{.along = Vec3(0.6, 0.0, 0.8)}}) {
-      SCOPED_TRACE(testing::Message() << "response " << int(response) << ", " << c.gain_Ns_per_m << " N s/m, "
-                                      << c.rate_Hz << " Hz, " << c.frequency_Hz << " Hz");
+      SCOPED_TRACE(::testing::Message() << "response " << int(response) << ", " << c.gain_Ns_per_m
+                                        << " N s/m, " << c.rate_Hz << " Hz, " << c.frequency_Hz << " Hz");
       World world;
       add_body(world, {.part = solid_box({0.01, 0.01, 0.01}), .mass_kg = 1e-6 /* kg */});
       DeviceInfo device;
@@ -300,4 +300,4 @@ TEST(FramePath, TheHandIsGivenNoEnergyThatAStageGenerates) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::frame_path_test

@@ -9,7 +9,7 @@
 #include "tactum/math/screw.h"
 #include "tactum/mesh/make_part.h"
 
-namespace tactum {
+namespace tactum::frame_test {
 namespace {
 
 constexpr double kPlateTop = 0.0;  // z of the plate's upper face [m]
@@ -250,4 +250,4 @@ TEST(Hand, TheClutchLetsTheHandleMoveAndTheHandStay) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::frame_test

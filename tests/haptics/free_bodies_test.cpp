@@ -10,7 +10,7 @@
 #include "support/sandbox.h"
 #include "tactum/math/screw.h"
 
-namespace tactum {
+namespace tactum::free_bodies_test {
 namespace {
 
 const Vec3 kGravity(0, 0, -9.81);  // [m/s^2]
@@ -326,4 +326,4 @@ TEST(FreeBodies, FastAndSmallDoesNotPassThroughThin) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::free_bodies_test

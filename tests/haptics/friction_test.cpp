@@ -5,11 +5,13 @@
 
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "support/block_rig.h"
+#include "support/effort.h"
 #include "support/sample_meshes.h"
 
-namespace tactum {
+namespace tactum::friction_test {
 namespace {
 
 constexpr double kFlat_m = 0.008;   // height of the block's middle in the rig's first pose [m]
@@ -129,7 +131,7 @@ std::pair<double, double> ratio_while_drawn(BoxOnBox& rig, double size, const Ve
 
 TEST(Friction, ActsBetweenPartsFeltByTheirSurfaces) {
   for (const auto& [above, below] : {std::pair(false, true), {true, false}, {true, true}})
-    for (const double size : {0.5, 1.0, 3.0})
+    for (const double size : testing::sampled(std::vector{0.5, 1.0, 3.0}, 3))
       for (const double mu : {0.0, 0.1, 0.3})
         for (const Vec3& along : {Vec3(1, 0, 0), Vec3(0.6, 0.8, 0)}) {
           BoxOnBox rig(above, below, size, mu);
@@ -144,7 +146,7 @@ TEST(Friction, ActsBetweenPartsFeltByTheirSurfaces) {
 /// k h of its weight, and friction is mu (m g - k h), not mu m g. Drawn 0.1 mm above, 2.4 % are missing.
 TEST(Friction, OfADrawnCrateIsThatOfTheWeightWhichTheHandDoesNotCarry) {
   constexpr double kMass = 0.25, kGravity = 9.81, kMu = 0.3, kHalf = 0.05;
-  for (const double rate_Hz : {500.0, 1000.0, 4000.0})
+  for (const double rate_Hz : testing::frame_rates_Hz())
     for (const double speed : {0.02, 0.1})
       for (const double above_m : {-0.001, 0.0, 1e-4, 1e-3})
         for (const bool surface : {false, true}) {
@@ -195,4 +197,4 @@ TEST(Friction, OfATwistedBlockLiesBetweenEvenPressureAndLoadsAtTheCorners) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::friction_test

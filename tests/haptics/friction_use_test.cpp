@@ -4,7 +4,7 @@
 
 #include "support/block_rig.h"
 
-namespace tactum {
+namespace tactum::friction_use_test {
 namespace {
 
 /// Pressed flat on the plate with about three newtons.
@@ -68,4 +68,4 @@ TEST(FrictionUse, NothingIsToldWhereNothingRubs) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::friction_use_test

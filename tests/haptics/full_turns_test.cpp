@@ -5,11 +5,12 @@
 
 #include "support/add_body.h"
 #include "support/effort.h"
+#include "support/rotation_between.h"
 #include "support/solid_box.h"
 #include "tactum/haptics/simulation.h"
 #include "tactum/math/screw.h"
 
-namespace tactum {
+namespace tactum::full_turns_test {
 namespace {
 
 constexpr double kStop = 0.35;  // [rad]
@@ -24,8 +25,7 @@ struct Knob {
     joint.lower = -kStop;
     joint.upper = kStop;
     if (slot) joint.kind = JointKind::kFixed;  // of the walls below
-    const Quat turned = Quat::FromTwoVectors(Vec3::UnitZ(), axis);
-    const Pose X{turned.toRotationMatrix(), Vec3::Zero()};
+    const Pose X{testing::rotation_between(Vec3::UnitZ(), axis), Vec3::Zero()};
     add_body(world, {.part = solid_box({0.06, 0.005, 0.005}),
                      .mass_kg = 0.1,
                      .X_WP = X,
@@ -52,7 +52,7 @@ struct Knob {
 
 TEST(FullTurns, TheTorqueGrowsWithTheTurnBeyondAStop) {
   for (const ResponseModel response : {ResponseModel::kConstraint, ResponseModel::kPenalty})
-    for (const double rate_Hz : {500.0, 1000.0, 4000.0})
+    for (const double rate_Hz : testing::frame_rates_Hz())
       for (const Vec3& axis : {Vec3(0, 0, 1), Vec3(0, 0, -1), Vec3(1, 2, -0.5)})
         for (const double to : {2.0, 3.5, 6.5, 20.0}) {
           if (testing::kSanitized && to > 6.0) continue;
@@ -110,4 +110,4 @@ TEST(FullTurns, TheTurnIsFollowedWithoutSteps) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::full_turns_test

@@ -6,11 +6,12 @@
 #include <complex>
 
 #include "support/add_body.h"
+#include "support/effort.h"
 #include "support/solid_box.h"
 #include "tactum/haptics/simulation.h"
 #include "tactum/math/screw.h"
 
-namespace tactum {
+namespace tactum::grasped_linkage_test {
 namespace {
 
 constexpr double kGravity = 9.81;
@@ -49,7 +50,7 @@ class GraspedPair {
 
 /// At rest the hand feels the weight of both, and the torque of what rides beside the handle.
 TEST(GraspedLinkage, TheHandFeelsTheWeightOfWhatHangsOnThePart) {
-  for (const double rate_Hz : {500.0, 1000.0, 4000.0})
+  for (const double rate_Hz : testing::frame_rates_Hz())
     for (const double size : {0.1, 1.0})
       for (const bool holds_child : {false, true})
         for (const JointKind kind : {JointKind::kFixed, JointKind::kHinge}) {
@@ -105,4 +106,4 @@ TEST(GraspedLinkage, TheHandFeelsTheInertiaOfWhatRides) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::grasped_linkage_test

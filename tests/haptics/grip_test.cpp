@@ -10,7 +10,7 @@
 #include "support/solid_box.h"
 #include "tactum/haptics/simulation.h"
 
-namespace tactum {
+namespace tactum::grip_test {
 namespace {
 
 constexpr double kGravity = 9.81;  // [m/s^2]
@@ -76,8 +76,8 @@ TEST(GrippedBox, IsHeldBelowTheLimitOfFriction) {
   for (Grip grip : kGrips)
     for (const double used : {0.33, 0.82, 0.95}) {
       grip.used = used;
-      SCOPED_TRACE(testing::Message() << grip.size_m << " m, " << grip.rate_Hz << " Hz, mu " << grip.mu
-                                      << ", used " << used << ", box first " << grip.box_first);
+      SCOPED_TRACE(::testing::Message() << grip.size_m << " m, " << grip.rate_Hz << " Hz, mu " << grip.mu
+                                        << ", used " << used << ", box first " << grip.box_first);
       EXPECT_LT(std::abs(fall_of(grip).by_m), 1e-3 * grip.size_m);
     }
 }
@@ -85,8 +85,8 @@ TEST(GrippedBox, IsHeldBelowTheLimitOfFriction) {
 TEST(GrippedBox, FallsByTheExcessOfItsWeight) {
   for (Grip grip : kGrips) {
     grip.used = 1.02;
-    SCOPED_TRACE(testing::Message() << grip.size_m << " m, " << grip.rate_Hz << " Hz, mu " << grip.mu
-                                    << ", box first " << grip.box_first);
+    SCOPED_TRACE(::testing::Message() << grip.size_m << " m, " << grip.rate_Hz << " Hz, mu " << grip.mu
+                                      << ", box first " << grip.box_first);
     const double expected = kGravity * (1.0 - 1.0 / grip.used);
     if (0.5 * expected * 0.25 < 0.8 * grip.size_m) {  // it is still between the jaws
       EXPECT_NEAR(fall_of(grip).acceleration, expected, 0.02 * expected);
@@ -95,4 +95,4 @@ TEST(GrippedBox, FallsByTheExcessOfItsWeight) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::grip_test

@@ -13,7 +13,7 @@
 #include "tactum/math/screw.h"
 #include "tactum/response/energy.h"
 
-namespace tactum {
+namespace tactum::joined_motion_test {
 namespace {
 
 constexpr double kGravity = 9.81;
@@ -34,7 +34,7 @@ std::vector<Setting> settings() {
     for (const double size : {0.1, 30.0}) all.push_back({response, 0.001, size});
     all.push_back({response, 0.001, 1.0, true});
   }
-  return testing::sampled(all, 5);
+  return testing::sampled(all, 12);
 }
 
 std::string name_of(const Setting& s) {
@@ -410,7 +410,7 @@ TEST(JoinedMotion, ALongChainGainsNoEnergy) {
     Linkage chain(setting, {0, -kGravity, 0}, pieces);
     const double first = chain.energy();
     const double swing = 10 * 0.05 * kGravity * 0.5 * (1.0 - std::cos(0.6));
-    for (int i = 0; i < 30; ++i) {
+    for (int i = 0; i < testing::effort(30, 6); ++i) {
       chain.run(0.1);
       EXPECT_LT(chain.energy(), first + 0.05 * swing) << i;
       ASSERT_LT(chain.open(), 1e-12);
@@ -419,4 +419,4 @@ TEST(JoinedMotion, ALongChainGainsNoEnergy) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::joined_motion_test

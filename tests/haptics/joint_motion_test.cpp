@@ -10,7 +10,7 @@
 #include "tactum/math/screw.h"
 #include "tactum/response/energy.h"
 
-namespace tactum {
+namespace tactum::joint_motion_test {
 namespace {
 
 const Vec3 kRod(0.002, 0.05, 0.002);  // half a rod of 0.1 m along y [m]
@@ -29,7 +29,7 @@ std::vector<Setting> settings() {
       all.push_back({response, 1.0 / rate_Hz, 1.0});
     for (const double size : {0.1, 30.0}) all.push_back({response, 0.001, size});
   }
-  return testing::sampled(all, 5);
+  return testing::sampled(all, 11);
 }
 
 std::string name_of(const Setting& s) {
@@ -143,7 +143,7 @@ TEST(JointMotion, APendulumKeepsItsEnergyForAMinute) {
       };
       const double lowest = -Alone::kMass_kg * 9.81 * 0.05;
       const double first = mean() - lowest;
-      rod.run(59.0);
+      rod.run(testing::effort(59.0, 5.0));
       EXPECT_NEAR(mean() - lowest, first, 1e-3 * first);
     }
 }
@@ -197,4 +197,4 @@ TEST(JointMotion, AHingeIsFollowedOverFullTurns) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::joint_motion_test

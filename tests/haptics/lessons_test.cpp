@@ -5,7 +5,7 @@
 
 #include "support/block_rig.h"
 
-namespace tactum {
+namespace tactum::lessons_test {
 namespace {
 
 constexpr double kPressed_m = 0.004;  // so far the hand is below where the block can be
@@ -85,4 +85,4 @@ TEST(Lessons, APartThatMayNotMoveIsFeltWhereItStands) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::lessons_test

@@ -10,7 +10,7 @@
 #include "support/solid_box.h"
 #include "tactum/haptics/simulation.h"
 
-namespace tactum {
+namespace tactum::level_drop_test {
 namespace {
 
 constexpr double kGravity = 9.81;  // [m/s^2]
@@ -68,12 +68,12 @@ TEST(LevelDrop, LeavesRailsAndPegsAsAFloor) {
         Drop{.rails = four, .size_m = 0.005}, Drop{.rails = three, .size_m = 2.0},
         Drop{.rails = four, .rate_Hz = 4000.0}, Drop{.rate_Hz = 500.0},
         Drop{.rails = three, .restitution = 0.5}, Drop{.rails = four, .restitution = 0.8}}) {
-    SCOPED_TRACE(testing::Message() << drop.rails.size() << " rails, " << drop.size_m << " m, "
-                                    << drop.rate_Hz << " Hz, e " << drop.restitution << ", box first "
-                                    << drop.box_first);
+    SCOPED_TRACE(::testing::Message()
+                 << drop.rails.size() << " rails, " << drop.size_m << " m, " << drop.rate_Hz << " Hz, e "
+                 << drop.restitution << ", box first " << drop.box_first);
     expect_level_bounce(drop);
   }
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::level_drop_test

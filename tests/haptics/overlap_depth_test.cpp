@@ -11,7 +11,7 @@
 #include "tactum/haptics/simulation.h"
 #include "tactum/math/screw.h"
 
-namespace tactum {
+namespace tactum::overlap_depth_test {
 namespace {
 
 /// A grasped block that its joint leads obliquely into a fixed plate, whose top is at z = 0.
@@ -257,4 +257,4 @@ TEST(OverlapDepth, ADepthCostsATest) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::overlap_depth_test

@@ -13,7 +13,7 @@
 #include "tactum/haptics/simulation.h"
 #include "tactum/mesh/make_part.h"
 
-namespace tactum {
+namespace tactum::passing_test {
 namespace {
 
 constexpr double kGravity = 9.81;  // [m/s^2]
@@ -66,11 +66,11 @@ TEST(Passing, AnEdgeThatIsNotTouchedDoesNothing) {
        {Passing{}, Passing{.gap = 4e-3}, Passing{.gap = 4e-5}, Passing{.wall_first = false},
         Passing{.restitution = 1.0}, Passing{.rate_Hz = 500.0}, Passing{.rate_Hz = 4000.0},
         Passing{.radius_m = 0.001}, Passing{.radius_m = 0.5}, Passing{.spin = {0, 0, 20}}}) {
-    SCOPED_TRACE(testing::Message() << c.radius_m << " m, gap " << c.gap << ", " << c.rate_Hz << " Hz, e "
-                                    << c.restitution << ", spin " << c.spin.norm());
+    SCOPED_TRACE(::testing::Message() << c.radius_m << " m, gap " << c.gap << ", " << c.rate_Hz << " Hz, e "
+                                      << c.restitution << ", spin " << c.spin.norm());
     expect_straight(c);
   }
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::passing_test

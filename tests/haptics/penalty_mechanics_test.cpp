@@ -11,7 +11,7 @@
 #include "tactum/haptics/simulation.h"
 #include "tactum/math/screw.h"
 
-namespace tactum {
+namespace tactum::penalty_mechanics_test {
 namespace {
 
 constexpr double kGravity = 9.81;  // [m/s^2]
@@ -111,7 +111,7 @@ TEST(PenaltyMechanics, TheWeightOfTheGraspedPartIsFelt) {
        {Grasp{0.15, 0.04, 1000.0, {0.015, 0, 0}}, Grasp{0.15, 0.04, 500.0, {0, 0, 0}},
         Grasp{0.15, 0.04, 4000.0, {0, 0.01, 0.02}}, Grasp{0.002, 0.005, 1000.0, {0.001, 0, 0}},
         Grasp{0.3, 0.5, 1000.0, {0.01, -0.02, 0}}}) {
-    SCOPED_TRACE(testing::Message() << grasp.mass_kg << " kg, " << grasp.size_m << " m, " << grasp.rate_Hz);
+    SCOPED_TRACE(::testing::Message() << grasp.mass_kg << " kg, " << grasp.size_m << " m, " << grasp.rate_Hz);
     World world;
     world.gravity_W = {0, 0, -kGravity};
     add_body(world, {.part = solid_box(grasp.size_m * Vec3(0.5, 0.4, 0.3)), .mass_kg = grasp.mass_kg});
@@ -190,4 +190,4 @@ TEST(PenaltyMechanics, ABodyPressedOnTheFloorIsFeltByTheLaw) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::penalty_mechanics_test

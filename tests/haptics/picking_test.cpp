@@ -5,7 +5,7 @@
 #include "support/sandbox.h"
 #include "tactum/math/screw.h"
 
-namespace tactum {
+namespace tactum::picking_test {
 namespace {
 
 Pose at(double x, double y, double z) { return {Mat3::Identity(), {x, y, z}}; }
@@ -111,4 +111,4 @@ TEST(Picking, ABlowOnTheHeldBlockIsFeltAsAPulseOfTheSameMomentum) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::picking_test

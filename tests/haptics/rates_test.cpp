@@ -9,7 +9,7 @@
 #include "tactum/base/frame_rate.h"
 #include "tactum/contact/steady_contact.h"
 
-namespace tactum {
+namespace tactum::rates_test {
 namespace {
 
 constexpr std::array kSteps_s = {0.001, 0.0005, 0.00025, 0.0001};
@@ -118,4 +118,4 @@ TEST(Rates, APressedAndSlidBlockFeelsTheSame) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::rates_test

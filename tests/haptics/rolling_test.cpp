@@ -12,7 +12,7 @@
 #include "tactum/math/screw.h"
 #include "tactum/mesh/round_part.h"
 
-namespace tactum {
+namespace tactum::rolling_test {
 namespace {
 
 constexpr double kGravity = 9.81;  // [m/s^2]
@@ -318,4 +318,4 @@ TEST(Rolling, ABallRestsInAGroove) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::rolling_test

@@ -16,7 +16,7 @@
 #include "tactum/math/screw.h"
 #include "tactum/mesh/make_part.h"
 
-namespace tactum {
+namespace tactum::seam_test {
 namespace {
 
 using Clouds = std::vector<std::vector<Vec3>>;
@@ -45,7 +45,7 @@ void cut_cloud(const std::vector<Vec3>& cloud, const Vec3& normal, double offset
 }
 
 /// Random poses in which patches are compared.
-const int kPoses = testing::full_run() ? 20000 : testing::kSanitized ? 200 : 2000;
+const int kPoses = testing::full_run() ? 20000 : testing::effort(2000, 80);
 
 /// Half edge lengths of the plate that is felt [m].
 const Vec3 kPlate(0.05, 0.05, 0.01);
@@ -425,4 +425,4 @@ TEST(Seams, TrueEdgesAreFelt) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::seam_test

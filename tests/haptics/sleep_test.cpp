@@ -10,7 +10,7 @@
 #include "support/sandbox.h"
 #include "tactum/math/screw.h"
 
-namespace tactum {
+namespace tactum::sleep_test {
 namespace {
 
 const Vec3 kGravity(0, 0, -9.81);  // [m/s^2]
@@ -83,7 +83,7 @@ TEST(Sleep, WhatSwingsSlidesOrFliesStaysAwake) {
 TEST(Sleep, WhatGainsSpeedSlowlyStaysAwake) {
   for (const double off : {1e-2, 1e-5, 1e-8})
     for (const double size : {0.02, 0.2, 2.0}) {
-      SCOPED_TRACE(testing::Message() << off << " rad, " << size << " m");
+      SCOPED_TRACE(::testing::Message() << off << " rad, " << size << " m");
       Sandbox box;
       box.world.gravity_W = kGravity;
       box.settings.budget.sleep = true;
@@ -155,4 +155,4 @@ TEST(Sleep, WhatIsPushedWakesWithWhatStandsOnIt) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::sleep_test

@@ -8,7 +8,7 @@
 #include "tactum/haptics/hand_stage.h"
 #include "tactum/math/screw.h"
 
-namespace tactum {
+namespace tactum::stages_test {
 namespace {
 
 DeviceSample sample_at(const Pose& X_DH, double time_s) {
@@ -157,4 +157,4 @@ TEST(ContactStage, GivesPrioritiesByTheLastPatches) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::stages_test

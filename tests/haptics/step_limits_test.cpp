@@ -4,16 +4,18 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "support/add_body.h"
+#include "support/effort.h"
 #include "support/solid_box.h"
 #include "tactum/haptics/simulation.h"
 #include "tactum/math/screw.h"
 
-namespace tactum {
+namespace tactum::step_limits_test {
 namespace {
 
-constexpr double kRates_Hz[] = {500.0, 1000.0, 4000.0};
+const std::vector<double> kRates_Hz = testing::frame_rates_Hz();
 constexpr ResponseModel kResponses[] = {ResponseModel::kConstraint, ResponseModel::kPenalty};
 
 FrameSettings settings_of(double scale, ResponseModel response, double rate_Hz) {
@@ -58,8 +60,8 @@ TEST(StepLimits, APartInFreeSpaceFollowsTheHandWithinAFrame) {
     for (const double rate_Hz : kRates_Hz)
       for (const double scale : {0.1, 1.0, 10.0, 20.0})
         for (const double size : {0.02, 0.02 * scale}) {
-          SCOPED_TRACE(testing::Message() << int(response) << ", " << rate_Hz << " Hz, scale " << scale
-                                          << ", half " << size << " m");
+          SCOPED_TRACE(::testing::Message() << int(response) << ", " << rate_Hz << " Hz, scale " << scale
+                                            << ", half " << size << " m");
           const auto simulation =
               simulation_of(block_of({size, 0.7 * size, 0.5 * size}), settings_of(scale, response, rate_Hz));
           const double distance = 0.08;  // at the device, in 0.4 s: up to 0.375 m/s
@@ -78,7 +80,7 @@ TEST(StepLimits, ABarOfAnyLengthTurnsWithTheHand) {
   for (const double rate_Hz : kRates_Hz)
     for (const double length : {0.1, 1.0, 10.0})
       for (const double grasp : {0.0, 0.5}) {  // in the middle, and at an end
-        SCOPED_TRACE(testing::Message() << rate_Hz << " Hz, " << length << " m, at " << grasp);
+        SCOPED_TRACE(::testing::Message() << rate_Hz << " Hz, " << length << " m, at " << grasp);
         FrameSettings settings = settings_of(1.0, ResponseModel::kConstraint, rate_Hz);
         settings.tool.X_BH.p.x() = grasp * length;
         const auto simulation =
@@ -97,7 +99,7 @@ TEST(StepLimits, ABarOfAnyLengthTurnsWithTheHand) {
 TEST(StepLimits, ThePublishedThresholdHoldsALongBarBackAndIsFlagged) {
   for (const double rate_Hz : kRates_Hz)
     for (const double length : {1.0, 10.0}) {
-      SCOPED_TRACE(testing::Message() << rate_Hz << " Hz, " << length << " m");
+      SCOPED_TRACE(::testing::Message() << rate_Hz << " Hz, " << length << " m");
       const auto simulation = simulation_of(block_of({0.5 * length, 0.01 * length, 0.01 * length}),
                                             settings_of(1.0, ResponseModel::kPenalty, rate_Hz));
       std::uint32_t flags = 0;
@@ -117,8 +119,8 @@ TEST(StepLimits, AWallIsFeltWhenTheHandIsThere) {
     for (const double scale : {0.1, 1.0, 10.0, 20.0})
       for (const double size : {0.02, 0.02 * scale})
         for (const double speed : {0.1, 0.4}) {
-          SCOPED_TRACE(testing::Message() << rate_Hz << " Hz, scale " << scale << ", half " << size << " m, "
-                                          << speed << " m/s");
+          SCOPED_TRACE(::testing::Message() << rate_Hz << " Hz, scale " << scale << ", half " << size
+                                            << " m, " << speed << " m/s");
           World world = block_of({size, 0.7 * size, 0.5 * size});
           const double gap = 0.05 * scale;  // 50 mm at the device
           add_fixed(world, {0.01 * scale, 2 * size, 2 * size}, {size + gap + 0.01 * scale, 0, 0});
@@ -140,7 +142,7 @@ TEST(StepLimits, AHandThatIsFasterThanThePartMayFollowIsFlagged) {
   for (const ResponseModel response : kResponses)
     for (const double rate_Hz : kRates_Hz)
       for (const double scale : {0.1, 1.0, 20.0}) {
-        SCOPED_TRACE(testing::Message() << int(response) << ", " << rate_Hz << " Hz, scale " << scale);
+        SCOPED_TRACE(::testing::Message() << int(response) << ", " << rate_Hz << " Hz, scale " << scale);
         const double size = 0.02 * scale;
         const auto run = [&](const Twist& fast, double duration_s) {
           const auto simulation =
@@ -165,7 +167,7 @@ TEST(StepLimits, APartHeldBackByAWallIsNotFlagged) {
   for (const ResponseModel response : kResponses)
     for (const double rate_Hz : kRates_Hz)
       for (const double scale : {0.1, 1.0, 20.0}) {
-        SCOPED_TRACE(testing::Message() << int(response) << ", " << rate_Hz << " Hz, scale " << scale);
+        SCOPED_TRACE(::testing::Message() << int(response) << ", " << rate_Hz << " Hz, scale " << scale);
         World world = block_of(scale * Vec3(0.02, 0.02, 0.02));
         add_fixed(world, scale * Vec3(0.01, 0.04, 0.04), scale * Vec3(0.0301, 0, 0));
         const auto simulation = simulation_of(std::move(world), settings_of(scale, response, rate_Hz));
@@ -182,7 +184,7 @@ TEST(StepLimits, AThinPlateIsNotCrossedByLongSteps) {
     for (const double scale : {1.0, 10.0, 20.0})
       for (const double speed : {0.3, 0.9, 3.0})
         for (const double tilt : {0.0, 0.3, 1.0}) {
-          SCOPED_TRACE(testing::Message()
+          SCOPED_TRACE(::testing::Message()
                        << rate_Hz << " Hz, scale " << scale << ", " << speed << " m/s, tilt " << tilt);
           World world = block_of({0.02, 0.015, 0.01});
           add_fixed(world, {0.0001, 2.0, 2.0}, {0.03 * scale + 0.05, 0, 0});
@@ -203,7 +205,7 @@ TEST(StepLimits, AThinPostIsNotCrossedByALongBar) {
     for (const double length : {0.1, 1.0, 10.0})
       for (const double rate : {2.0, 8.0, 20.0})
         for (const double place : {0.2, 0.45}) {  // of the post along the bar
-          SCOPED_TRACE(testing::Message()
+          SCOPED_TRACE(::testing::Message()
                        << rate_Hz << " Hz, " << length << " m, " << rate << " rad/s, post at " << place);
           World world = block_of(length * Vec3(0.5, 0.01, 0.01));
           add_fixed(world, length * Vec3(0.001, 0.001, 0.1),
@@ -222,4 +224,4 @@ TEST(StepLimits, AThinPostIsNotCrossedByALongBar) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::step_limits_test

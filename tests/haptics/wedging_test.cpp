@@ -6,11 +6,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
+#include "support/effort.h"
 #include "support/pressed_block.h"
 #include "support/rig.h"
 
-namespace tactum {
+namespace tactum::wedging_test {
 namespace {
 
 constexpr double kWidth = 0.020;       // of the peg [m]
@@ -87,7 +89,7 @@ struct Pull {
 };
 
 TEST(Wedging, TheJammedPegHoldsAboveTheGeometricLimitAndComesOutBelow) {
-  for (const double depth : {0.004, 0.006, 0.010})
+  for (const double depth : testing::sampled(std::vector{0.004, 0.006, 0.010}, 3))
     for (const double sense : {1.0, -1.0}) {
       double limit = 0.0, low = 0.05, high = 1.0;
       while (high - low > 0.002) {
@@ -136,4 +138,4 @@ TEST(Wedging, AWedgeThatNoTurningSqueezesHoldsNothing) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::wedging_test

@@ -11,7 +11,7 @@
 #include "tactum/loop/loop_thread.h"
 #include "tactum/loop/safety.h"
 
-namespace tactum {
+namespace tactum::loop_test {
 namespace {
 
 /// A device that records its calls. Used by the loop's thread, read after it has ended.
@@ -327,4 +327,4 @@ TEST(LoopThreadDeathTest, AFailedAssertionWritesZeroFirst) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::loop_test

@@ -13,7 +13,7 @@
 #include "tactum/haptics/coupling_gains.h"
 #include "tactum/math/screw.h"
 
-namespace tactum {
+namespace tactum::passivity_test {
 namespace {
 
 constexpr double kPeriod_s = 0.001;
@@ -242,8 +242,8 @@ TEST(Passivity, ASpringThatIsTooStiffForTheDeviceComesToRestWithinASecond) {
                          Swing{.stiffness_in_bounds = 2.0, .delay_s = 2e-3}, Swing{.device = "omega.6"},
                          Swing{.device = "virtuose-6d", .grip = "medium"}, Swing{.device = "touch"},
                          Swing{.device = "premium-1.5-6dof", .delay_s = 1e-3}}) {
-    SCOPED_TRACE(testing::Message() << c.device << ", " << c.grip << ", " << c.stiffness_in_bounds
-                                    << " bounds, delay " << c.delay_s);
+    SCOPED_TRACE(::testing::Message() << c.device << ", " << c.grip << ", " << c.stiffness_in_bounds
+                                      << " bounds, delay " << c.delay_s);
     Swing free = c;
     free.controlled = false;
     const Swung wild = swing(free), tame = swing(c);
@@ -454,4 +454,4 @@ TEST(Passivity, AHandleThatCannotBeTurnedIsSentNoTorqueAndItsRotationFollows) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::passivity_test

@@ -15,7 +15,7 @@
 #include "tactum/loop/loop_thread.h"
 #include "tactum/math/screw.h"
 
-namespace tactum {
+namespace tactum::safety_faults_test {
 namespace {
 
 using namespace safety_flag;
@@ -165,7 +165,7 @@ struct Row {
   int pushed_ms;       // frames until the wrench is zero
 };
 
-class DeviceFault : public testing::TestWithParam<Row> {};
+class DeviceFault : public ::testing::TestWithParam<Row> {};
 
 TEST_P(DeviceFault, IsToldInTimeAndEndsInZeroAndComesBackSmoothly) {
   const Row& row = GetParam();
@@ -190,10 +190,10 @@ TEST_P(DeviceFault, IsToldInTimeAndEndsInZeroAndComesBackSmoothly) {
 
 INSTANTIATE_TEST_SUITE_P(
     Table, DeviceFault,
-    testing::Values(Row{Fault::kReadsFail, kReadsFailing | kStaleSample, 4},
-                    Row{Fault::kRepeated, kStaleSample, 19}, Row{Fault::kNotFinite, kImplausiblePose, 0},
-                    Row{Fault::kZeros, kImplausiblePose, 0}, Row{Fault::kWildTime, kStaleSample, 0},
-                    Row{Fault::kRefuses, kWrenchRefused, 1}, Row{Fault::kMotorsOff, kMotorsOff, 0}));
+    ::testing::Values(Row{Fault::kReadsFail, kReadsFailing | kStaleSample, 4},
+                      Row{Fault::kRepeated, kStaleSample, 19}, Row{Fault::kNotFinite, kImplausiblePose, 0},
+                      Row{Fault::kZeros, kImplausiblePose, 0}, Row{Fault::kWildTime, kStaleSample, 0},
+                      Row{Fault::kRefuses, kWrenchRefused, 1}, Row{Fault::kMotorsOff, kMotorsOff, 0}));
 
 TEST(SafetyFaults, AFewLostReadsAreNotFelt) {
   Experiment experiment;
@@ -440,4 +440,4 @@ TEST(SafetyFaults, AbsurdEditsOfTheSceneStayWithinLimitsAndSlew) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::safety_faults_test

@@ -7,7 +7,7 @@
 
 #include "tactum/base/random.h"
 
-namespace tactum {
+namespace tactum::safety_test {
 namespace {
 
 using namespace safety_flag;
@@ -244,4 +244,4 @@ TEST(Safety, ADeviceWithoutTorqueIsNeverSentOne) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::safety_test

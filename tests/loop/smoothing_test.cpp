@@ -7,7 +7,7 @@
 
 #include "tactum/base/random.h"
 
-namespace tactum {
+namespace tactum::smoothing_test {
 namespace {
 
 /// The paper's text for numbers that rise, and mirrored for numbers that fall.
@@ -77,7 +77,7 @@ TEST(Smoothing, AForceChangesAsTheHandMovesOrAsSlowlyAsTold) {
   for (const Leap& c :
        {Leap{}, Leap{.dt_s = 2.5e-4}, Leap{.to_N = 0.3}, Leap{.speed_m_per_s = 0.2},
         Leap{.stiffness_N_per_m = 2000.0, .speed_m_per_s = 0.1}, Leap{.speed_m_per_s = 10.0}}) {
-    SCOPED_TRACE(testing::Message() << c.dt_s << " s, " << c.to_N << " N, " << c.speed_m_per_s << " m/s");
+    SCOPED_TRACE(::testing::Message() << c.dt_s << " s, " << c.to_N << " N, " << c.speed_m_per_s << " m/s");
     const SmoothingSettings settings;
     SmoothingState state;
     const Twist moved{{0, c.speed_m_per_s * c.dt_s, 0}, Vec3::Zero()};
@@ -136,4 +136,4 @@ TEST(Smoothing, IsThePublishedOneToTheLetterWhereNothingElseIsAsked) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::smoothing_test

@@ -12,7 +12,7 @@
 #include "tactum/mesh/make_part.h"
 #include "tactum/surface/surface_distance.h"
 
-namespace tactum {
+namespace tactum::bolt_and_nut_test {
 namespace {
 
 ScrewShape with_facets(const char* size, int facets) {
@@ -383,4 +383,4 @@ TEST(BoltAndNut, RefuseWhatCannotBe) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::bolt_and_nut_test

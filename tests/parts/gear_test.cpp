@@ -12,7 +12,7 @@
 #include "tactum/mesh/make_part.h"
 #include "tactum/surface/surface_distance.h"
 
-namespace tactum {
+namespace tactum::gear_test {
 namespace {
 
 // The referee is planar and knows nothing of polytopes: two convex polygons are apart when some side of one
@@ -342,4 +342,4 @@ TEST(Gear, LargeGearsHaveNoRadialFoot) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::gear_test

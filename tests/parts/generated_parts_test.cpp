@@ -5,7 +5,7 @@
 #include "tactum/base/random.h"
 #include "tactum/base/tolerances.h"
 
-namespace tactum {
+namespace tactum::generated_parts_test {
 namespace {
 
 bool inside(const Polytope& piece, const Vec3& p) {
@@ -108,4 +108,4 @@ TEST(GeneratedParts, RefusesWhatCannotBe) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::generated_parts_test

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tactum {
+namespace tactum::iso_fit_test {
 namespace {
 
 struct Published {
@@ -103,4 +103,4 @@ TEST(IsoFit, SaysWhatIsNotInTheTable) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::iso_fit_test

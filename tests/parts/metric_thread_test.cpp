@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace tactum {
+namespace tactum::metric_thread_test {
 namespace {
 
 TEST(MetricScrew, BasicDiametersAreThePublishedOnes) {
@@ -73,4 +73,4 @@ TEST(MetricScrew, SaysWhatIsNotInTheTable) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::metric_thread_test

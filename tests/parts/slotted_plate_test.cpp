@@ -9,7 +9,7 @@
 #include "tactum/base/random.h"
 #include "tactum/base/tolerances.h"
 
-namespace tactum {
+namespace tactum::slotted_plate_test {
 namespace {
 
 double area_of(const SlottedPlate& plate) {
@@ -119,4 +119,4 @@ TEST(SlottedPlate, RefusesWhatCannotBe) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::slotted_plate_test

@@ -9,7 +9,7 @@
 #include "tactum/base/random.h"
 #include "tactum/base/tolerances.h"
 
-namespace tactum {
+namespace tactum::socket_test {
 namespace {
 
 double hexagon_area(double across_flats) { return 0.5 * std::sqrt(3.0) * across_flats * across_flats; }
@@ -128,4 +128,4 @@ TEST(Socket, RefusesWhatCannotBe) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::socket_test

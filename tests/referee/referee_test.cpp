@@ -9,7 +9,7 @@
 #include "tactum/referee/linking.h"
 #include "tactum/referee/winding_number.h"
 
-namespace tactum {
+namespace tactum::referee_test {
 namespace {
 
 using testing::box_mesh;
@@ -152,4 +152,4 @@ TEST(CrossingReferee, DoesNotCallTouchingCrossingAndLeavesOutWhatCrossesAtTheSta
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::referee_test

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "support/add_body.h"
+#include "support/effort.h"
 #include "support/solid_box.h"
 #include "tactum/contact/motion_bound.h"
 #include "tactum/math/screw.h"
@@ -195,7 +196,7 @@ TEST(Response, FreeSpaceIsFollowedAndNothingIsFelt) {
 TEST(Response, TheConstraintResponseRestsOnThePlane) {
   for (const double stiffness : {100.0, 600.0, 5000.0})
     for (const double below : {0.0005, 0.003, 0.012}) {
-      SCOPED_TRACE(testing::Message() << stiffness << " N/m, " << below << " m below");
+      SCOPED_TRACE(::testing::Message() << stiffness << " N/m, " << below << " m below");
       Hand hand(ResponseModel::kConstraint);
       hand.settings.coupling.stiffness_N_per_m = stiffness;
       const Wrench felt = hand.hold(hand_at(0.004, 0.001, kHalf.z() - below), 400);
@@ -234,7 +235,8 @@ TEST(Response, ThePenaltyResponseIsTwoSpringsInSeries) {
   for (const double coupling : {150.0, 600.0, 5000.0})
     for (const double contact : {0.5 * coupling, coupling, 2.0 * coupling})
       for (const double below : {0.0005, 0.002}) {
-        SCOPED_TRACE(testing::Message() << coupling << " and " << contact << " N/m, " << below << " m below");
+        SCOPED_TRACE(::testing::Message()
+                     << coupling << " and " << contact << " N/m, " << below << " m below");
         Hand hand(ResponseModel::kPenalty);
         hand.settings.coupling.stiffness_N_per_m = coupling;
         hand.settings.penalty.stiffness_N_per_m = contact;
@@ -250,12 +252,12 @@ TEST(Response, ThePenaltyResponseIsTwoSpringsInSeries) {
 /// that frame are one force, however much stiffer the contact is than the coupling, and however little it is
 /// pressed. The part is then pushed off in the frame in which it has met the plane.
 TEST(Response, ThePenaltyLawHoldsInEveryFrame) {
-  for (const double rate_Hz : {500.0, 1000.0, 4000.0})
+  for (const double rate_Hz : testing::frame_rates_Hz())
     for (const double coupling : {150.0, 600.0})
       for (const double ratio : {0.5, 2.0, 5000.0 / 600.0, 20.0})
         for (const double below : {0.00005, 0.0002, 0.001, 0.004}) {
-          SCOPED_TRACE(testing::Message() << rate_Hz << " Hz, " << coupling << " N/m, contact " << ratio
-                                          << " times that, " << below << " m below");
+          SCOPED_TRACE(::testing::Message() << rate_Hz << " Hz, " << coupling << " N/m, contact " << ratio
+                                            << " times that, " << below << " m below");
           Hand hand(ResponseModel::kPenalty);
           hand.settings.dt_s = 1.0 / rate_Hz;
           hand.settings.coupling.stiffness_N_per_m = coupling;

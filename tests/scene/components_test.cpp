@@ -4,7 +4,7 @@
 
 #include "tactum/scene/scene_file.h"
 
-namespace tactum {
+namespace tactum::components_test {
 namespace {
 
 Result<Scene> parsed(const std::string& text) {
@@ -127,4 +127,4 @@ joint = { kind = "hinge", axis = [1, 0, 0] }
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::components_test

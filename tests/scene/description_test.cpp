@@ -10,7 +10,7 @@
 #include "tactum/scene/build_scene.h"
 #include "tactum/scene/scene_file.h"
 
-namespace tactum {
+namespace tactum::description_test {
 namespace {
 
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
@@ -259,4 +259,4 @@ TEST(DescriptionErrors, KeysOfAnotherKind) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::description_test

@@ -13,7 +13,7 @@
 #include "tactum/base/random.h"
 #include "tactum/scene/scene_file.h"
 
-namespace tactum {
+namespace tactum::field_file_test {
 namespace {
 
 using testing::ScratchFolder;
@@ -321,4 +321,4 @@ TEST(SceneFields, ErrorsTellThePlaceAndWhatIsMeant) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::field_file_test

@@ -4,7 +4,7 @@
 
 #include "tactum/math/screw.h"
 
-namespace tactum {
+namespace tactum::goal_test {
 namespace {
 
 /// Two hinged bodies about z and one free.
@@ -104,4 +104,4 @@ TEST(Goals, NonFinitePosesAreNoSuccess) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::goal_test

@@ -8,7 +8,7 @@
 #include "tactum/scene/scene_file.h"
 #include "tactum/surface/surface_distance.h"
 
-namespace tactum {
+namespace tactum::made_shape_test {
 namespace {
 
 Result<Scene> with_part(const std::string& part) {
@@ -148,4 +148,4 @@ TEST(MadeShapes, ErrorsTellTheKey) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::made_shape_test

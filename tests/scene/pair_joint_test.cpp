@@ -5,7 +5,7 @@
 #include "tactum/haptics/simulation.h"
 #include "tactum/scene/scene_file.h"
 
-namespace tactum {
+namespace tactum::pair_joint_test {
 namespace {
 
 std::string body(const std::string& name, const std::string& joint, double x_m = 0.0) {
@@ -89,4 +89,4 @@ TEST(PairJointInFile, ThePenaltyResponseHoldsNoJoinedBody) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::pair_joint_test

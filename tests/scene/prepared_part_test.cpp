@@ -5,7 +5,7 @@
 #include "tactum/mesh/prepare_part.h"
 #include "tactum/scene/scene_file.h"
 
-namespace tactum {
+namespace tactum::prepared_part_test {
 namespace {
 
 using testing::ScratchFolder;
@@ -74,4 +74,4 @@ TEST(PreparedPart, KeysForMeshesAndDamagedFilesAreErrorsWithTheirPlace) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::prepared_part_test

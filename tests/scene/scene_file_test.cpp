@@ -7,7 +7,7 @@
 
 #include "tactum/math/screw.h"
 
-namespace tactum {
+namespace tactum::scene_file_test {
 namespace {
 
 // Two bodies, one grasped; every line of it is used by the tests of errors below.
@@ -309,4 +309,4 @@ TEST(SceneErrors, NoTruncatedSceneCrashes) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::scene_file_test

@@ -8,7 +8,7 @@
 #include "app/program.h"
 #include "tactum/scene/item_visitor.h"
 
-namespace tactum {
+namespace tactum::scene_format_test {
 namespace {
 
 /// Takes every key of every table, and every word that a key may have.
@@ -65,4 +65,4 @@ TEST(SceneFormat, ThePageNamesEveryKeyAndWord) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::scene_format_test

@@ -11,7 +11,7 @@
 #include "support/generated_page.h"
 #include "tactum/scene/scene_file.h"
 
-namespace tactum {
+namespace tactum::setting_table_test {
 namespace {
 
 const char* const kBody = "schema = 1\n";
@@ -157,4 +157,4 @@ TEST(SettingTable, IsFoundByNameAndKeepsItsRanges) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::setting_table_test

@@ -6,7 +6,7 @@
 #include "tactum/math/screw.h"
 #include "tactum/scene/builtin_scenes.h"
 
-namespace tactum {
+namespace tactum::closed_path_test {
 namespace {
 
 struct Insertion {
@@ -82,4 +82,4 @@ TEST(ClosedPath, GivesTheHandNoEnergy) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::closed_path_test

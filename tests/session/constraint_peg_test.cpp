@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <vector>
 
 #include "support/effort.h"
 #include "tactum/base/random.h"
@@ -9,7 +10,7 @@
 #include "tactum/scene/builtin_scenes.h"
 #include "tactum/session/session.h"
 
-namespace tactum {
+namespace tactum::constraint_peg_test {
 namespace {
 
 constexpr int kSlowness = testing::kSanitized ? 10 : 1;
@@ -256,8 +257,12 @@ INSTANTIATE_TEST_SUITE_P(Constraint, PegInItsHole, ::testing::ValuesIn(every_peg
                            return name;
                          });
 
+std::vector<const char*> scenes_of_the_paper() {
+  return testing::sampled(std::vector{"gears", "gears-rim", "block-on-plate", "peg-in-hole"}, 3);
+}
+
 TEST(Constraint, ScenesOfThePaperReachTheirGoalsWithoutEntering) {
-  for (const char* name : {"gears", "gears-rim", "block-on-plate", "peg-in-hole"}) {
+  for (const char* name : scenes_of_the_paper()) {
     Result<Scene> scene = open_scene(name);
     ASSERT_TRUE(scene) << scene.error().message();
     ASSERT_EQ(scene->settings.response, ResponseModel::kConstraint) << name;
@@ -272,7 +277,7 @@ TEST(Constraint, ScenesOfThePaperReachTheirGoalsWithoutEntering) {
 }
 
 TEST(Penalty, ScenesOfThePaperReachTheirGoalsInThePublishedResponse) {
-  for (const char* name : {"gears", "gears-rim", "block-on-plate", "peg-in-hole"}) {
+  for (const char* name : scenes_of_the_paper()) {
     Result<Scene> scene = open_scene(name);
     ASSERT_TRUE(scene) << scene.error().message();
     scene->settings.response = ResponseModel::kPenalty;
@@ -286,4 +291,4 @@ TEST(Penalty, ScenesOfThePaperReachTheirGoalsInThePublishedResponse) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::constraint_peg_test

@@ -5,7 +5,7 @@
 #include "tactum/haptics/frame_hash.h"
 #include "tactum/scene/builtin_scenes.h"
 
-namespace tactum {
+namespace tactum::copied_state_test {
 namespace {
 
 /// The hash of `frames` frames of a scene's own hand, from frame `first` on.
@@ -53,4 +53,4 @@ INSTANTIATE_TEST_SUITE_P(Scenes, CopiedState,
                                            "gears-involute", "lock"));
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::copied_state_test

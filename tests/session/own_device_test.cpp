@@ -6,7 +6,7 @@
 #include "tactum/mesh/make_part.h"
 #include "tactum/tactum.h"
 
-namespace tactum {
+namespace tactum::own_device_test {
 namespace {
 
 /// A device of the caller's: a simulated one that keeps the samples it gave.
@@ -177,4 +177,4 @@ TEST(OwnForceStage, StandsBeforeSafetyWhichBoundsIt) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::own_device_test

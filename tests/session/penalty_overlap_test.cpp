@@ -12,7 +12,7 @@
 #include "tactum/haptics/frame.h"
 #include "tactum/scene/builtin_scenes.h"
 
-namespace tactum {
+namespace tactum::penalty_overlap_test {
 namespace {
 
 constexpr double kOpen_m = 10e-6;
@@ -68,4 +68,4 @@ INSTANTIATE_TEST_SUITE_P(Scenes, PenaltyOverlap,
                          });
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::penalty_overlap_test

@@ -11,7 +11,7 @@
 #include "tactum/session/session.h"
 #include "tactum/surface/surface_distance.h"
 
-namespace tactum {
+namespace tactum::real_parts_test {
 namespace {
 
 /// Looks at every so many frames by the exact distance of the triangles as they stand in the meshes, which
@@ -132,4 +132,4 @@ INSTANTIATE_TEST_SUITE_P(Scenes, RealParts,
                          });
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::real_parts_test

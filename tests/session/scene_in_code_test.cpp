@@ -10,7 +10,7 @@
 #include "tactum/scene/builtin_scenes.h"
 #include "tactum/session/session.h"
 
-namespace tactum {
+namespace tactum::scene_in_code_test {
 namespace {
 
 /// The hash of the scene's first frames, and the state of its goals; 0 frames: as long as the hand moves.
@@ -76,4 +76,4 @@ TEST(SceneInCode, BodiesStartWithTheVelocityOfTheirDescription) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::scene_in_code_test

@@ -5,12 +5,12 @@
 
 #include <algorithm>
 
-#include "collision/cases.h"
+#include "support/effort.h"
 #include "tactum/scene/builtin_scenes.h"
 #include "tactum/scene/scene_file.h"
 #include "tactum/session/session.h"
 
-namespace tactum {
+namespace tactum::scene_story_test {
 namespace {
 
 std::string text_of(const std::string& name) {
@@ -79,7 +79,7 @@ TEST(SceneStory, APegGoesInByThePublishedSpringsAsWell) {
     Result<std::unique_ptr<Session>> opening = Session::open(std::move(*scene), {});
     ASSERT_TRUE(opening);
     Session& session = **opening;
-    const bool whole = cases::kSlowness == 1;
+    const bool whole = !testing::kSanitized;
     const std::uint64_t frames = whole ? std::uint64_t(frames_of_motion(session.scene())) : 2000;
     ASSERT_TRUE(session.run_virtual(frames, nullptr));
     EXPECT_GT(session.record().penetrating_frames, 0u);
@@ -112,7 +112,7 @@ TEST(SceneStory, TheLockTurnsOnlyWhenTheKeyIsAllTheWayIn) {
 TEST(SceneStory, MovingObjectsKeepTheirMomentum) {
   const std::unique_ptr<Session> session = opened(text_of("moving-objects"));
   ASSERT_TRUE(session);
-  const bool whole = cases::kSlowness == 1;
+  const bool whole = !testing::kSanitized;
   const std::uint64_t frames = whole ? std::uint64_t(frames_of_motion(session->scene())) : 1500;
   int impacts = 0;
   Watch watch([&](const FrameRecord&) { impacts += session->last_report().impacts; });
@@ -126,7 +126,7 @@ TEST(SceneStory, MovingObjectsKeepTheirMomentum) {
 }
 
 TEST(SceneStory, TheSmallBearingDoesNotPassTheLargeOne) {
-  if (cases::kSlowness > 1) GTEST_SKIP() << "left to the builds without a sanitizer: 19 000 frames";
+  if (testing::kSanitized) GTEST_SKIP() << "left to the builds without a sanitizer: 19 000 frames";
   std::string text = text_of("shaft");
   const std::string small = "pos_m = [-0.05, 0.04, 0.00001]";
   const std::string large = "pos_m = [-0.05, -0.04, 0.00001]";
@@ -182,7 +182,7 @@ duration_s = 1
 /// The hand turns one gear a hundred times. The other has made nine tenths of its turns, to within the play
 /// between their teeth: 0.3 mm of backlash on either gear, at a pitch radius of 40 mm.
 TEST(SceneStory, TheGearsKeepTheirRatioOverAHundredTurns) {
-  if (cases::kSlowness > 1) GTEST_SKIP() << "left to the builds without a sanitizer: 141 000 frames";
+  if (testing::kSanitized) GTEST_SKIP() << "left to the builds without a sanitizer: 141 000 frames";
   std::string text = text_of("gears");
   const std::size_t hand = text.find("repeat = 2");
   ASSERT_NE(hand, std::string::npos);
@@ -199,4 +199,4 @@ TEST(SceneStory, TheGearsKeepTheirRatioOverAHundredTurns) {
 }
 
 }  // namespace
-}  // namespace tactum
+}  // namespace tactum::scene_story_test

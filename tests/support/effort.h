@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdlib>
 #include <string>
+#include <vector>
 
 namespace tactum::testing {
 
@@ -28,6 +29,13 @@ Variants sampled(Variants variants, int stride) {
   Variants some;
   for (std::size_t i = 0; i < variants.size(); i += std::size_t(stride)) some.push_back(variants[i]);
   return some;
+}
+
+/// The rates of frames at which a law is tested [Hz]. A sanitized build takes the one that computes a second
+/// of motion in the fewest frames.
+inline std::vector<double> frame_rates_Hz() {
+  if (kSanitized) return {500.0};
+  return {500.0, 1000.0, 4000.0};
 }
 
 /// Whether the long variants of tests run.

@@ -51,6 +51,16 @@ struct ReportPath : FieldInfo {
 
 namespace report_detail {
 
+/// What is known of the fields, and their types apart: a std::tuple of them would cost every file that
+/// includes this one a second of compilation.
+template <class... Fields>
+struct FieldList {
+  consteval FieldList(const Fields&... fields) : infos{fields...} {}  // NOLINT: deduced, of any length
+  template <std::size_t Place>
+  using At = std::tuple_element_t<Place, std::tuple<Fields...>>;
+  std::array<FieldInfo, sizeof...(Fields)> infos;
+};
+
 using R = FrameReport;
 using F = FrictionReport;
 using P = PortReport;
@@ -61,7 +71,7 @@ using Of = ReportPath<Path...>;
 inline constexpr InRun kNothing = InRun::kNothing, kLargest = InRun::kLargest, kSum = InRun::kSum;
 
 // clang-format off
-inline constexpr std::tuple kFields{
+inline constexpr FieldList kFields{
   Of<&R::index>{{"index", "", "frames since the start"}},
   Of<&R::flags>{{"flags", "", "what the frame could not do in full, as bits", kNothing,
     {"frame_flags", "Frame flags", "flags"}}},
@@ -162,15 +172,15 @@ inline constexpr std::tuple kFields{
 
 }  // namespace report_detail
 
-inline constexpr std::size_t kReportFields = std::tuple_size_v<decltype(report_detail::kFields)>;
+inline constexpr std::size_t kReportFields = report_detail::kFields.infos.size();
 
 /// The field at a place of the list.
 template <std::size_t Place>
 struct ReportField {
   static constexpr std::size_t kPlace = Place;
-  static constexpr FieldInfo kInfo = std::get<Place>(report_detail::kFields);
+  static constexpr FieldInfo kInfo = report_detail::kFields.infos[Place];
   static constexpr const auto& of(const FrameReport& report) noexcept {
-    return std::tuple_element_t<Place, std::remove_const_t<decltype(report_detail::kFields)>>::of(report);
+    return decltype(report_detail::kFields)::template At<Place>::of(report);
   }
 };
 
