@@ -40,8 +40,8 @@ struct EnergySource {
 /// The coupling's spring counts as it is felt. A part that lags because its steps are kept short is far from
 /// the hand, and no force tells of it: no more of a stretch counts than the force, felt or still smoothed,
 /// and the coupling's damper at the hand's velocity can hold. Of a torque that the device cannot exert, which
-/// nobody feels, it is the smoothed one alone, as in the work that is booked. And it counts as the device can exert it: a
-/// stretch x beyond the force limit f gives back f x - f^2 / (2 k).
+/// nobody feels, the smoothed one alone counts, as in the work that is booked. And the spring counts as the
+/// device can exert it: a stretch x beyond the force limit f gives back f x - f^2 / (2 k).
 StoredEnergy stored_energy(const EnergySource& source) noexcept;
 
 }  // namespace tactum::inline v0_1
