@@ -18,9 +18,8 @@ endif()
 add_library(tactum_warnings INTERFACE)
 target_compile_options(tactum_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
   -Wnon-virtual-dtor -Wold-style-cast -Woverloaded-virtual)
-if(CMAKE_UNITY_BUILD)  # a name of one file, in the function of another; each file alone is checked without it
-  target_compile_options(tactum_warnings INTERFACE -Wno-shadow)
-endif()
+# Where files are joined, a name of one is in the function of another. Files that are compiled alone are checked.
+target_compile_options(tactum_warnings INTERFACE $<$<BOOL:$<TARGET_PROPERTY:UNITY_BUILD>>:-Wno-shadow>)
 option(TACTUM_WARNINGS_ARE_ERRORS "Stop at warnings of the project's own files" ${PROJECT_IS_TOP_LEVEL})
 if(TACTUM_WARNINGS_ARE_ERRORS)
   target_compile_options(tactum_warnings INTERFACE -Werror)

@@ -17,15 +17,20 @@ set_tests_properties(house.layers house.docs house.sources house.words house.mut
 add_test(NAME house.tidy COMMAND ${PYTHON3} ${tools}/tidy.py ${PROJECT_BINARY_DIR})
 set_tests_properties(house.tidy PROPERTIES LABELS slow PROCESSORS 2 TIMEOUT 1500)
 
-# Every header compiles alone. A header that its own source includes before anything else is compiled alone there; the others
-# get a unit each here.
+# Every header compiles alone. A header that its own source includes before anything else is compiled alone there, where the
+# sources of the layer are not joined; the others get a unit each here.
 file(GLOB headers RELATIVE ${PROJECT_SOURCE_DIR}/src CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/tactum/*.h
   ${PROJECT_SOURCE_DIR}/src/tactum/*/*.h)
 foreach(header IN LISTS headers)
   string(APPEND every_header "#include \"${header}\"\n")
   string(REGEX REPLACE "h$" "cpp" source ${PROJECT_SOURCE_DIR}/src/${header})
   set(first_include "")
-  if(EXISTS ${source})
+  string(REGEX REPLACE "tactum/([a-z]*)/?.*" "tactum_\\1" layer ${header})
+  set(joined OFF)
+  if(TARGET ${layer})
+    get_property(joined TARGET ${layer} PROPERTY UNITY_BUILD)
+  endif()
+  if(EXISTS ${source} AND NOT joined)
     file(STRINGS ${source} first_include REGEX "^#include" LIMIT_COUNT 1)
   endif()
   if(NOT first_include STREQUAL "#include \"${header}\"")
@@ -40,6 +45,7 @@ file(CONFIGURE OUTPUT headers/every_header_twice.cpp CONTENT "${every_header}${e
 add_library(header_selfcheck OBJECT ${header_sources} ${CMAKE_CURRENT_BINARY_DIR}/headers/every_header.cpp
   ${CMAKE_CURRENT_BINARY_DIR}/headers/every_header_twice.cpp)
 target_compile_options(header_selfcheck PRIVATE -O0)
+set_property(TARGET header_selfcheck PROPERTY UNITY_BUILD OFF)
 target_link_libraries(header_selfcheck PRIVATE tactum_session tactum_warnings)
 
 # The frames of every shipped scene are the committed ones.

@@ -29,7 +29,7 @@ SceneFeelOptions sample_of_scenes() {
   options.devices = {"premium-1.5-6dof", "touch"};
   if (!testing::kSanitized) options.devices.push_back("virtuose-6d");
   options.hands = {"loose", "firm"};
-  options.most_s = testing::effort(6.6, 1.5);
+  options.most_s = testing::effort(6.6, 1.0);
   if (testing::kSanitized) options.hands = {"loose"};
   return options;
 }
@@ -53,7 +53,8 @@ TEST(SceneFeel, WhatIsSentIsWhatWasComputedAndNoStepIsSentThatTheHandDidNotMake)
       EXPECT_LT(row.computed.to_and_fro, 60) << "steps of an encoder, that the coupling makes larger";
     }
   }
-  EXPECT_GT(felt_N, testing::effort(0.2, 0.1)) << "the computed force has steps that must not reach the hand";
+  EXPECT_GT(felt_N, testing::effort(0.2, 0.02))
+      << "the computed force has steps that must not reach the hand";
 }
 
 /// A block on a plate, through a coupling that is too stiff for the device, in a hand that presses.

@@ -11,6 +11,7 @@
 #include <tuple>
 
 #include "oracles/exhaustive.h"
+#include "support/effort.h"
 #include "support/sample_meshes.h"
 #include "support/surface_shapes.h"
 #include "tactum/base/random.h"
@@ -118,7 +119,7 @@ void expect_patches_of_all_near_pairs(const Wanderers& all, int a, int b, double
 
 TEST(ContactFinder, FindsEveryPatchThatTestingAllPairsFinds) {
   constexpr double kMinTolerance = 1e-4;
-  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+  for (std::uint64_t seed = 1; seed <= testing::effort(6u, 2u); ++seed) {
     Random random(seed);
     const double speed = seed % 2 ? 1.0 : 0.05;  // a hasty and a careful hand
     Wanderers all(random, speed);
@@ -269,7 +270,7 @@ TEST(ContactFinder, WhatFoundNoRoomIsLookedForAgain) {
     ContactFinder finder(bodies, X, {.pairs = room});
     int short_of_room = 0;
     int found = 0;
-    for (int frame = 0; frame < 1200; ++frame) {
+    for (int frame = 0; frame < testing::effort(1200, 450); ++frame) {
       // Apart, until hardly a pair is near, and together again.
       X[0].p.x() = 0.07 * (0.5 - 0.5 * std::cos(2 * kPi * frame / 400.0));
       finder.find_near_pairs(X, motion_bound, 1e-3);
