@@ -19,8 +19,9 @@ struct IslandProblem {
   Index island;
   std::span<const int> bodies, rows;  ///< numbers of bodies of the world, and of contact rows
   ContactProblem& problem;
-  std::span<ContactRow> contacts;  ///< copies of the rows
-  RowsInProblem in_problem;
+  std::span<ContactRow> contacts = {};  ///< copies of the rows
+  RowsInProblem in_problem = {};
+  double share_of_wanted = 1.0;  ///< how much of the hand's displacement the grasped part is asked for
 };
 
 /// Whether nothing acts on the island: one free body that touches nothing.
@@ -37,7 +38,7 @@ void assemble(bool exact, bool opening, IslandProblem& p) {
   for (const int body : p.bodies) {
     const Index i = Index(body);
     if (body == step.grasped.body) {
-      add_grasped(with_load(step, step.own.constraint.wanted), step, p.problem);
+      add_grasped(with_load(step, step.own.constraint.wanted * p.share_of_wanted), step, p.problem);
       continue;
     }
     const Body& what = step.world.bodies[i];
@@ -59,6 +60,15 @@ void assemble(bool exact, bool opening, IslandProblem& p) {
 void give(const SurfacePair& bodies, const Vec3& force_W, const IslandProblem& p) {
   FreeBodies& f = p.step.own.free;
   f.given_Ns[p.island] += f.momentum.counted(bodies.body_a, bodies.body_b, p.step.dt_s * force_W);
+}
+
+/// Takes back what an answer has reported of friction, before another.
+void forget_friction(const IslandProblem& p) {
+  FreeBodies& f = p.step.own.free;
+  f.given_Ns[p.island].setZero();
+  if (!f.grasped_here || f.islands.of(p.step.grasped.body) != static_cast<int>(p.island)) return;
+  p.step.own.contact_rows.rows.resize(p.step.own.constraint.rows.count);
+  f.grasped_torque.setZero();
 }
 
 /// Reports the friction force on the grasped part as a row of its own, and its torque beside it.
@@ -175,6 +185,22 @@ void solve_swept(IslandProblem& p) {
     report_friction(sweeps.patches()[i], sweeps.friction_force(i), sweeps.friction_torque(i), p);
 }
 
+/// Where the answer has the grasped part beyond its motion bound, as a hand does that is far ahead, what it
+/// meets would be pushed to the speed of a step that it does not make. The island is then solved again, with
+/// as much of the hand's displacement as leaves the part within the bound. What is felt is that of the first
+/// answer.
+void follow_slower(IslandProblem& p) {
+  const ConstraintStep& step = p.step;
+  const Index grasped = Index(step.grasped.body);
+  const Twist displacement = to_twist(p.problem.displacement(step.grasped.body));
+  const double travel = displacement.v.norm() + displacement.w.norm() * step.radius_m[grasped];
+  if (!(travel > step.own.motion_bound[grasped])) return;
+  p.share_of_wanted = step.own.motion_bound[grasped] / travel;
+  step.report.flags |= step.own.constraint.trust.limit;
+  forget_friction(p);
+  solve_swept(p);
+}
+
 void solve_island(IslandProblem& p) {
   const ConstraintStep& step = p.step;
   if (is_idle(p)) {
@@ -193,8 +219,11 @@ void solve_island(IslandProblem& p) {
   const bool exact =
       choose_solver(unknowns, coupled_to_hand || jointed) == ContactSolver::kExact && solve_exact(p);
   if (!exact) solve_swept(p);
+  if (coupled_to_hand) {
+    feel(displacement_of_handle(p.problem, step), p.step);
+    follow_slower(p);
+  }
   for (const ContactRow& row : p.contacts) give(row, row.impulse / step.dt_s * row.n_BA_W, p);
-  if (coupled_to_hand) feel(displacement_of_handle(p.problem, step), p.step);
   set_velocities(p);
   FreeBodies& f = step.own.free;
   for (const ProblemBody& body : p.problem.bodies()) {
@@ -234,13 +263,9 @@ void solve_islands(ConstraintStep& step) noexcept {
   FreeBodies& f = step.own.free;
   std::vector<ContactRow>& rows = step.own.contact_rows.rows;
   for (Index island = 0; island < f.given_Ns.size(); ++island) {
-    IslandProblem p{step, island, f.bodies[island], f.rows[island], step.own.constraint.problem, {}, {}};
+    IslandProblem p{step, island, f.bodies[island], f.rows[island], step.own.constraint.problem};
     if (p.bodies.empty() || f.settled[island] != 0) continue;
-    if (f.grasped_here && f.islands.of(step.grasped.body) == static_cast<int>(island)) {
-      rows.resize(step.own.constraint.rows.count);  // without the friction of an earlier solution
-      f.grasped_torque.setZero();
-    }
-    f.given_Ns[island].setZero();
+    forget_friction(p);
     f.gathered.clear();
     for (const int row : p.rows) f.gathered.push_back(rows[Index(row)]);
     p.contacts = f.gathered;
