@@ -17,33 +17,24 @@ set_tests_properties(house.layers house.docs house.sources house.words house.mut
 add_test(NAME house.tidy COMMAND ${PYTHON3} ${tools}/tidy.py ${PROJECT_BINARY_DIR})
 set_tests_properties(house.tidy PROPERTIES LABELS slow PROCESSORS 2 TIMEOUT 1500)
 
-# Every header compiles alone. A header that its own source includes before anything else is compiled alone there, where the
-# sources of the layer are not joined; the others get a unit each here.
+# Every header compiles alone: in ./test --full, each in a unit of its own. Else all at once, which clang-tidy reads as well, and
+# all twice, which one without #pragma once does not stand.
+option(TACTUM_HEADERS_ALONE "Compile every header alone" OFF)
 file(GLOB headers RELATIVE ${PROJECT_SOURCE_DIR}/src CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/tactum/*.h
   ${PROJECT_SOURCE_DIR}/src/tactum/*/*.h)
+set(header_sources every_header every_header_twice)
 foreach(header IN LISTS headers)
   string(APPEND every_header "#include \"${header}\"\n")
-  string(REGEX REPLACE "h$" "cpp" source ${PROJECT_SOURCE_DIR}/src/${header})
-  set(first_include "")
-  string(REGEX REPLACE "tactum/([a-z]*)/?.*" "tactum_\\1" layer ${header})
-  set(joined OFF)
-  if(TARGET ${layer})
-    get_property(joined TARGET ${layer} PROPERTY UNITY_BUILD)
-  endif()
-  if(EXISTS ${source} AND NOT joined)
-    file(STRINGS ${source} first_include REGEX "^#include" LIMIT_COUNT 1)
-  endif()
-  if(NOT first_include STREQUAL "#include \"${header}\"")
+  if(TACTUM_HEADERS_ALONE)
     string(REGEX REPLACE "[/.]" "_" name ${header})
     file(CONFIGURE OUTPUT headers/${name}.cpp CONTENT "#include \"${header}\"\n" @ONLY)
-    list(APPEND header_sources ${CMAKE_CURRENT_BINARY_DIR}/headers/${name}.cpp)
+    list(APPEND header_sources ${name})
   endif()
 endforeach()
-# All at once, for clang-tidy; and all twice, which one without #pragma once does not stand.
 file(CONFIGURE OUTPUT headers/every_header.cpp CONTENT "${every_header}" @ONLY)
 file(CONFIGURE OUTPUT headers/every_header_twice.cpp CONTENT "${every_header}${every_header}" @ONLY)
-add_library(header_selfcheck OBJECT ${header_sources} ${CMAKE_CURRENT_BINARY_DIR}/headers/every_header.cpp
-  ${CMAKE_CURRENT_BINARY_DIR}/headers/every_header_twice.cpp)
+list(TRANSFORM header_sources REPLACE ".+" "${CMAKE_CURRENT_BINARY_DIR}/headers/\\0.cpp")
+add_library(header_selfcheck OBJECT ${header_sources})
 target_compile_options(header_selfcheck PRIVATE -O0)
 set_property(TARGET header_selfcheck PROPERTY UNITY_BUILD OFF)
 target_link_libraries(header_selfcheck PRIVATE tactum_session tactum_warnings)

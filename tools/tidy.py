@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """clang-tidy (settings: .clang-tidy) over the program's own sources:  tools/tidy.py BUILD_FOLDER [FILE...]
 
-Without files it checks the heart, where a slip moves a motor, and every header at once through one generated
-file; with TACTUM_FULL=1 every source of src/, app/ and viewer/server/.
+Without files it checks the last stages before the motors, where a slip moves one, and every header at once
+through one generated file; with TACTUM_FULL=1 every source of src/, app/ and viewer/server/.
 """
 import json
 import os
@@ -15,8 +15,8 @@ from concurrent.futures import ThreadPoolExecutor
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 JOINED = re.compile(r'^#include "([^"]+)"$', re.MULTILINE)
 OWN = ("src/", "app/", "viewer/server/")
-HEART = ("src/tactum/base/", "src/tactum/devices/", "src/tactum/loop/", "src/tactum/response/", "src/tactum/haptics/",
-         "src/tactum/contact/shading.cpp")
+LAST_STAGES = ("src/tactum/base/", "src/tactum/devices/", "src/tactum/loop/", "src/tactum/haptics/frame", "src/tactum/haptics/show_stage",
+               "src/tactum/response/constraint.cpp", "src/tactum/response/energy.cpp")
 
 
 def each_source(database):
@@ -34,7 +34,7 @@ def chosen_sources(database, full):
     """The files of the compilation database that are to be checked, relative to the root."""
     known = {pathlib.Path(entry["file"]).resolve() for entry in database}
     own = sorted(path.relative_to(ROOT).as_posix() for path in known if path.is_relative_to(ROOT))
-    return [path for path in own if path.startswith(OWN if full else HEART)]
+    return [path for path in own if path.startswith(OWN if full else LAST_STAGES)]
 
 
 def check(build, path):

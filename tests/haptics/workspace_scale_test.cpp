@@ -108,7 +108,7 @@ TEST(WorkspaceScale, TheSameSceneFeelsTheSameAtEveryScale) {
 }
 
 TEST(WorkspaceScale, TheSameSceneFeelsTheSameOnEveryDevice) {
-  for (const SimulatedDeviceModel& model : simulated_device_presets())
+  for (const SimulatedDeviceModel& model : testing::sampled(simulated_device_presets(), 4))
     for (const ResponseModel response : kResponses) {
       SCOPED_TRACE(::testing::Message() << model.name << ", response " << int(response));
       expect_the_same_at_every_scale(response, model.name, 1000.0);
@@ -227,7 +227,7 @@ class HoldWatch final : public LoopObserver {
 
 /// The loop closed by the device and a hand: a press is held as still at every scale.
 TEST(WorkspaceScale, AHandThatPressesIsHeldAsStill) {
-  for (const SimulatedDeviceModel& model : simulated_device_presets())
+  for (const SimulatedDeviceModel& model : testing::sampled(simulated_device_presets(), 4))
     for (const ResponseModel response : kResponses)
       for (const double rate_Hz : kRates_Hz) {
         if (rate_Hz != 1000.0 && (testing::kSanitized || model.name != "premium-1.5-6dof")) continue;

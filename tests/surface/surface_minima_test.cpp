@@ -218,7 +218,6 @@ TEST(SurfaceMinima, OfRealPartsAreThoseOfEveryPairOfFeatures) {
                                RealPair{"factory_bolt_m16_loose.obj", "factory_nut_m16_loose_subdiv_3x.obj",
                                         "m16_loose_screw_motion.csv", 2e-4}}) {
     SCOPED_TRACE(real.motion);
-    if (testing::kSanitized && real.max_distance > 1e-4) continue;  // the nut's referee takes a minute a pose
     int found = 0;
     int apart = 0;
     const auto mesh = [](const char* name) {
@@ -236,8 +235,9 @@ TEST(SurfaceMinima, OfRealPartsAreThoseOfEveryPairOfFeatures) {
     const SurfaceTree tree_b(b);
     const Surface surface_a(a);
     const Surface surface_b(b);
-    const std::size_t step = testing::full_run() ? 5 : testing::effort(100, 3000);
-    for (std::size_t i = 33; i < motion->frame.size(); i += step) {
+    const std::size_t step = testing::full_run() ? 5 : 100;
+    // In a sanitized build the referee of every pair of features takes half a minute a pose.
+    for (std::size_t i = 33; !testing::kSanitized && i < motion->frame.size(); i += step) {
       SCOPED_TRACE(i);
       const Pose X = relative_pose(motion->X_WA[i], motion->X_WB[i]);
       found += expect_as_referee(a, b, X, {real.max_distance, 0.0, 4e-3});
@@ -248,7 +248,7 @@ TEST(SurfaceMinima, OfRealPartsAreThoseOfEveryPairOfFeatures) {
       const Pose X = relative_pose(motion->X_WA[i], motion->X_WB[i]);
       apart += int(expect_clearance(surface_a, surface_b, tree_a, tree_b, X, 8.0 * real.max_distance));
     }
-    EXPECT_GT(found, 0);
+    EXPECT_TRUE(found > 0 || testing::kSanitized);
     EXPECT_GT(apart, 0);
   }
 }
