@@ -8,14 +8,13 @@
 
 #include "support/add_body.h"
 #include "support/effort.h"
+#include "support/judged.h"
 #include "support/sample_meshes.h"
 #include "support/solid_box.h"
 #include "support/surface_shapes.h"
 #include "tactum/geometry/primitives.h"
-#include "tactum/haptics/simulation.h"
 #include "tactum/math/screw.h"
 #include "tactum/mesh/make_part.h"
-#include "tactum/referee/crossing_referee.h"
 
 namespace tactum::crossing_test {
 namespace {
@@ -34,22 +33,7 @@ std::shared_ptr<const Part> ring() {
   return part;
 }
 
-/// A world that is stepped, and judged in every frame.
-struct Judged {
-  World world;
-  FrameSettings settings;
-  std::unique_ptr<Simulation> simulation;
-  std::unique_ptr<CrossingReferee> referee;
-
-  void begin() {
-    simulation = std::move(*Simulation::make(world, settings));
-    std::vector<RefereedBody> bodies;
-    for (const Body& body : world.bodies)
-      bodies.push_back({&body.part->surface, body.moves(), body.no_contact_with});
-    referee = std::make_unique<CrossingReferee>(bodies, simulation->state().world.X_WB);
-    ASSERT_EQ(referee->crossing_at_start(), 0);
-  }
-  const Pose& X_WB(int body) const { return simulation->state().world.X_WB[static_cast<std::size_t>(body)]; }
+struct Judged : testing::Judged {
   /// False, with a failure, where something has crossed.
   bool step(const Pose& hand, int frame, int variant) {
     simulation->step(hand);

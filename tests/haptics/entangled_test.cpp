@@ -11,14 +11,13 @@
 
 #include "support/add_body.h"
 #include "support/effort.h"
+#include "support/judged.h"
 #include "support/sample_meshes.h"
 #include "support/solid_box.h"
 #include "support/surface_shapes.h"
 #include "tactum/geometry/primitives.h"
-#include "tactum/haptics/simulation.h"
 #include "tactum/math/screw.h"
 #include "tactum/mesh/make_part.h"
-#include "tactum/referee/crossing_referee.h"
 
 namespace tactum::entangled_test {
 namespace {
@@ -158,15 +157,11 @@ std::shared_ptr<const Part> ball_part() {
       *part_from_clouds({std::vector<Vec3>(sphere.vertices.begin(), sphere.vertices.end())}));
 }
 
-struct Entangled {
+struct Entangled : testing::Judged {
   Kind kind;
-  World world;
-  FrameSettings settings;
   int moved = -1;               // the body that is pulled, dropped, shaken or thrown
   std::vector<int> balls;       // in the cup, whose frame C is that of the world at the start
   std::vector<Vec3> ball_at_C;  // after the last frame [m]
-  std::unique_ptr<Simulation> simulation;
-  std::unique_ptr<CrossingReferee> referee;
 
   int add(const std::shared_ptr<const Part>& part, const Pose& X_WP, bool fixed) {
     BodySpec spec{.part = part, .density_kg_per_m3 = kDensity_kg_per_m3, .X_WP = X_WP};
@@ -222,17 +217,6 @@ struct Entangled {
         moved = add(comb, about(exp_rotation({0, kPi, 0}), {0.0025, 0, 0.017}, 0.01, 0.0003), false);
         break;
     }
-  }
-
-  const Pose& X_WB(int body) const { return simulation->state().world.X_WB[static_cast<std::size_t>(body)]; }
-
-  void begin() {
-    simulation = std::move(*Simulation::make(world, settings));
-    std::vector<RefereedBody> bodies;
-    for (const Body& body : world.bodies)
-      bodies.push_back({&body.part->surface, body.moves(), body.no_contact_with});
-    referee = std::make_unique<CrossingReferee>(bodies, simulation->state().world.X_WB);
-    ASSERT_EQ(referee->crossing_at_start(), 0);
   }
 
   /// Whether a ball that was in the cup has left it otherwise than over the rim; between frames it goes
