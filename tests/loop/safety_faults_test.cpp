@@ -12,6 +12,7 @@
 #include "support/add_body.h"
 #include "support/faulty_device.h"
 #include "support/pressed_block.h"
+#include "tactum/base/random.h"
 #include "tactum/loop/loop_thread.h"
 #include "tactum/math/screw.h"
 
@@ -248,6 +249,35 @@ TEST(SafetyFaults, AFastHandIsNoLeap) {
     ASSERT_EQ(flags & kFaults, 0u) << "frame " << i;
   }
   EXPECT_GT(fastest, 1.0);
+}
+
+TEST(SafetyFaults, ATurnIsALeapExactlyBeyondItsLimit) {
+  // Limits of a thousandth of a turn to nearly half a turn in a frame, about any axis, from any orientation.
+  Random random(5);
+  const auto vector = [&] {
+    return Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+  };
+  SafetyLimits limits =
+      safety_limits(SimulatedDevice(*simulated_device_preset("sigma.7"), no_hand(), nullptr).info());
+  for (int i = 0; i < 1000; ++i) {
+    const double angle = kPi * std::pow(10.0, random.uniform(-3.0, -0.01));
+    limits.max_turn_rad_per_s = angle / kPeriod_s;
+    const Mat3 start = exp_rotation(kPi * vector());
+    const Vec3 axis = vector().normalized();
+    for (const double share : {0.1, 0.9, 0.999999, 1.000001, 1.01}) {
+      SafetyState state;
+      SafetyInput input;
+      input.sample_valid = true;
+      std::uint32_t flags = 0;
+      input.X_DH.R = start;
+      safe_wrench(limits, state, input, flags);
+      input.X_DH.R = exp_rotation(axis * (share * angle)) * start;
+      input.now_s = kPeriod_s;
+      flags = 0;
+      safe_wrench(limits, state, input, flags);
+      ASSERT_EQ((flags & kPoseLeapt) != 0, share > 1.0) << angle << ' ' << share;
+    }
+  }
 }
 
 TEST(SafetyFaults, AThrownHandleIsNotDrivenOn) {
