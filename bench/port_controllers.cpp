@@ -102,7 +102,7 @@ class Softening final : public Controller {
     input.stored = {stored(k, x, most_), stored(k, x, most_), std::abs(input.felt.f.x()), 0.0};
     input.dt_s = kStep_s;
     PortReport report;
-    return passive_wrench(settings_, state_, sample, input, report).f.x();
+    return passive_wrench(settings_, state_, handle_motion(state_, sample), input, report).f.x();
   }
 
  private:

@@ -104,7 +104,7 @@ WallTrial try_wall(const WallSetup& setup, double stiffness, double seconds) {
     input.sent = device.motor_wrench();
     input.felt = input.wanted = wall(setup, stiffness, sample.X_DH);
     input.stored.total_J = stored(setup, stiffness, sample.X_DH, input.wanted);
-    device.write(passive_wrench(port, state, sample, input, report));
+    device.write(passive_wrench(port, state, handle_motion(state, sample), input, report));
     trial.lowest_J = std::min(trial.lowest_J, report.balance_J);
     if (now_s < kPressed_s) continue;
     const auto third = static_cast<std::size_t>(3.0 * (now_s - kPressed_s) / (seconds - kPressed_s));

@@ -45,7 +45,7 @@ struct Spring {
       input.stored.force_N = input.felt.f.norm();
       input.stored.torque_Nm = input.felt.t.norm();
     }
-    sent = passive_wrench(settings, state, sample, input, report);
+    sent = passive_wrench(settings, state, handle_motion(state, sample), input, report);
   }
 };
 
@@ -228,7 +228,7 @@ Swung swing(const Swing& c) {
     input.stored = {load * (std::abs(x) - 0.5 * load / k), load * (std::abs(x) - 0.5 * load / k), load, 0.0};
     input.sent = sent;
     const double share = state.booked.stiffness_share;
-    sent = passive_wrench(settings, state, sample, input, report);
+    sent = passive_wrench(settings, state, handle_motion(state, sample), input, report);
     result.change_N_per_s =
         std::max(result.change_N_per_s, load * (share - state.booked.stiffness_share) / share / kPeriod_s);
     device.write(sent);
@@ -287,7 +287,7 @@ TEST(Passivity, EnergyThatBodiesGiveUpIsNoneThatWasMade) {
       sample.valid = true;
       sample.X_DH.p.z() = -1e-4 * i;
       if (bodies_known) input.stored.total_J = 1.0 * sample.X_DH.p.z();
-      input.sent = passive_wrench(settings, state, sample, input, report);
+      input.sent = passive_wrench(settings, state, handle_motion(state, sample), input, report);
     }
     EXPECT_EQ(report.stiffness_share == 1.0, bodies_known);
   }
@@ -317,7 +317,7 @@ TEST(Passivity, WhatComesInByOneAxisMayLeaveByAnother) {
         sample.X_DH = {exp_rotation({0, 0, angle}), {0, 0, kLead * angle}};
         // An encoder gives the displacement along the axis now and then only.
         sample.X_DH.p.z() = 1e-5 * std::ceil(sample.X_DH.p.z() / 1e-5);
-        input.sent = passive_wrench(settings, state, sample, input, report);
+        input.sent = passive_wrench(settings, state, handle_motion(state, sample), input, report);
         ASSERT_EQ(input.sent.t.z() != 0.0, torque);
       }
       EXPECT_EQ(report.stiffness_share == 1.0, share == 1.0) << "torque " << torque;
@@ -339,7 +339,7 @@ TEST(Passivity, WhatTheCallersStageAddsMayGiveBackWhatItTookAndFadesBeyond) {
     given_J += input.sent.f.x() * (to - x);
     x = to;
     input.wanted.f.x() = force;
-    input.sent = passive_wrench(settings, state, sample, input, report);
+    input.sent = passive_wrench(settings, state, handle_motion(state, sample), input, report);
   };
   for (int i = 0; i <= 2000; ++i) {
     const double to = 0.01 * (1.0 - std::cos(2.0 * kPi * i / 1000.0)) / 2.0;
@@ -372,7 +372,7 @@ TEST(Passivity, ARampIsNotBooked) {
     input.stored = {1e-3 * i, 1e-3 * i, 1.0, 0.0};  // the ramp lets the scene store without any work
     sample.X_DH.p.x() = 1e-4 * i;
     input.felt.f.x() = 1.0;
-    passive_wrench(spring.settings, spring.state, sample, input, spring.report);
+    passive_wrench(spring.settings, spring.state, handle_motion(spring.state, sample), input, spring.report);
     ASSERT_EQ(spring.report.balance_J, first_J);
     ASSERT_EQ(spring.report.stiffness_share, 1.0);
   }
@@ -394,7 +394,7 @@ TEST(Passivity, WhatIsNotANumberLeavesTheBalanceAsItWas) {
      : bad == 1 ? input.wanted.f.x()
      : bad == 2 ? input.unfelt_Nm.x()
                 : input.stored.total_J) = std::nan("");
-    passive_wrench(spring.settings, spring.state, sample, input, spring.report);
+    passive_wrench(spring.settings, spring.state, handle_motion(spring.state, sample), input, spring.report);
     EXPECT_EQ(spring.report.balance_J, before.balance_J) << bad;
     spring.go({Mat3::Identity(), {3e-4, 0, 0}});
     EXPECT_TRUE(std::isfinite(spring.report.balance_J)) << bad;
@@ -414,10 +414,13 @@ TEST(Passivity, ABadSampleIsNotBooked) {
   PortInput input;
   input.felt.f.x() = input.wanted.f.x() = 1.0;
   input.sent = spring.sent;
-  EXPECT_EQ(passive_wrench(spring.settings, spring.state, bad, input, spring.report).f.x(), 1.0);
+  EXPECT_EQ(
+      passive_wrench(spring.settings, spring.state, handle_motion(spring.state, bad), input, spring.report)
+          .f.x(),
+      1.0);
   bad.X_DH.p.x() = 0.5;
   bad.valid = false;
-  passive_wrench(spring.settings, spring.state, bad, input, spring.report);
+  passive_wrench(spring.settings, spring.state, handle_motion(spring.state, bad), input, spring.report);
   EXPECT_EQ(spring.report.balance_J, before);
 }
 

@@ -49,8 +49,9 @@ Wrench haptic_frame(const World& world, const FrameSettings& settings, const Dev
 
   // What the device can exert of it, smoothed, then the caller's own wrench: device axes from here on.
   const Wrench at_handle = to_device(settings.workspace, state.hand, felt);
+  const HandleMotion handle_moved = handle_motion(state.port, sample);
   const WrenchStep by_hand =
-      explained_by_hand(settings, grasped, contacts.finder.radii(), sample, state.port);
+      explained_by_hand(settings, grasped, contacts.finder.radii(), handle_moved.moved);
   report.smoothed = smooth_for_device(settings, by_hand, at_handle, state.smoothing, report.safety);
   Wrench wanted = report.smoothed;
   if (state.force_stage) wanted = state.force_stage->apply(wanted, sample, report);
@@ -58,7 +59,7 @@ Wrench haptic_frame(const World& world, const FrameSettings& settings, const Dev
   // The energy balance of the port, then safety.
   const StoredEnergy stored = stored_in_scene(world, settings, grasped, handle, at_handle, state);
   const PortInput port = port_input(settings, wanted, report.smoothed, stored, state.smoothing, state.safety);
-  report.passive = passive_wrench(settings.port, state.port, sample, port, report.port);
+  report.passive = passive_wrench(settings.port, state.port, handle_moved, port, report.port);
   const SafetyInput input = safety_input(sample, tick, report.passive);
   report.shown = safe_wrench(settings.safety, state.safety, input, report.safety);
   state.ended(Stage::kShow);

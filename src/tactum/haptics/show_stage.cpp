@@ -23,13 +23,11 @@ PlacedHandle report_grasp(const GraspedPart& grasped, const WorldState& bodies,
 }
 
 WrenchStep explained_by_hand(const FrameSettings& settings, const GraspedPart& grasped,
-                             std::span<const double> radius_m, const DeviceSample& sample,
-                             const PortState& port) noexcept {
-  if (!port.known || !sample.valid || !plausible(sample.X_DH)) return {};
+                             std::span<const double> radius_m, const Twist& moved) noexcept {
   double lever_m = 0.0;  // of the farthest point that is grasped
   if (grasped.body >= 0) lever_m = radius_m[static_cast<std::size_t>(grasped.body)] + grasped.X_BH.p.norm();
-  return explained_by(twist_between(port.X_DH, sample.X_DH, 1.0), settings.coupling.stiffness_N_per_m,
-                      settings.coupling.stiffness_Nm_per_rad, lever_m / settings.workspace.scale);
+  return explained_by(moved, settings.coupling.stiffness_N_per_m, settings.coupling.stiffness_Nm_per_rad,
+                      lever_m / settings.workspace.scale);
 }
 
 Wrench smooth_for_device(const FrameSettings& settings, const WrenchStep& by_hand, const Wrench& at_handle,

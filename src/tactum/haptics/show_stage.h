@@ -16,11 +16,10 @@ void report_hand(const GraspedPart& grasped, FrameReport& report) noexcept;
 /// Reports the probe and the handle where the step has left them; the handle, none while nothing is grasped.
 PlacedHandle report_grasp(const GraspedPart& grasped, const WorldState& bodies, FrameReport& report) noexcept;
 
-/// By how much the displacement of the handle since the last good sample, which the port remembers, can
-/// change the felt wrench, as the device has it. `radius_m` is that of each body.
+/// By how much a displacement `moved` of the handle can change the felt wrench, as the device has it.
+/// `radius_m` is that of each body.
 WrenchStep explained_by_hand(const FrameSettings& settings, const GraspedPart& grasped,
-                             std::span<const double> radius_m, const DeviceSample& sample,
-                             const PortState& port) noexcept;
+                             std::span<const double> radius_m, const Twist& moved) noexcept;
 
 /// What the device can exert of the felt wrench (`at_handle`, as the device has it), smoothed. Torque is
 /// smoothed also where the device drives none (SmoothingState::shown). Sets the safety flags of limits that

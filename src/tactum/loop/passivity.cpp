@@ -48,8 +48,8 @@ double dissipated(double damping, double friction, const Vec3& displacement, dou
   return damping * displacement.squaredNorm() / dt_s + friction * displacement.norm();
 }
 
-void book(const PortSettings& settings, PortState& state, const Pose& X_DH, const PortInput& input) noexcept {
-  const Twist moved = twist_between(state.X_DH, X_DH, 1.0);
+void book(const PortSettings& settings, PortState& state, const Twist& moved,
+          const PortInput& input) noexcept {
   const double added_J = input.ramp * (state.added.f.dot(moved.v) + state.added.t.dot(moved.w));
   state.tank_J = std::min(state.tank_J - added_J, kTank_J);
   if (input.ramp < 1.0 || !input.stored.same_coupling(state.stored)) return;  // changed without work
@@ -93,7 +93,13 @@ bool is_finite(const PortInput& input) noexcept {
 
 }  // namespace
 
-Wrench passive_wrench(const PortSettings& settings, PortState& state, const DeviceSample& sample,
+HandleMotion handle_motion(const PortState& state, const DeviceSample& sample) noexcept {
+  HandleMotion motion{.X_DH = sample.X_DH, .measured = sample.valid && plausible(sample.X_DH), .moved = {}};
+  if (motion.measured && state.known) motion.moved = twist_between(state.X_DH, sample.X_DH, 1.0);
+  return motion;
+}
+
+Wrench passive_wrench(const PortSettings& settings, PortState& state, const HandleMotion& motion,
                       const PortInput& input, PortReport& report) noexcept {
   SentHistory& history = state.history;
   history.newest = (history.newest + 1) % (SentHistory::kLongestDelay + 1);
@@ -106,11 +112,11 @@ Wrench passive_wrench(const PortSettings& settings, PortState& state, const Devi
     return input.wanted;
   }
   state.unfelt_Nm = input.unfelt_Nm;
-  if (sample.valid && plausible(sample.X_DH) && input.dt_s > 0.0) {
-    if (state.known) book(settings, state, sample.X_DH, input);
+  if (motion.measured && input.dt_s > 0.0) {
+    if (state.known) book(settings, state, motion.moved, input);
     if (state.known && settings.keeps_balance) move_share(state, input);
     if (!state.known) state.booked.balance_J = std::min(kFirst_J, settings.credit_J);
-    state.X_DH = sample.X_DH;
+    state.X_DH = motion.X_DH;
     state.stored = input.stored;
     state.booked.stored_J = input.stored.total_J;
     state.known = true;

@@ -37,8 +37,8 @@
 /// passed on as it is while half a credit is left, and fades to nothing as the tank runs dry.
 ///
 /// Start and stop ramps change the wrench without work, and so does a user who sets another stiffness; what
-/// they store or give is not booked. All energies are those at the device. Cost: one rotation vector and two
-/// dozen products. No clock, no allocation.
+/// they store or give is not booked. All energies are those at the device. Cost: two dozen products. No
+/// clock, no allocation.
 
 #include <array>
 
@@ -115,6 +115,16 @@ struct PortState {
   SentHistory history;
 };
 
+/// The motion of the handle, as the device measures it.
+struct HandleMotion {
+  Pose X_DH;              ///< [m]
+  bool measured = false;  ///< the sample is valid and its pose plausible; else its displacement is not known
+  Twist moved;            ///< since the last good sample; zero without one [m, rad]
+};
+
+/// The motion since the last good sample that the port has taken in. Cost: one rotation vector.
+HandleMotion handle_motion(const PortState& state, const DeviceSample& sample) noexcept;
+
 struct PortInput {
   Wrench felt;    ///< of the scene, as the device can exert it, axes of D, at the handle [N, N m]
   Wrench wanted;  ///< the same with what the caller's own stage has added (force_stage.h) [N, N m]
@@ -126,8 +136,8 @@ struct PortInput {
 };
 
 /// The wrench that is passed on to safety, and the share of the stiffness for the next frame, in `state`. A
-/// sample that is invalid or implausible is left out: its displacement is not known.
-Wrench passive_wrench(const PortSettings& settings, PortState& state, const DeviceSample& sample,
+/// motion that is not measured is left out.
+Wrench passive_wrench(const PortSettings& settings, PortState& state, const HandleMotion& motion,
                       const PortInput& input, PortReport& report) noexcept;
 
 }  // namespace tactum::inline v0_1
