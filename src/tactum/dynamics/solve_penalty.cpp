@@ -82,6 +82,7 @@ class Newton {
   /// along them, which always ends. Returns the rounds, 0 when they ran out.
   int solve() {
     allowed_ = tolerances::kContactVelocity * most_wanted_;
+    for (Index i = 0; i < n_; ++i) set_right_range(rows_[i]);
     Index fewest = n_ + 1;
     bool guarded = false;
     for (int round = 1; round <= kMostRounds; ++round) {
@@ -89,9 +90,11 @@ class Newton {
       newton_step();
       Index wrong = 0;
       for (Index i = 0; i < n_; ++i) {
-        rows_[i].missing = missing(rows_[i]);
-        rows_[i].wrong = is_wrong(rows_[i]);
-        wrong += rows_[i].wrong ? 1 : 0;
+        Row& row = rows_[i];
+        row.missing = missing(row);
+        const double force = row.missing * row.stiffness;
+        row.wrong = !(force >= row.right_from && force <= row.right_to);  // a NaN is wrong
+        wrong += row.wrong ? 1 : 0;
       }
       if (wrong == 0) return round;
       if (guarded) shorten_step();
@@ -124,8 +127,9 @@ class Newton {
     static_assert(kMostUnknowns <= 256);
     std::array<double, 12> g;
     double stiffness, wanted, least, most;
-    double missing;         // offset - g z, since the last step
-    double missing_before;  // before it, where the step is guarded
+    double missing;               // offset - g z, since the last step
+    double missing_before;        // before it, where the step is guarded
+    double right_from, right_to;  // forces for which the state is right
     State state;
     bool wrong;  // the state, after the last step
 
@@ -155,7 +159,18 @@ class Newton {
     if (state == row.state) return;
     add_state(row, row.state, -1.0);
     row.state = state;
+    set_right_range(row);
     add_state(row, state, 1.0);
+  }
+
+  void set_right_range(Row& row) const {
+    // For a force with bounds a fraction of these; else the force of the length that may be missing.
+    const double tolerance =
+        row.most < kUnbounded ? tolerances::kContactVelocity * row.most : allowed_ * row.stiffness;
+    row.right_from =
+        row.state == kIdle ? -kUnbounded : (row.state == kYields ? row.least : row.most) - tolerance;
+    row.right_to =
+        row.state == kSaturated ? kUnbounded : (row.state == kYields ? row.most : row.least) + tolerance;
   }
 
   /// z = H^-1 right.
@@ -205,8 +220,14 @@ class Newton {
         const Row& row = rows_[i];
         const double closes = row.missing_before - row.missing;
         const double force = row.stiffness * (row.missing_before - t * closes);
-        sum -= std::clamp(force, row.least, row.most) * closes;
-        if (force > row.least && force < row.most) rate += row.stiffness * closes * closes;
+        if (force <= row.least) {
+          sum -= row.least * closes;
+        } else if (force >= row.most) {
+          sum -= row.most * closes;
+        } else {
+          sum -= force * closes;
+          rate += row.stiffness * closes * closes;
+        }
       }
       return sum;
     };
@@ -238,21 +259,6 @@ class Newton {
   static State wanted_state(const Row& row) {
     const double force = row.missing * row.stiffness;
     return force < row.least ? kIdle : force > row.most ? kSaturated : kYields;
-  }
-  bool is_wrong(const Row& row) const {
-    const double force = row.missing * row.stiffness;
-    // For a force with bounds a fraction of these; else the force of the length that may be missing.
-    const double tolerance =
-        row.most < kUnbounded ? tolerances::kContactVelocity * row.most : allowed_ * row.stiffness;
-    switch (row.state) {
-      case kIdle:
-        return !(force <= row.least + tolerance);  // a NaN is wrong
-      case kYields:
-        return !(force >= row.least - tolerance && force <= row.most + tolerance);
-      case kSaturated:
-        break;
-    }
-    return !(force >= row.most - tolerance);
   }
 
   Index n_ = 0, unknowns_;

@@ -136,19 +136,25 @@ PenaltyResponse::PenaltyResponse(const World& world, const FrameSettings& settin
                   ContactProblem::kJointRows * world.bodies.size());
 }
 
-/// Adds a body with its target over a step of `h_s` seconds. The grasped part's target is the whole
-/// displacement to where its coupling carries its weight and load, however short the step: it has no inertia,
-/// so nothing but its coupling holds it back.
+/// The grasped part's target, from where it is: the whole displacement to where its coupling carries its
+/// weight and load, however short the step. It has no inertia, so nothing but its coupling holds it back.
+void PenaltyResponse::aim_grasped(const MotionInput& input, const WorldState& bodies) noexcept {
+  if (input.grasped.body < 0) return;
+  const Body& body = input.world.bodies[Index(input.grasped.body)];
+  Wrench load = body.load.constant;
+  load.f += body.mass_kg * input.world.gravity_W;
+  target_ = to_vector(
+      equilibrium_step(input.coupling, input.grasped, load, bodies.X_WB[Index(input.grasped.body)]));
+}
+
+/// Adds a body with its target over a step of `h_s` seconds.
 void PenaltyResponse::add_body(const MotionInput& input, int body, double h_s,
                                const WorldState& bodies) noexcept {
   const Body& what = input.world.bodies[Index(body)];
   const Pose& X_WB = bodies.X_WB[Index(body)];
   if (body == input.grasped.body) {
-    Wrench load = what.load.constant;
-    load.f += what.mass_kg * input.world.gravity_W;
-    const Twist target = equilibrium_step(input.coupling, input.grasped, load, X_WB);
-    const GraspedBody as_body = grasped_body_of(
-        what.load, input.grasped, X_WB, coupling_stiffness(input.coupling), to_vector(target), input.dt_s);
+    const GraspedBody as_body = grasped_body_of(what.load, input.grasped, X_WB,
+                                                coupling_stiffness(input.coupling), target_, input.dt_s);
     problem_.add_body(placed(input.world, bodies, body), as_body.centre_W, as_body.metric, as_body.target,
                       h_s);
     return;
@@ -161,6 +167,7 @@ void PenaltyResponse::add_body(const MotionInput& input, int body, double h_s,
 std::span<const double> PenaltyResponse::bound_motion(const MotionInput& input, WorldState& bodies) noexcept {
   const World& world = input.world;
   by_impulses_ = others_meet(world, input.grasped.body);
+  aim_grasped(input, bodies);
   memory_.waiting.V_kept = bodies.V_WB;  // same size: nothing is allocated
   if (by_impulses_) {
     pull_free_bodies(input, bodies);
@@ -315,6 +322,7 @@ void PenaltyResponse::move_by_springs(const StepInput& input, GapOracle& gaps, W
   if (impact_s > 0.0) {
     advance_distances(rows, bodies.X_WB, bodies.V_WB, impact_s);
     advance(input, impact_s, bodies);
+    aim_grasped(input, bodies);
   }
   if (cut_ && !(rest_s > 0.0)) report.flags |= frame_flag::kStepLimited;  // nothing was in its way
   if (rest_s > 0.0) {

@@ -59,6 +59,7 @@ class PenaltyResponse {
   /// Of each patch, the factor for its depth; empty where the shortest depth is wanted.
   std::span<const double> scale_depths(const StepInput& input, GapOracle& gaps,
                                        std::span<const Twist> V_WB) noexcept;
+  void aim_grasped(const MotionInput& input, const WorldState& bodies) noexcept;
   void add_body(const MotionInput& input, int body, double h_s, const WorldState& bodies) noexcept;
   void find_rows(const StepInput& input, GapOracle& gaps, const WorldState& bodies) noexcept;
   void advance(const StepInput& input, double t_s, WorldState& bodies) const noexcept;
@@ -83,6 +84,7 @@ class PenaltyResponse {
   ContactProblem problem_;
   std::vector<Twist> V_before_joints_;  // by body: before joints and the hand change it [m/s, rad/s]
   std::vector<double> delta_;           // by body: its part of the tolerance, v_c dt [m]
+  Vec6 target_ = Vec6::Zero();          // of the grasped part: displacement of its handle [m, rad]
   bool cut_ = false;                    // the motion to the hand is cut to the threshold distance
   ReservedVector<double> depth_scale_;  // by patch
 };
