@@ -21,8 +21,19 @@ inline Mat3 exp_rotation(const Vec3& w) {
     s = std::sin(angle) / angle;
     c = (1.0 - std::cos(angle)) / angle_sq;
   }
-  const Mat3 W = skew(w);
-  return Mat3::Identity() + s * W + c * (W * W);
+  // 1 + s W + c W W, W = skew(w), each entry by itself: no product of matrices is needed.
+  const Vec3 v = s * w, u = c * w;
+  Mat3 R;
+  R(0, 0) = 1.0 - (u.z() * w.z() + u.y() * w.y());
+  R(1, 0) = u.x() * w.y() + v.z();
+  R(2, 0) = u.x() * w.z() - v.y();
+  R(0, 1) = u.y() * w.x() - v.z();
+  R(1, 1) = 1.0 - (u.z() * w.z() + u.x() * w.x());
+  R(2, 1) = u.y() * w.z() + v.x();
+  R(0, 2) = u.z() * w.x() + v.y();
+  R(1, 2) = u.z() * w.y() - v.x();
+  R(2, 2) = 1.0 - (u.y() * w.y() + u.x() * w.x());
+  return R;
 }
 
 /// The rotation vector of R, of length in [0, pi].
