@@ -57,23 +57,31 @@ struct BoxPairFrame {
   }
 };
 
+/// The squared distance of A's box from B's bounding box in A's axes [m^2], and the other way round; `t`
+/// leads from A's centre to B's, in A's axes.
+inline double squared_gap_in_a(const BoxPairFrame& frame, const Bvh::Node& a, const Bvh::Node& b,
+                               const Vec3& t) noexcept {
+  return (t.cwiseAbs() - a.half - frame.abs_R * b.half).cwiseMax(0.0).squaredNorm();
+}
+inline double squared_gap_in_b(const BoxPairFrame& frame, const Bvh::Node& a, const Bvh::Node& b,
+                               const Vec3& t) noexcept {
+  const Vec3 t_B = frame.X_AB.R.transpose() * t;
+  return (t_B.cwiseAbs() - b.half - frame.abs_R.transpose() * a.half).cwiseMax(0.0).squaredNorm();
+}
+
 /// A lower bound of the distance of two boxes [m]: each box's distance from the other's bounding box in its
 /// own axes, the larger of the two; zero when neither axis separates them.
 inline double box_gap(const BoxPairFrame& frame, const Bvh::Node& a, const Bvh::Node& b) noexcept {
   const Vec3 t = frame.X_AB * b.center - a.center;
-  const Vec3 gap_a = (t.cwiseAbs() - a.half - frame.abs_R * b.half).cwiseMax(0.0);
-  const Vec3 t_B = frame.X_AB.R.transpose() * t;
-  const Vec3 gap_b = (t_B.cwiseAbs() - b.half - frame.abs_R.transpose() * a.half).cwiseMax(0.0);
-  return std::sqrt(std::max(gap_a.squaredNorm(), gap_b.squaredNorm()));
+  return std::sqrt(std::max(squared_gap_in_a(frame, a, b, t), squared_gap_in_b(frame, a, b, t)));
 }
 
 /// Whether some cross product of edges separates the boxes by more than `tolerance`. To be called after
-/// box_gap.
-inline bool parted_by_edges(const BoxPairFrame& frame, const Bvh::Node& a, const Bvh::Node& b,
+/// their own axes have been tried.
+inline bool parted_by_edges(const BoxPairFrame& frame, const Bvh::Node& a, const Bvh::Node& b, const Vec3& t,
                             double tolerance) noexcept {
   const Mat3& R = frame.X_AB.R;
   const Mat3& abs_R = frame.abs_R;
-  const Vec3 t = frame.X_AB * b.center - a.center;
   for (int i = 0; i < 3; ++i) {
     const int i1 = (i + 1) % 3;
     const int i2 = (i + 2) % 3;
@@ -92,7 +100,10 @@ inline bool parted_by_edges(const BoxPairFrame& frame, const Bvh::Node& a, const
 /// Whether the boxes may come within `tolerance` [m]; never false when they do.
 inline bool boxes_within(const BoxPairFrame& frame, const Bvh::Node& a, const Bvh::Node& b,
                          double tolerance) noexcept {
-  return box_gap(frame, a, b) <= tolerance && !parted_by_edges(frame, a, b, tolerance);
+  const double squared = tolerance * tolerance;
+  const Vec3 t = frame.X_AB * b.center - a.center;
+  return squared_gap_in_a(frame, a, b, t) <= squared && squared_gap_in_b(frame, a, b, t) <= squared &&
+         !parted_by_edges(frame, a, b, t, tolerance);
 }
 
 /// Calls visit(item_a, item_b) for every pair of items whose leaf boxes may be within `tolerance` [m] at
