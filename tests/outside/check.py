@@ -6,8 +6,9 @@ test's own, and against its sources in SOURCE, with g++ and with clang++ where i
 not need is hidden. Each program must print the hash that INSIDE prints, the same program built within the tree.
 
 clang++ compiles the sources of the library only when TACTUM_ALL_BUILDS=1 says that its build is there: then the compiler
-cache knows all of them.
+cache knows all of them, for the files are joined as there. With TACTUM_FULL=1 each is compiled alone, as by others.
 """
+import json
 import os
 import pathlib
 import shutil
@@ -41,13 +42,22 @@ def build_and_run(folder, compiler, hidden, *options):
     return run(folder / "outside").strip()
 
 
+def joined(source):
+    """The options by which the presets of the project join files."""
+    presets = json.loads((source / "CMakePresets.json").read_text())["configurePresets"]
+    variables = next(preset["cacheVariables"] for preset in presets if preset["name"] == "joined")
+    return [f"-D{name}={value}" for name, value in variables.items()]
+
+
 def main(source, build, inside):
     source, build = pathlib.Path(source).resolve(), pathlib.Path(build).resolve()
     prefix = build / "installed"
     shutil.rmtree(prefix, ignore_errors=True)
     run("cmake", "--install", build, "--component", "library", "--prefix", prefix)
     # Compiled as the build's own files, and in a folder of the same depth: so the compiler cache knows them.
-    as_own = (f"-DTACTUM_SOURCE={source}", "-DTACTUM_WARNINGS_ARE_ERRORS=ON")
+    as_own = [f"-DTACTUM_SOURCE={source}", "-DTACTUM_WARNINGS_ARE_ERRORS=ON"]
+    if os.environ.get("TACTUM_FULL") != "1":
+        as_own += joined(source)
     os.environ.update(CCACHE_BASEDIR=str(source), CCACHE_NOHASHDIR="1")
     hashes = {"inside": run(inside).strip()}
     for compiler in ("g++", "clang++"):
