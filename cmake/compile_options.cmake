@@ -33,14 +33,6 @@ if(TACTUM_SANITIZE)
   add_compile_options(-fsanitize=${TACTUM_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   add_link_options(-fsanitize=${TACTUM_SANITIZE})
 endif()
-# Programs that wait for people or for the network. Sanitized, what they include takes the compiler three times as long
-# to optimise as to translate.
-function(tactum_compile_sanitized_quickly target)
-  if(TACTUM_SANITIZE)
-    target_compile_options(${target} PRIVATE -O0)
-  endif()
-endfunction()
-
 option(TACTUM_COVERAGE "Count executed lines (gcov)" OFF)
 if(TACTUM_COVERAGE)
   add_compile_options(--coverage)

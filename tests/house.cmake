@@ -50,5 +50,5 @@ endif()
 # One frame, the same bits: g++ and clang++, optimised or not, sanitized or not. ./test builds them all.
 set(builds ${PROJECT_SOURCE_DIR}/build)
 add_test(NAME house.same_bits COMMAND ${PYTHON3} ${tools}/same_bits.py ${builds}/release/tests/frame_hashes
-  ${builds}/clang/tests/frame_hashes ${builds}/dev/tests/frame_hashes ${builds}/asan/tests/frame_hashes)
+  ${builds}/clang/tests/frame_hashes ${builds}/plain/tests/frame_hashes ${builds}/asan/tests/frame_hashes)
 set_tests_properties(house.same_bits PROPERTIES LABELS slow SKIP_RETURN_CODE 77)

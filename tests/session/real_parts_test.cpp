@@ -77,7 +77,7 @@ struct Case {
   std::uint64_t sample;  ///< frames of the short test, in contact at the end; 0: all
   std::uint64_t every;   ///< ... of which so many are passed by from look to look
 };
-constexpr std::uint64_t kSlowness = testing::kSanitized ? 10 : 1;
+constexpr std::uint64_t kSlowness = testing::kSanitized ? 20 : 1;
 
 class RealParts : public ::testing::TestWithParam<Case> {};
 

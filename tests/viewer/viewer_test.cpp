@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "support/allocation_guard.h"
+#include "support/effort.h"
 #include "tactum/mesh/make_part.h"
 #include "tactum/scene/builtin_scenes.h"
 #include "tactum/scene/scene_file.h"
@@ -92,7 +93,7 @@ std::uint64_t hash_with_pages(int pages, std::uint64_t frames, std::uint64_t& se
   return viewer->session().record().hash();
 }
 
-constexpr std::uint64_t kFrames = 4000;
+constexpr std::uint64_t kFrames = testing::effort(4000, 1000);
 
 // tools/viewer_work.py runs these two by name and counts the instructions of the loop's work.
 TEST(ViewerRun, WithoutPages) {

@@ -85,7 +85,7 @@ export const topics = {
     for (let i = 1; i <= 4; ++i) await page.mouse.move(x + 30 + 30 * i, y - 150);
     await page.mouse.up();
     await until("the hand is empty again", async () => (await state(page)).grasped === "");
-    await until("what was thrown has fallen", async () => (await places())["cube 1"][1] - lifted > 50);
+    await until("what was thrown has fallen", async () => (await places())["cube 1"][1] - lifted > 20);  // it may land on others
     check(page.complaints.length === 0, page.complaints.join("; "));
     await program.end();
   },
