@@ -100,6 +100,11 @@ inline constexpr double kRestingVelocity = 1e-8;
 /// nearer: impulses then grow against each other while velocities stay.
 inline constexpr double kSlidingVelocity = 3e-5;
 
+/// ... and, where all bodies are solved for at once, plus this fraction of what forces have displaced the
+/// bodies at the contact: nothing is missing then beyond the last change. A hundred times as much, and what
+/// stands does not come to rest to the last digit.
+inline constexpr double kNewtonSettled = 1e-5;
+
 /// The friction of a sliding patch has settled when it changes by less than this fraction of mu N from one
 /// answer to the next.
 inline constexpr double kSameFriction = 1e-6;

@@ -15,11 +15,6 @@ using Index = std::size_t;
 constexpr double kFrictionSoftness = 1e-3;
 constexpr double kFarthestTravel = 0.05;  // [rad or m]
 
-/// Unknowns of a body with its joint, at most.
-constexpr Index kMostOfBody = 9;
-/// A run of a row is read in whole lanes, also beyond the last unknown.
-constexpr Index kRoomBehind = 8;
-
 Vec6 column(const Vec3& displacement, const Vec3& turn) {
   Vec6 c;
   c << displacement, turn;

@@ -19,8 +19,8 @@
 /// keeps at the travel of the two bodies: the unknowns of a joint stand beside the six, so a row reaches
 /// both in one run.
 ///
-/// Three solvers work on it: solve_exactly.h (active set, for few bodies), solve_by_sweeps.h (projected
-/// Gauss-Seidel, for any number), solve_penalty.h (rows that yield). choose_solver() selects one.
+/// Four solvers work on it: solve_exactly.h (active set, few bodies), solve_by_sweeps.h, solve_by_newton.h
+/// (any number), solve_penalty.h (rows that yield). solver_choice.h selects one.
 
 #include <vector>
 
@@ -101,6 +101,9 @@ class ContactProblem {
   static constexpr std::size_t kMostCones = 32;
   /// Rows of the joints of each body: six locks, three of a damper, two limits, two of dry friction.
   static constexpr std::size_t kJointRows = 13;
+  /// Unknowns of a body with its joint, at most, and the numbers behind the last unknown that runs of rows
+  /// read: these are read in whole lanes.
+  static constexpr std::size_t kMostOfBody = 9, kRoomBehind = 8;
   /// Room for `most_rows` rows beside those of joints and for `most_bodies` of the world's bodies.
   ContactProblem(std::size_t most_rows, std::size_t world_bodies, std::size_t most_bodies);
   /// Room for all of the world's bodies.
@@ -182,6 +185,7 @@ class ContactProblem {
   void begin_values() noexcept;
   /// The unknowns, followed by zeros that runs of rows may read.
   double* values() noexcept { return z_.data(); }
+  const double* values() const noexcept { return z_.data(); }
 
   std::span<const ProblemBody> bodies() const noexcept { return bodies_; }
   /// Displacement of a body's origin in the last answer; zero when it was not added [m, rad].

@@ -30,7 +30,8 @@
 /// target's turn does not squeeze. For the force through two contacts on opposite walls comes from a torque;
 /// a push or a pull takes from one wall what it adds to the other.
 ///
-/// This file is friction in the exact solver. The sweeps (solve_by_sweeps.h) use the same patches.
+/// This file is friction in the exact solver. The iterative solvers (island_forces.h) use the same
+/// patches.
 
 #include "tactum/dynamics/friction_anchors.h"
 #include "tactum/dynamics/friction_patch.h"

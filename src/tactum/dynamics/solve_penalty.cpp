@@ -93,7 +93,7 @@ class Newton {
         Row& row = rows_[i];
         row.missing = missing(row);
         const double force = row.missing * row.stiffness;
-        row.wrong = !(force >= row.right_from && force <= row.right_to);  // a NaN is wrong
+        row.wrong = !(force >= row.right.from && force <= row.right.to);  // a NaN is wrong
         wrong += row.wrong ? 1 : 0;
       }
       if (wrong == 0) return round;
@@ -121,15 +121,19 @@ class Newton {
   /// The row's force is the least, follows the law, or is the most.
   enum State : std::uint8_t { kIdle, kYields, kSaturated };
 
+  struct Range {
+    double from, to;
+  };
+
   struct Row {
     Index size;  // of g, where it is not zero: the unknowns of both bodies, in order
     std::array<std::uint8_t, 12> column;
     static_assert(kMostUnknowns <= 256);
     std::array<double, 12> g;
     double stiffness, wanted, least, most;
-    double missing;               // offset - g z, since the last step
-    double missing_before;        // before it, where the step is guarded
-    double right_from, right_to;  // forces for which the state is right
+    double missing;         // offset - g z, since the last step
+    double missing_before;  // before it, where the step is guarded
+    Range right;            // of forces for which the state is right
     State state;
     bool wrong;  // the state, after the last step
 
@@ -167,9 +171,9 @@ class Newton {
     // For a force with bounds a fraction of these; else the force of the length that may be missing.
     const double tolerance =
         row.most < kUnbounded ? tolerances::kContactVelocity * row.most : allowed_ * row.stiffness;
-    row.right_from =
+    row.right.from =
         row.state == kIdle ? -kUnbounded : (row.state == kYields ? row.least : row.most) - tolerance;
-    row.right_to =
+    row.right.to =
         row.state == kSaturated ? kUnbounded : (row.state == kYields ? row.most : row.least) + tolerance;
   }
 

@@ -122,7 +122,7 @@ inline constexpr FieldList kFields{
   Of<&R::impacts>{{"impacts", "", "pairs of bodies that hit each other", kSum}},
   Of<&R::solver_iterations>{{"solver_iterations", "", "of the contact solver", kSum,
     {"solver_iterations", "Solver rounds", "work"}}},
-  Of<&R::solvers>{{"solvers", "", "which solvers were at work: 1 exact, 2 sweeps, 4 penalty, added up"}},
+  Of<&R::solvers>{{"solvers", "", "which solvers were at work: 1 exact, 2 sweeps, 4 penalty, 8 Newton, added up"}},
   Of<&R::active_constraints>{{"active_constraints", "", "rows that hold the bodies", kSum}},
   Of<&R::validation_tests>{{"validation_tests", "", "exact tests of poses before they were taken", kSum}},
   Of<&R::path_tests>{{"path_tests", "",

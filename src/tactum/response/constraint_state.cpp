@@ -33,9 +33,11 @@ ConstraintState::ConstraintState(const World& world, const FrameSettings& settin
 
 FreeBodies::FreeBodies(const World& world, const FrameSettings& settings)
     : islands(world),
-      sweeps(Index(settings.budget.max_contact_points), world.bodies.size()),
+      forces(Index(settings.budget.max_contact_points), world.bodies.size()),
+      newton(Index(settings.budget.max_contact_points), world.bodies.size()),
       momentum(world),
       near_grasped(world.bodies.size(), 0),
+      unconverged(world.bodies.size(), 0),
       joined(world.bodies.size(), 0),
       detour(world.bodies.size()),
       A_contacts(world.bodies.size()),

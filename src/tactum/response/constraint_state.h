@@ -11,7 +11,7 @@
 #include "tactum/dynamics/friction_planes.h"
 #include "tactum/dynamics/impacts.h"
 #include "tactum/dynamics/islands.h"
-#include "tactum/dynamics/solve_by_sweeps.h"
+#include "tactum/dynamics/solve_by_newton.h"
 #include "tactum/dynamics/solver_choice.h"
 #include "tactum/response/contact_force.h"
 #include "tactum/response/frame_report.h"
@@ -134,7 +134,8 @@ struct FreeBodies {
   FreeBodies(const World& world, const FrameSettings& settings);
 
   Islands islands;
-  Sweeps sweeps;
+  IslandForces forces;  ///< of the island that the iterative solvers work on
+  NewtonSolver newton;
   Momentum momentum;
   int grasped_island = -1;    ///< the island that constraint.h, or the penalty response, moves; -1: none
   bool grasped_here = false;  ///< the grasped part's island is too large for constraint.h
@@ -145,6 +146,9 @@ struct FreeBodies {
   /// frame until find_islands(), of this frame from then on.
   std::vector<char> near_grasped;
 
+  /// Of each body, whether the forces of its last step are not the answer, because the solver ran out of
+  /// iterations: what stands still by them need not be at rest.
+  std::vector<char> unconverged;
   std::vector<char> joined;  ///< of each body, whether a pair joint joins it to another
   /// Of each body, the displacement that impacts add to its velocity's in this frame (impacts.h); at the end
   /// of a frame what is left of its displacement, for the next one [m, rad].

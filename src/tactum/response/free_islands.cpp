@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "tactum/dynamics/body_load.h"
+#include "tactum/dynamics/solver_choice.h"
 #include "tactum/math/screw.h"
 #include "tactum/response/grasped_part.h"
 #include "tactum/response/joined_bodies.h"
@@ -163,26 +164,33 @@ bool solve_exact(IslandProblem& p) {
   return true;
 }
 
-void solve_swept(IslandProblem& p) {
+void solve_many(IslandProblem& p) {
   ConstraintState& c = p.step.own.constraint;
-  Sweeps& sweeps = p.step.own.free.sweeps;
+  IslandForces& forces = p.step.own.free.forces;
   assemble(false, true, p);
-  sweeps.begin(p.in_problem, p.step.bodies.X_WB, c.anchors, c.rows.memory, p.step.dt_s, p.problem);
+  forces.begin(p.in_problem, p.step.bodies.X_WB, c.anchors, c.rows.memory, p.step.dt_s, p.problem);
   // The error that is left moves nothing by more than the skin, and every step is tested before it is taken.
   const int most = p.step.settings.budget.solver_iterations;
-  SolverResult solved = sweeps.solve(most, least_skin(p), p.problem);
-  close_joints(p, [&] {
-    const SolverResult again = sweeps.solve(most, least_skin(p), p.problem);
-    solved = {solved.iterations + again.iterations, again.converged};
-    return again.converged;
-  });
-  p.step.report.solvers |= static_cast<int>(ContactSolver::kSweeps);
-  p.step.report.solver_iterations += solved.iterations;
-  if (!solved.converged) p.step.report.flags |= frame_flag::kSolverBounded;
-  sweeps.keep_anchors(p.in_problem, p.step.bodies.X_WB, p.problem, c.anchors);
-  sweeps.end(p.contacts, c.rows.memory);
-  for (Index i = 0; i < sweeps.patches().size(); ++i)
-    report_friction(sweeps.patches()[i], sweeps.friction_force(i), sweeps.friction_torque(i), p);
+  bool converged = false;
+  const auto solve = [&] {
+    const IterativeResult result =
+        solve_iteratively(most, least_skin(p), p.step.own.free.newton, forces, p.problem);
+    if (result.by_sweeps) p.step.report.solvers |= static_cast<int>(ContactSolver::kSweeps);
+    if (result.by_newton) p.step.report.solvers |= static_cast<int>(ContactSolver::kNewton);
+    p.step.report.solver_iterations += result.iterations;
+    converged = result.converged;
+    return converged;
+  };
+  solve();
+  close_joints(p, solve);
+  if (!converged) {
+    p.step.report.flags |= frame_flag::kSolverBounded;
+    for (const int body : p.bodies) p.step.own.free.unconverged[Index(body)] = 1;
+  }
+  forces.keep_anchors(p.in_problem, p.step.bodies.X_WB, p.problem, c.anchors);
+  forces.end(p.contacts, c.rows.memory);
+  for (Index i = 0; i < forces.patches().size(); ++i)
+    report_friction(forces.patches()[i], forces.friction_force(i), forces.friction_torque(i), p);
 }
 
 /// Where the answer has the grasped part beyond its motion bound, as a hand does that is far ahead, what it
@@ -198,7 +206,7 @@ void follow_slower(IslandProblem& p) {
   p.share_of_wanted = step.own.motion_bound[grasped] / travel;
   step.report.flags |= step.own.constraint.trust.limit;
   forget_friction(p);
-  solve_swept(p);
+  solve_many(p);
 }
 
 void solve_island(IslandProblem& p) {
@@ -218,7 +226,7 @@ void solve_island(IslandProblem& p) {
   }
   const bool exact =
       choose_solver(unknowns, coupled_to_hand || jointed) == ContactSolver::kExact && solve_exact(p);
-  if (!exact) solve_swept(p);
+  if (!exact) solve_many(p);
   if (coupled_to_hand) {
     feel(displacement_of_handle(p.problem, step), p.step);
     follow_slower(p);
@@ -255,6 +263,7 @@ void begin_islands(ConstraintStep& step) noexcept {
   f.rows.set(bodies, rows.size(), [&](Index r) {
     return r < step.own.constraint.rows.own ? -1 : f.islands.of_contact(rows[r].body_a, rows[r].body_b);
   });
+  std::fill(f.unconverged.begin(), f.unconverged.end(), 0);
   f.V_free = step.bodies.V_WB;  // same size: nothing is allocated
   if (f.grasped_here) step.own.constraint.wanted = wanted_by_hand(step);
 }
