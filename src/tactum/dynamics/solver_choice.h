@@ -3,8 +3,8 @@
 ///
 /// Islands of more bodies than the exact solver takes are solved iteratively: first by a few sweeps from the
 /// forces of the last frame, which is all that a heap at rest takes. Where they have not settled, by Newton's
-/// method if a round of that costs few sweeps, as with towers and rows of bodies, and else by sweeps. All of
-/// it takes no longer than twice the sweeps that are allowed.
+/// method if a round of that costs few sweeps, as with towers and rows of bodies, and else by sweeps. At
+/// worst, when all of these fail, it takes as long as three times the sweeps that are allowed.
 
 #include "tactum/dynamics/solve_by_newton.h"
 
@@ -35,8 +35,8 @@ struct IterativeResult : SolverResult {
   bool by_sweeps = false, by_newton = false;  ///< what gave the answer
 };
 
-/// Takes a problem after IslandForces::begin(). The answer is not exact by less than `harmless_m` when it has
-/// converged.
+/// Takes a problem after IslandForces::begin(). When it has converged, no displacement is farther than
+/// `harmless_m` from the answer.
 IterativeResult solve_iteratively(int max_sweeps, double harmless_m, NewtonSolver& newton,
                                   IslandForces& forces, ContactProblem& problem) noexcept;
 
