@@ -9,6 +9,8 @@
 - haptics/frame.cpp is read from top to bottom: at most 80 lines.
 - The library's namespace holds an inline one that names the version, v0_1 for 0.1.x and v1 for 1.x, so that two versions
   can be linked into one program.
+- The files of a layer are compiled several at a time, and the compiler's preset decides which: a constant or type that a
+  .cpp file defines at the margin has a name that no other .cpp file of that layer gives to its own.
 - Nothing is left for later, no merge is left unfinished, and no file knows the folders of the machine it was written on.
 """
 import pathlib
@@ -29,6 +31,7 @@ TAGGED_QUANTITY = re.compile(r"//.*\[(?:kg|N|m|s|rad|J|W|Hz)\b[^\]\n]*\]")
 LONG_COMMENT = re.compile(rf"^(?=[ \t]*//)[^\n]{{{COMMENT_COLUMNS + 1},}}$", re.MULTILINE)
 NAMESPACE = re.compile(r"^namespace tactum\b[^\n]*", re.MULTILINE)
 VERSION = re.compile(r"^#define TACTUM_VERSION_(MAJOR|MINOR) (\d+)$", re.MULTILINE)
+DEFINED_IN_FILE = re.compile(r"^(?:constexpr|const|struct|class|enum(?: class)?)\b[^\n(=;{]*?(\w+) *(?=[={:]|final\b)(?!::)", re.MULTILINE)
 FOR_LATER = re.compile(r"\b(?:TODO|FIXME|XXX|HACK)\b")
 UNFINISHED_MERGE = re.compile(r"^(?:<{7}|>{7}) \S+", re.MULTILINE)
 MACHINE_PATH = re.compile(r"(?<![\w.~*-])/(?:home|root|work|Users|tmp)/\w")
@@ -63,9 +66,22 @@ def versioned_namespace(root):
     return "namespace tactum::inline v" + (version["MAJOR"] if version["MAJOR"] != "0" else f"0_{version['MINOR']}")
 
 
+def clashes_of_joined_files(root):
+    """Names that two files of a layer define, each for itself."""
+    for layer in sorted((root / "src/tactum").glob("*/")):
+        first = {}
+        for path in sorted(layer.glob("*.cpp")):
+            for line, _ in places(DEFINED_IN_FILE, text := code_only(path.read_text())):
+                word = DEFINED_IN_FILE.match(text.splitlines()[line - 1]).group(1)
+                place = f"{path.relative_to(root).as_posix()}:{line}"
+                if first.setdefault(word, place) != place:
+                    yield f"{place}: {word} is defined in {first[word]} too, and files of a layer are compiled together"
+
+
 def faults(root):
     """Everything that is wrong under `root`, a sentence each."""
     namespace = versioned_namespace(root)
+    yield from clashes_of_joined_files(root)
     for top in (root / name for name in LOOKED_AT):
         for path in sorted(top.rglob("*")) if top.is_dir() else [top]:
             name = path.relative_to(root).as_posix()

@@ -53,6 +53,13 @@ class Sources(TreeTest):
             for start in "tactum", "tactum::detail", f"tactum::inline {wrong}":
                 self.assert_one_fault(self.code(f"namespace {start} {{\n}}\n"), "x.h:1", wanted)
 
+    def test_names_of_joined_files_differ(self):
+        self.write("src/tactum/math/a.cpp", "constexpr double kFar = 1.0;\nstruct Pair {};\nenum class Side { kIn };\n")
+        self.write("src/tactum/mesh/a.cpp", "constexpr double kFar = 1.0;\nstruct Pair {};\n")
+        self.assertEqual(self.code("constexpr Vec3 kNear{};\nstruct Pair2;\nvoid f(const Pair&);\n", "src/tactum/math/b.cpp"), [])
+        for text, word in (("\nconstexpr int kFar = 2;\n", "kFar"), ("\nstruct Pair : Base {\n", "Pair"), ("\nenum class Side {\n", "Side")):
+            self.assert_one_fault(self.code(text, "src/tactum/math/b.cpp"), "b.cpp:2", word)
+
     def test_things_left_for_later_are_caught(self):
         self.assert_one_fault(self.code("a\n// TODO mend\n"), "x.h:2", "TODO")
 

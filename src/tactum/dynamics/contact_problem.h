@@ -22,6 +22,7 @@
 /// Four solvers work on it: solve_exactly.h (active set, few bodies), solve_by_sweeps.h, solve_by_newton.h
 /// (any number), solve_penalty.h (rows that yield). solver_choice.h selects one.
 
+#include <limits>
 #include <vector>
 
 #include "tactum/base/reserved_vector.h"
@@ -31,6 +32,9 @@
 #include "tactum/math/small_qp.h"
 
 namespace tactum::inline v0_1 {
+
+/// The bound of a force or a displacement that has none.
+inline constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 /// How a body resists a displacement from its target, stated at a point of it.
 struct BodyMetric {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <tuple>
 #include <utility>
@@ -14,7 +13,6 @@ namespace tactum::inline v0_1 {
 namespace {
 
 using Index = std::size_t;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// For so long rows that were found wedged need not open again.
 constexpr double kClosed_s = 0.016;
@@ -26,14 +24,14 @@ auto key(const ContactRow& row) {
 
 /// How far forces have displaced the bodies of a row along it, the one that is displaced less [m].
 double least_caused(const QpRow& row, const double* z) {
-  double least = kInfinity;
+  double least = kUnbounded;
   for (const QpRow::Run& run : row.runs) {
     if (run.count == 0) continue;
     double sum = 0.0;
     for (Index i = 0; i < run.count; ++i) sum += run.g[i] * z[run.first + i];
     least = std::min(least, std::abs(sum));
   }
-  return least < kInfinity ? least : 0.0;
+  return least < kUnbounded ? least : 0.0;
 }
 
 }  // namespace
@@ -77,7 +75,7 @@ void IslandForces::make_patches(const RowsInProblem& contacts, std::span<const P
                   [&](int i) { patch.place.radius_m += share * (row(i).p_W - patch.place.centre_W).norm(); });
     patch.motion = motion_of(patch, any_orthogonal(patch.place.n_BA_W), problem);
     Friction3& friction = frictions_.emplace_back();
-    friction.most = kInfinity;
+    friction.most = kUnbounded;
     const double arm = patch.place.radius_m;
     friction.mobility = std::max({mobility(patch.motion.along), mobility(patch.motion.across),
                                   arm * arm * mobility(patch.motion.about)});
@@ -166,7 +164,7 @@ void IslandForces::bound_friction(ContactProblem& problem) noexcept {
 
 void IslandForces::begin_solution(ContactProblem& problem) noexcept {
   for_each_force(problem, [](Force& force, const auto&) { force.begun = force.now; });
-  for (Friction3& friction : frictions_) friction.most = kInfinity;
+  for (Friction3& friction : frictions_) friction.most = kUnbounded;
 }
 
 double IslandForces::settled_m(const ContactProblem& problem) const noexcept {
@@ -271,7 +269,7 @@ void IslandForces::keep_anchors(const RowsInProblem& contacts, std::span<const P
     const double twisting = patch.place.radius_m > 0.0 ? friction.about.now / patch.place.radius_m : 0.0;
     const double used = std::hypot(friction.along.now, friction.across.now, twisting);
     if (!(used < (1.0 - tolerances::kAtFrictionBound) * patch.coefficient * patch.load_N))
-      patch.slip.displacement_m = kInfinity;
+      patch.slip.displacement_m = kUnbounded;
     FrictionAnchor anchor = next_anchor(patch, patch.place.centre_W, used > 0.0, X_WB, problem);
     anchor.force_W = friction_force(i);
     anchor.torque_Nm = friction.about.now;

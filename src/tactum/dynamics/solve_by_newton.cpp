@@ -1,7 +1,6 @@
 #include "tactum/dynamics/solve_by_newton.h"
 
 #include <cmath>
-#include <limits>
 
 #include "tactum/base/tolerances.h"
 
@@ -10,7 +9,6 @@ namespace {
 
 using Index = std::size_t;
 using std::uint32_t;
-constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 constexpr Index kMostOfBody = ContactProblem::kMostOfBody, kRoomBehind = ContactProblem::kRoomBehind;
 
 /// Room of the factor. What takes more is more work than sweeps.

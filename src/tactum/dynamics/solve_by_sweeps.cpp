@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "tactum/base/tolerances.h"
@@ -13,7 +12,6 @@ namespace {
 
 using Index = std::size_t;
 using Force = IslandForces::Force;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// In this part of the sweeps (one in so many) contacts have to open; rows that have not converged by then
 /// are wedged.
@@ -40,7 +38,7 @@ class Remainder {
     peak_ = std::max(peak_, change);
     if (++sweeps_ < kWindow) return;
     const double fall = peak_ / last_peak_;
-    remainder_ = fall < 1.0 ? kWindow * peak_ * fall / (1.0 - fall) : kInfinity;
+    remainder_ = fall < 1.0 ? kWindow * peak_ * fall / (1.0 - fall) : kUnbounded;
     last_peak_ = std::exchange(peak_, 0.0);
     sweeps_ = 0;
   }
@@ -49,7 +47,7 @@ class Remainder {
  private:
   static constexpr int kWindow = 8;
   int sweeps_ = 0;
-  double peak_ = 0.0, last_peak_ = kInfinity, remainder_ = kInfinity;
+  double peak_ = 0.0, last_peak_ = kUnbounded, remainder_ = kUnbounded;
 };
 
 /// Updates a joint's dry friction, which keeps the joint where it is as far as its bound allows; returns the

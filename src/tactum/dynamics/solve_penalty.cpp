@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 
 #include "tactum/base/tolerances.h"
 
@@ -12,7 +11,6 @@ namespace tactum::inline v0_1 {
 namespace {
 
 using Index = std::size_t;
-constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 /// How much stiffer than its bodies a row is that should not yield.
 constexpr double kRigid = 1e9;
