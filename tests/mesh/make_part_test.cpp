@@ -81,6 +81,11 @@ TEST(Part, GivenGroupsAreVerifiedConvex) {
 
   whole = two_boxes();
   whole.groups = {{"both", 0, 24}};
+  const Result<Part> joined =
+      part_from_convex_groups(whole);  // without the wall between them they are one box
+  ASSERT_TRUE(joined) << joined.error().message();
+  EXPECT_NEAR(joined->mass.volume, 16.0, 1e-12);
+  for (std::size_t v = 8; v < 16; ++v) whole.mesh.vertices[v].x() += 0.5;
   EXPECT_FALSE(part_from_convex_groups(whole));
 }
 
@@ -97,7 +102,8 @@ TEST(Part, InwardSurfacesAreTurnedAndTold) {
   const Result<Part> part = part_from_mesh(inward);
   ASSERT_TRUE(part);
   EXPECT_EQ(part->pieces.size(), 1u);
-  EXPECT_EQ(part->notes.remarks.size(), 1u);
+  ASSERT_EQ(part->notes.remarks.size(), 2u);
+  EXPECT_NE(part->notes.remarks[1].find("1 components faced the wrong way"), std::string::npos);
   EXPECT_NEAR(part->mass.volume, 8.0, 1e-12);
 }
 
@@ -145,12 +151,12 @@ TEST(CoplanarGroups, ASubdividedBoxHasSixHoweverTurnedAndRounded) {
   }
   fine = transformed(fine, exp_rotation(Vec3(0.4, 0.5, -0.9)), Vec3(0.1, 0.2, 0.05));
   for (Vec3& p : fine.vertices) p = p.cast<float>().cast<double>();  // as STL and most programs store it
-  // Opened, so that it is taken as a surface.
+  // Opened, so that it is taken as a surface, felt from both sides.
   fine.triangles.pop_back();
   const Result<Part> part = part_from_mesh(fine);
   ASSERT_TRUE(part);
-  EXPECT_EQ(part->surface.triangles.size(), 767u);
-  EXPECT_EQ(part->groups.count, 6);
+  EXPECT_EQ(part->surface.triangles.size(), 2u * 767u);
+  EXPECT_EQ(part->groups.count, 2 * 6);
 }
 
 TEST(CoplanarGroups, FacetsOfARoundPegStayApart) {

@@ -110,6 +110,78 @@ TEST(PreparePart, NestedSolidsAreASolidWithACavity) {
   EXPECT_NE(file->report.find("taken for cavities"), std::string::npos);
 }
 
+/// The volume and the triangles of a mesh prepared, or zero and the refusal.
+struct Outcome {
+  double volume = 0.0;
+  std::size_t triangles = 0;
+  std::string message;
+};
+
+Outcome outcome_of(const TriangleMesh& mesh) {
+  const Result<PartFile> file = prepare_part(as_imported({mesh}), {.unit = "m"});
+  if (!file) return {.message = file.error().message()};
+  const bool exact = file->part.mass.approximation.empty();
+  return {exact ? file->part.mass.volume : -1.0, file->part.surface.triangles.size(), {}};
+}
+
+void append(const TriangleMesh& more, TriangleMesh& mesh) {
+  const int base = static_cast<int>(mesh.vertices.size());
+  mesh.vertices.insert(mesh.vertices.end(), more.vertices.begin(), more.vertices.end());
+  for (const Triangle& t : more.triangles) mesh.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
+}
+
+TEST(PreparePart, SolidsThatTouchAreTheirUnion) {
+  const TriangleMesh box = box_mesh({1, 1, 1});
+  struct Case {
+    const char* name;
+    Vec3 offset;
+    std::size_t triangles;
+  };
+  for (const Case& c :
+       {Case{"a face", {2, 0, 0}, 20}, Case{"an edge", {2, 2, 0}, 24}, Case{"a corner", {2, 2, 2}, 24}}) {
+    SCOPED_TRACE(c.name);
+    for (const bool turned : {false, true}) {
+      TriangleMesh mesh = box;
+      TriangleMesh other = transformed(box, Mat3::Identity(), c.offset);
+      if (turned)
+        for (Triangle& t : other.triangles) std::swap(t[0], t[1]);
+      append(other, mesh);
+      const Outcome outcome = outcome_of(mesh);
+      EXPECT_EQ(outcome.message, "");
+      EXPECT_NEAR(outcome.volume, 16.0, 1e-12);
+      if (c.offset.y() > 0.0) {
+        EXPECT_EQ(outcome.triangles, c.triangles);
+      }
+    }
+  }
+}
+
+TEST(PreparePart, TrianglesThatStandTwiceAreNoReasonToRefuse) {
+  TriangleMesh box = box_mesh({1, 1, 1});
+  box.triangles.push_back({box.triangles[3][0], box.triangles[3][2], box.triangles[3][1]});
+  EXPECT_NEAR(outcome_of(box).volume, 8.0, 1e-12) << outcome_of(box).message;
+
+  TriangleMesh ball = dented_ball();  // wholly twice, the second time inside out
+  const double volume = outcome_of(ball).volume;
+  const std::size_t triangles = ball.triangles.size();
+  for (std::size_t t = 0; t < triangles; ++t)
+    ball.triangles.push_back({ball.triangles[t][1], ball.triangles[t][0], ball.triangles[t][2]});
+  EXPECT_NEAR(outcome_of(ball).volume, volume, 1e-15) << outcome_of(ball).message;
+  EXPECT_EQ(outcome_of(ball).triangles, triangles);
+}
+
+TEST(PreparePart, SheetsHaveTwoSidesWhetherTheFileHasThemOrNot) {
+  TriangleMesh sheet;
+  sheet.vertices = {{0, 0, 0}, {0.1, 0, 0}, {0, 0.1, 0}, {0.1, 0.1, 0.02}};
+  sheet.triangles = {{0, 1, 2}, {1, 3, 2}};
+  EXPECT_EQ(outcome_of(sheet).message, "");
+  EXPECT_EQ(outcome_of(sheet).triangles, 4u);
+  for (std::size_t t = 0; t < 2; ++t)
+    sheet.triangles.push_back({sheet.triangles[t][1], sheet.triangles[t][0], sheet.triangles[t][2]});
+  EXPECT_EQ(outcome_of(sheet).message, "");
+  EXPECT_EQ(outcome_of(sheet).triangles, 4u);
+}
+
 TEST(PreparePart, RefusesInOneSentenceWhatIsNoPart) {
   const auto refusal = [](const TriangleMesh& mesh, const PrepareOptions& options) {
     const Result<PartFile> file = prepare_part(as_imported({mesh}), options);
@@ -121,7 +193,9 @@ TEST(PreparePart, RefusesInOneSentenceWhatIsNoPart) {
   EXPECT_EQ(
       refusal(line, {.name = "line"}),
       "line: the mesh cannot be prepared: found no triangle with an area, expected a surface or a solid");
-  TriangleMesh flat = box_mesh({1, 1, 0});  // a closed box pressed flat
+  TriangleMesh flat;  // two sides of a square, cut along different diagonals
+  flat.vertices = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+  flat.triangles = {{0, 1, 2}, {0, 2, 3}, {1, 0, 3}, {1, 3, 2}};
   EXPECT_NE(refusal(flat, {}).find("a closed surface that encloses no volume, about 0 0 "), std::string::npos)
       << refusal(flat, {});
   for (const double scale : {1e-9, 1e9}) {

@@ -20,8 +20,10 @@ struct Rig {
   explicit Rig(std::size_t bodies) {
     world.bodies.resize(bodies);
     // The tests give the bodies parts of several sizes; the wrench must not depend on their inertia.
-    world.bodies[0].mass_kg = 0.05;
-    world.bodies[0].inertia_B = 1e-5 /* kg m^2 */ * Mat3::Identity();
+    if (bodies > 0) {
+      world.bodies[0].mass_kg = 0.05;
+      world.bodies[0].inertia_B = 1e-5 /* kg m^2 */ * Mat3::Identity();
+    }
     settings.tool.body = 0;
     settings.coupling.damping_Ns_per_m = 0.0;
     settings.coupling.damping_Nms_per_rad = 0.0;

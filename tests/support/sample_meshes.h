@@ -65,6 +65,21 @@ inline TriangleMesh prism(int corners, double radius, double half) {
   return mesh;
 }
 
+/// A flat sheet of cells x cells squares about the origin, in the plane z = 0, facing up.
+inline TriangleMesh sheet(int cells, double half) {
+  TriangleMesh mesh;
+  for (int x = 0; x <= cells; ++x)
+    for (int y = 0; y <= cells; ++y)
+      mesh.vertices.emplace_back(half * (2.0 * x / cells - 1.0), half * (2.0 * y / cells - 1.0), 0.0);
+  for (int x = 0; x < cells; ++x)
+    for (int y = 0; y < cells; ++y) {
+      const int a = x * (cells + 1) + y;
+      mesh.triangles.push_back({a, a + cells + 1, a + cells + 2});
+      mesh.triangles.push_back({a, a + cells + 2, a + 1});
+    }
+  return mesh;
+}
+
 inline TriangleMesh transformed(TriangleMesh mesh, const Mat3& R, const Vec3& p) {
   for (Vec3& v : mesh.vertices) v = R * v + p;
   return mesh;

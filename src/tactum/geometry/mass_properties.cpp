@@ -77,7 +77,7 @@ MassProperties of_box(const TriangleMesh& mesh, double density) {
 Result<MassProperties> mass_properties(const TriangleMesh& mesh, double density_kg_per_m3) {
   const MeshReport report = report_mesh(mesh);
   const char* what = "the solid has no mass properties";
-  if (!report.closed) {
+  if (!report.balanced && !report.closed) {
     return Error{what,
                  std::to_string(report.boundary_edges) + " boundary and " +
                      std::to_string(report.non_manifold_edges) +
@@ -85,7 +85,7 @@ Result<MassProperties> mass_properties(const TriangleMesh& mesh, double density_
                      std::to_string(std::max(report.first_boundary, report.first_non_manifold)),
                  "a closed surface", "mesh"};
   }
-  if (!report.oriented) {
+  if (!report.balanced) {
     return Error{what,
                  std::to_string(report.misoriented_edges) + " edges where neighbours face opposite ways",
                  "triangles that all face outward", "mesh"};

@@ -19,8 +19,8 @@ struct MassProperties {
   std::string approximation;    ///< empty when exact; else a sentence that names the replacement of the solid
 };
 
-/// Of a closed, consistently oriented surface with normals outward; anything else is an error that states
-/// what is open.
+/// Of a surface with normals outward that runs along every edge as often one way as the other: closed and
+/// oriented, or solids that touch in edges or faces. Anything else is an error that states what is open.
 Result<MassProperties> mass_properties(const TriangleMesh& mesh, double density_kg_per_m3);
 
 /// Of any mesh: exact when the surface is closed (reversed when its normals point inward), otherwise of the

@@ -22,8 +22,11 @@ int count_duplicates(const TriangleMesh& mesh) {
 /// Edge counts; returns the number of edges.
 int count_edges(const WeldedMesh& welded, const std::vector<HalfEdge>& sides, MeshReport& report) {
   int edges = 0;
+  report.balanced = !sides.empty();
   for_each_edge(sides, [&](const HalfEdge* first, const HalfEdge* last) {
     ++edges;
+    const auto forward = std::count_if(first, last, [](const HalfEdge& side) { return side.forward; });
+    if (2 * forward != last - first) report.balanced = false;
     if (last - first == 1) {
       if (report.boundary_edges++ == 0) report.first_boundary = welded.source[first->triangle];
     } else if (last - first > 2) {

@@ -31,10 +31,11 @@ struct MeshReport {
   int euler = 0;                ///< V - E + F; 2 for each component without handles
   bool closed = false;          ///< every edge has exactly two triangles
   bool oriented = false;        ///< no misoriented edge
-  bool convex = false;  ///< closed, one component, Euler 2, every edge convex to tolerances::kConvexMesh
-  double volume = 0.0;  ///< by the divergence theorem; negative when the normals point inward [m^3]
-  double area = 0.0;    ///< [m^2]
-  Aabb box;             ///< [m]
+  bool balanced = false;  ///< at every edge as many triangles run one way as the other: they bound a volume
+  bool convex = false;    ///< closed, one component, Euler 2, every edge convex to tolerances::kConvexMesh
+  double volume = 0.0;    ///< by the divergence theorem; negative when the normals point inward [m^3]
+  double area = 0.0;      ///< [m^2]
+  Aabb box;               ///< [m]
 
   // Numbers of triangles, as given:
   std::vector<int> index_degenerate;  ///< two corners at one place

@@ -12,6 +12,8 @@
 #include "tactum/geometry/mesh_report.h"
 #include "tactum/geometry/weld.h"
 #include "tactum/mesh/decomposition.h"
+#include "tactum/repair/mesh_repair.h"
+#include "tactum/repair/two_sided.h"
 
 namespace tactum::inline v0_1 {
 namespace {
@@ -119,7 +121,7 @@ TriangleMesh group_mesh(const ImportedMesh& mesh, const MeshGroup& group, double
     for (int corner : t) part.vertices.emplace_back(scale * mesh.mesh.vertices[corner]);
     part.triangles.push_back({first, first + 1, first + 2});
   }
-  return weld(part).mesh;
+  return repair_mesh(part).mesh;
 }
 
 /// So many pieces are allowed when a solid is wanted.
@@ -161,15 +163,49 @@ Result<void> add_pieces(const TriangleMesh& closed, bool convex, const PartOptio
   return {};
 }
 
-void note_repairs(const WeldReport& weld_report, const MeshReport& report, Part& part) {
-  const auto note = [&part](std::size_t count, const char* text) {
-    if (count > 0) part.notes.remarks.push_back(fmt::format("{} {}.", count, text));
-  };
-  note(weld_report.index_degenerate.size(), "triangles with two equal corners were dropped");
-  note(weld_report.zero_area.size(), "triangles without area were dropped");
-  note(weld_report.duplicates.size(), "triangles that stood twice were dropped");
-  note(static_cast<std::size_t>(report.boundary_edges), "edges are open: the surface has holes");
-  note(static_cast<std::size_t>(report.misoriented_edges), "edges join triangles that face opposite ways");
+/// One closed surface that faces outward, with nothing to repair.
+bool is_sound(const MeshReport& report) {
+  return report.closed && report.oriented && report.components == 1 && report.volume > 0.0 &&
+         report.index_degenerate.empty() && report.zero_area.empty();
+}
+
+/// Triangles without area that repair could not mend.
+void drop_without_area(RepairedMesh& repaired) {
+  const TriangleMesh& mesh = repaired.mesh;
+  std::size_t kept = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Triangle& corners = mesh.triangles[t];
+    if (has_no_area(mesh.vertices[corners[0]], mesh.vertices[corners[1]], mesh.vertices[corners[2]]))
+      continue;
+    repaired.component[kept] = repaired.component[t];
+    repaired.mesh.triangles[kept++] = corners;
+  }
+  repaired.mesh.triangles.resize(kept);
+  repaired.component.resize(kept);
+}
+
+/// A mesh fit to be a part: `closed` with all triangles that keep the surface together, `surface` without
+/// those that have no area, and with the backs of open surfaces.
+struct FitMesh {
+  TriangleMesh closed, surface;
+  MeshReport report;
+};
+
+FitMesh fit_for_part(const TriangleMesh& mesh, PartNotes& notes) {
+  FitMesh fit{.closed = {}, .surface = {}, .report = report_mesh(mesh)};
+  if (is_sound(fit.report)) {
+    fit.closed = fit.surface = weld(mesh).mesh;
+    return fit;
+  }
+  RepairedMesh repaired = repair_mesh(mesh);
+  for (const RepairNote& note : repaired.notes) {
+    if (note.kind != "joined_vertices") notes.remarks.push_back(note.sentence());
+  }
+  fit.report = report_mesh(repaired.mesh);
+  fit.closed = repaired.mesh;
+  drop_without_area(repaired);
+  fit.surface = with_backs(repaired);
+  return fit;
 }
 
 /// The options for points in metres that have been moved already.
@@ -198,15 +234,6 @@ Result<Part> clouds_about_center(const std::vector<std::vector<Vec3>>& clouds, c
   for (std::vector<Vec3>& cloud : moved)
     for (Vec3& point : cloud) point -= center;
   return with_origin(center, part_from_clouds(moved, for_moved_points(options)));
-}
-
-/// A mesh of a million triangles is not made a part twice for this.
-Result<Part> mesh_about_center(const TriangleMesh& mesh, const PartOptions& options) {
-  TriangleMesh moved = mesh;
-  for (Vec3& vertex : moved.vertices) vertex *= options.scale;
-  const Vec3 center = mass_properties_or_hull(moved, 1.0).center;
-  for (Vec3& vertex : moved.vertices) vertex -= center;
-  return with_origin(center, part_from_mesh(moved, for_moved_points(options)));
 }
 
 }  // namespace
@@ -257,24 +284,20 @@ Result<Part> part_from_convex_groups(const ImportedMesh& mesh, const PartOptions
 
 Result<Part> part_from_mesh(const TriangleMesh& mesh, const PartOptions& options) {
   if (Result<void> sound = check_options(options); !sound) return sound.error();
-  if (options.about_center_of_mass) return mesh_about_center(mesh, options);
   TriangleMesh scaled = mesh;
   for (Vec3& vertex : scaled.vertices) vertex *= options.scale;
-  MeshReport report = report_mesh(scaled);
   Part part;
   part.name = options.name;
-  if (report.closed && report.oriented && report.volume < 0.0) {
-    for (Triangle& t : scaled.triangles) std::swap(t[1], t[2]);
-    part.notes.remarks.emplace_back("The normals point inward: the surface was turned round.");
-    report = report_mesh(scaled);
+  FitMesh fit = fit_for_part(scaled, part.notes);
+  if (options.about_center_of_mass) {
+    part.origin = mass_properties_or_hull(fit.closed, 1.0).center;
+    for (TriangleMesh* moved : {&fit.closed, &fit.surface})
+      for (Vec3& vertex : moved->vertices) vertex -= part.origin;
   }
-  part.mass = mass_properties_or_hull(scaled, options.density_kg_per_m3);
-  WeldedMesh welded = weld(scaled, {.drop_zero_area = true, .drop_duplicates = true});
-  part.surface = std::move(welded.mesh);
-  note_repairs(welded.report, report, part);
-  const TriangleMesh closed =
-      weld(scaled).mesh;  // where triangles without area still keep the surface connected
-  if (Result<void> made = add_pieces(closed, report.convex, options, part); !made) return made.error();
+  part.mass = mass_properties_or_hull(fit.closed, options.density_kg_per_m3);
+  part.surface = std::move(fit.surface);
+  if (Result<void> made = add_pieces(fit.closed, fit.report.convex, options, part); !made)
+    return made.error();
   if (part.surface.triangles.empty()) return unusable(options, "no triangle with an area", "a surface");
   complete(part);
   return part;

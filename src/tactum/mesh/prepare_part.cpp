@@ -9,6 +9,7 @@
 #include "tactum/base/tolerances.h"
 #include "tactum/mesh/make_part.h"
 #include "tactum/mesh/prepare_pieces.h"
+#include "tactum/repair/two_sided.h"
 
 namespace tactum::inline v0_1 {
 namespace {
@@ -50,9 +51,13 @@ Result<void> check_usable(const RepairedMesh& repaired, const UnitGuess& unit,
   return {};
 }
 
-/// The mesh as given, and the triangles that close its holes.
+/// The mesh as given but for walls inside it, and the triangles that close its holes.
 TriangleMesh reference_of(const TriangleMesh& given, const RepairedMesh& repaired) {
-  TriangleMesh reference = given;
+  TriangleMesh reference;
+  reference.vertices = given.vertices;
+  for (int t = 0; t < static_cast<int>(given.triangles.size()); ++t)
+    if (!std::binary_search(repaired.walls.begin(), repaired.walls.end(), t))
+      reference.triangles.push_back(given.triangles[t]);
   for (std::size_t t = 0; t < repaired.source.size(); ++t) {
     if (repaired.source[t] >= 0) continue;
     const int first = static_cast<int>(reference.vertices.size());
@@ -69,6 +74,7 @@ struct Attempt {
   const TriangleMesh& reference;
   const PrepareProgress& progress;
   int area_samples;
+  double backs_area;  ///< that open surfaces add [m^2]
 
   Result<void> run(const PieceMethod& method, PartFile& file, PrepareReport& report) const {
     progress("cutting into pieces", 0.3);
@@ -79,7 +85,7 @@ struct Attempt {
     progress("verifying", 0.6);
     const bool solid = std::any_of(part->pieces.begin(), part->pieces.end(),
                                    [](const Polytope& piece) { return !piece.flat; });
-    const double area = solid && part->pieces.size() > 1 ? -1.0 : input.report.area;
+    const double area = solid && part->pieces.size() > 1 ? -1.0 : input.report.area + backs_area;
     report.verification =
         verify_part(reference, *part, *center, solid ? method.volume(input) : -1.0, area, area_samples);
     if (Result<void> passed = verdict_on(report.verification, input.options.name); !passed) return passed;
@@ -203,7 +209,8 @@ Result<PartFile> prepare_part(const ImportedMesh& imported, const PrepareOptions
   const PiecesInput input{given, repaired.mesh, report.mesh, part_options};
   const TriangleMesh reference = reference_of(given.mesh, repaired);
   if (Result<void> made =
-          make_pieces({input, reference, show_progress, options.area_samples}, options, file, report);
+          make_pieces({input, reference, show_progress, options.area_samples, open_area(repaired)}, options,
+                      file, report);
       !made)
     return made.error();
   for (const RepairNote& note : repaired.notes)

@@ -18,9 +18,9 @@
 #include "tactum/geometry/mesh_report.h"
 #include "tactum/mesh/deviation.h"
 #include "tactum/mesh/mesh_import.h"
-#include "tactum/mesh/mesh_repair.h"
 #include "tactum/mesh/part_file.h"
 #include "tactum/mesh/piece_overlap.h"
+#include "tactum/repair/mesh_repair.h"
 
 namespace tactum::inline v0_1 {
 

@@ -5,7 +5,7 @@
 #include "tactum/geometry/weld.h"
 #include "tactum/mesh/decomposition.h"
 #include "tactum/mesh/make_part.h"
-#include "tactum/mesh/mesh_repair.h"
+#include "tactum/repair/mesh_repair.h"
 
 namespace tactum::inline v0_1 {
 namespace {
@@ -73,9 +73,11 @@ std::string solid_suits(const PiecesInput& input) {
 }
 
 std::string surface_suits(const PiecesInput& input) {
-  return input.report.closed
-             ? "the solid does not fall into few convex pieces: it is felt by its surface as it is"
-             : "the mesh is not closed: it is felt by its surface as it is";
+  if (input.report.closed)
+    return "the solid does not fall into few convex pieces: it is felt by its surface as it is";
+  return input.report.balanced
+             ? "solids of the mesh touch along edges: it is felt by its surface as it is"
+             : "the mesh is not closed: it is felt by its surface as it is, from both sides";
 }
 
 Result<Vec3> center_of_mesh(const PiecesInput& input) {

@@ -2,7 +2,8 @@
 /// A mesh made fit to be a part, with a report of every change.
 ///
 ///   weld           vertices in one place become one; triangles with two equal corners go       (weld.h)
-///   duplicates     a repeated triangle of the same orientation is removed; back to back it stays
+///   duplicates     a triangle that stands twice once, the wall between two solids not at all
+///                                                                                     (repeated_triangles.h)
 ///   caps           a triangle without area gives its middle corner to the neighbour:
 ///
 ///             c                      c            T = a b c has no height. Its neighbour N = b a d is cut
@@ -11,7 +12,7 @@
 ///             d                      d
 ///
 ///   orientation    outward by component, cavities inward                                (mesh_orientation.h)
-///   holes          closed only when asked, up to a number of edges                          (hole_filling.h)
+///   cracks         closed; holes only when asked, up to a number of edges                   (hole_filling.h)
 ///
 /// No vertex is ever moved, so the surface stays the file's to the last bit except for removed parts, which
 /// lie on the rest to kWeld and kDegenerateTriangle of its size. Deterministic; n log n.
@@ -20,7 +21,7 @@
 #include <vector>
 
 #include "tactum/geometry/triangle_mesh.h"
-#include "tactum/mesh/mesh_orientation.h"
+#include "tactum/repair/mesh_orientation.h"
 
 namespace tactum::inline v0_1 {
 
@@ -45,7 +46,9 @@ struct RepairedMesh {
   TriangleMesh mesh;
   std::vector<int> source;                ///< number in the mesh given of each triangle; -1: closes a hole
   std::vector<MeshComponent> components;  ///< as they stand after repair
-  std::vector<RepairNote> notes;          ///< kinds that occurred, only
+  std::vector<int> component;             ///< of each triangle
+  std::vector<int> walls;  ///< triangles of the mesh given that were walls between two solids, and went
+  std::vector<RepairNote> notes;  ///< kinds that occurred, only
 };
 
 RepairedMesh repair_mesh(const TriangleMesh& mesh, const RepairOptions& options = {});

@@ -1,14 +1,15 @@
-#include "tactum/mesh/mesh_repair.h"
+#include "tactum/repair/mesh_repair.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
+#include <utility>
 
 #include "tactum/geometry/mesh_edges.h"
 #include "tactum/geometry/weld.h"
-#include "tactum/mesh/cap_triangles.h"
-#include "tactum/mesh/hole_filling.h"
+#include "tactum/repair/cap_triangles.h"
+#include "tactum/repair/hole_filling.h"
+#include "tactum/repair/repeated_triangles.h"
 
 namespace tactum::inline v0_1 {
 namespace {
@@ -35,29 +36,29 @@ class Notes {
   std::vector<RepairNote>& notes_;
 };
 
-/// The same corners in the same turning sense, beginning with the lowest.
-Triangle turned_to_lowest(const Triangle& t) {
-  const int lowest = static_cast<int>(std::min_element(t.begin(), t.end()) - t.begin());
-  return {t[lowest], t[(lowest + 1) % 3], t[(lowest + 2) % 3]};
-}
-
-/// Drops triangles that an earlier one equals; lists these, and those that stand back to back with an earlier
-/// one.
-void drop_duplicates(RepairedMesh& out, std::vector<int>& dropped, std::vector<int>& back_to_back) {
-  std::map<Triangle, int> seen;
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < out.mesh.triangles.size(); ++i) {
-    const Triangle t = turned_to_lowest(out.mesh.triangles[i]);
-    if (!seen.emplace(t, 0).second) {
-      dropped.push_back(out.source[i]);
-      continue;
+/// Drops what find_repeated_triangles() lists, with notes that name triangles of the mesh given.
+void drop_repeated(RepairedMesh& out, Notes& notes) {
+  RepeatedTriangles repeated = find_repeated_triangles(out.mesh);
+  std::vector<bool> dropped(out.mesh.triangles.size(), false);
+  for (std::vector<int>* list : {&repeated.copies, &repeated.walls, &repeated.sheets}) {
+    for (int& triangle : *list) {
+      dropped[triangle] = true;
+      triangle = out.source[triangle];
     }
-    if (seen.count({t[0], t[2], t[1]}) > 0) back_to_back.push_back(out.source[i]);
-    out.mesh.triangles[kept] = out.mesh.triangles[i];
-    out.source[kept++] = out.source[i];
+  }
+  std::size_t kept = 0;
+  for (std::size_t t = 0; t < dropped.size(); ++t) {
+    if (dropped[t]) continue;
+    out.mesh.triangles[kept] = out.mesh.triangles[t];
+    out.source[kept++] = out.source[t];
   }
   out.mesh.triangles.resize(kept);
   out.source.resize(kept);
+  notes.add(true, "duplicate_triangles", "triangles stood twice and were dropped", repeated.copies);
+  notes.add(true, "inner_walls", "triangles of walls between two solids were dropped", repeated.walls);
+  out.walls = std::move(repeated.walls);
+  notes.add(true, "two_sided_sheets", "triangles are the second side of a sheet, which has two sides anyway",
+            repeated.sheets);
 }
 
 void drop_unused_vertices(TriangleMesh& mesh) {
@@ -103,9 +104,15 @@ std::vector<int> pinched_at(const TriangleMesh& mesh, const std::vector<HalfEdge
   return triangles;
 }
 
-/// Notes holes, and faults at edges and vertices; `filled` are the rims that were closed.
-void note_topology(const RepairedMesh& out, const std::vector<int>& filled, Notes& notes) {
-  notes.add(true, "closed_holes", "holes were closed", filled);
+/// Triangles at the rims that were closed.
+struct Filled {
+  std::vector<int> cracks, holes;
+};
+
+/// Notes holes, and faults at edges and vertices.
+void note_topology(const RepairedMesh& out, const Filled& filled, Notes& notes) {
+  notes.add(true, "closed_cracks", "cracks between corners and edges that meet were closed", filled.cracks);
+  notes.add(true, "closed_holes", "holes were closed", filled.holes);
   std::vector<int> open;
   std::size_t shortest = out.mesh.triangles.size() * 3;
   std::size_t longest = 0;
@@ -163,6 +170,7 @@ void orient(RepairedMesh& out, std::vector<bool>& turned) {
   for (std::size_t t = 0; t < out.source.size(); ++t)
     if (out.source[t] >= 0 && turned[out.source[t]]) ++turned_of[oriented.component[t]];
   out.components = std::move(oriented.components);
+  out.component = std::move(oriented.component);
   for (std::size_t c = 0; c < out.components.size(); ++c)
     out.components[c].turned = 2 * turned_of[c] > out.components[c].triangles;
 }
@@ -187,17 +195,13 @@ RepairedMesh repair_mesh(const TriangleMesh& mesh, const RepairOptions& options)
             welded.report.vertices_joined);
   notes.add(true, "degenerate_triangles", "triangles had two equal corners and were dropped",
             welded.report.index_degenerate);
-  std::vector<int> dropped;
-  std::vector<int> back_to_back;
-  drop_duplicates(out, dropped, back_to_back);
-  notes.add(true, "duplicate_triangles", "triangles stood twice and were dropped", dropped);
-  notes.add(false, "back_to_back_triangles", "triangles stand back to back with another", back_to_back);
+  drop_repeated(out, notes);
 
   std::vector<bool> turned(mesh.triangles.size(), false);  // of the triangles given
   orient(out, turned);
-  std::vector<int> filled;
+  Filled filled;
   for (const Rim& rim : close_holes(out.mesh, options.close_holes))
-    if (rim.closed) filled.push_back(out.source[rim.triangle]);
+    if (rim.closed) (rim.crack ? filled.cracks : filled.holes).push_back(out.source[rim.triangle]);
   out.source.resize(out.mesh.triangles.size(), -1);
   CapReport caps = mend_caps(out.mesh, out.source);
   std::erase_if(caps.mended, [](int triangle) { return triangle < 0; });  // within a hole just closed

@@ -1,15 +1,17 @@
-#include "tactum/mesh/mesh_repair.h"
+#include "tactum/repair/mesh_repair.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "support/sample_meshes.h"
 #include "tactum/base/random.h"
 #include "tactum/geometry/mass_properties.h"
 #include "tactum/geometry/mesh_report.h"
-#include "tactum/mesh/hole_filling.h"
-#include "tactum/mesh/surface_crossings.h"
+#include "tactum/math/screw.h"
+#include "tactum/repair/hole_filling.h"
+#include "tactum/repair/surface_crossings.h"
 
 namespace tactum {
 namespace {
@@ -270,11 +272,72 @@ TEST(HoleFilling, ACrackIsClosedWithoutMovingAnything) {
   TriangleMesh mesh = box_with_caps(1);
   mesh.triangles.erase(mesh.triangles.end() - 2);
   ASSERT_EQ(report_mesh(mesh).boundary_edges, 3);
-  const RepairedMesh closed = repair_mesh(mesh, {.close_holes = 3});
+  const RepairedMesh closed = repair_mesh(mesh);
   const MeshReport report = report_mesh(closed.mesh);
   EXPECT_TRUE(report.closed && report.oriented);
   EXPECT_TRUE(report.zero_area.empty());
   EXPECT_NEAR(report.area, 24, 1e-12);
+  EXPECT_EQ(note(closed, "closed_cracks")->count, 1);
+}
+
+/// A box of sides 2, each face cut into n x n squares with an n of its own, all corners apart: along every
+/// edge of the box the two faces know different corners.
+TriangleMesh box_of_different_grids(Random& random) {
+  TriangleMesh mesh;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double side : {-1.0, 1.0}) {
+      const int n = 1 + int(random.unit() * 7);
+      const Vec3 u = Vec3::Unit((axis + 1) % 3), v = Vec3::Unit((axis + 2) % 3);
+      const int base = static_cast<int>(mesh.vertices.size());
+      for (int i = 0; i <= n; ++i)
+        for (int k = 0; k <= n; ++k)
+          mesh.vertices.emplace_back(side * Vec3::Unit(axis) + (2.0 * i / n - 1.0) * u +
+                                     (2.0 * k / n - 1.0) * v);
+      for (int i = 0; i < n; ++i)
+        for (int k = 0; k < n; ++k) {
+          const int a = base + i * (n + 1) + k, b = a + n + 1;
+          for (Triangle t : {Triangle{a, b, b + 1}, Triangle{a, b + 1, a + 1}}) {
+            if (side < 0.0) std::swap(t[1], t[2]);
+            mesh.triangles.push_back(t);
+          }
+        }
+    }
+  return mesh;
+}
+
+TEST(HoleFilling, CracksBetweenFacesOfDifferentGridsAreClosed) {
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    SCOPED_TRACE(seed);
+    Random random(seed);
+    TriangleMesh mesh = box_of_different_grids(random);
+    const double size = std::pow(10.0, random.uniform(-4.0, 1.0));
+    mesh = transformed(mesh, size * exp_rotation(Vec3(random.unit(), 2.0, random.unit())), Vec3(size, 0, 0));
+    const bool stored_single = seed % 2 == 0;
+    if (stored_single)
+      for (Vec3& vertex : mesh.vertices) vertex = vertex.cast<float>().cast<double>();
+    if (seed % 3 == 0)
+      for (std::size_t t = 0; t < mesh.triangles.size(); t += 5)
+        std::swap(mesh.triangles[t][0], mesh.triangles[t][1]);
+    const RepairedMesh closed = repair_mesh(mesh);
+    const MeshReport report = report_mesh(closed.mesh);
+    EXPECT_TRUE(report.balanced);
+    EXPECT_EQ(note(closed, "holes"), nullptr);
+    EXPECT_NEAR(report.volume / (size * size * size), 8.0, stored_single ? 1e-5 : 1e-12);
+  }
+}
+
+TEST(HoleFilling, AHoleOfAHundredthOfTheSizeIsNoCrack) {
+  TriangleMesh mesh = box_mesh({1, 1, 1});
+  const Triangle lid = mesh.triangles.back();
+  mesh.triangles.pop_back();
+  const int point = static_cast<int>(mesh.vertices.size());
+  mesh.vertices.push_back(0.5 * (mesh.vertices[lid[0]] + mesh.vertices[lid[1]]) +
+                          0.02 * (mesh.vertices[lid[2]] - mesh.vertices[lid[0]]));
+  mesh.triangles.push_back({point, lid[1], lid[2]});
+  mesh.triangles.push_back({lid[0], point, lid[2]});
+  ASSERT_NE(note(repair_mesh(mesh), "holes"), nullptr);
+  EXPECT_EQ(note(repair_mesh(mesh), "closed_cracks"), nullptr);
+  EXPECT_EQ(note(repair_mesh(mesh, {.close_holes = 3}), "closed_holes")->count, 1);
 }
 
 TEST(SurfaceCrossings, AgreeWithSolidAnglesEverywhere) {

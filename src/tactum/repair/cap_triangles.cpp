@@ -1,4 +1,4 @@
-#include "tactum/mesh/cap_triangles.h"
+#include "tactum/repair/cap_triangles.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "tactum/mesh/surface_crossings.h"
+#include "tactum/repair/surface_crossings.h"
 
 #include <algorithm>
 #include <cmath>
@@ -58,9 +58,9 @@ int SurfaceCrossings::crossing(int triangle, const Vec3& point) const {
   return turns;
 }
 
-std::vector<std::pair<int, int>> SurfaceCrossings::windings(const Vec3& point) const {
-  std::vector<std::pair<int, int>> hits;  // (surface, +-1)
-  if (tree_.empty()) return hits;
+template <class Visitor>
+void SurfaceCrossings::for_each_crossing(const Vec3& point, Visitor&& visit) const {
+  if (tree_.empty()) return;
   std::vector<int> stack = {0};
   while (!stack.empty()) {
     const int at = stack.back();
@@ -76,10 +76,21 @@ std::vector<std::pair<int, int>> SurfaceCrossings::windings(const Vec3& point) c
     }
     for (int i = node.second; i < node.second + node.count; ++i) {
       const int triangle = taken_[tree_.order()[i]];
-      if (const int winding = crossing(triangle, point); winding != 0)
-        hits.emplace_back(surface_[triangle], winding);
+      if (const int winding = crossing(triangle, point); winding != 0) visit(triangle, winding);
     }
   }
+}
+
+int SurfaceCrossings::crossed(const Vec3& point, int but_triangle) const {
+  int count = 0;
+  for_each_crossing(point, [&](int triangle, int) { count += triangle != but_triangle ? 1 : 0; });
+  return count;
+}
+
+std::vector<std::pair<int, int>> SurfaceCrossings::windings(const Vec3& point) const {
+  std::vector<std::pair<int, int>> hits;  // (surface, +-1)
+  for_each_crossing(point,
+                    [&](int triangle, int winding) { hits.emplace_back(surface_[triangle], winding); });
   std::sort(hits.begin(), hits.end());
   std::vector<std::pair<int, int>> sums;
   for (const auto& [surface, winding] : hits) {

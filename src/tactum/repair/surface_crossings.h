@@ -23,7 +23,14 @@ class SurfaceCrossings {
   /// that faces outward. A point on a surface counts as either side of it.
   std::vector<std::pair<int, int>> windings(const Vec3& point) const;
 
+  /// How many triangles the ray crosses, all but one.
+  int crossed(const Vec3& point, int but_triangle) const;
+
  private:
+  /// Calls visit(triangle, +1 or -1) for every triangle that the ray crosses.
+  template <class Visitor>
+  void for_each_crossing(const Vec3& point, Visitor&& visit) const;
+
   /// +1 or -1 where the ray from `point` leaves or enters by the triangle, else 0.
   int crossing(int triangle, const Vec3& point) const;
 

@@ -1,11 +1,12 @@
-#include "tactum/mesh/mesh_orientation.h"
+#include "tactum/repair/mesh_orientation.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "tactum/base/tolerances.h"
 #include "tactum/geometry/mesh_edges.h"
-#include "tactum/mesh/surface_crossings.h"
+#include "tactum/repair/open_patches.h"
+#include "tactum/repair/surface_crossings.h"
 
 namespace tactum::inline v0_1 {
 namespace {
@@ -150,6 +151,7 @@ OrientedMesh orient_components(TriangleMesh& mesh) {
   const std::vector<HalfEdge> sides = sorted_half_edges(mesh);
   std::vector<bool> turned = flood(neighbours_of(sides, mesh.triangles.size()), out);
   report_edges(sides, turned, out);
+  join_open_patches(mesh, sides, turned, out);
   for (std::size_t t = 0; t < turned.size(); ++t)
     if (turned[t]) turn(mesh.triangles[t]);
   const std::vector<double> turned_area = measure(mesh, turned, out);

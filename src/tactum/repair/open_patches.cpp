@@ -1,0 +1,161 @@
+#include "tactum/repair/open_patches.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "tactum/math/screw.h"
+#include "tactum/repair/surface_crossings.h"
+
+namespace tactum::inline v0_1 {
+namespace {
+
+class OpenPatches {
+ public:
+  OpenPatches(const TriangleMesh& mesh, const std::vector<HalfEdge>& sides, std::vector<bool>& turned,
+              OrientedMesh& out)
+      : mesh_(mesh),
+        sides_(sides),
+        turned_(turned),
+        out_(out),
+        joined_(static_cast<int>(out.components.size())) {}
+
+  void join() {
+    for_each_edge(sides_, [&](const HalfEdge* first, const HalfEdge* last) {
+      if (last - first == 2) return;
+      const HalfEdge* open = nullptr;
+      for (const HalfEdge* side = first; side != last; ++side) {
+        if (out_.components[patch(*side)].closed) continue;
+        if (open != nullptr) joined_.join(patch(*open), patch(*side));
+        open = side;
+      }
+    });
+    find_closed();
+    if (std::find(closed_.begin(), closed_.end(), true) == closed_.end()) return;
+    turn_as_in_the_file();
+    turn_by_parity(out_of_balance());
+    const std::vector<bool> left = out_of_balance();  // walls that lie in each other have no parity
+    for (std::size_t set = 0; set < left.size(); ++set)
+      if (left[set]) closed_[set] = false;
+    renumber();
+  }
+
+ private:
+  int patch(const HalfEdge& side) const { return out_.component[side.triangle]; }
+  /// Of the patch, or -1 when it is no part of a set that closes.
+  int set_of(int patch) { return closed_[joined_.find(patch)] ? joined_.find(patch) : -1; }
+
+  void find_closed() {
+    closed_.assign(out_.components.size(), true);
+    for (std::size_t c = 0; c < out_.components.size(); ++c)
+      if (out_.components[c].closed || out_.components[c].twisted_edges > 0)
+        closed_[joined_.find(static_cast<int>(c))] = false;
+    std::vector<int> at_edge;
+    for_each_edge(sides_, [&](const HalfEdge* first, const HalfEdge* last) {
+      at_edge.clear();
+      for (const HalfEdge* side = first; side != last; ++side) at_edge.push_back(joined_.find(patch(*side)));
+      for (int set : at_edge)
+        if (std::count(at_edge.begin(), at_edge.end(), set) % 2 != 0) closed_[set] = false;
+    });
+  }
+
+  void turn(const std::vector<bool>& patches) {
+    for (std::size_t t = 0; t < turned_.size(); ++t)
+      if (patches[out_.component[t]]) turned_[t] = !turned_[t];
+  }
+
+  /// Each patch as most of its area faced.
+  void turn_as_in_the_file() {
+    std::vector<double> turned_less_kept(out_.components.size(), 0.0);
+    for (std::size_t t = 0; t < turned_.size(); ++t)
+      turned_less_kept[out_.component[t]] += (turned_[t] ? 1.0 : -1.0) * normal_of(t).norm();
+    std::vector<bool> against(out_.components.size(), false);
+    for (std::size_t c = 0; c < against.size(); ++c)
+      against[c] = set_of(static_cast<int>(c)) >= 0 && turned_less_kept[c] > 0.0;
+    turn(against);
+  }
+
+  Vec3 normal_of(std::size_t t) const {
+    const Triangle& triangle = mesh_.triangles[t];
+    const Vec3& a = mesh_.vertices[triangle[0]];
+    return (mesh_.vertices[triangle[1]] - a).cross(mesh_.vertices[triangle[2]] - a);
+  }
+
+  /// The sets that run along some edge more often one way than the other.
+  std::vector<bool> out_of_balance() {
+    std::vector<bool> out(out_.components.size(), false);
+    std::vector<std::pair<int, int>> runs;  // set, +1 or -1
+    for_each_edge(sides_, [&](const HalfEdge* first, const HalfEdge* last) {
+      runs.clear();
+      for (const HalfEdge* side = first; side != last; ++side)
+        if (const int set = set_of(patch(*side)); set >= 0)
+          runs.emplace_back(set, side->forward != turned_[side->triangle] ? 1 : -1);
+      for (const auto& [set, run] : runs) {
+        int sum = 0;
+        for (const auto& [other, its_run] : runs) sum += other == set ? its_run : 0;
+        if (sum != 0) out[set] = true;
+      }
+    });
+    return out;
+  }
+
+  /// Each patch of the sets so that what an odd number of triangles encloses lies behind it. The rays run in
+  /// a direction that no wall of a made part has.
+  void turn_by_parity(const std::vector<bool>& sets) {
+    if (std::find(sets.begin(), sets.end(), true) == sets.end()) return;
+    const Mat3 R = exp_rotation(Vec3(0.35, 0.81, 1.27));
+    TriangleMesh rotated = mesh_;
+    for (Vec3& vertex : rotated.vertices) vertex = R * vertex;
+    std::vector<bool> wrong(out_.components.size(), false);
+    for (int set = 0; set < static_cast<int>(sets.size()); ++set) {
+      if (!sets[set]) continue;
+      std::vector<int> taken(mesh_.triangles.size(), -1);
+      std::vector<double> outward_area(out_.components.size(), 0.0);
+      for (std::size_t t = 0; t < taken.size(); ++t)
+        if (set_of(out_.component[t]) == set) taken[t] = set;
+      const SurfaceCrossings crossings(rotated, taken);
+      for (std::size_t t = 0; t < taken.size(); ++t) {
+        if (taken[t] < 0) continue;
+        Vec3 middle = Vec3::Zero();
+        for (int corner : rotated.triangles[t]) middle += rotated.vertices[corner] / 3.0;
+        const double along = (turned_[t] ? -1.0 : 1.0) * (R * normal_of(t)).x();
+        const bool solid_beyond = crossings.crossed(middle, static_cast<int>(t)) % 2 != 0;
+        outward_area[out_.component[t]] += solid_beyond ? -along : along;
+      }
+      for (std::size_t c = 0; c < wrong.size(); ++c)
+        if (set_of(static_cast<int>(c)) == set) wrong[c] = outward_area[c] < 0.0;
+    }
+    turn(wrong);
+  }
+
+  void renumber() {
+    std::vector<int> number(out_.components.size(), -1);
+    std::vector<MeshComponent> components;
+    for (int c = 0; c < static_cast<int>(number.size()); ++c) {
+      const int first = set_of(c) >= 0 ? set_of(c) : c;  // the lowest of the set
+      if (number[first] < 0) {
+        number[first] = static_cast<int>(components.size());
+        components.push_back(out_.components[first]);
+        components.back().closed = out_.components[first].closed || set_of(c) >= 0;
+      }
+      number[c] = number[first];
+    }
+    out_.components = std::move(components);
+    for (int& component : out_.component) component = number[component];
+  }
+
+  const TriangleMesh& mesh_;
+  const std::vector<HalfEdge>& sides_;
+  std::vector<bool>& turned_;
+  OrientedMesh& out_;
+  DisjointSets joined_;
+  std::vector<bool> closed_;  ///< by set: it closes
+};
+
+}  // namespace
+
+void join_open_patches(const TriangleMesh& mesh, const std::vector<HalfEdge>& sides,
+                       std::vector<bool>& turned, OrientedMesh& out) {
+  OpenPatches(mesh, sides, turned, out).join();
+}
+
+}  // namespace tactum::inline v0_1
