@@ -323,5 +323,17 @@ TEST(GltfImport, CodesAreNoWayOutOfTheFolder) {
       << missing.error().message();
 }
 
+TEST(GltfImport, IsInMetresByItsStandard) {
+  Sample sample;
+  const int points = sample.add_points(kFloat, {0, 0, 0, 3, 0, 0, 0, 2, 0, 0, 0, 1});
+  sample.set_primitive(points, sample.add_indices(kUnsignedByte, kCorners));
+  const Result<ImportedMesh> mesh = import_mesh_bytes(sample.glb(), "a.glb");
+  ASSERT_TRUE(mesh) << mesh.error().message();
+  const UnitGuess unit = unit_of(mesh->report, report_mesh(mesh->mesh).box);
+  EXPECT_EQ(unit.metres_per_unit, 1.0);
+  EXPECT_TRUE(unit.certain);
+  EXPECT_EQ(unit.reason, "glTF is in metres by its standard.");
+}
+
 }  // namespace
 }  // namespace tactum::gltf_import_test

@@ -126,4 +126,9 @@ Result<ImportedMesh> import_mesh(const std::string& path, const ImportOptions& o
   }
 }
 
+UnitGuess unit_of(const ImportReport& report, const Aabb& box) {
+  if (report.in_metres) return {"metres", 1.0, "glTF is in metres by its standard."};
+  return guess_unit(box);
+}
+
 }  // namespace tactum::inline v0_1
