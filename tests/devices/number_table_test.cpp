@@ -39,6 +39,7 @@ TEST(NumberTable, EverySeparatorGivesTheSameTable) {
   expect_table("t;x;y\r\n0 ; 0.5 ; -2.5e2\r\n\r\n# a comment, with; both\r\n1;2;3");
   expect_table("t\tx\ty\n0\t0.5\t-2.5e2\n1\t2\t3\n");
   expect_table("t x  y\n0 0.5\t-2.5e2\n  1 2 3\n");
+  expect_table("sep=;\r\nt;x;y\r\n0;0,5;-250\r\n1;2;3\r\n");
   expect_table("\"t\";\"x\";\"y\"\n0;0.5;\"-250\"\n1;2;3\n");
 }
 

@@ -8,6 +8,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "mesh/gltf_sample.h"
 #include "tactum/geometry/mesh_report.h"
 #include "tactum/mesh/mesh_import.h"
 
@@ -306,6 +307,14 @@ TEST(GltfImport, NamesOfFilesAreDecoded) {
     const Result<ImportedMesh> mesh = folder.import(uri, file);
     ASSERT_TRUE(mesh) << uri << ": " << mesh.error().message();
     EXPECT_NEAR(report_mesh(mesh->mesh).volume, 1000.0, 1e-9) << uri;
+  }
+}
+
+TEST(GltfImport, AByteOrderMarkIsNoPartOfTheDocument) {
+  for (const char* name : {"a.gltf", "misnamed.obj"}) {
+    const Result<ImportedMesh> mesh = import_mesh_bytes("\xEF\xBB\xBF" + testing::gltf_cube(), name);
+    ASSERT_TRUE(mesh) << mesh.error().message();
+    EXPECT_EQ(mesh->report.format, "glTF");
   }
 }
 

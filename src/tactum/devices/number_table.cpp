@@ -111,7 +111,7 @@ class TableReader {
       const std::string_view line = trimmed(text.substr(start, end - start));
       start = end + 1;
       ++line_number_;
-      if (line.empty() || line.front() == '#') continue;
+      if (line.empty() || line.front() == '#' || names_separator(line)) continue;
       const bool is_first = table_.columns.empty();
       if (is_first) {
         if (Result<void> header = read_header(line); !header) return header.error();
@@ -127,6 +127,11 @@ class TableReader {
   }
 
  private:
+  /// Whether the line is "sep=;", with which a spreadsheet names the separator above the header.
+  static bool names_separator(std::string_view line) {
+    return line.size() <= 5 && (line.starts_with("sep=") || line.starts_with("SEP="));
+  }
+
   /// Finds the separator and the names of the columns.
   Result<void> read_header(std::string_view line) {
     const auto commas = std::count(line.begin(), line.end(), ',');
