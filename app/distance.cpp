@@ -1,5 +1,5 @@
-/// tactum distance CASES.json: signed distance, witness points and normal of pairs of convex vertex clouds or
-/// prepared parts of solid pieces.
+/// tactum distance CASES.json: signed distance, witness points and normal of pairs of convex vertex clouds,
+/// down to segments and points, or prepared parts of solid pieces.
 
 #include <fmt/format.h>
 
@@ -11,12 +11,14 @@
 
 #include "commands.h"
 #include "output.h"
+#include "tactum/base/text_encoding.h"
 #include "tactum/base/tolerances.h"
 #include "tactum/collision/closest_features.h"
 #include "tactum/collision/penetration.h"
 #include "tactum/geometry/hull.h"
 #include "tactum/math/rotation.h"
 #include "tactum/mesh/part_file.h"
+#include "thin_shape.h"
 
 namespace tactum {
 namespace {
@@ -57,7 +59,7 @@ void expect_array(const Json& value, std::size_t size, const Place& place) {
     place.refuse("wrong size", fmt::format("{} entries", value.size()), fmt::format("{}", size));
 }
 
-Polytope read_cloud(const Json& value, const Place& place) {
+std::vector<Vec3> read_points(const Json& value, const Place& place) {
   if (!value.is_array()) place.refuse("wrong type", value.type_name(), "an array of [x, y, z]");
   std::vector<Vec3> points;
   for (std::size_t i = 0; i < value.size(); ++i) {
@@ -67,9 +69,7 @@ Polytope read_cloud(const Json& value, const Place& place) {
     for (std::size_t k = 0; k < 3; ++k) point[static_cast<Eigen::Index>(k)] = number(value[i][k], here);
     points.push_back(point);
   }
-  Result<Polytope> hull = convex_hull(points);
-  if (!hull) place.refuse(hull.error().what, hull.error().found, hull.error().expected);
-  return std::move(*hull);
+  return points;
 }
 
 /// Row-major 4 x 4; absent: identity. Rounded rotations are repaired and reported.
@@ -111,18 +111,27 @@ PairDistance signed_distance(const Polytope& A, const Polytope& B, const Pose& X
 
 Json vector(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
-/// Convex pieces and their pose.
-struct Solid {
+/// Convex pieces, or a point or segment, and their pose.
+struct Shape {
   std::vector<Polytope> pieces;
+  std::optional<ThinShape> thin;
   Pose X_WS;
 };
 
 /// {"vertices": [...]} or {"part": "file"}, which stands beside the cases.
-Solid read_solid(const Json& object, const Place& place) {
-  Solid solid{{}, read_pose(object, place)};
+Shape read_shape(const Json& object, const Place& place) {
+  if (!object.is_object()) place.refuse("wrong type", object.type_name(), "an object");
+  Shape shape{{}, {}, read_pose(object, place)};
   if (!object.contains("part")) {
-    solid.pieces.push_back(read_cloud(member(object, "vertices", place), place.at("vertices")));
-    return solid;
+    const Place here = place.at("vertices");
+    const std::vector<Vec3> points = read_points(member(object, "vertices", place), here);
+    if (points.empty()) here.refuse("a shape has no vertices", "an empty array", "at least one [x, y, z]");
+    shape.thin = thin_hull(points);
+    if (shape.thin) return shape;
+    Result<Polytope> hull = convex_hull(points);
+    if (!hull) here.refuse(hull.error().what, hull.error().found, hull.error().expected);
+    shape.pieces.push_back(std::move(*hull));
+    return shape;
   }
   const Place here = place.at("part");
   if (!object["part"].is_string())
@@ -132,51 +141,91 @@ Solid read_solid(const Json& object, const Place& place) {
   if (!file) here.refuse(file.error().message(), "", "");
   if (file->part.pieces.empty() || file->part.pieces.front().flat)
     here.refuse("the part has no solid pieces", "a surface", "a part of convex solids");
-  solid.pieces = std::move(file->part.pieces);
-  solid.X_WS.p = solid.X_WS * file->origin;  // the pieces are relative to the centre of mass
-  return solid;
+  shape.pieces = std::move(file->part.pieces);
+  shape.X_WS.p = shape.X_WS * file->origin;  // the pieces are relative to the centre of mass
+  return shape;
+}
+
+ThinShape moved(const ThinShape& shape, const Pose& X) { return {X * shape.tail, X * shape.head}; }
+
+/// The same answer with the bodies' names exchanged, in the frame of the one that was B.
+PairDistance exchanged(PairDistance x) {
+  std::swap(x.p_a, x.p_b);
+  x.normal = -x.normal;
+  return x;
+}
+
+/// Every piece of A against every one of B: the nearest, or deepest. In A's frame.
+PairDistance shape_distance(const Shape& A, const Shape& B, const Place& place) {
+  const Pose X_AB = relative_pose(A.X_WS, B.X_WS);
+  if (A.thin && B.thin) return thin_distance(*A.thin, moved(*B.thin, X_AB));
+  std::optional<PairDistance> found;
+  const auto take = [&found](const PairDistance& one) {
+    if (!found || one.distance < found->distance) found = one;
+  };
+  if (A.thin) {
+    const ThinShape in_b = moved(*A.thin, X_AB.inverse());
+    for (const Polytope& b : B.pieces) take(thin_distance(in_b, b));
+    found->p_a = X_AB * found->p_a;
+    found->p_b = X_AB * found->p_b;
+    found->normal = X_AB.R * found->normal;
+    return *found;
+  }
+  for (const Polytope& a : A.pieces) {
+    if (B.thin) take(exchanged(thin_distance(moved(*B.thin, X_AB), a)));
+    for (const Polytope& b : B.pieces) take(signed_distance(a, b, X_AB, place));
+  }
+  return *found;
 }
 
 Json answer(const Json& item, const Json& id, const Place& place) {
-  const Solid A = read_solid(member(item, "a", place), place.at("a"));
-  const Solid B = read_solid(member(item, "b", place), place.at("b"));
-  const Pose X_AB = relative_pose(A.X_WS, B.X_WS);
-  std::optional<PairDistance> found;  // of the nearest, or deepest, pieces
-  for (const Polytope& a : A.pieces) {
-    for (const Polytope& b : B.pieces) {
-      const PairDistance one = signed_distance(a, b, X_AB, place);
-      if (!found || one.distance < found->distance) found = one;
-    }
-  }
+  const Shape A = read_shape(member(item, "a", place), place.at("a"));
+  const Shape B = read_shape(member(item, "b", place), place.at("b"));
+  const PairDistance found = shape_distance(A, B, place);
   return {{"id", id},
-          {"signed_distance", found->distance},
-          {"p_a", vector(A.X_WS * found->p_a)},
-          {"p_b", vector(A.X_WS * found->p_b)},
-          {"normal", vector(A.X_WS.R * found->normal)},
-          {"certified", found->certified()},
-          {"steps", found->steps}};
+          {"signed_distance", found.distance},
+          {"p_a", vector(A.X_WS * found.p_a)},
+          {"p_b", vector(A.X_WS * found.p_b)},
+          {"normal", vector(A.X_WS.R * found.normal)},
+          {"certified", found.certified()},
+          {"steps", found.steps}};
 }
 
-void distance(const std::string& path, const std::string& json) {
-  std::ifstream file(path);
-  const Place place{path, "", ""};
+Json read_cases(const Place& place) {
+  std::ifstream file(place.file, std::ios::binary);
   if (!file) place.refuse("cannot read the cases", "no readable file", "a JSON file");
-  Json input;
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  const Result<std::string_view> text = utf8_text(bytes, place.file);
+  if (!text) fail(text.error());
   try {
-    input = Json::parse(file);
+    const Json input = Json::parse(*text);
+    const Json& cases = member(input, "cases", place);
+    if (!cases.is_array()) place.refuse("\"cases\" has the wrong type", cases.type_name(), "an array");
+    return cases;
   } catch (const Json::exception& error) {
     place.refuse("this is no JSON", error.what(), R"({"cases": [...]})");
   }
-  const Json& cases = member(input, "cases", place);
-  if (!cases.is_array()) place.refuse("\"cases\" has the wrong type", cases.type_name(), "an array");
+}
+
+/// A case that is wrong has its error among the answers of the others, and the command fails in the end.
+void distance(const std::string& path, const std::string& json) {
+  const Json cases = read_cases({path, "", ""});
   Json results = Json::array();
+  bool all_answered = true;
   for (std::size_t i = 0; i < cases.size(); ++i) {
     const bool named = cases[i].is_object() && cases[i].contains("id");
     const Json id = named ? cases[i]["id"] : Json(i);
-    results.push_back(
-        answer(cases[i], id, {path, fmt::format("case {}", named ? id.dump() : fmt::to_string(i)), ""}));
+    try {
+      results.push_back(
+          answer(cases[i], id, {path, fmt::format("case {}", named ? id.dump() : fmt::to_string(i)), ""}));
+    } catch (const std::exception& error) {
+      all_answered = false;
+      fmt::print(stderr, "tactum: {}\n", error.what());
+      results.push_back({{"id", id}, {"error", error.what()}});
+    }
   }
   write_json(json.empty() ? "-" : json, {{"results", results}});
+  if (!all_answered) throw CLI::RuntimeError(1);
 }
 
 }  // namespace
@@ -186,12 +235,12 @@ void add_distance(CLI::App& app) {
     std::string cases, json;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* command =
-      app.add_subcommand("distance", "Signed distance of pairs of convex vertex clouds or solid parts");
+  CLI::App* command = app.add_subcommand(
+      "distance", "Signed distance of pairs of convex vertex clouds, segments, points or solid parts");
   command
       ->add_option(
           "CASES", options->cases,
-          R"({"cases":[{"id","a":{"vertices":[[x,y,z],...],"pose":[16 numbers, row-major]},"b":{...}}]}; instead of vertices also "part": a prepared part of solid pieces, beside CASES)")
+          R"({"cases":[{"id","a":{"vertices":[[x,y,z],...],"pose":[16 numbers, row-major]},"b":{...}}]}; one vertex is a point, two are a segment; instead of vertices also "part": a prepared part of solid pieces, beside CASES)")
       ->required();
   command->add_option("--json", options->json, "write the results to this file instead of standard output");
   command->callback([options] { distance(options->cases, options->json); });

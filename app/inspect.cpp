@@ -48,7 +48,7 @@ Inspection inspected(const std::string& file, ImportedMesh mesh, double scale) {
   Aabb in_file_units = out.report.box;
   in_file_units.min /= scale;
   in_file_units.max /= scale;
-  out.unit = guess_unit(in_file_units);
+  out.unit = unit_of(mesh.report, in_file_units);
   out.part = part_from_mesh(mesh.mesh, {.name = std::filesystem::path(file).filename().string()});
   if (out.part) out.deviation = surface_deviation(mesh.mesh, *out.part);
   out.mesh = std::move(mesh);
@@ -68,7 +68,7 @@ std::string as_text(const Inspection& of) {
     text += fmt::format("{} boundary edges if only equal coordinates are joined\n", of.exact_boundary_edges);
   }
   for (const std::string& remark : of.mesh.report.remarks) text += remark + "\n";
-  text += fmt::format("unit: {}? {}\n", of.unit.name, of.unit.reason);
+  text += fmt::format("unit: {}{} {}\n", of.unit.name, of.mesh.report.in_metres ? ":" : "?", of.unit.reason);
   if (!of.part) return text + fmt::format("as a part: {}\n", of.part.error().message());
   return text +
          fmt::format("as a part: {}; deviation {:.2g} of the size ({} samples of the mesh, {} of the part)\n",
@@ -92,34 +92,36 @@ nlohmann::json as_json(const Inspection& of) {
   nlohmann::json groups = nlohmann::json::array();
   for (const MeshGroup& g : of.mesh.groups)
     groups.push_back({{"name", g.name}, {"triangles", g.triangle_count}});
-  return {
-      {"file", of.file},
-      {"format", of.mesh.report.format},
-      {"groups", groups},
-      {"triangles", r.triangles},
-      {"vertices", r.vertices},
-      {"components", r.components},
-      {"closed", r.closed},
-      {"manifold", r.manifold()},
-      {"oriented", r.oriented},
-      {"convex", r.convex},
-      {"boundary_edges", r.boundary_edges},
-      {"boundary_edges_exact", of.exact_boundary_edges},
-      {"non_manifold_edges", r.non_manifold_edges},
-      {"misoriented_edges", r.misoriented_edges},
-      {"convex_edges", r.convex_edges},
-      {"reflex_edges", r.reflex_edges},
-      {"degenerate_index", r.index_degenerate},
-      {"degenerate_area", r.zero_area},
-      {"duplicate_triangles", r.duplicate_triangles},
-      {"volume_m3", r.volume},
-      {"area_m2", r.area},
-      {"box_min_m", vector_json(r.box.min)},
-      {"box_max_m", vector_json(r.box.max)},
-      {"unit_guess",
-       {{"name", of.unit.name}, {"metres_per_unit", of.unit.metres_per_unit}, {"reason", of.unit.reason}}},
-      {"part", part_json(of)},
-      {"remarks", of.mesh.report.remarks}};
+  return {{"file", of.file},
+          {"format", of.mesh.report.format},
+          {"groups", groups},
+          {"triangles", r.triangles},
+          {"vertices", r.vertices},
+          {"components", r.components},
+          {"closed", r.closed},
+          {"manifold", r.manifold()},
+          {"oriented", r.oriented},
+          {"convex", r.convex},
+          {"boundary_edges", r.boundary_edges},
+          {"boundary_edges_exact", of.exact_boundary_edges},
+          {"non_manifold_edges", r.non_manifold_edges},
+          {"misoriented_edges", r.misoriented_edges},
+          {"convex_edges", r.convex_edges},
+          {"reflex_edges", r.reflex_edges},
+          {"degenerate_index", r.index_degenerate},
+          {"degenerate_area", r.zero_area},
+          {"duplicate_triangles", r.duplicate_triangles},
+          {"volume_m3", r.volume},
+          {"area_m2", r.area},
+          {"box_min_m", vector_json(r.box.min)},
+          {"box_max_m", vector_json(r.box.max)},
+          {"unit_guess",
+           {{"name", of.unit.name},
+            {"metres_per_unit", of.unit.metres_per_unit},
+            {"reason", of.unit.reason},
+            {"certain", of.unit.certain}}},
+          {"part", part_json(of)},
+          {"remarks", of.mesh.report.remarks}};
 }
 
 /// A prepared part as it is, or what a mesh would become without repairs.

@@ -45,8 +45,9 @@ PartCache::PartCache(const std::string& folder) : folder_(folder.empty() ? users
 std::string PartCache::key_of(const std::vector<std::string>& meshes, const PrepareOptions& options) const {
   if (folder_.empty()) return {};
   Key key;
-  key.add(fmt::format("{} {} {} {} {:a} {} {}", kPartFileVersion, options.unit, options.pieces,
-                      options.close_holes, options.density_kg_per_m3, meshes.size(), options.name));
+  key.add(fmt::format("{} {} {:a} {} {} {:a} {} {}", kPartFileVersion, options.unit, options.scale,
+                      options.pieces, options.close_holes, options.density_kg_per_m3, meshes.size(),
+                      options.name));
   for (const std::string& mesh : meshes) {
     const std::string ending = fs::path(mesh).extension().string();
     if (ending == ".gltf" || ending == ".glb") return {};

@@ -49,6 +49,13 @@ std::string pieces_line(const Json& pieces) {
 
 }  // namespace
 
+std::string unit_warning(const std::string& prepare, const PartFile& file) {
+  const Json unit = member(report_of(file), "unit");
+  if (!unit.is_object() || member(unit, "certain") != Json(false)) return {};
+  return fmt::format("THE UNIT IS A GUESS: {}? {} If it is wrong: {} --units mm (or m, cm, inch)\n",
+                     text(member(unit, "name")), text(member(unit, "reason")), prepare);
+}
+
 std::string describe_part(const std::string& path, const PartFile& file) {
   const Part& part = file.part;
   const Json report = report_of(file);

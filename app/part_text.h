@@ -8,6 +8,10 @@
 
 namespace tactum {
 
+/// What to say first when the unit was guessed and may be another, with the command that says which it is;
+/// empty when it is certain. `prepare` is that command up to its options.
+std::string unit_warning(const std::string& prepare, const PartFile& file);
+
 /// Lines of text: unit, repair, pieces, mass, verification.
 std::string describe_part(const std::string& path, const PartFile& file);
 

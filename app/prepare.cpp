@@ -47,12 +47,18 @@ class Bar {
 };
 
 /// The meshes as one; when there are several, each is a group.
-Result<ImportedMesh> import_all(const std::vector<std::string>& paths) {
+Result<ImportedMesh> import_all(const std::vector<std::string>& paths, const PrepareOptions& options) {
+  const bool finds_unit = options.unit == "auto" && options.scale == 0.0;
   ImportedMesh all;
   for (const std::string& path : paths) {
     Result<ImportedMesh> one = import_mesh(path);
     if (!one) return one.error();
     if (paths.size() == 1) return one;
+    const bool differs = !all.groups.empty() && all.report.in_metres != one->report.in_metres;
+    if (differs && finds_unit) {
+      return Error{"the meshes may be in different units", "glTF, which is in metres, beside another format",
+                   "--units, or --scale, of all", path};
+    }
     const int vertices = static_cast<int>(all.mesh.vertices.size());
     const int triangles = static_cast<int>(all.mesh.triangles.size());
     for (Triangle t : one->mesh.triangles) {
@@ -62,6 +68,7 @@ Result<ImportedMesh> import_all(const std::vector<std::string>& paths) {
     all.mesh.vertices.insert(all.mesh.vertices.end(), one->mesh.vertices.begin(), one->mesh.vertices.end());
     all.groups.push_back({path, triangles, static_cast<int>(one->mesh.triangles.size())});
     all.report.format = one->report.format;
+    all.report.in_metres = one->report.in_metres;
     for (const std::string& remark : one->report.remarks) all.report.remarks.push_back(path + ": " + remark);
   }
   return all;
@@ -69,7 +76,7 @@ Result<ImportedMesh> import_all(const std::vector<std::string>& paths) {
 
 Result<PartFile> prepared(const PrepareCommand& options, const Bar& bar) {
   bar.show("reading", 0.0);
-  const Result<ImportedMesh> mesh = import_all(options.meshes);
+  const Result<ImportedMesh> mesh = import_all(options.meshes, options.prepare);
   if (!mesh) return mesh.error();
   Result<PartFile> part =
       prepare_part(*mesh, options.prepare, [&](const char* stage, double share) { bar.show(stage, share); });
@@ -102,6 +109,11 @@ void run(const PrepareCommand& options) {
   if (Result<void> saved = save_part(options.part, *part); !saved) fail(saved.error());
   if (!known) cache.keep(key, *part);
 
+  std::string command = "tactum prepare";
+  for (const std::string& mesh : options.meshes) command += " " + mesh;
+  const std::string warning = unit_warning(command + " -o " + options.part, *part);
+  fmt::print(options.json == "-" ? stderr : stdout, "{}", warning);
+
   const double bytes = static_cast<double>(std::filesystem::file_size(options.part));
   const double seconds = seconds_since(start);
   if (options.json != "-") {
@@ -130,9 +142,13 @@ void add_prepare(CLI::App& app) {
       ->add_option("MESH", options->meshes, "OBJ, STL, PLY, OFF, glTF, GLB; several are pieces of one part")
       ->required();
   command->add_option("-o,--output", options->part, "The part file to write")->required();
-  command
-      ->add_option("--units", options->prepare.unit, "Unit of the mesh's numbers; auto guesses and says why")
-      ->check(CLI::IsMember({"auto", "m", "cm", "mm", "inch"}));
+  CLI::Option* units = command
+                           ->add_option("--units", options->prepare.unit,
+                                        "Unit of the mesh's numbers; auto guesses and says why")
+                           ->check(CLI::IsMember({"auto", "m", "cm", "mm", "inch"}));
+  command->add_option("--scale", options->prepare.scale, "Metres per unit of the mesh's numbers")
+      ->check(CLI::PositiveNumber)
+      ->excludes(units);
   command->add_option("--pieces", options->prepare.pieces, "How to cut; auto chooses and says why")
       ->check(CLI::IsMember(ways));
   command->add_option("--close-holes", options->prepare.close_holes, "Close holes of at most so many edges")

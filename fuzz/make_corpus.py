@@ -23,6 +23,7 @@ def obj():
     yield "\n".join(lines + ["f " + " ".join("%d//1" % (i - 8) for i in f) for f in FACES])
     yield "v 0 0 0\nv 4 0 0\nv 1 1 0\nv 0 4 0\ng a\nf 1 2 3 4\ng b\nf 1 2 \\\n 3\np 1\nl 1 2\n"
     yield "v 1 2\nf 1 2 3\n"
+    yield b"\xef\xbb\xbfv 0 0 0\nlod 1 2\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
 
 
 def stl():
@@ -34,6 +35,7 @@ def stl():
         binary += struct.pack("<12fH", 0, 0, 0, *(c for p in points for c in p), 0)
     yield "\n".join(text + ["endsolid cube"])
     yield b"\0" * 80 + struct.pack("<I", len(TRIANGLES)) + binary
+    yield "\n".join(text + ["END SOLID cube"]).upper().replace("ENDLOOP", "END LOOP").replace("0 0", "0D+0 0")
     yield b"ten million triangles".ljust(80) + struct.pack("<I", 10_000_000) + binary  # and twelve are there
 
 
@@ -47,11 +49,17 @@ def ply():
         data += b"".join(struct.pack(order + "B4i", 4, *f) for f in FACES)
         yield (head % name).encode() + data
     yield (head % "ascii").replace("face 6", "face 4000000000")
+    strips = head.replace("face 6", "tristrips 1").replace("uchar int", "int int")
+    yield (strips % "ascii") + "\n".join(rows[:8]).replace(" ", "\n") + "\n10 0 2 1 3 3 -1 4 5\n6 7\n"
+    data = b"".join(struct.pack("<ffd", *c) for c in CORNERS) + struct.pack("<11i", 10, 0, 2, 1, 3, 3, -1, 4, 5, 6, 7)
+    yield (strips % "binary_little_endian").replace("\n", "\r").encode() + data
 
 
 def off():
     yield "OFF\n8 6 0\n" + "\n".join("%g %g %g" % c for c in CORNERS) + "\n" + "\n".join("4 %d %d %d %d" % f for f in FACES)
     yield "OFF 3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"
+    yield "# glued\nSTCNOFF3 1\n0 0 0 0 0 1 9 9 9 9 0 0\n1 0 0 # short\n0\n1 0\n3 0 1 2 255 0 0\n"
+    yield "3\n1\n0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"
 
 
 def gltf():
@@ -60,6 +68,13 @@ def gltf():
            '"byteLength":36}],"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],'
            '"max":[1,1,0]}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"nodes":[{"mesh":0}],'
            '"scenes":[{"nodes":[0]}],"scene":0}' % uri)
+    words = "data:application/octet-stream;base64,AAABAAIAAwAAAAAAAAD/fwAAAAD/f/9//38="
+    yield ('{"asset":{"version":"2.0"},"extensionsRequired":["KHR_mesh_quantization"],"buffers":[{"byteLength":26,'
+           '"uri":"%s"}],"bufferViews":[{"buffer":0,"byteLength":8},{"buffer":0,"byteOffset":8,"byteLength":18}],'
+           '"accessors":[{"componentType":5122,"normalized":true,"count":4,"type":"VEC3","sparse":{"count":3,"indices":'
+           '{"bufferView":0,"byteOffset":2,"componentType":5123},"values":{"bufferView":1}}},{"bufferView":0,'
+           '"componentType":5123,"count":4,"type":"SCALAR"}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},'
+           '"indices":1,"mode":5},{"attributes":{"POSITION":0},"mode":6}]}],"nodes":[{"mesh":0}]}' % words)
     yield '{"asset":{"version":"2.0"},"nodes":[{"children":[0]}],"scenes":[{"nodes":[0]}]}'
 
 

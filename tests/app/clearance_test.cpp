@@ -38,6 +38,29 @@ std::string motion() {
          ",0.5,0.5,0.5,1,0,0,0,1,0,0,0,1\n" + "9,1.0,0,0,5,0,-1,0,1,0,0,0,0,1,0,0,8.25,1,0,0,0,1,0,0,0,1\n";
 }
 
+/// The same motion as a spreadsheet writes it elsewhere.
+TEST(ClearanceCommand, ReadsTablesOfOtherSeparators) {
+  const ScratchFolder folder;
+  testing::write(folder / "cube.obj", kCube);
+  testing::write(folder / "motion.csv", motion());
+  const std::string meshes = "clearance " + (folder / "cube.obj") + " " + (folder / "cube.obj") + " ";
+  const ProgramRun expected = run_tactum(meshes + (folder / "motion.csv"));
+  ASSERT_EQ(expected.exit_code, 0) << expected.err;
+  const auto replaced = [](std::string text, char from, char to) {
+    std::replace(text.begin(), text.end(), from, to);
+    return text;
+  };
+  for (const char separator : {';', '\t', ' '}) {
+    for (const char decimal : {'.', ','}) {
+      const std::string text = "\xEF\xBB\xBF" + replaced(replaced(motion(), ',', separator), '.', decimal);
+      testing::write(folder / "other.csv", text);
+      const ProgramRun run = run_tactum(meshes + (folder / "other.csv"));
+      EXPECT_EQ(run.exit_code, 0) << run.err;
+      EXPECT_EQ(run.out, expected.out);
+    }
+  }
+}
+
 TEST(ClearanceCommand, PrintsTheTable) {
   const ScratchFolder folder;
   testing::write(folder / "cube.obj", kCube);

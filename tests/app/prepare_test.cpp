@@ -1,9 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "app/program.h"
+#include "mesh/gltf_sample.h"
 
 namespace tactum::prepare_test {
 namespace {
@@ -56,6 +58,60 @@ TEST(PrepareCommand, ASecondTimeComesFromTheCacheUnlessSomethingChanged) {
   EXPECT_EQ(shop.prepare("--units mm").out.find("prepared before"), std::string::npos);
   testing::write(shop.cube, std::string(kCube) + "# another byte\n");
   EXPECT_EQ(shop.prepare().out.find("prepared before"), std::string::npos);
+}
+
+/// A cube of 1.6 file units has a diagonal of 2.8: too large for a part in metres, small in millimetres.
+TEST(PrepareCommand, AUnitThatIsNotCertainIsToldFirst) {
+  const Workshop shop;
+  std::string small = kCube;
+  for (std::size_t at = small.find("10"); at != std::string::npos; at = small.find("10", at))
+    small.replace(at, 2, "1.6");
+  testing::write(shop.cube, small);
+  for (int i = 0; i < 2; ++i) {  // computed, and from the cache
+    const ProgramRun run = shop.prepare();
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    const std::string first = run.out.substr(0, run.out.find('\n'));
+    EXPECT_NE(first.find("inches"), std::string::npos) << run.out;
+    EXPECT_NE(first.find("tactum prepare " + shop.cube + " -o " + shop.part + " --units mm"),
+              std::string::npos)
+        << run.out;
+  }
+  const ProgramRun json = shop.prepare("--json -");
+  EXPECT_EQ(Json::parse(json.out)["report"]["unit"]["certain"], false);
+  EXPECT_NE(json.err.find("--units mm"), std::string::npos) << json.err;
+  const ProgramRun asked = shop.prepare("--units mm");
+  EXPECT_EQ(asked.out.find("GUESS"), std::string::npos) << asked.out;
+}
+
+TEST(PrepareCommand, AScaleIsMetresPerUnit) {
+  const Workshop shop;
+  ASSERT_EQ(shop.prepare().exit_code, 0);
+  const ProgramRun run =
+      shop.prepare("--scale 0.0254 --json -");  // not the part of the same mesh in millimetres
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const Json json = Json::parse(run.out);
+  EXPECT_NEAR(json["report"]["mass"]["volume_m3"].get<double>(), std::pow(0.254, 3), 1e-12);
+  EXPECT_EQ(json["report"]["unit"]["metres_per_unit"], 0.0254);
+  EXPECT_EQ(shop.prepare("--scale 0.0254 --units mm").exit_code, 2);
+  for (const char* wrong : {"0", "-1", "many"})
+    EXPECT_EQ(shop.prepare(std::string("--scale ") + wrong).exit_code, 2);
+}
+
+TEST(PrepareCommand, GltfIsInMetresUnlessAnotherUnitIsAskedFor) {
+  const Workshop shop;
+  const std::string gltf = shop.folder / "cube.gltf";  // a unit cube, made 3 m wide by its node
+  testing::write(gltf, testing::gltf_cube(R"("scale":[3,3,3])"));
+  const std::string command = "prepare " + gltf + " --no-cache -o " + shop.part;
+  const ProgramRun metres = run_tactum(command);
+  ASSERT_EQ(metres.exit_code, 0) << metres.err;
+  EXPECT_NE(metres.out.find("metres: glTF is in metres by its standard."), std::string::npos) << metres.out;
+  EXPECT_NE(metres.out.find("volume 27 m^3"), std::string::npos) << metres.out;
+  const ProgramRun inspected = run_tactum("inspect " + gltf);
+  EXPECT_NE(inspected.out.find("unit: metres: glTF is in metres by its standard."), std::string::npos)
+      << inspected.out;
+  EXPECT_NE(run_tactum(command + " --units cm").out.find("volume 2.7e-05 m^3"), std::string::npos);
+  const std::string mixed = "prepare " + gltf + " " + shop.cube + " --no-cache -o " + shop.part;
+  EXPECT_NE(run_tactum(mixed).err.find("different units"), std::string::npos);
 }
 
 TEST(PrepareCommand, RefusesInOneLineOnStderr) {

@@ -123,6 +123,8 @@ TEST(MeshReport, GuessesUnits) {
   EXPECT_EQ(guess_unit({Vec3::Zero(), {0.02, 0.02, 0.04}}).name, "metres");
   EXPECT_EQ(guess_unit({Vec3::Zero(), {203, 304, 12}}).name, "millimetres");
   EXPECT_EQ(guess_unit({Vec3::Zero(), {5, 2.5, 1}}).name, "inches");
+  EXPECT_FALSE(guess_unit({Vec3::Zero(), {5, 2.5, 1}}).certain);
+  EXPECT_TRUE(guess_unit({Vec3::Zero(), {203, 304, 12}}).certain);
 }
 
 std::vector<std::string> cells_of(const std::string& line, char separator) {

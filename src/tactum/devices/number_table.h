@@ -1,7 +1,9 @@
 #pragma once
-/// A text file of numbers in columns: comma-separated with a header, or space-separated without one. Strict:
-/// every row has every column, every cell is a finite number, and errors give file, line and column. Windows
-/// line ends, blank lines, '#' comments, a byte order mark and scientific notation are fine.
+/// A text file of numbers in columns: separated by commas, semicolons or tabs with a header, or by blanks
+/// with or without one. Strict: every row has every column, every cell is a finite number, and errors give
+/// file, line and column. Line ends of any system, blank lines, '#' comments, a byte order mark, names in
+/// double quotes and scientific notation are fine. Where no comma separates, "0,5" is one half, unless other
+/// cells of the table have a decimal point.
 
 #include <span>
 #include <string>
@@ -28,8 +30,8 @@ struct NumberTable {
   std::string where(std::size_t row, std::size_t column) const;
 };
 
-/// The first line that is neither blank nor a comment is the header when it has a comma; otherwise every such
-/// line holds numbers between spaces, named by `names_without_header`. At least one row.
+/// The first line that is neither blank nor a comment is the header, unless it is numbers between blanks:
+/// then these are named by `names_without_header`. At least one row.
 Result<NumberTable> read_number_table(const std::string& path,
                                       const std::vector<std::string>& names_without_header);
 

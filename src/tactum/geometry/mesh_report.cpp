@@ -150,7 +150,8 @@ UnitGuess guess_unit(const Aabb& box) {
   }
   if (d < kLargestInInches) {
     return {"inches", 0.0254,
-            fmt::format("The diagonal of {:.4g} is too large for metres and small for millimetres.", d)};
+            fmt::format("The diagonal of {:.4g} is too large for metres and small for millimetres.", d),
+            false};
   }
   return {"millimetres", 0.001,
           fmt::format("The diagonal of {:.4g} is the size of a part in millimetres.", d)};

@@ -16,6 +16,7 @@ struct UnitGuess {
   std::string name;              ///< "metres", "millimetres", "inches"
   double metres_per_unit = 1.0;  ///< [m]
   std::string reason;            ///< a sentence
+  bool certain = true;           ///< false when another unit is nearly as likely
 };
 
 struct MeshReport {

@@ -4,14 +4,19 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <optional>
+#include <utility>
+
+#include "tactum/mesh/gltf_accessors.h"
 
 namespace tactum::inline v0_1::detail {
 namespace {
 
+using gltf::list;
+using gltf::text;
+using gltf::whole;
 using nlohmann::json;
 
 constexpr std::uint32_t kGlbMagic = 0x46546C67;   // "glTF"
@@ -29,48 +34,19 @@ void append_word(std::string& bytes, std::uint32_t word) {
   bytes.append(reinterpret_cast<const char*>(&word), sizeof word);
 }
 
-/// The member as an array; an empty one when it is missing or something else.
-const json& list(const json& object, const char* key) {
-  static const json kNone = json::array();
-  const auto found = object.is_object() ? object.find(key) : object.end();
-  return object.is_object() && found != object.end() && found->is_array() ? *found : kNone;
-}
-
-/// The member as a whole number from 0, or the fallback when it is missing; nothing when it is something
-/// else.
-std::optional<std::uint64_t> whole(const json& object, const char* key,
-                                   std::optional<std::uint64_t> fallback = {}) {
-  if (!object.is_object()) return {};
-  const auto found = object.find(key);
-  if (found == object.end()) return fallback;
-  if (!found->is_number_unsigned()) return {};
-  return found->get<std::uint64_t>();
-}
-
-std::string text(const json& object, const char* key) {
-  const auto found = object.is_object() ? object.find(key) : object.end();
-  return object.is_object() && found != object.end() && found->is_string() ? found->get<std::string>() : "";
-}
-
-/// Base64 without line breaks; nothing on a character that is none of it.
-std::optional<std::string> decoded_base64(std::string_view code) {
-  std::string bytes;
-  std::uint32_t bits = 0;
-  int count = 0;
-  for (char c : code) {
-    if (c == '=') break;
-    static constexpr std::string_view kDigits =
-        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    const std::size_t digit = kDigits.find(c);
-    if (digit == std::string_view::npos) return {};
-    bits = (bits << 6 | static_cast<std::uint32_t>(digit)) & 0xFFFFFF;
-    count += 6;
-    if (count >= 8) {
-      count -= 8;
-      bytes += static_cast<char>(bits >> count & 0xFF);
-    }
+/// The corners of the triangles of a strip (mode 5) or a fan (mode 6). Triangles with two equal corners only
+/// lead from one part of a strip to the next.
+std::vector<std::uint32_t> unrolled(const std::vector<std::uint32_t>& corners, std::uint64_t mode) {
+  std::vector<std::uint32_t> triangles;
+  for (std::size_t i = 2; i < corners.size(); ++i) {
+    std::uint32_t a = mode == 5 ? corners[i - 2] : corners[0];
+    std::uint32_t b = corners[i - 1];
+    const std::uint32_t c = corners[i];
+    if (a == b || b == c || c == a) continue;
+    if (mode == 5 && i % 2 == 1) std::swap(a, b);
+    triangles.insert(triangles.end(), {a, b, c});
   }
-  return bytes;
+  return triangles;
 }
 
 class GltfReducer {
@@ -80,7 +56,7 @@ class GltfReducer {
   Result<std::string> reduce(std::string_view bytes) {
     if (Result<void> done = split(bytes); !done) return done.error();
     if (Result<void> done = check_version(); !done) return done.error();
-    if (Result<void> done = read_buffers(); !done) return done.error();
+    if (Result<void> done = accessors_.read_buffers(chunk_); !done) return done.error();
     if (Result<void> done = reduce_meshes(); !done) return done.error();
     if (Result<void> done = reduce_nodes(); !done) return done.error();
     return glb();
@@ -88,7 +64,7 @@ class GltfReducer {
 
  private:
   Error wrong(const std::string& found, const std::string& expected, const std::string& place = {}) const {
-    return builder_.error("the glTF file is broken", found, expected, place);
+    return gltf::broken(builder_, found, expected, place);
   }
 
   /// JSON text and binary chunk of a GLB, or the whole as JSON.
@@ -130,112 +106,11 @@ class GltfReducer {
     for (const json& extension : list(document_, "extensionsRequired")) {
       const std::string name = extension.is_string() ? extension.get<std::string>() : "";
       const bool is_looks_only = name.starts_with("KHR_materials_") || name.starts_with("KHR_texture_");
-      if (is_looks_only) continue;
+      if (is_looks_only || name == "KHR_mesh_quantization") continue;
       return builder_.error("the glTF file needs an extension that is not supported", in_quotes(name),
                             "plain positions and indices (export without compression)", "extensionsRequired");
     }
     return {};
-  }
-
-  Result<void> read_buffers() {
-    const json& buffers = list(document_, "buffers");
-    for (std::size_t i = 0; i < buffers.size(); ++i) {
-      const std::string place = "buffer " + std::to_string(i);
-      const std::optional<std::uint64_t> length = whole(buffers[i], "byteLength");
-      if (!length) return wrong("no byteLength", "a whole number", place);
-      const std::string uri = text(buffers[i], "uri");
-      if (uri.empty()) {
-        buffers_.emplace_back(i == 0 ? chunk_ : std::string_view());
-      } else if (uri.starts_with("data:")) {
-        const std::size_t comma = uri.find(";base64,");
-        const auto bytes = comma == std::string::npos
-                               ? std::nullopt
-                               : decoded_base64(std::string_view(uri).substr(comma + 8));
-        if (!bytes) return wrong("a data address that cannot be decoded", "base64", place);
-        buffers_.push_back(*bytes);
-      } else {
-        Result<std::string> bytes = file_beside(uri, place);
-        if (!bytes) return bytes.error();
-        buffers_.push_back(std::move(*bytes));
-      }
-      if (*length > buffers_.back().size()) {
-        return wrong(std::to_string(buffers_.back().size()) + " bytes",
-                     "the " + std::to_string(*length) + " declared", place);
-      }
-    }
-    return {};
-  }
-
-  /// The bytes of a file named by a relative address that stays inside the glTF's own folder.
-  Result<std::string> file_beside(const std::string& uri, const std::string& place) const {
-    const std::filesystem::path relative(uri);
-    const bool climbs = std::find(relative.begin(), relative.end(), "..") != relative.end();
-    if (relative.is_absolute() || climbs || uri.find(':') != std::string::npos) {
-      return wrong("the address " + in_quotes(uri), "a file in the same folder or below", place);
-    }
-    const std::filesystem::path path = std::filesystem::path(builder_.file()).parent_path() / relative;
-    std::error_code trouble;
-    const std::uintmax_t size = std::filesystem::file_size(path, trouble);
-    if (trouble || size > builder_.options().max_bytes) {
-      return wrong(trouble ? "no file " + in_quotes(uri) : "a file of " + std::to_string(size) + " bytes",
-                   "a readable file within the size limit", place);
-    }
-    std::ifstream file(path, std::ios::binary);
-    std::string bytes(static_cast<std::size_t>(size), '\0');
-    if (!file.read(bytes.data(), static_cast<std::streamsize>(size))) {
-      return wrong("a file that cannot be read: " + in_quotes(uri), "a readable file", place);
-    }
-    return bytes;
-  }
-
-  struct Accessor {
-    const char* bytes = nullptr;
-    std::uint64_t count = 0;
-    std::uint64_t stride = 0;  ///< [bytes]
-    std::uint64_t component = 0;
-  };
-
-  /// The accessor's place in memory, every byte of it inside its view and buffer.
-  Result<Accessor> accessor(std::uint64_t index, const char* type, const std::string& place) const {
-    const json& accessors = list(document_, "accessors");
-    if (index >= accessors.size())
-      return wrong("accessor " + std::to_string(index), "one that is there", place);
-    const json& entry = accessors[index];
-    const std::string where = place + ", accessor " + std::to_string(index);
-    const auto view_index = whole(entry, "bufferView");
-    const auto offset = whole(entry, "byteOffset", 0);
-    const auto component = whole(entry, "componentType");
-    const auto count = whole(entry, "count");
-    const json& views = list(document_, "bufferViews");
-    if (!view_index || *view_index >= views.size() || !offset || !component || !count ||
-        entry.contains("sparse")) {
-      return wrong("an accessor that is sparse or lacks a number", "bufferView, componentType and count",
-                   where);
-    }
-    if (text(entry, "type") != type) return wrong("type " + in_quotes(text(entry, "type")), type, where);
-    const bool is_points = std::string_view(type) == "VEC3";
-    const std::uint64_t size = is_points ? 12 : *component == 5121 ? 1 : *component == 5123 ? 2 : 4;
-    const bool is_fit =
-        is_points ? *component == 5126 : *component == 5121 || *component == 5123 || *component == 5125;
-    if (!is_fit)
-      return wrong("componentType " + std::to_string(*component), "floats for points, unsigned for indices",
-                   where);
-    const json& view = views[*view_index];
-    const auto buffer = whole(view, "buffer");
-    const auto view_offset = whole(view, "byteOffset", 0);
-    const auto view_length = whole(view, "byteLength");
-    const auto stride = whole(view, "byteStride", size);
-    const bool is_view = buffer && *buffer < buffers_.size() && view_offset && view_length && stride &&
-                         *view_length <= buffers_[*buffer].size() &&
-                         *view_offset <= buffers_[*buffer].size() - *view_length && *stride >= size &&
-                         *stride <= 252;
-    if (!is_view) return wrong("a bufferView outside its buffer", "byteOffset + byteLength inside it", where);
-    const std::uint64_t room = *offset <= *view_length ? *view_length - *offset : 0;
-    if (*count == 0 || room < size || (*count - 1) > (room - size) / *stride) {
-      return wrong(std::to_string(*count) + " entries in " + std::to_string(room) + " bytes",
-                   "entries that fit", where);
-    }
-    return Accessor{buffers_[*buffer].data() + *view_offset + *offset, *count, *stride, *component};
   }
 
   Result<void> reduce_meshes() {
@@ -268,48 +143,55 @@ class GltfReducer {
         mode > 6 || attributes == given.end() ? std::nullopt : whole(*attributes, "POSITION");
     if (!position)
       return wrong("a primitive without points or of unknown mode", "attributes.POSITION", place);
-    const Result<Accessor> points = accessor(*position, "VEC3", place);
+    const Result<std::vector<float>> points = accessors_.points(*position, place);
     if (!points) return points.error();
-    const int points_out = append(*points, 12);
-    json primitive = {{"mode", mode}, {"attributes", {{"POSITION", points_out}}}};
-    std::uint64_t corners = points->count;
-    if (given.contains("indices")) {
-      const auto index = whole(given, "indices");
-      const Result<Accessor> indices =
-          index ? accessor(*index, "SCALAR", place) : wrong("no number", "an accessor", place);
-      if (!indices) return indices.error();
-      const std::uint64_t size = indices->component == 5121 ? 1 : indices->component == 5123 ? 2 : 4;
-      for (std::uint64_t i = 0; i < indices->count; ++i) {
-        std::uint32_t value = 0;
-        std::memcpy(&value, indices->bytes + i * indices->stride, size);
-        if (value >= points->count) {
-          return wrong("index " + std::to_string(value), "0 to " + std::to_string(points->count - 1), place);
-        }
-      }
-      primitive["indices"] = append(*indices, size);
-      corners = indices->count;
+    Result<std::vector<std::uint32_t>> corners = corners_of(given, points->size() / 3, place);
+    if (!corners) return corners.error();
+    if (corners->size() < 3 || (mode == 4 && corners->size() % 3 != 0)) {
+      return wrong(std::to_string(corners->size()) + " corners", "three for each triangle", place);
     }
-    const std::uint64_t remainder = mode == 4 ? corners % 3 : 0;
-    if (corners < 3 || remainder != 0) {
-      return wrong(std::to_string(corners) + " corners", "three for each triangle", place);
-    }
-    vertices += std::max(points->count, corners);
-    primitives.push_back(primitive);
+    if (mode != 4) *corners = unrolled(*corners, mode);
+    if (corners->empty()) return {};
+    const std::uint64_t added = std::max(points->size() / 3, corners->size());
+    vertices += added;
+    all_vertices_ += added;
+    if (all_vertices_ > 3 * static_cast<std::uint64_t>(builder_.options().max_vertices))
+      return wrong("too many vertices in all meshes", "fewer", place);
+    const int points_out = append(points->data(), points->size(), 3, gltf::kFloat);
+    const int corners_out = append(corners->data(), corners->size(), 1, gltf::kUnsignedInt);
+    primitives.push_back({{"mode", 4}, {"attributes", {{"POSITION", points_out}}}, {"indices", corners_out}});
     return {};
   }
 
-  /// Copies the entries, tightly packed, behind the new buffer, and gives the number of the new accessor.
-  int append(const Accessor& from, std::uint64_t size) {
+  /// The indices of a primitive; without any, its points in order.
+  Result<std::vector<std::uint32_t>> corners_of(const json& given, std::size_t points,
+                                                const std::string& place) const {
+    if (!given.contains("indices")) {
+      std::vector<std::uint32_t> all(points);
+      std::iota(all.begin(), all.end(), 0u);
+      return all;
+    }
+    const auto index = whole(given, "indices");
+    if (!index) return wrong("no number", "an accessor", place);
+    Result<std::vector<std::uint32_t>> corners = accessors_.indices(*index, place);
+    if (!corners) return corners;
+    for (const std::uint32_t corner : *corners) {
+      if (corner >= points)
+        return wrong("index " + std::to_string(corner), "0 to " + std::to_string(points - 1), place);
+    }
+    return corners;
+  }
+
+  /// Writes numbers of four bytes behind the new buffer, and gives the number of the new accessor.
+  int append(const void* numbers, std::size_t count, std::size_t in_entry, gltf::Component component) {
     const std::size_t start = bin_.size();
-    for (std::uint64_t i = 0; i < from.count; ++i) bin_.append(from.bytes + i * from.stride, size);
-    out_["bufferViews"].push_back(
-        {{"buffer", 0}, {"byteOffset", start}, {"byteLength", bin_.size() - start}});
-    bin_.resize((bin_.size() + 3) / 4 * 4, '\0');
+    bin_.append(static_cast<const char*>(numbers), 4 * count);
+    out_["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", start}, {"byteLength", 4 * count}});
     out_["accessors"].push_back({{"bufferView", out_["bufferViews"].size() - 1},
                                  {"byteOffset", 0},
-                                 {"componentType", from.component},
-                                 {"count", from.count},
-                                 {"type", size == 12 ? "VEC3" : "SCALAR"}});
+                                 {"componentType", static_cast<std::uint64_t>(component)},
+                                 {"count", count / in_entry},
+                                 {"type", in_entry == 3 ? "VEC3" : "SCALAR"}});
     return static_cast<int>(out_["accessors"].size()) - 1;
   }
 
@@ -417,11 +299,12 @@ class GltfReducer {
   MeshBuilder& builder_;
   json document_;
   std::string_view chunk_;
-  std::vector<std::string> buffers_;
+  gltf::Accessors accessors_{document_, builder_};
   json out_ = json::object();
   std::string bin_;
   std::vector<int> out_mesh_;                 ///< number in the output of each mesh, -1 when it is empty
   std::vector<std::uint64_t> mesh_vertices_;  ///< of each mesh
+  std::uint64_t all_vertices_ = 0;
 };
 
 }  // namespace

@@ -49,6 +49,9 @@ inline std::string at_byte(std::size_t byte) { return "byte " + std::to_string(b
 /// A word of a file as it may stand in an error: short, printable, quoted.
 std::string in_quotes(std::string_view word);
 
+/// Whether the size is to the byte that of a binary STL of as many triangles as its header counts.
+bool is_binary_stl(std::string_view bytes);
+
 Result<void> read_obj(std::string_view text, MeshBuilder& builder);
 Result<void> read_stl(std::string_view bytes, MeshBuilder& builder);
 Result<void> read_ply(std::string_view bytes, MeshBuilder& builder);

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "tactum/base/text_encoding.h"
 #include "tactum/mesh/mesh_builder.h"
 #include "tactum/mesh/text_scanner.h"
 
@@ -69,14 +70,18 @@ Result<ImportedMesh> import_checked(std::string_view bytes, const std::string& n
   if (!std::isfinite(options.scale) || options.scale <= 0.0) {
     return Error{"the scale is no scale", std::to_string(options.scale), "a number above zero", name};
   }
-  const Result<Format> format = format_of(bytes, name);
+  // The header of a binary STL is any 80 bytes, so that a mark in it means nothing.
+  const bool is_text = !detail::is_binary_stl(bytes) || ending_of(name) != "stl";
+  const Result<std::string_view> text = is_text ? utf8_text(bytes, name) : bytes;
+  if (!text) return text.error();
+  const Result<Format> format = format_of(*text, name);
   if (!format) return format.error();
   detail::MeshBuilder builder(name, options);
   if (const std::string ending = ending_of(name); ending != format->ending) {
     builder.report().remarks.push_back("The name ends in ." + ending + ", the content is " +
                                        std::string(format->ending) + ".");
   }
-  if (Result<void> done = format->read(bytes, builder); !done) return done.error();
+  if (Result<void> done = format->read(*text, builder); !done) return done.error();
   return builder.finish();
 }
 
@@ -119,6 +124,11 @@ Result<ImportedMesh> import_mesh(const std::string& path, const ImportOptions& o
   } catch (const std::exception& trouble) {
     return Error{"the mesh cannot be imported", trouble.what(), "", path};
   }
+}
+
+UnitGuess unit_of(const ImportReport& report, const Aabb& box) {
+  if (report.in_metres) return {"metres", 1.0, "glTF is in metres by its standard."};
+  return guess_unit(box);
 }
 
 }  // namespace tactum::inline v0_1

@@ -14,6 +14,7 @@
 #include <string_view>
 
 #include "tactum/base/result.h"
+#include "tactum/geometry/mesh_report.h"
 #include "tactum/mesh/imported_mesh.h"
 
 namespace tactum::inline v0_1 {
@@ -25,5 +26,9 @@ Result<ImportedMesh> import_mesh(const std::string& path, const ImportOptions& o
 /// to are searched beside it.
 Result<ImportedMesh> import_mesh_bytes(std::string_view bytes, const std::string& name,
                                        const ImportOptions& options = {});
+
+/// The unit of the file's numbers: the one that its format has by its standard, else a guess from the box,
+/// which is in the units of the file.
+UnitGuess unit_of(const ImportReport& report, const Aabb& box);
 
 }  // namespace tactum::inline v0_1

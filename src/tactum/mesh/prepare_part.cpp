@@ -22,8 +22,13 @@ Error refused(const std::string& found, const std::string& expected, const Prepa
   return {"the mesh cannot be prepared", found, expected, options.name};
 }
 
-Result<UnitGuess> unit_of(const Aabb& box, const PrepareOptions& options) {
-  if (options.unit == "auto") return guess_unit(box);
+Result<UnitGuess> wanted_unit(const ImportReport& report, const Aabb& box, const PrepareOptions& options) {
+  if (options.scale != 0.0) {
+    if (!(std::isfinite(options.scale) && options.scale > 0.0))
+      return refused(fmt::format("the scale {:g}", options.scale), "a number above zero", options);
+    return UnitGuess{fmt::format("units of {:g} m", options.scale), options.scale, "As asked for."};
+  }
+  if (options.unit == "auto") return unit_of(report, box);
   for (const UnitGuess& unit : {UnitGuess{"metres", 1.0, "m"}, UnitGuess{"centimetres", 0.01, "cm"},
                                 UnitGuess{"millimetres", 0.001, "mm"}, UnitGuess{"inches", 0.0254, "inch"}}) {
     if (options.unit == unit.reason) return UnitGuess{unit.name, unit.metres_per_unit, "As asked for."};
@@ -188,7 +193,7 @@ Result<PartFile> prepare_part(const ImportedMesh& imported, const PrepareOptions
   Aabb box;
   for (const Triangle& t : imported.mesh.triangles)
     for (int corner : t) box.extend(imported.mesh.vertices[corner]);
-  const Result<UnitGuess> unit = unit_of(box, options);
+  const Result<UnitGuess> unit = wanted_unit(imported.report, box, options);
   if (!unit) return unit.error();
   report.unit = *unit;
 

@@ -27,6 +27,7 @@ namespace tactum::inline v0_1 {
 struct PrepareOptions {
   std::string name = {};              ///< of the part
   std::string unit = "auto";          ///< of the mesh's numbers: auto, m, cm, mm, inch
+  double scale = 0.0;                 ///< metres per unit of the mesh's numbers; 0: as `unit` says [m]
   std::string pieces = "auto";        ///< the method: auto, or one of pieces_ways()
   int close_holes = 0;                ///< holes of at most this many edges are closed; 0: none
   double density_kg_per_m3 = 1000.0;  ///< [kg/m^3]

@@ -75,6 +75,7 @@ Result<void> add_node(const aiScene& scene, const aiNode& node, const aiMatrix4x
 }  // namespace
 
 Result<void> read_gltf(std::string_view bytes, MeshBuilder& builder) {
+  builder.report().in_metres = true;
   const Result<std::string> glb = reduced_glb(bytes, builder);
   if (!glb) return glb.error();
   const std::unique_ptr<Assimp::Importer> importer = gltf_importer();

@@ -4,7 +4,9 @@
 #include "tactum/mesh/text_scanner.h"
 
 /// Wavefront OBJ: `v`, `f`, `o`, `g`; points and lines are counted, normals, textures and materials ignored.
-/// Indices start at 1; negative ones count back from the last vertex read.
+/// Indices start at 1; negative ones count back from the last vertex read. Lines of a kind that the format
+/// does not have are passed over and told, unless numbers stand in them: a vertex left out would shift all
+/// indices.
 
 namespace tactum::inline v0_1::detail {
 namespace {
@@ -42,7 +44,7 @@ class ObjReader {
     } else if (kind == "l") {
       ++builder_.report().lines_dropped;
     } else if (!is_known(kind)) {
-      if (unknown_++ == 0) first_unknown_ = lines_.line_number();
+      return pass_over(kind, tokens);
     }
     return {};
   }
@@ -52,6 +54,34 @@ class ObjReader {
       if (kind == known) return true;
     }
     return false;
+  }
+
+  /// Statements of the format about curves, surfaces and display, in which numbers may stand.
+  static bool is_of_the_format(std::string_view kind) {
+    for (std::string_view known :
+         {"cstype",   "deg",      "bmat", "step",       "curv",      "curv2", "surf",  "parm",
+          "trim",     "hole",     "scrv", "sp",         "end",       "con",   "mg",    "bevel",
+          "c_interp", "d_interp", "lod",  "shadow_obj", "trace_obj", "ctech", "stech", "call",
+          "csh",      "bsp",      "bzp",  "cdc",        "cdp",       "res"}) {
+      if (kind == known) return true;
+    }
+    return false;
+  }
+
+  Result<void> pass_over(std::string_view kind, Tokens tokens) {
+    int words = 0;
+    bool all_numbers = true;
+    for (std::string_view word = tokens.next(); !word.empty(); word = tokens.next()) {
+      double number = 0.0;
+      all_numbers = all_numbers && parse_number(word.substr(0, word.find('/')), number);
+      ++words;
+    }
+    if (all_numbers && words >= 2 && !is_of_the_format(kind)) {
+      return builder_.error("a line of numbers is of no known kind", in_quotes(kind),
+                            "v, f or another word of the format", at_line(lines_.line_number()));
+    }
+    if (unknown_++ == 0) first_unknown_ = lines_.line_number();
+    return {};
   }
 
   Result<void> read_vertex(Tokens& tokens) {

@@ -9,8 +9,9 @@
 #include "tactum/mesh/text_scanner.h"
 
 /// PLY, text and binary of both byte orders. The header lists elements (vertex, face, ...) and their
-/// properties; of vertices x, y, z are taken, of faces the list vertex_indices or vertex_index, everything
-/// else is ignored.
+/// properties; of vertices x, y, z are taken, of faces the list vertex_indices or vertex_index, of triangle
+/// strips (tristrips) the same list, everything else is ignored. The rows of a text stand in a line each, or
+/// anyhow.
 
 namespace tactum::inline v0_1::detail {
 namespace {
@@ -100,6 +101,8 @@ double number_at(const char* bytes, Type type, bool swapped) {
   return 0.0;
 }
 
+constexpr int kNewStrip = -1;  // among the corners of strips
+
 class PlyReader {
  public:
   PlyReader(std::string_view bytes, MeshBuilder& builder) : bytes_(bytes), lines_(bytes), builder_(builder) {}
@@ -109,7 +112,9 @@ class PlyReader {
     static constexpr std::array<const char*, 3> kNames = {"PLY (text)", "PLY (binary, little-endian)",
                                                           "PLY (binary, big-endian)"};
     builder_.report().format = kNames[static_cast<std::size_t>(encoding_)];
-    position_ = lines_.position();
+    position_ = end_of_header();
+    words_ = WordReader(bytes_.substr(position_), lines_.line_number() + 1);
+    row_a_line_ = encoding_ == Encoding::kText && has_row_in_every_line();
     for (const Element& element : elements_) {
       if (Result<void> done = check_count(element); !done) return done;
       for (std::uint64_t i = 0; i < element.count; ++i) {
@@ -185,13 +190,14 @@ class PlyReader {
       const TypeName* type = property.count_type != nullptr ? property.count_type : property.type;
       row += encoding_ == Encoding::kText ? 2 : type->size;
     }
-    const std::uint64_t left = bytes_.size() - position() + 1;  // the last blank may be missing
+    const std::size_t at = encoding_ == Encoding::kText ? position_ + words_.position() : position_;
+    const std::uint64_t left = bytes_.size() - at + 1;  // the last blank may be missing
     if (row > 0 && element.count > left / row) {
       return builder_.error("the file is cut short or its counts are wrong",
                             std::to_string(left - 1) + " bytes left",
                             "at least " + std::to_string(row) + " bytes for each of the " +
                                 std::to_string(element.count) + " rows of " + in_quotes(element.name),
-                            at_byte(position()));
+                            at_byte(at));
     }
     if (element.name == "vertex") {
       for (std::string_view axis : {"x", "y", "z"}) {
@@ -205,20 +211,50 @@ class PlyReader {
     return {};
   }
 
-  std::size_t position() const { return encoding_ == Encoding::kText ? lines_.position() : position_; }
+  /// Where the rows begin. Behind a header whose lines end with CR alone a binary row may begin with the byte
+  /// of LF.
+  std::size_t end_of_header() const {
+    const std::size_t end = lines_.position();
+    const std::size_t first = bytes_.find_first_of("\r\n");
+    const bool lone = bytes_[first] == '\r' && bytes_.substr(first, 2) != "\r\n";
+    const bool taken = bytes_.substr(0, end).ends_with("\r\n");
+    return lone && taken ? end - 1 : end;
+  }
+
+  /// Whether every row has a line that holds all of it. What follows in such a line is passed over; otherwise
+  /// the numbers are read one after the other, whatever lines they stand in.
+  bool has_row_in_every_line() const {
+    LineReader lines(bytes_.substr(position_));
+    for (const Element& element : elements_) {
+      for (std::uint64_t i = 0; i < element.count; ++i) {
+        std::string_view line;
+        do {
+          if (!lines.next(line)) return false;
+        } while (Tokens(line).next().empty());
+        if (!holds_row(Tokens(line), element)) return false;
+      }
+    }
+    return true;
+  }
+
+  static bool holds_row(Tokens words, const Element& element) {
+    for (const Property& property : element.properties) {
+      const std::string_view word = words.next();
+      double count = 0.0;
+      if (property.count_type != nullptr && !parse_number(word, count)) count = 0.0;
+      for (double i = 0.0; i < count; i += 1.0) {
+        if (words.next().empty()) return false;
+      }
+      if (word.empty()) return false;
+    }
+    return true;
+  }
 
   Result<void> read_row(const Element& element) {
     row_start_ = position_;
-    if (encoding_ == Encoding::kText) {
-      std::string_view line;
-      do {
-        if (!lines_.next(line)) return cut_short(element);
-        row_ = Tokens(line);
-      } while (row_.remainder().empty());
-    }
     Vec3 point = Vec3::Zero();
     corners_.clear();
-    const bool is_face = element.name == "face";
+    const bool has_corners = element.name == "face" || element.name == "tristrips";
     for (const Property& property : element.properties) {
       double value = 0.0;
       if (!next_number(property.count_type != nullptr ? *property.count_type : *property.type, value)) {
@@ -232,11 +268,30 @@ class PlyReader {
         continue;
       }
       const bool is_corners =
-          is_face && (property.name == "vertex_indices" || property.name == "vertex_index");
+          has_corners && (property.name == "vertex_indices" || property.name == "vertex_index");
       if (Result<void> done = read_list(element, property, value, is_corners); !done) return done;
     }
-    if (element.name == "vertex") return builder_.add_vertex(point, place());
-    if (is_face) return builder_.add_polygon(corners_, place());
+    const std::string at = place();
+    if (row_a_line_) words_.skip_line();
+    if (element.name == "vertex") return builder_.add_vertex(point, at);
+    if (element.name == "tristrips") return add_strips(at);
+    if (element.name == "face") return builder_.add_polygon(corners_, at);
+    return {};
+  }
+
+  /// Every three neighbours of a strip are a triangle, every other one the other way round. Those with two
+  /// equal corners only lead from one strip to the next.
+  Result<void> add_strips(const std::string& at) {
+    std::size_t begin = 0;  // of the strip
+    for (std::size_t i = 0; i < corners_.size(); ++i) {
+      if (corners_[i] == kNewStrip) begin = i + 1;
+      if (i < begin + 2) continue;
+      std::vector<int> triangle(corners_.begin() + static_cast<std::ptrdiff_t>(i) - 2,
+                                corners_.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+      if (triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0]) continue;
+      if ((i - begin) % 2 == 1) std::swap(triangle[0], triangle[1]);
+      if (Result<void> done = builder_.add_polygon(triangle, at); !done) return done;
+    }
     return {};
   }
 
@@ -247,6 +302,12 @@ class PlyReader {
       double value = 0.0;
       if (!next_number(*property.type, value)) return cut_short(element);
       if (!is_corners) continue;
+      // Types without a sign write -1 as their largest number.
+      const bool is_restart = value == -1.0 || value == std::numeric_limits<std::uint32_t>::max();
+      if (is_restart && element.name == "tristrips") {
+        corners_.push_back(kNewStrip);
+        continue;
+      }
       const bool is_index = value >= 0.0 && value < builder_.vertex_count();
       if (!is_index) {
         return builder_.error("a face refers to a vertex that is not there",
@@ -259,7 +320,7 @@ class PlyReader {
   }
 
   bool next_number(const TypeName& type, double& value) {
-    if (encoding_ == Encoding::kText) return parse_number(row_.next(), value);
+    if (encoding_ == Encoding::kText) return parse_number(words_.next(), value);
     if (bytes_.size() - position_ < type.size) return false;
     value = number_at(bytes_.data() + position_, type.type, encoding_ == Encoding::kBig);
     position_ += type.size;
@@ -267,7 +328,7 @@ class PlyReader {
   }
 
   std::string place() const {
-    return encoding_ == Encoding::kText ? at_line(lines_.line_number()) : at_byte(row_start_);
+    return encoding_ == Encoding::kText ? at_line(words_.line_number()) : at_byte(row_start_);
   }
   Error cut_short(const Element& element) const {
     return builder_.error("a row of the PLY file cannot be read", "too few numbers or no number",
@@ -278,13 +339,14 @@ class PlyReader {
   }
 
   std::string_view bytes_;
-  LineReader lines_;  ///< the header, and the rows of a text
+  LineReader lines_;  ///< of the header
   MeshBuilder& builder_;
   Encoding encoding_ = Encoding::kText;
   std::vector<Element> elements_;
-  std::size_t position_ = 0;   ///< of a binary file
-  std::size_t row_start_ = 0;  ///< of a binary file
-  Tokens row_{{}};             ///< of a text
+  std::size_t position_ = 0;                 ///< of a binary file
+  std::size_t row_start_ = 0;                ///< of a binary file
+  WordReader words_{std::string_view(), 1};  ///< of a text, behind the header
+  bool row_a_line_ = false;                  ///< of a text
   std::vector<int> corners_;
 };
 
