@@ -332,8 +332,9 @@ void add_what_is_felt(CLI::App* command, FeelOptions* options) {
   command->add_option("--updates", options->updates, "how many frames, instead of a duration")
       ->check(whole_number_between(1, 1e12, "a number of frames"))
       ->excludes("--duration");
-  command->add_option("--device", options->device,
-                      "see: tactum devices; by default the scene's simulated one");
+  command->add_option(
+      "--device", options->device,
+      "see: tactum devices (touch is short for simulated:touch); by default the scene's simulated one");
   command->add_option("--hand", options->hand, "grip of the simulated hand: loose, medium or firm");
   command
       ->add_option(
