@@ -2,21 +2,28 @@
 /// summary.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
 #include <optional>
 #include <thread>
 
 #include "commands.h"
 #include "output.h"
 #include "referee_watch.h"
+#include "scene_of_meshes.h"
+#include "tactum/devices/simulated_device.h"
 #include "tactum/haptics/coupling_gains.h"
 #include "tactum/response/field_pull.h"
 #include "tactum/response/penalty_response.h"
 #include "tactum/response/workspace_scale.h"
+#include "tactum/scene/build_scene.h"
 #include "tactum/scene/builtin_scenes.h"
+#include "tactum/scene/scene_file.h"
+#include "tactum/scene/scene_remarks.h"
 #include "tactum/session/session.h"
 #include "tactum/telemetry/statistics.h"
 #include "trace_file.h"
@@ -27,7 +34,9 @@ namespace tactum {
 namespace {
 
 struct FeelOptions {
-  std::string scene = "gears";
+  std::vector<std::string> scenes{"gears"};  // one, or one or two meshes
+  std::string save_scene;
+  bool strict = false;
   double duration_s = 0.0;
   std::uint64_t updates = 0;
   int replays = 1;
@@ -42,6 +51,8 @@ struct FeelOptions {
   bool view = false;
   int port = 0;
 };
+
+constexpr int kGoalsNotMet = 2;  // the exit code
 
 /// What looks at every frame of a run, where it was asked for; null where not.
 struct Watchers {
@@ -89,13 +100,56 @@ std::unique_ptr<Session> open_session(const FeelOptions& options, Scene scene) {
   return std::move(*opened);
 }
 
-Scene scene_of(const FeelOptions& options) {
-  Result<Scene> scene = open_scene(options.scene);
+/// The scene that is asked for by name, by file or by meshes.
+SceneDescription description_of(const FeelOptions& options) {
+  const bool meshes = std::all_of(options.scenes.begin(), options.scenes.end(), is_mesh_name);
+  if (!meshes && options.scenes.size() > 1)
+    fail({"two scenes at once", fmt::format("{}", fmt::join(options.scenes, " and ")),
+          "one scene, or one or two meshes", ""});
+  if (!meshes && !options.save_scene.empty())
+    fail({"--save-scene is for scenes that are made of meshes", options.scenes.front(), "a mesh", ""});
+  Result<SceneDescription> description = Error{};
+  if (meshes) {
+    const MeshScene made = scene_of_meshes(options.scenes);
+    for (const std::string& sentence : made.sentences) fmt::print(stderr, "{}\n", sentence);
+    if (!options.save_scene.empty()) write_text(options.save_scene, made.toml);
+    const std::string name = std::filesystem::path(options.scenes.back()).stem().string();
+    description = parse_description(made.toml, name, "the scene of " + options.scenes.back(), data_folders());
+  } else {
+    description = describe_scene(options.scenes.front());
+  }
+  if (!description) fail(description.error());
+  return std::move(*description);
+}
+
+Scene scene_of(const FeelOptions& options, const SceneDescription& description) {
+  Result<Scene> scene = build_scene(description);
   if (!scene) fail(scene.error());
   if (!options.response.empty())
     scene->settings.response =
         options.response == "penalty" ? ResponseModel::kPenalty : ResponseModel::kConstraint;
+  // The remarks are about the device that is in use.
+  if (const auto device = simulated_device_preset(options.device)) scene->device = device->name;
   return std::move(*scene);
+}
+
+/// Prints the remarks on the scene; with --strict the command ends when one is a warning.
+std::vector<SceneRemark> remark_on(std::FILE* out, const FeelOptions& options,
+                                   const SceneDescription& description, const Scene& scene) {
+  std::vector<SceneRemark> remarks = remarks_on(description, scene);
+  int warnings = 0;
+  for (const SceneRemark& remark : remarks) {  // facts come first
+    if (!remark.warning) fmt::print(out, "{}\n", remark.text);
+    std::fflush(out);
+    if (!remark.warning) continue;
+    fmt::print(stderr, "remark: {}\n", remark.text);
+    ++warnings;
+  }
+  if (options.strict && warnings > 0)
+    fail({"with --strict the remarks on a scene are errors",
+          fmt::format("{} {}", warnings, warnings == 1 ? "remark" : "remarks"), "none",
+          options.scenes.back()});
+  return remarks;
 }
 
 void run_virtually(Session& session, std::uint64_t frames, const Watchers& watchers,
@@ -106,18 +160,18 @@ void run_virtually(Session& session, std::uint64_t frames, const Watchers& watch
 }
 
 /// Runs the session, and repeats it as many times as wanted.
-Summary feel_virtually(const FeelOptions& options, Session& session, std::uint64_t frames,
-                       const Watchers& watchers) {
+Summary feel_virtually(const FeelOptions& options, const SceneDescription& description, Session& session,
+                       std::uint64_t frames, const Watchers& watchers) {
   MinimumOfReplays times(frames);
   run_virtually(session, frames, watchers, times);
   for (int replay = 1; replay < options.replays && !interrupted(); ++replay) {
-    const std::unique_ptr<Session> again = open_session(options, scene_of(options));
+    const std::unique_ptr<Session> again = open_session(options, scene_of(options, description));
     StageClock stages;  // so that every run does the same
     again->time_stages(&stages);
     run_virtually(*again, frames, {}, times);
     if (!interrupted() && again->record().hash() != session.record().hash())
       fail({"a replay went another way", fmt::format("hash {:016x}", again->record().hash()),
-            fmt::format("{:016x} as in the first run", session.record().hash()), options.scene});
+            fmt::format("{:016x} as in the first run", session.record().hash()), options.scenes.back()});
   }
   return times.summary();
 }
@@ -166,8 +220,9 @@ void report_what_is_felt(std::FILE* out, const Session& session, const std::stri
              scene.settings.response == ResponseModel::kPenalty ? "penalty" : "constraint");
   const Coupling& coupling = scene.settings.coupling;
   const double scale = scene.settings.workspace.scale;
-  fmt::print(out, "{}{}\n", margin_sentence(coupling, session.device(), session.rate_Hz()),
-             scene.coupling_by_device ? "; chosen for this device and rate" : "");
+  if (session.device().actuates_force)
+    fmt::print(out, "{}{}\n", margin_sentence(coupling, session.device(), session.rate_Hz()),
+               scene.coupling_by_device ? " It was chosen for this device and rate." : "");
   for (const std::string& sentence :
        {scale_sentence(coupling, scale), field_sentence(scene.world, in_scene(coupling, scale)),
         penalty_sentence(scene.settings)})
@@ -175,8 +230,16 @@ void report_what_is_felt(std::FILE* out, const Session& session, const std::stri
   std::fflush(out);
 }
 
-void sum_up(std::FILE* out, const FeelOptions& options, const Session& session, const Summary& times,
-            const StageClock& stages, const Watchers& watchers) {
+nlohmann::ordered_json remarks_json(const std::vector<SceneRemark>& remarks) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const SceneRemark& remark : remarks)
+    json.push_back({{"warning", remark.warning}, {"what", remark.text}});
+  return json;
+}
+
+void sum_up(std::FILE* out, const FeelOptions& options, const std::vector<SceneRemark>& remarks,
+            const Session& session, const Summary& times, const StageClock& stages,
+            const Watchers& watchers) {
   const RefereeWatch* referee = watchers.referee;
   print_summary(out, session, times, stages);
   if (referee != nullptr) fmt::print(out, "referee          {}\n", referee->sentence());
@@ -191,6 +254,7 @@ void sum_up(std::FILE* out, const FeelOptions& options, const Session& session, 
   if (!options.json.empty()) {
     nlohmann::ordered_json summary = summary_json(session, times, stages);
     summary["replays"] = options.replays;
+    summary["remarks"] = remarks_json(remarks);
     if (referee != nullptr) {  // its word counts
       summary["penetrating_frames"] = referee->crossing_frames();
       summary["referee"] = {{"judged_frames", referee->judged_frames()}, {"verdict", referee->sentence()}};
@@ -200,9 +264,11 @@ void sum_up(std::FILE* out, const FeelOptions& options, const Session& session, 
   if (session.loop_status().device_lost)
     fail({"the device refused every wrench for a while, so the loop has ended", "",
           "a device that is plugged in and powered", session.device().name});
+  if (!session.goals().all_met()) end_with(kGoalsNotMet);
 }
 
-void feel_with_pages(const FeelOptions& options, Scene scene, std::FILE* out) {
+void feel_with_pages(const FeelOptions& options, const std::vector<SceneRemark>& remarks, Scene scene,
+                     std::FILE* out) {
   Result<std::unique_ptr<Viewer>> opened = Viewer::open(
       std::move(scene), {.device = options.device, .grip = options.hand, .rate_Hz = 0.0}, options.port);
   if (!opened) fail(opened.error());
@@ -215,16 +281,18 @@ void feel_with_pages(const FeelOptions& options, Scene scene, std::FILE* out) {
   const Summary times = options.virtual_clock
                             ? feel_viewed_virtually(viewer, frames_asked_for(options, viewer.session()))
                             : run_viewed(viewer, asked);
-  sum_up(out, options, viewer.session(), times, viewer.stages(), {});
+  sum_up(out, options, remarks, viewer.session(), times, viewer.stages(), {});
 }
 
 void feel(const FeelOptions& options) {
-  Scene scene = scene_of(options);
-  for (const std::string& remark : scene.remarks) fmt::print(stderr, "{}\n", remark);
-  watch_for_interrupts();
+  check_writable(options.json);
   // With --json - the standard output is for machines alone.
   std::FILE* out = options.json == "-" ? stderr : stdout;
-  if (options.view) return feel_with_pages(options, std::move(scene), out);
+  const SceneDescription description = description_of(options);
+  Scene scene = scene_of(options, description);
+  const std::vector<SceneRemark> remarks = remark_on(out, options, description, scene);
+  watch_for_interrupts();
+  if (options.view) return feel_with_pages(options, remarks, std::move(scene), out);
   const std::unique_ptr<Session> opened = open_session(options, std::move(scene));
   Session& session = *opened;
 
@@ -237,10 +305,43 @@ void feel(const FeelOptions& options) {
   std::optional<TraceFile> trace;
   if (!options.trace.empty()) trace.emplace(options.trace, session, frames, options.trace_bodies);
   const Watchers watchers{judges ? &*judges : nullptr, trace ? &*trace : nullptr};
-  const Summary times = options.virtual_clock ? feel_virtually(options, session, frames, watchers)
-                                              : feel_live(session, frames, watchers.trace);
+  const Summary times = options.virtual_clock
+                            ? feel_virtually(options, description, session, frames, watchers)
+                            : feel_live(session, frames, watchers.trace);
   if (trace) trace->finish();
-  sum_up(out, options, session, times, stages, watchers);
+  sum_up(out, options, remarks, session, times, stages, watchers);
+}
+
+/// The options that say what is felt, and how long.
+void add_what_is_felt(CLI::App* command, FeelOptions* options) {
+  command->footer(
+      "Exit codes: 0 done, 1 an error (with --strict a remark on the scene as well), 2 a goal of the scene "
+      "was "
+      "not met, or the command line is wrong.");
+  command
+      ->add_option("SCENE", options->scenes,
+                   "a scene's name (see: tactum scenes), a scene file, or one or two meshes: one is felt "
+                   "against a plate, the second of two against the first")
+      ->expected(1, 2)
+      ->capture_default_str();
+  command->add_option("--save-scene", options->save_scene, "write the scene of meshes to this file");
+  command->add_flag("--strict", options->strict, "remarks on the scene that are printed are errors");
+  command
+      ->add_option("--duration", options->duration_s, "how long [s]; by default as long as the hand's motion")
+      ->check(number_between(1e-3, 1e7, "seconds"));
+  command->add_option("--updates", options->updates, "how many frames, instead of a duration")
+      ->check(whole_number_between(1, 1e12, "a number of frames"))
+      ->excludes("--duration");
+  command->add_option(
+      "--device", options->device,
+      "see: tactum devices (touch is short for simulated:touch); by default the scene's simulated one");
+  command->add_option("--hand", options->hand, "grip of the simulated hand: loose, medium or firm");
+  command
+      ->add_option(
+          "--response", options->response,
+          "constraint (nothing is entered) or penalty (the published springs), instead of the scene's")
+      ->check(one_word_of({"constraint", "penalty"}));
+  command->add_option("--json", options->json, "write the summary to this file (- for standard output)");
 }
 
 }  // namespace
@@ -248,23 +349,7 @@ void feel(const FeelOptions& options) {
 void add_feel(CLI::App& app) {
   auto options = std::make_shared<FeelOptions>();
   CLI::App* command = app.add_subcommand("feel", "Feel a scene: run the haptic loop on a device");
-  command->add_option("SCENE", options->scene, "a scene's name (see: tactum scenes) or a scene file")
-      ->capture_default_str();
-  command
-      ->add_option("--duration", options->duration_s, "how long [s]; by default as long as the hand's motion")
-      ->check(CLI::Range(1e-3, 1e7));
-  command->add_option("--updates", options->updates, "how many frames, instead of a duration")
-      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 40))
-      ->excludes("--duration");
-  command->add_option("--device", options->device,
-                      "see: tactum devices; by default the scene's simulated one");
-  command->add_option("--hand", options->hand, "grip of the simulated hand: loose, medium or firm");
-  command
-      ->add_option(
-          "--response", options->response,
-          "constraint (nothing is entered) or penalty (the published springs), instead of the scene's")
-      ->check(CLI::IsMember({"constraint", "penalty"}));
-  command->add_option("--json", options->json, "write the summary to this file (- for standard output)");
+  add_what_is_felt(command, options.get());
   CLI::Option* virtual_clock =
       command->add_flag("--virtual-clock", options->virtual_clock,
                         "as fast as the machine can, with the same result on every machine");
@@ -273,7 +358,7 @@ void add_feel(CLI::App& app) {
           ->add_option(
               "--replays", options->replays,
               "run so often: the time of a frame is then its fastest, without the machine's other work")
-          ->check(CLI::Range(1, 1000))
+          ->check(whole_number_between(1, 1000, "a number of runs"))
           ->needs(virtual_clock)
           ->capture_default_str();
   CLI::Option* referee = command
@@ -300,7 +385,7 @@ void add_feel(CLI::App& app) {
   referee->excludes(view);
   trace->excludes(view);
   command->add_option("--port", options->port, "of the page; by default one that is free")
-      ->check(CLI::Range(1, 65535))
+      ->check(whole_number_between(1, 65535, "a port"))
       ->needs("--view");
   command->callback([options] { feel(*options); });
 }

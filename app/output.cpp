@@ -48,6 +48,15 @@ std::vector<std::string> frame_notes(const Session& session) {
   return notes;
 }
 
+/// The faults for which the last stage before the device has sent no wrench, by name.
+std::vector<std::string> safety_events(const RunRecord& record) {
+  std::vector<std::string> events;
+  const std::uint32_t faults = record.safety & safety_flag::kFaults;
+  for (int bit = 0; bit < 32; ++bit)
+    if (const std::uint32_t flag = 1u << bit; (faults & flag) != 0) events.push_back(safety_flag_names(flag));
+  return events;
+}
+
 /// Sums and largest values of the report's fields, by the last part of their names.
 void add_fields(const RunRecord& record, nlohmann::ordered_json& json) {
   for_each_report_field([&](auto field) {
@@ -118,6 +127,9 @@ void print_summary(std::FILE* out, const Session& session, const Summary& times,
   if (record.non_finite_frames > 0)
     fmt::print(out, "WRONG            {} frames computed a wrench that is not finite\n",
                record.non_finite_frames);
+  if (const std::vector<std::string> events = safety_events(record); !events.empty())
+    fmt::print(out, "safety           the wrench was zero for a while: {}; see docs/safety.md\n",
+               fmt::join(events, ", "));
   for (const std::string& note : frame_notes(session)) fmt::print(out, "note             {}\n", note);
   for (std::size_t i = 0; i < session.scene().goals.size(); ++i)
     fmt::print(out, "goal             {}\n", session.goals().describe(session.scene().world, i));
@@ -155,6 +167,7 @@ nlohmann::ordered_json summary_json(const Session& session, const Summary& times
                                  {"missed_deadlines", loop.missed_deadlines},
                                  {"frame_us", summary_us(times)},
                                  {"stages_us", stages_us},
+                                 {"safety_events", safety_events(record)},
                                  {"notes", frame_notes(session)},
                                  {"goals", goals},
                                  {"goal_met", session.goals().all_met()},

@@ -32,6 +32,7 @@
 #include "tactum/scene/builtin_scenes.h"
 #include "tactum/scene/scene_description.h"
 #include "tactum/scene/scene_file.h"
+#include "tactum/scene/scene_remarks.h"
 #include "tactum/session/session.h"
 
 #include "tactum/version.h"

@@ -10,6 +10,7 @@
 namespace tactum::feel_test {
 namespace {
 
+using testing::ended;
 using testing::ProgramRun;
 using testing::run_tactum;
 using testing::ScratchFolder;
@@ -17,7 +18,7 @@ using Json = nlohmann::json;
 
 TEST(FeelCommand, TheSummaryForMachinesHasItsKeys) {
   const ProgramRun run = run_tactum("feel gears --virtual-clock --updates 3000 --json -");
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  ASSERT_TRUE(ended(run)) << run.err;
   const Json summary = Json::parse(run.out);
   EXPECT_EQ(summary["frames"], 3000);
   for (const char* key : {"penetrating_frames", "max_penetration_m", "max_force_N", "max_force_step_N"})
@@ -35,7 +36,7 @@ TEST(FeelCommand, ATraceHasARowForEachFrame) {
   const std::string path = folder / "run.csv";
   const ProgramRun run =
       run_tactum("feel block-on-plate --virtual-clock --updates 1500 --trace-bodies --trace " + path);
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  ASSERT_TRUE(ended(run)) << run.err;
   EXPECT_NE(run.out.find("1500 frames in " + path), std::string::npos) << run.out;
   std::ifstream file(path);
   std::string line, head, names;
@@ -52,7 +53,7 @@ TEST(FeelCommand, ATraceHasARowForEachFrame) {
   for (; std::getline(file, line); ++rows) ASSERT_EQ(std::count(line.begin(), line.end(), ','), commas);
   EXPECT_EQ(rows, 1500);
   const ProgramRun live = run_tactum("feel block-on-plate --updates 200 --trace " + path);
-  EXPECT_EQ(live.exit_code, 0) << live.err;
+  EXPECT_TRUE(ended(live)) << live.err;
   EXPECT_NE(live.out.find("frames in " + path), std::string::npos) << live.out;
 }
 
@@ -69,8 +70,8 @@ TEST(FeelCommand, ATraceThatCannotBeWrittenIsAnError) {
 TEST(FeelCommand, TheSameTwiceAndADurationInsteadOfUpdates) {
   const ProgramRun updates = run_tactum("feel block-on-plate --virtual-clock --updates 2000 --json -");
   const ProgramRun duration = run_tactum("feel block-on-plate --virtual-clock --duration 2 --json -");
-  ASSERT_EQ(updates.exit_code, 0) << updates.err;
-  ASSERT_EQ(duration.exit_code, 0) << duration.err;
+  ASSERT_TRUE(ended(updates)) << updates.err;
+  ASSERT_TRUE(ended(duration)) << duration.err;
   EXPECT_EQ(Json::parse(updates.out)["frame_hash"], Json::parse(duration.out)["frame_hash"]);
 }
 
@@ -78,7 +79,7 @@ TEST(FeelCommand, ReplaysAreTheSameRunAndTimeItsFramesByTheirFastest) {
   const std::string feel = "feel block-on-plate --virtual-clock --updates 2000 --json -";
   const ProgramRun once = run_tactum(feel);
   const ProgramRun thrice = run_tactum(feel + " --replays 3");
-  ASSERT_EQ(thrice.exit_code, 0) << thrice.err;
+  ASSERT_TRUE(ended(thrice)) << thrice.err;
   const Json one = Json::parse(once.out);
   const Json three = Json::parse(thrice.out);
   EXPECT_EQ(one["replays"], 1);
@@ -93,14 +94,14 @@ TEST(FeelCommand, EveryGripAndSimulatedDeviceRuns) {
   for (const char* grip : {"loose", "medium", "firm"}) {
     const ProgramRun run =
         run_tactum(std::string("feel gears --virtual-clock --updates 1500 --json - --hand ") + grip);
-    ASSERT_EQ(run.exit_code, 0) << run.err;
+    ASSERT_TRUE(ended(run)) << run.err;
     EXPECT_EQ(Json::parse(run.out)["non_finite_frames"], 0);
   }
   for (const char* device : {"touch", "omega.6", "sigma.7", "virtuose-6d"}) {
     const ProgramRun run = run_tactum(
         std::string("feel block-on-plate --virtual-clock --updates 3000 --json - --device simulated:") +
         device);
-    ASSERT_EQ(run.exit_code, 0) << run.err;
+    ASSERT_TRUE(ended(run)) << run.err;
     EXPECT_GT(Json::parse(run.out)["max_force_N"], 0.1) << device;
   }
 }
@@ -111,7 +112,7 @@ TEST(FeelCommand, TheResponseCanBeChosen) {
   const ProgramRun plain = run_tactum(feel);
   const ProgramRun constraint = run_tactum(feel + " --response constraint");
   const ProgramRun penalty = run_tactum(feel + " --response penalty");
-  ASSERT_EQ(penalty.exit_code, 0) << penalty.err;
+  ASSERT_TRUE(ended(penalty)) << penalty.err;
   EXPECT_NE(penalty.err.find("response penalty"), std::string::npos) << penalty.err;
   EXPECT_GT(Json::parse(penalty.out)["penetrating_frames"], 100);
   EXPECT_EQ(Json::parse(constraint.out)["penetrating_frames"], 0);
@@ -145,7 +146,7 @@ TEST(FeelCommand, AHandThatThePartCannotFollowIsToldWithTheSetting) {
     testing::write(folder / "scene.toml", free_block(c.response, c.motion, c.duration_s));
     const ProgramRun run =
         run_tactum("feel " + (folder / "scene.toml") + " --hand firm --virtual-clock --updates 900 --json -");
-    ASSERT_EQ(run.exit_code, 0) << run.err;
+    ASSERT_TRUE(ended(run)) << run.err;
     const Json summary = Json::parse(run.out);
     const std::string notes = summary["notes"].dump();
     if (*c.setting == '\0') {
@@ -166,7 +167,7 @@ TEST(FeelCommand, InterruptedItEndsCleanlyWithItsSummary) {
   const ProgramRun run = run_tactum("feel gears --duration 600 --json " + json + " >" + said +
                                     " & tactum=$!; while kill -0 $tactum && ! [ -s " + said +
                                     " ]; do sleep 0.1; done; sleep 0.5; kill -INT $tactum; wait $tactum");
-  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(ended(run)) << run.err;
   EXPECT_LT(Json::parse(testing::content(json))["frames"], 300'000);
   EXPECT_NE(testing::content(said).find("driven turned by"), std::string::npos);
 }

@@ -61,6 +61,9 @@ inline ProgramRun run_program(const std::string& name, const std::string& argume
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content(out), content(err)};
 }
 
+/// Whether the run went to its end: a scene whose goals were not met, as in a run cut short, ends with 2.
+inline bool ended(const ProgramRun& run) { return run.exit_code == 0 || run.exit_code == 2; }
+
 inline ProgramRun run_tactum(const std::string& arguments) { return run_program("tactum", arguments); }
 inline ProgramRun run_bench(const std::string& arguments) { return run_program("tactum-bench", arguments); }
 

@@ -98,16 +98,22 @@ TEST(CouplingGains, TheMarginIsToldInWords) {
   const std::string premium = margin_sentence(Coupling{}, info_of("premium-1.5-6dof"), 1000.0);
   EXPECT_EQ(
       premium,
-      "coupling 600 N/m and 0.3 N m/rad; stable in a loose hand (15 % of 4100 N/m and 1 % of 20.8 N "
-      "m/rad); let go of, this device alone holds up to 100 N/m and 0.2 N m/rad without swinging; where it "
-      "swings, its stiffness is led down");
+      "The coupling of 600 N/m and 0.3 N m/rad is stable in any hand that holds the device; let go, it may "
+      "buzz (limit 100 N/m and 0.2 N m/rad); its stiffness is lowered where it does. See "
+      "docs/algorithms/stability.md.");
   const std::string strong = margin_sentence(Coupling{}, info_of("virtuose-6d"), 1000.0);
-  EXPECT_NE(strong.find("m/rad), and when it is let go of"), std::string::npos) << strong;
+  EXPECT_NE(strong.find("stable in any hand that holds the device, and when it is let go."),
+            std::string::npos)
+      << strong;
   const std::string stiff =
       margin_sentence({.stiffness_N_per_m = 5000.0}, info_of("premium-1.5-6dof"), 1000.0);
-  EXPECT_NE(stiff.find("not stable in a loose hand (122 %"), std::string::npos) << stiff;
+  EXPECT_NE(stiff.find("too stiff for this device: in a loose hand it may buzz (limit 4100 N/m"),
+            std::string::npos)
+      << stiff;
+  for (const std::string& text : {premium, strong, stiff})
+    EXPECT_EQ(text.find('%'), std::string::npos) << text;
   const std::string touch = margin_sentence(Coupling{}, info_of("touch"), 1000.0);
-  EXPECT_NE(touch.find("no torque is sent"), std::string::npos) << touch;
+  EXPECT_NE(touch.find("sends no torque"), std::string::npos) << touch;
 }
 
 TEST(PortSettings, AreWhatTheDeviceTellsOfItself) {

@@ -191,7 +191,8 @@ TEST(SceneErrors, NotToml) {
 }
 
 TEST(SceneErrors, Schema) {
-  expect_error(1, "schema = 2", "test.toml:1:10", "found 2, expected 1 to 1");
+  expect_error(1, "schema = 2", "test.toml:1:10", "schema 2 is newer than this program (1)");
+  expect_error(1, "schema = 0", "test.toml:1:10", "found 0, expected 1 to 1");
   EXPECT_NE(error_of(with_line(1, "")).find("missing key \"schema\""), std::string::npos);
 }
 

@@ -1,6 +1,9 @@
 #include "tactum/devices/hand_model.h"
 
 #include <array>
+#include <vector>
+
+#include "tactum/base/nearest_word.h"
 
 namespace tactum::inline v0_1 {
 namespace {
@@ -24,12 +27,16 @@ const std::array<HandModel, 3>& grips() {
 }  // namespace
 
 Result<HandModel> hand_model(const std::string& grip) {
+  std::vector<std::string> known;
   std::string names;
   for (const HandModel& model : grips()) {
     if (model.name == grip) return model;
+    known.push_back(model.name);
     names += (names.empty() ? "" : ", ") + model.name;
   }
-  return Error{"unknown grip of the hand", "'" + grip + "'", "one of " + names, ""};
+  const std::string nearest = nearest_word(grip, known);
+  return Error{"unknown grip of the hand", "'" + grip + "'",
+               nearest.empty() ? "one of " + names : "'" + nearest + "' (of " + names + ")", ""};
 }
 
 HandModel no_hand() {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdio>
 
+#include "tactum/base/nearest_word.h"
 #include "tactum/devices/motion_file.h"
 #include "tactum/devices/pointer_device.h"
 #include "tactum/devices/replay_device.h"
@@ -75,16 +76,31 @@ constexpr std::array<Kind, 3> kKinds = {{
 
 }  // namespace
 
+std::string listed_device_name(const std::string& name) {
+  for (const SimulatedDeviceModel& model : simulated_device_presets())
+    if (model.name == name) return "simulated:" + name;
+  return name;
+}
+
 Result<std::unique_ptr<Device>> make_device(const std::string& name, const DeviceOptions& options) {
-  const std::size_t colon = name.find(':');
-  const std::string kind_name = name.substr(0, colon);
-  const std::string argument = colon == std::string::npos ? "" : name.substr(colon + 1);
+  const std::string listed = listed_device_name(name);
+  const std::size_t colon = listed.find(':');
+  const std::string kind_name = listed.substr(0, colon);
+  const std::string argument = colon == std::string::npos ? "" : listed.substr(colon + 1);
   for (const Kind& kind : kKinds) {
     if (kind_name == kind.name) return kind.make(argument, options);
   }
-  std::string names = kKinds.front().name;
-  for (const DeviceListing& listing : list_devices()) names += ", " + listing.name;
-  return Error{"unknown device", "'" + name + "'", "one of " + names, ""};
+  std::vector<std::string> known{kKinds.front().name};
+  std::string names = known.front();
+  for (const DeviceListing& listing : list_devices()) {
+    known.push_back(listing.name);
+    names += ", " + listing.name;
+  }
+  for (const SimulatedDeviceModel& model : simulated_device_presets()) known.push_back(model.name);
+  const std::string nearest = nearest_word(name, known);
+  return Error{
+      "unknown device", "'" + name + "'",
+      nearest.empty() ? "one of " + names : "'" + listed_device_name(nearest) + "' (of " + names + ")", ""};
 }
 
 std::vector<DeviceListing> list_devices() {

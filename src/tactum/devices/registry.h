@@ -2,7 +2,7 @@
 /// The devices by name, from one explicit table:
 ///
 ///   simulated            the premium-1.5-6dof preset
-///   simulated:PRESET     a preset of simulated_device.h
+///   simulated:PRESET     a preset of simulated_device.h; PRESET alone is the same
 ///   pointer:PRESET       the same in a hand that is led from outside (pointer_device.h)
 ///   replay:FILE          a motion file (motion_file.h)
 
@@ -28,7 +28,10 @@ struct DeviceListing {
   std::string description;  ///< one line
 };
 
-/// Makes a device, not yet open. The error for an unknown name lists the known names.
+/// The name as it is listed: "simulated:touch" of "touch"; other names as they are.
+std::string listed_device_name(const std::string& name);
+
+/// Makes a device, not yet open. The error for an unknown name gives the nearest and lists the known names.
 Result<std::unique_ptr<Device>> make_device(const std::string& name, const DeviceOptions& options);
 
 std::vector<DeviceListing> list_devices();

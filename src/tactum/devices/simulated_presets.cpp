@@ -7,8 +7,10 @@
 /// the angular steps of devices that are not marked M. They make a device of that class, not that device.
 
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "tactum/base/nearest_word.h"
 #include "tactum/devices/simulated_device.h"
 #include "tactum/math/types.h"
 
@@ -116,12 +118,18 @@ const std::vector<SimulatedDeviceModel>& simulated_device_presets() {
 }
 
 Result<SimulatedDeviceModel> simulated_device_preset(const std::string& name) {
+  constexpr std::string_view kKind = "simulated:";
+  const std::string preset = name.starts_with(kKind) ? name.substr(kKind.size()) : name;
+  std::vector<std::string> known;
   std::string names;
   for (const SimulatedDeviceModel& model : simulated_device_presets()) {
-    if (model.name == name) return model;
+    if (model.name == preset) return model;
+    known.push_back(model.name);
     names += (names.empty() ? "" : ", ") + model.name;
   }
-  return Error{"unknown simulated device", "'" + name + "'", "one of " + names, ""};
+  const std::string nearest = nearest_word(preset, known);
+  return Error{"unknown simulated device", "'" + name + "'",
+               nearest.empty() ? "one of " + names : "'" + nearest + "' (of " + names + ")", ""};
 }
 
 }  // namespace tactum::inline v0_1

@@ -53,10 +53,8 @@ struct Margin {
 
   bool in_loose_hand() const { return used <= in_hand; }
   bool released() const { return used <= alone; }
-  std::string share() const {
-    return fmt::format("{:.0f} % of {} {}", 100.0 * used / in_hand, digits(in_hand), unit);
-  }
   std::string text() const { return digits(used) + " " + unit; }
+  std::string limit_in_hand() const { return digits(in_hand) + " " + unit; }
   std::string limit_alone() const { return digits(alone) + " " + unit; }
 };
 
@@ -136,16 +134,25 @@ std::string margin_sentence(const Coupling& coupling, const DeviceInfo& info, do
       allowed(handle.damping_Nms_per_rad + hand.damping_Nms_per_rad, coupling.damping_Nms_per_rad),
       allowed(handle.damping_Nms_per_rad, 0.0), "N m/rad"};
   const bool turns = info.actuates_torque;
-  std::string text = "coupling " + joined(push.text(), " and ", turns ? turn.text() : "");
+  const auto both = [&](std::string (Margin::*text)() const) {
+    return joined((push.*text)(), " and ", turns ? (turn.*text)() : "");
+  };
   const bool in_hand = push.in_loose_hand() && (!turns || turn.in_loose_hand());
-  text += fmt::format("; {} in a loose hand ({})", in_hand ? "stable" : "not stable",
-                      joined(push.share(), " and ", turns ? turn.share() : ""));
   const bool alone = push.released() && (!turns || turn.released());
-  text += alone ? ", and when it is let go of"
-                : fmt::format("; let go of, this device alone holds up to {} without swinging",
-                              joined(push.limit_alone(), " and ", turns ? turn.limit_alone() : ""));
-  if (!in_hand || !alone) text += "; where it swings, its stiffness is led down";
-  return turns ? text : text + "; turns of the hand are followed, no torque is sent";
+  std::string text = "The coupling of " + both(&Margin::text);
+  if (!in_hand)
+    text += fmt::format(
+        " is too stiff for this device: in a loose hand it may buzz (limit {}), and let go (limit {}) as "
+        "well",
+        both(&Margin::limit_in_hand), both(&Margin::limit_alone));
+  else if (!alone)
+    text += fmt::format(" is stable in any hand that holds the device; let go, it may buzz (limit {})",
+                        both(&Margin::limit_alone));
+  else
+    text += " is stable in any hand that holds the device, and when it is let go";
+  text += in_hand && alone ? "." : "; its stiffness is lowered where it does.";
+  if (!turns) text += " The device sends no torque: turns of the hand are followed.";
+  return text + " See docs/algorithms/stability.md.";
 }
 
 }  // namespace tactum::inline v0_1

@@ -58,8 +58,8 @@ PortSettings port_settings(const DeviceInfo& info);
 /// empty.
 std::string scale_sentence(const Coupling& coupling, double scale);
 
-/// Whether a coupling is stable on this device in a loose hand and when it is let go of, with the fraction of
-/// the bounds that it uses, in a sentence for people.
+/// Whether a coupling is stable on this device in a loose hand and when it is let go, with the bounds that it
+/// exceeds, in sentences for people.
 std::string margin_sentence(const Coupling& coupling, const DeviceInfo& info, double rate_Hz);
 
 }  // namespace tactum::inline v0_1

@@ -97,6 +97,20 @@ void check_body(SceneBuilder& builder, const std::string& path, const BodyDescri
                  fmt::format("\"{}\"", body.name), "a body that moves");
 }
 
+/// The body that another one is placed on, by its index; -1 and the error where there is none before it.
+int body_below(SceneBuilder& builder, const std::string& path, const BodyDescription& body,
+               const World& world) {
+  std::vector<Placement> placements;
+  for (const BodyDescription& other : builder.description().bodies)
+    placements.push_back({other.name, other.on});
+  const std::string item = item_path(path, "on");
+  if (const auto fault = order_error(placements, world.bodies.size(), "body")) {
+    builder.fail(item, *fault);
+    return -1;
+  }
+  return builder.find_body(item, body.on, world);
+}
+
 void build_body(SceneBuilder& builder, const std::string& path, const BodyDescription& body, Scene& scene) {
   BodySpec spec;
   spec.name = body.name;
@@ -104,7 +118,7 @@ void build_body(SceneBuilder& builder, const std::string& path, const BodyDescri
   // Described in the world, or in the frame of the part it is placed on.
   spec.X_WP = body.X_OP;
   if (!body.on.empty()) {
-    const int on = builder.find_body(item_path(path, "on"), body.on, scene.world);
+    const int on = body_below(builder, path, body, scene.world);
     if (on < 0) return;
     const Body& below = scene.world.bodies[static_cast<std::size_t>(on)];
     spec.X_WP = part_pose(below, below.X_WB) * spec.X_WP;

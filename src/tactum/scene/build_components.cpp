@@ -114,8 +114,15 @@ std::string called(const Component& component, std::size_t index) {
 Shape build_components(SceneBuilder& builder, const std::string& path, const BodyDescription& body) {
   Shape shape;
   std::vector<Component> components;
+  std::vector<Placement> placements;
+  for (const ComponentDescription& component : body.components)
+    placements.push_back({component.name, component.on});
   for (const ComponentDescription& description : body.components) {
     const std::string item = item_path(path, "component", components.size());
+    if (const auto fault = order_error(placements, components.size(), "component")) {
+      builder.fail(item_path(item, "on"), *fault);
+      return shape;
+    }
     Component component = build_component(builder, item, description, components);
     if (builder.errors()) return shape;
     for (std::size_t i = 0; i < components.size(); ++i) {

@@ -93,9 +93,9 @@ void check_workspace(SceneBuilder& builder, const HandMotion& motion, const Simu
 
 void build_hand(SceneBuilder& builder, Scene& scene) {
   const HandDescription& hand = builder.description().hand;
-  scene.device = hand.device;
-  const Result<SimulatedDeviceModel> device = simulated_device_preset(scene.device);
+  const Result<SimulatedDeviceModel> device = simulated_device_preset(hand.device);
   if (!device) return builder.fail("device", device.error());
+  scene.device = device->name;
   scene.grip = hand.grip;
   if (const Result<HandModel> grip = hand_model(scene.grip); !grip) builder.fail("hand.grip", grip.error());
 

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 
 #include "tactum/scene/check_description.h"
@@ -22,7 +24,9 @@ std::optional<std::string> SceneBuilder::find_file(const std::string& path, cons
   }
   fail(path, fmt::format("cannot find the {} \"{}\"", kind, name),
        tried.empty() ? "no folder to look in" : fmt::format("no file {}", fmt::join(tried, ", nor ")),
-       "the file beside the scene file or in a folder named by TACTUM_DATA (colons between)");
+       std::string("the file ") + (description_.source.folders.empty() ? "" : "beside the scene file or ") +
+           "in a folder named by TACTUM_DATA (colons between" +
+           (std::getenv("TACTUM_DATA") == nullptr ? "; it is not set)" : ")"));
   return {};
 }
 
@@ -40,6 +44,28 @@ int SceneBuilder::find_body(const std::string& path, const std::string& name, co
       fmt::format("\"{}\"", name),
       nearest.empty() ? "the name of a [[body]]" : fmt::format("\"{}\"", nearest));
   return -1;
+}
+
+std::optional<Error> order_error(const std::vector<Placement>& items, std::size_t index, const char* noun) {
+  const auto find = [&](const std::string& name) {
+    return std::find_if(items.begin(), items.end(), [&](const Placement& item) { return item.name == name; });
+  };
+  const Placement& item = items[index];
+  if (item.on.empty()) return {};
+  const auto below = find(item.on);
+  if (below == items.end() || static_cast<std::size_t>(below - items.begin()) < index) return {};
+  const auto error = [&](const std::string& found) {
+    return Error{fmt::format("`on` must name a {} before this one", noun), found, "", ""};
+  };
+  if (item.on == item.name) return error(fmt::format("\"{}\", the {} itself", item.on, noun));
+  std::string circle = fmt::format("\"{}\" on \"{}\"", item.name, item.on);
+  auto next = below;
+  for (std::size_t step = 0; step < items.size() && next != items.end() && !next->on.empty(); ++step) {
+    circle += fmt::format(" on \"{}\"", next->on);
+    if (next->on == item.name) return error("a circle, " + circle);
+    next = find(next->on);
+  }
+  return error(fmt::format("\"{}\", which comes behind it", item.on));
 }
 
 Result<Scene> build_scene(const SceneDescription& description) {

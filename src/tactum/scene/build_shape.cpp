@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <optional>
 
@@ -57,7 +58,10 @@ class PartMaker {
     HoleBlock block = part.block;
     block.peg_width_m = fitted(part.fit, Mate::kHole, block.peg_width_m);
     if (block.sides == 0) block.peg_depth_m = fitted(part.fit, Mate::kHole, block.peg_depth_m);
-    if (!part.fit.fit.empty()) block.clearance_m = 0.0;
+    const double narrower_m = part.fit.fit.empty() ? std::max(0.0, -block.clearance_m) : 0.0;
+    block.peg_width_m -= narrower_m;
+    block.peg_depth_m -= narrower_m;
+    if (!part.fit.fit.empty() || narrower_m > 0.0) block.clearance_m = 0.0;
     return shape_of(hole_block_pieces(block));
   }
   Made make(const BoltPart& part) const { return shape_of(bolt_mesh(part.screw)); }
@@ -70,7 +74,9 @@ class PartMaker {
   Made make(const SocketPart& part) const {
     HexSocket socket = part.socket;
     socket.across_flats_m = fitted(part.fit, Mate::kHole, socket.across_flats_m);
-    if (!part.fit.fit.empty()) socket.clearance_m = 0.0;
+    const double narrower_m = part.fit.fit.empty() ? std::max(0.0, -socket.clearance_m) : 0.0;
+    socket.across_flats_m -= narrower_m;
+    if (!part.fit.fit.empty() || narrower_m > 0.0) socket.clearance_m = 0.0;
     return shape_of(hex_socket_pieces(socket));
   }
   Made make(const SlottedPlatePart& part) const { return shape_of(slotted_plate_pieces(part.plate)); }

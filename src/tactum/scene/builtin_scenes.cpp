@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <filesystem>
+
 #include "tactum/scene/build_scene.h"
 #include "tactum/scene/scene_file.h"
 #include "tactum/scene/toml_reader.h"
@@ -33,6 +35,28 @@ Result<SceneDescription> describe_scene(const std::string& name_or_path) {
                nearest.empty() ? fmt::format("one of {}, or a path to a .toml file", fmt::join(names, ", "))
                                : fmt::format("\"{}\", or a path to a .toml file", nearest),
                ""};
+}
+
+std::vector<std::string> missing_files(const SceneDescription& scene) {
+  namespace fs = std::filesystem;
+  std::vector<std::string> missing;
+  const auto look = [&](const std::string& file) {
+    std::error_code ignored;
+    bool there = fs::path(file).is_absolute() && fs::is_regular_file(file, ignored);
+    for (const std::string& folder : scene.source.folders)
+      there = there || fs::is_regular_file(fs::path(folder) / file, ignored);
+    if (!there) missing.push_back(file);
+  };
+  const auto look_at_part = [&](const std::optional<PartDescription>& part) {
+    if (part && std::holds_alternative<MeshPart>(*part)) look(std::get<MeshPart>(*part).mesh);
+  };
+  for (const BodyDescription& body : scene.bodies) {
+    look_at_part(body.part);
+    for (const ComponentDescription& component : body.components) look_at_part(component.part);
+  }
+  for (const FieldDescription& field : scene.fields)
+    if (const auto* grid = std::get_if<GridDescription>(&field.shape)) look(grid->file);
+  return missing;
 }
 
 Result<Scene> open_scene(const std::string& name_or_path) {

@@ -32,6 +32,10 @@ std::vector<SceneEntry> list_scenes();
 /// a slash is a path. A program may change it before it builds the scene.
 Result<SceneDescription> describe_scene(const std::string& name_or_path);
 
+/// The files that a description names and that are in none of its folders: meshes and fields. The scenes that
+/// come with the program name some that do not (docs/real-parts.md).
+std::vector<std::string> missing_files(const SceneDescription& scene);
+
 /// The scene of that description, built.
 Result<Scene> open_scene(const std::string& name_or_path);
 

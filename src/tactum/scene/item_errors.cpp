@@ -4,25 +4,92 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 namespace tactum::inline v0_1 {
 namespace {
 
-/// Optimal string alignment distance: insertions, deletions, substitutions, swaps of neighbours.
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
-  for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = i;
-  for (std::size_t k = 0; k <= b.size(); ++k) d[0][k] = k;
-  for (std::size_t i = 1; i <= a.size(); ++i)
-    for (std::size_t k = 1; k <= b.size(); ++k) {
-      const std::size_t change = a[i - 1] == b[k - 1] ? 0 : 1;
-      d[i][k] = std::min({d[i - 1][k] + 1, d[i][k - 1] + 1, d[i - 1][k - 1] + change});
-      if (i > 1 && k > 1 && a[i - 1] == b[k - 2] && a[i - 2] == b[k - 1])
-        d[i][k] = std::min(d[i][k], d[i - 2][k - 2] + 1);
-    }
-  return d[a.size()][b.size()];
-}
+/// Words of other formats (URDF, SDF, MJCF, Blender) and of everyday speech, with ours.
+struct Synonym {
+  std::string_view word, ours;
+};
+constexpr Synonym kSynonyms[] = {
+    // Joints.
+    {"revolute", "hinge"},
+    {"continuous", "hinge"},
+    {"rotational", "hinge"},
+    {"rotary", "hinge"},
+    {"pivot", "hinge"},
+    {"prismatic", "slider"},
+    {"linear", "slider"},
+    {"translational", "slider"},
+    {"sliding", "slider"},
+    {"spherical", "ball"},
+    {"sphere", "ball"},
+    {"floating", "free"},
+    {"dynamic", "free"},
+    {"static", "fixed"},
+    {"rigid", "fixed"},
+    {"weld", "fixed"},
+    {"kinematic", "fixed"},
+    // Shapes.
+    {"cube", "box"},
+    {"cuboid", "box"},
+    {"block", "box"},
+    {"plane", "box"},
+    {"plate", "box"},
+    {"capsule", "cylinder"},
+    {"cone", "cylinder"},
+    {"disc", "cylinder"},
+    {"tube", "cylinder"},
+    {"polygon", "prism"},
+    {"file", "mesh"},
+    {"filename", "mesh"},
+    {"path", "mesh"},
+    {"stl", "mesh"},
+    {"obj", "mesh"},
+    {"url", "mesh"},
+    {"cog", "gear"},
+    {"pin", "peg"},
+    {"hole", "hole_block"},
+    {"screw", "bolt"},
+    {"allen_key", "hex_key"},
+    // Grasps.
+    {"com", "centre"},
+    {"middle", "centre"},
+    {"edge", "rim"},
+    // Keys.
+    {"link", "body"},
+    {"object", "body"},
+    {"geom", "part"},
+    {"geometry", "part"},
+    {"shape", "part"},
+    {"collision", "part"},
+    {"visual", "part"},
+    {"type", "kind"},
+    {"position", "pos_m"},
+    {"translation", "pos_m"},
+    {"location", "pos_m"},
+    {"origin", "pos_m"},
+    {"xyz", "pos_m"},
+    {"euler", "rpy_deg"},
+    {"orientation", "rpy_deg"},
+    {"rotation", "rpy_deg"},
+    {"quaternion", "quat_wxyz"},
+    {"weight", "mass_kg"},
+    {"length", "height_m"},
+    {"dimensions", "size_m"},
+    {"extents", "size_m"},
+    {"range", "limits_deg"},
+    {"range", "limits_m"},
+    {"anchor", "anchor_m"},
+    {"mu", "coefficient"},
+    {"gripper", "tool"},
+    {"handle", "tool"},
+    {"timestep", "dt_s"},
+    {"time_step", "dt_s"},
+};
 
 }  // namespace
 
@@ -43,19 +110,19 @@ std::string one_of(const std::vector<std::string>& words) {
   return fmt::format("{}\"{}\"", words.size() == 1 ? "" : "one of ", fmt::join(words, "\", \""));
 }
 
-std::string nearest_word(std::string_view word, const std::vector<std::string>& known) {
-  std::string nearest;
-  std::size_t least = std::max<std::size_t>(2, word.size() / 2) + 1;
-  for (const std::string& candidate : known) {
-    std::size_t distance = edit_distance(word, candidate);
-    // "stiffness" is near "stiffness_N_per_m": a forgotten unit is the commonest slip.
-    if (word.size() >= 3 && candidate.starts_with(word)) distance = std::min<std::size_t>(distance, 1);
-    if (distance < least) {
-      least = distance;
-      nearest = candidate;
-    }
-  }
-  return nearest;
+std::string meant_word(std::string_view word, const std::vector<std::string>& known) {
+  std::string lower(word);
+  for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  for (const Synonym& synonym : kSynonyms)
+    if (synonym.word == lower && std::find(known.begin(), known.end(), synonym.ours) != known.end())
+      return std::string(synonym.ours);
+  return nearest_word(lower, known);
+}
+
+std::string one_of_meant(std::string_view word, const std::vector<std::string>& known) {
+  const std::string meant = meant_word(word, known);
+  if (meant.empty() || known.size() == 1) return one_of(known);
+  return fmt::format("\"{}\" (of \"{}\")", meant, fmt::join(known, "\", \""));
 }
 
 std::string item_path(const std::string& table, std::string_view key) {

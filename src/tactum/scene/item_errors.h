@@ -1,5 +1,5 @@
 #pragma once
-/// Facilities for errors about a description and its file: the first of them, ranges, and nearest names.
+/// Facilities for errors about a description and its file: the first of them, ranges, and words meant.
 
 #include <limits>
 #include <optional>
@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "tactum/base/nearest_word.h"
 #include "tactum/base/result.h"
 
 namespace tactum::inline v0_1 {
@@ -31,9 +32,12 @@ std::string shown(Range range);
 /// "one of "a", "b""
 std::string one_of(const std::vector<std::string>& words);
 
-/// The known word nearest to `word` by Damerau-Levenshtein distance, when near enough to be meant; else
-/// empty.
-std::string nearest_word(std::string_view word, const std::vector<std::string>& known);
+/// The known word that `word` was meant to be: the same in another format ("revolute" is a hinge), or the
+/// nearest one (base/nearest_word.h); empty when there is none.
+std::string meant_word(std::string_view word, const std::vector<std::string>& known);
+
+/// The known words, with the one that was meant before them: ""hinge" (of "free", "hinge")".
+std::string one_of_meant(std::string_view word, const std::vector<std::string>& known);
 
 /// The first error, if any.
 class FirstError {

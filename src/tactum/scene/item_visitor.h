@@ -21,6 +21,9 @@
 
 namespace tactum::inline v0_1 {
 
+/// The schema of scene files that this program reads.
+inline constexpr int kSceneSchema = 1;
+
 /// Whether a file must have the key.
 enum class Need { kOptional, kRequired };
 

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cstdint>
 
 #include "tactum/scene/item_visitor.h"
 
@@ -96,13 +97,24 @@ class TomlVisitor final : public ItemVisitor {
   SceneSource& source_;
 };
 
+/// Why the numbers of a section are bounded, where that is no matter of course.
+const char* reason_of(const SettingInfo& info) {
+  const std::string_view section = info.section;
+  if (section == "coupling")
+    return ": beyond that no hand-held device is stable (docs/algorithms/stability.md); what [coupling] "
+           "leaves "
+           "out has its default, and without the section all is chosen for the device";
+  if (section == "penalty") return ": beyond that contact springs swing at these rates (docs/settings.md)";
+  return "";
+}
+
 void TomlVisitor::setting(const SettingInfo& info, FrameSettings& frame, SafetySettings& safety) {
   if (!reader_.has(noted(info.key))) return;
   double value = info.get(frame, safety);
   const int low = static_cast<int>(info.low);
   switch (info.kind) {
     case SettingKind::kNumber:
-      value = reader_.number(info.key, value, {info.low, info.high});
+      value = reader_.number(info.key, value, {info.low, info.high}, reason_of(info));
       break;
     case SettingKind::kInteger:
       value = reader_.integer(info.key, static_cast<int>(value), low, static_cast<int>(info.high));
@@ -155,6 +167,13 @@ void TomlVisitor::only(const Alternatives& alternatives, int chosen) {
 }  // namespace
 
 void read_description(const toml::table& document, SceneDescription& scene, FirstError& errors) {
+  // Before any key: those of a newer schema may be unknown here.
+  const toml::node* schema = document.get("schema");
+  const std::int64_t number = schema && schema->is_integer() ? schema->as_integer()->get() : kSceneSchema;
+  if (number > kSceneSchema)
+    return errors.add({fmt::format("schema {} is newer than this program ({})", number, kSceneSchema), "",
+                       fmt::format("schema = {}, or a newer tactum", kSceneSchema),
+                       place(scene.source.file, schema->source().begin)});
   TomlVisitor visitor(TomlReader(document, scene.source.file, "", known_keys<SceneDescription>(), errors),
                       scene.source);
   visit_items(visitor, scene);

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "tactum/math/spatial.h"
 #include "tactum/scene/item_errors.h"
@@ -39,6 +40,15 @@ class SceneBuilder {
   const SceneDescription& description_;
   FirstError errors_;
 };
+
+/// The name of a body or component and what it is placed on.
+struct Placement {
+  std::string name, on;
+};
+
+/// The error of an item that is placed on itself, on a later one, or in a circle: each is placed on one
+/// before it. `noun` is "body" or "component".
+std::optional<Error> order_error(const std::vector<Placement>& items, std::size_t index, const char* noun);
 
 /// The shape of a part whose table is at `path`.
 Shape build_shape(SceneBuilder& builder, const std::string& path, const PartDescription& part);

@@ -8,6 +8,7 @@
 
 #include "tactum/scene/build_scene.h"
 #include "tactum/scene/read_description.h"
+#include "tactum/scene/toml_slips.h"
 
 namespace tactum::inline v0_1 {
 namespace {
@@ -22,7 +23,7 @@ Result<SceneDescription> parse_description(std::string_view text, const std::str
   try {
     document = toml::parse(text, file);
   } catch (const toml::parse_error& error) {
-    return Error{"not TOML", std::string(error.description()), "", place(file, error.source().begin)};
+    return toml_error(text, file, error);
   }
   SceneDescription scene;
   scene.name = name;
@@ -38,7 +39,8 @@ Result<SceneDescription> read_description_file(const std::string& path) {
   namespace fs = std::filesystem;
   std::error_code failure;
   if (!fs::is_regular_file(path, failure))
-    return Error{"cannot read the scene", "no such file", "a scene file (.toml)", path};
+    return Error{"cannot read the scene", fs::is_directory(path, failure) ? "a folder" : "no such file",
+                 "a scene file (.toml)", path};
   const std::uintmax_t size = fs::file_size(path, failure);
   if (failure || size > kMaxBytes)
     return Error{"cannot read the scene", failure ? failure.message() : "more than a megabyte",

@@ -24,6 +24,18 @@ std::string shown(const toml::node& node) {
   return "a date or time";
 }
 
+/// "body.component" of "body[1].component".
+std::string table_name(const std::string& path) {
+  std::string name;
+  bool inside = false;
+  for (const char c : path) {
+    if (c == '[') inside = true;
+    if (!inside) name += c;
+    if (c == ']') inside = false;
+  }
+  return name;
+}
+
 }  // namespace
 
 std::string place(const std::string& file, const toml::source_position& position) {
@@ -40,7 +52,7 @@ void TomlReader::check_keys(std::span<const char* const> keys) const {
   const std::vector<std::string> known(keys.begin(), keys.end());
   for (const auto& [key, value] : table_) {
     if (std::find(known.begin(), known.end(), key.str()) != known.end()) continue;
-    const std::string nearest = nearest_word(key.str(), known);
+    const std::string nearest = meant_word(key.str(), known);
     errors_.add({"unknown key in " + section(), fmt::format("\"{}\"", key.str()),
                  nearest.empty() ? one_of(known) : fmt::format("\"{}\"", nearest),
                  place(file_, key.source().begin)});
@@ -63,7 +75,8 @@ const toml::node* TomlReader::node(const char* key, bool required, const char* e
   return value;
 }
 
-double TomlReader::number(const char* key, std::optional<double> fallback, Range range) const {
+double TomlReader::number(const char* key, std::optional<double> fallback, Range range,
+                          std::string_view reason) const {
   const double otherwise = fallback.value_or(0.0);
   const toml::node* value = node(key, !fallback, "a number");
   if (!value) return otherwise;
@@ -73,7 +86,8 @@ double TomlReader::number(const char* key, std::optional<double> fallback, Range
   }
   const double read = *value->value<double>();
   if (within(read, range)) return read;
-  fail(key, fmt::format("\"{}\" in {} is out of range", key, section()), shown(*value), shown(range));
+  fail(key, fmt::format("\"{}\" in {} is out of range", key, section()), shown(*value),
+       shown(range) + std::string(reason));
   return otherwise;
 }
 
@@ -115,7 +129,8 @@ std::string TomlReader::choice(const char* key, std::optional<std::string> fallb
   if (!value) return otherwise;
   const std::string read = text(key, otherwise);
   if (std::find(choices.begin(), choices.end(), read) != choices.end()) return read;
-  fail(key, fmt::format("\"{}\" in {} is not known", key, section()), shown(*value), one_of(choices));
+  fail(key, fmt::format("\"{}\" in {} is not known", key, section()), shown(*value),
+       one_of_meant(read, choices));
   return otherwise;
 }
 
@@ -170,7 +185,10 @@ TomlReader TomlReader::table(const char* key, std::span<const char* const> keys)
   const toml::node* value = table_.get(key);
   const toml::table* inner = value ? value->as_table() : nullptr;
   if (value && !inner)
-    fail(key, fmt::format("wrong type of \"{}\" in {}", key, section()), shown(*value), "a table");
+    fail(key, fmt::format("wrong type of \"{}\" in {}", key, section()), shown(*value),
+         value->is_array_of_tables()
+             ? fmt::format("a table, [{}] with one bracket", table_name(item_path(path_, key)))
+             : "a table");
   return {inner ? *inner : kEmptyTable, file_, item_path(path_, key), keys, errors_};
 }
 
@@ -179,7 +197,10 @@ std::size_t TomlReader::size(const char* key) const {
   if (!value) return 0;
   const auto* array = value->as_array();
   if (!array) {
-    fail(key, fmt::format("wrong type of \"{}\" in {}", key, section()), shown(*value), "an array of tables");
+    fail(key, fmt::format("wrong type of \"{}\" in {}", key, section()), shown(*value),
+         value->is_table()
+             ? fmt::format("an array of tables, [[{}]] with two brackets", table_name(item_path(path_, key)))
+             : "an array of tables");
     return 0;
   }
   for (const toml::node& item : *array)

@@ -42,7 +42,9 @@ class TomlReader {
   FirstError& errors() const { return errors_; }
 
   // With a fallback a key may be absent; without one it must be there.
-  double number(const char* key, std::optional<double> fallback = {}, Range range = kAny) const;
+  /// `reason` follows the range in the error of a number that is out of it.
+  double number(const char* key, std::optional<double> fallback = {}, Range range = kAny,
+                std::string_view reason = "") const;
   int integer(const char* key, std::optional<int> fallback, int low, int high) const;
   bool flag(const char* key, bool fallback) const;
   std::string text(const char* key, std::optional<std::string> fallback = {}) const;

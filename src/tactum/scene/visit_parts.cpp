@@ -16,9 +16,9 @@ void visit_fit(ItemVisitor& visitor, FitDescription& fit) {
                  "fit, such as \"H7/g6\"");
 }
 
-/// A clearance, or a fit in its place.
+/// A clearance, or a fit in its place. Below zero the part does not fit, which a remark states.
 void visit_clearance(ItemVisitor& visitor, double& clearance_m, FitDescription& fit) {
-  visitor.number("clearance_m", clearance_m, kNotNegative);
+  visitor.number("clearance_m", clearance_m, kAny);
   visit_fit(visitor, fit);
   visitor.exclude("clearance_m", "fit", "two clearances");
 }

@@ -6,8 +6,6 @@
 namespace tactum::inline v0_1 {
 namespace {
 
-constexpr int kSceneSchema = 1;
-
 template <class Take>
 void each_setting(std::string_view section, const Take& take) {
   for (const SettingInfo& info : setting_table())

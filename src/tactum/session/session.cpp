@@ -20,7 +20,8 @@ Result<std::unique_ptr<Session>> Session::open(Scene scene, const SessionOptions
   DeviceOptions device_options;
   device_options.hand_motion = scene.hand;
   device_options.grip = options.grip.empty() ? scene.grip : options.grip;
-  const std::string name = options.device.empty() ? "simulated:" + scene.device : options.device;
+  const std::string name =
+      listed_device_name(options.device.empty() ? "simulated:" + scene.device : options.device);
   if (is_simulated(name) && !scene.hand)
     return Error{"the scene has no hand motion for a simulated device", "none", "one, if only a hold",
                  scene.name};
