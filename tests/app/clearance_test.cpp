@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -58,6 +59,46 @@ TEST(ClearanceCommand, ReadsTablesOfOtherSeparators) {
       EXPECT_EQ(run.exit_code, 0) << run.err;
       EXPECT_EQ(run.out, expected.out);
     }
+  }
+}
+
+/// A cube of half a unit moves from the middle of a box of 6 through its wall to the outside; the box is solid,
+/// or has a cavity of 2.
+TEST(ClearanceCommand, AMeshInsideASolidTouchesItAndOneInACavityDoesNot) {
+  const auto box = [](double half, int first, bool inward) {
+    std::string text;
+    for (const double z : {-half, half})
+      for (const double y : {-half, half})
+        for (const double x : {-half, half}) text += fmt::format("v {} {} {}\n", x, y, z);
+    for (std::array<int, 4> f :
+         {std::array{1, 3, 4, 2}, {5, 6, 8, 7}, {1, 2, 6, 5}, {3, 7, 8, 4}, {1, 5, 7, 3}, {2, 4, 8, 6}}) {
+      if (inward) std::reverse(f.begin(), f.end());
+      text += fmt::format("f {} {} {} {}\n", f[0] + first, f[1] + first, f[2] + first, f[3] + first);
+    }
+    return text;
+  };
+  const ScratchFolder folder;
+  testing::write(folder / "cube.obj", box(0.25, 0, false));
+  testing::write(folder / "solid.obj", box(3.0, 0, false));
+  testing::write(folder / "solid_turned.obj", box(3.0, 0, true));
+  testing::write(folder / "hollow.obj", box(3.0, 0, false) + box(1.0, 8, false));
+  std::string rows = kHeader;
+  for (const double x : {0.0, 0.5, 1.0, 2.0, 3.1, 3.5})
+    rows += fmt::format("0,0,{},{},0,0,1,0,0,0,1,0,0,0,1\n", kStill, x);
+  testing::write(folder / "motion.csv", rows);
+  const std::map<std::string, std::array<double, 6>> right = {{"solid.obj", {0, 0, 0, 0, 0, 0.25}},
+                                                              {"solid_turned.obj", {0, 0, 0, 0, 0, 0.25}},
+                                                              {"hollow.obj", {0.75, 0.25, 0, 0, 0, 0.25}}};
+  for (const auto& [file, distances] : right) {
+    SCOPED_TRACE(file);
+    const ProgramRun run = run_tactum("clearance " + (folder / file) + " " + (folder / "cube.obj") + " " +
+                                      (folder / "motion.csv") + " --json -");
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    const nlohmann::json json = nlohmann::json::parse(run.out);
+    for (std::size_t i = 0; i < distances.size(); ++i)
+      EXPECT_NEAR(json["rows"][i]["distance_m"].get<double>(), distances[i], 1e-12) << i;
+    EXPECT_EQ(json["rows"][3]["inside"], true);
+    EXPECT_EQ(json["touching_rows"], std::count(distances.begin(), distances.end(), 0.0));
   }
 }
 

@@ -8,7 +8,7 @@
 #include "tactum/contact/sweep_and_prune.h"
 #include "tactum/geometry/mesh_edges.h"
 #include "tactum/mesh/deviation.h"
-#include "tactum/mesh/surface_crossings.h"
+#include "tactum/repair/surface_crossings.h"
 #include "tactum/surface/surface_distance.h"
 
 namespace tactum::inline v0_1 {
