@@ -62,8 +62,8 @@ TEST(ClearanceCommand, ReadsTablesOfOtherSeparators) {
   }
 }
 
-/// A cube of half a unit moves from the middle of a box of 6 through its wall to the outside; the box is solid,
-/// or has a cavity of 2.
+/// A cube of half a unit moves from the middle of a box of 6 through its wall to the outside; the box is
+/// solid, or has a cavity of 2.
 TEST(ClearanceCommand, AMeshInsideASolidTouchesItAndOneInACavityDoesNot) {
   const auto box = [](double half, int first, bool inward) {
     std::string text;

@@ -28,7 +28,7 @@ std::shared_ptr<const Part> grid_part(int n) {
   Result<Part> part = part_from_mesh(mesh);
   EXPECT_TRUE(part);
   EXPECT_TRUE(part->is_surface());
-  EXPECT_EQ(part->groups.count, 1);
+  EXPECT_EQ(part->groups.count, 2);  // the face and its back
   return std::make_shared<const Part>(std::move(*part));
 }
 
