@@ -43,7 +43,7 @@ SizedMesh sized_mesh(const std::string& path, std::vector<std::string>& sentence
   const Result<ImportedMesh> imported = import_mesh(path);
   if (!imported) fail(imported.error());
   const Aabb in_units = bounds(imported->mesh.vertices);
-  const UnitGuess unit = guess_unit(in_units);
+  const UnitGuess unit = unit_of(imported->report, in_units);
   mesh.scale = unit.metres_per_unit;
   mesh.box = {in_units.min * mesh.scale, in_units.max * mesh.scale};
   sentences.push_back(fmt::format("{}: taken to be in {}. {}", path, unit.name, unit.reason));

@@ -216,31 +216,8 @@ PartOptions for_moved_points(const PartOptions& options) {
   return moved;
 }
 
-/// The part, with a remark on the place of its origin in the frame of the input.
-Result<Part> with_origin(const Vec3& origin, Result<Part> part) {
-  if (part) part->origin = origin;
-  return part;
-}
-
-Result<Part> clouds_about_center(const std::vector<std::vector<Vec3>>& clouds, const PartOptions& options) {
-  std::vector<std::vector<Vec3>> moved = clouds;
-  for (std::vector<Vec3>& cloud : moved)
-    for (Vec3& point : cloud) point *= options.scale;
-  PartOptions of_density_one = for_moved_points(options);
-  of_density_one.density_kg_per_m3 = 1.0;
-  const Result<Part> as_given = part_from_clouds(moved, of_density_one);
-  if (!as_given) return as_given.error();
-  const Vec3 center = as_given->mass.center;
-  for (std::vector<Vec3>& cloud : moved)
-    for (Vec3& point : cloud) point -= center;
-  return with_origin(center, part_from_clouds(moved, for_moved_points(options)));
-}
-
-}  // namespace
-
-Result<Part> part_from_clouds(const std::vector<std::vector<Vec3>>& clouds, const PartOptions& options) {
-  if (Result<void> sound = check_options(options); !sound) return sound.error();
-  if (options.about_center_of_mass) return clouds_about_center(clouds, options);
+/// Pieces, surface and mass of a part of clouds; what follows from them is missing.
+Result<Part> hulls_of(const std::vector<std::vector<Vec3>>& clouds, const PartOptions& options) {
   if (clouds.empty()) return unusable(options, "no piece", "at least one");
   Part part;
   part.name = options.name;
@@ -265,21 +242,65 @@ Result<Part> part_from_clouds(const std::vector<std::vector<Vec3>>& clouds, cons
   part.notes.pieces = fmt::format("given: {} convex pieces", pieces.size());
   add_solid_pieces(std::move(pieces), part);
   part.mass = joined(masses);
-  complete(part);
+  return part;
+}
+
+Result<Part> clouds_about_center(const std::vector<std::vector<Vec3>>& clouds, const PartOptions& options) {
+  std::vector<std::vector<Vec3>> moved = clouds;
+  for (std::vector<Vec3>& cloud : moved)
+    for (Vec3& point : cloud) point *= options.scale;
+  PartOptions of_density_one = for_moved_points(options);
+  of_density_one.density_kg_per_m3 = 1.0;
+  const Result<Part> as_given = hulls_of(moved, of_density_one);
+  if (!as_given) return as_given.error();
+  const Vec3 center = as_given->mass.center;
+  for (std::vector<Vec3>& cloud : moved)
+    for (Vec3& point : cloud) point -= center;
+  Result<Part> part = part_from_clouds(moved, for_moved_points(options));
+  if (part) part->origin = center;
+  return part;
+}
+
+/// The corners of each group, scaled.
+Result<std::vector<std::vector<Vec3>>> clouds_of_groups(const ImportedMesh& mesh,
+                                                        const PartOptions& options) {
+  std::vector<std::vector<Vec3>> clouds;
+  for (const MeshGroup& group : mesh.groups) {
+    TriangleMesh piece = group_mesh(mesh, group, options.scale);
+    if (Result<void> convex = check_convex(piece, group.name, options); !convex) return convex.error();
+    clouds.push_back(std::move(piece.vertices));
+  }
+  return clouds;
+}
+
+}  // namespace
+
+Result<Part> part_from_clouds(const std::vector<std::vector<Vec3>>& clouds, const PartOptions& options) {
+  if (Result<void> sound = check_options(options); !sound) return sound.error();
+  if (options.about_center_of_mass) return clouds_about_center(clouds, options);
+  Result<Part> part = hulls_of(clouds, options);
+  if (part) complete(*part);
   return part;
 }
 
 Result<Part> part_from_convex_groups(const ImportedMesh& mesh, const PartOptions& options) {
   if (Result<void> sound = check_options(options); !sound) return sound.error();
-  std::vector<std::vector<Vec3>> clouds;
-  for (const MeshGroup& group : mesh.groups) {
-    const TriangleMesh piece = group_mesh(mesh, group, options.scale);
-    if (Result<void> convex = check_convex(piece, group.name, options); !convex) return convex.error();
-    clouds.push_back(piece.vertices);
-  }
+  const Result<std::vector<std::vector<Vec3>>> clouds = clouds_of_groups(mesh, options);
+  if (!clouds) return clouds.error();
   PartOptions scaled = options;
   scaled.scale = 1.0;
-  return part_from_clouds(clouds, scaled);
+  return part_from_clouds(*clouds, scaled);
+}
+
+Result<Vec3> center_of_convex_groups(const ImportedMesh& mesh, const PartOptions& options) {
+  if (Result<void> sound = check_options(options); !sound) return sound.error();
+  const Result<std::vector<std::vector<Vec3>>> clouds = clouds_of_groups(mesh, options);
+  if (!clouds) return clouds.error();
+  PartOptions scaled = options;
+  scaled.scale = 1.0;
+  const Result<Part> part = hulls_of(*clouds, scaled);
+  if (!part) return part.error();
+  return part->mass.center;
 }
 
 Result<Part> part_from_mesh(const TriangleMesh& mesh, const PartOptions& options) {

@@ -39,6 +39,9 @@ Result<Part> part_from_clouds(const std::vector<std::vector<Vec3>>& clouds, cons
 /// Solid pieces from the groups of a mesh; each must be closed and convex, or the error names the edge.
 Result<Part> part_from_convex_groups(const ImportedMesh& mesh, const PartOptions& options = {});
 
+/// The centre of mass of that part [m]; the pieces are made for it, and nothing else of the part.
+Result<Vec3> center_of_convex_groups(const ImportedMesh& mesh, const PartOptions& options = {});
+
 /// By `options.pieces`. An error when a solid is wanted and the mesh is none, or would take too many pieces.
 /// Given pieces are groups, which a bare mesh has not: see part_from_convex_groups.
 Result<Part> part_from_mesh(const TriangleMesh& mesh, const PartOptions& options = {});

@@ -42,9 +42,7 @@ Result<Part> part_from_groups(const PiecesInput& input, const Vec3& origin) {
 }
 
 Result<Vec3> center_of_groups(const PiecesInput& input) {
-  const Result<Part> part = part_from_groups(input, Vec3::Zero());
-  if (!part) return part.error();
-  return part->mass.center;
+  return center_of_convex_groups(groups_outward(input.given, Vec3::Zero()), input.options);
 }
 
 /// The pieces of the groups, each by itself: where two share a wall, the whole is no closed surface.

@@ -16,6 +16,32 @@ float* put(const Wrench& F, float* out) noexcept {
   return out;
 }
 
+ShownContact shown_contact(const FrameSource& frame, const ContactRow& row) noexcept {
+  ShownContact contact{};
+  contact.body_a = row.body_a;
+  contact.body_b = row.body_b;
+  contact.p_W = row.p_W;
+  contact.n_W = row.n_BA_W;
+  contact.distance_m = row.distance;
+  contact.tolerance_m = row.margin;
+  const double rest = frame.settings.dt_s - frame.report.time_of_impact_s;  // the impulses acted so long
+  contact.force_N = rest > 0.0 ? row.impulse / rest : 0.0;
+  contact.patch = row.patch;
+  if (row.friction_patch >= 0) {
+    const FrictionUse& use = frame.state.response.friction_uses()[Index(row.friction_patch)];
+    contact.grip = use.sticks ? Grip::kSticks : Grip::kSlips;
+    contact.cone_used = use.cone_used;
+  }
+  const std::span<const ContactPatch> patches = frame.state.contacts.finder.patches();
+  if (row.patch < 0 || Index(row.patch) >= patches.size()) return contact;
+  const ContactPatch& patch = patches[Index(row.patch)];
+  contact.piece_a = patch.piece_a;
+  contact.piece_b = patch.piece_b;
+  contact.a = patch.manifold.a;
+  contact.b = patch.manifold.b;
+  return contact;
+}
+
 }  // namespace
 
 int sample_size() noexcept {
@@ -55,36 +81,32 @@ void FrameFeed::draw(const FrameSource& frame, FramePicture& picture) noexcept {
   picture.X_WD = state.hand.X_WD;
   picture.grasped_body = state.hand.known ? state.hand.grasp.body : -1;
   std::copy(state.world.X_WB.begin(), state.world.X_WB.end(), picture.X_WB.begin());
-  picture.contacts.clear();
+  draw_contacts(frame, picture);
+}
+
+/// Where there are more contacts than room, those that push most are kept, on the grasped part first: at the
+/// top of a heap stands the one that is given up next.
+void FrameFeed::draw_contacts(const FrameSource& frame, FramePicture& picture) noexcept {
+  const auto pushes_more = [grasped = picture.grasped_body](const ShownContact& x, const ShownContact& y) {
+    const auto on_grasped = [grasped](const ShownContact& c) {
+      return c.force_N > 0.0 && (c.body_a == grasped || c.body_b == grasped);
+    };
+    return on_grasped(x) != on_grasped(y) ? on_grasped(x) : x.force_N > y.force_N;
+  };
+  std::vector<ShownContact>& shown = picture.contacts;
+  shown.clear();
   picture.contacts_left_out = 0;
-  const std::span<const ContactPatch> patches = state.contacts.finder.patches();
-  const double rest = frame.settings.dt_s - frame.report.time_of_impact_s;  // the impulses acted so long
-  for (const ContactRow& row : state.response.rows()) {
-    if (picture.contacts.size() == kContacts) {
-      ++picture.contacts_left_out;
+  for (const ContactRow& row : frame.state.response.rows()) {
+    const ShownContact contact = shown_contact(frame, row);
+    if (shown.size() < kContacts) {
+      shown.push_back(contact);
       continue;
     }
-    ShownContact& contact = picture.contacts.emplace_back();
-    contact = {};
-    contact.body_a = row.body_a;
-    contact.body_b = row.body_b;
-    contact.p_W = row.p_W;
-    contact.n_W = row.n_BA_W;
-    contact.distance_m = row.distance;
-    contact.tolerance_m = row.margin;
-    contact.force_N = rest > 0.0 ? row.impulse / rest : 0.0;
-    contact.patch = row.patch;
-    if (row.friction_patch >= 0) {
-      const FrictionUse& use = state.response.friction_uses()[Index(row.friction_patch)];
-      contact.grip = use.sticks ? Grip::kSticks : Grip::kSlips;
-      contact.cone_used = use.cone_used;
-    }
-    if (row.patch < 0 || Index(row.patch) >= patches.size()) continue;
-    const ContactPatch& patch = patches[Index(row.patch)];
-    contact.piece_a = patch.piece_a;
-    contact.piece_b = patch.piece_b;
-    contact.a = patch.manifold.a;
-    contact.b = patch.manifold.b;
+    if (picture.contacts_left_out++ == 0) std::make_heap(shown.begin(), shown.end(), pushes_more);
+    if (!pushes_more(contact, shown.front())) continue;
+    std::pop_heap(shown.begin(), shown.end(), pushes_more);
+    shown.back() = contact;
+    std::push_heap(shown.begin(), shown.end(), pushes_more);
   }
 }
 

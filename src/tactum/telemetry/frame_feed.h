@@ -61,7 +61,7 @@ class FrameFeed {
  public:
   static constexpr double kPictures_Hz = 125.0;      ///< twice what a screen shows [Hz]
   static constexpr std::size_t kSamples = 1u << 14;  ///< sixteen seconds at 1 kHz until they are popped
-  static constexpr std::size_t kContacts = 256;      ///< contacts of a picture
+  static constexpr std::size_t kContacts = 256;      ///< contacts of a picture: those that push most
 
   FrameFeed(std::size_t bodies, double rate_Hz);
 
@@ -76,7 +76,8 @@ class FrameFeed {
   std::uint64_t dropped() const noexcept { return dropped_.load(std::memory_order_relaxed); }
 
  private:
-  void draw(const FrameSource& frame, FramePicture& picture) noexcept;
+  static void draw(const FrameSource& frame, FramePicture& picture) noexcept;
+  static void draw_contacts(const FrameSource& frame, FramePicture& picture) noexcept;
 
   SpscRing<FrameSample> samples_;
   Newest<FramePicture> pictures_;
