@@ -107,6 +107,24 @@ TEST(Part, InwardSurfacesAreTurnedAndTold) {
   EXPECT_NEAR(part->mass.volume, 8.0, 1e-12);
 }
 
+TEST(Part, AVertexThatNoTriangleUsesIsNoCornerOfTheSolid) {
+  for (const Vec3& far : {Vec3(10, 0, 0), Vec3(1e9, 0, 0)}) {
+    TriangleMesh box = box_mesh({1, 1, 1});
+    box.vertices.insert(box.vertices.begin(), far);
+    for (Triangle& t : box.triangles)
+      for (int& corner : t) ++corner;
+    TriangleMesh turned = box;
+    for (Triangle& t : turned.triangles) std::swap(t[0], t[1]);
+    for (const TriangleMesh& mesh : {box, turned}) {
+      const Result<Part> part = part_from_mesh(mesh);
+      ASSERT_TRUE(part) << part.error().message();
+      ASSERT_EQ(part->pieces.size(), 1u);
+      EXPECT_EQ(part->pieces[0].vertices.size(), 8u);
+      EXPECT_NEAR(part->size, 2.0 * std::sqrt(3.0), 1e-12);
+    }
+  }
+}
+
 TEST(Part, SaysWhichWayItWentAndWhy) {
   const TriangleMesh star = testing::extruded_mesh(testing::star(5, 0.02, 0.05), 0.0, 0.03);
   const Result<Part> solid = part_from_mesh(star);

@@ -182,6 +182,48 @@ TEST(PreparePart, SheetsHaveTwoSidesWhetherTheFileHasThemOrNot) {
   EXPECT_EQ(outcome_of(sheet).triangles, 4u);
 }
 
+TEST(PreparePart, WhatIsLeftIsToldOnceWithItsPlaceInTheFile) {
+  TriangleMesh cup = transformed(box_mesh({1, 1, 1}), Mat3::Identity(), Vec3(5, 0, 0));
+  cup.triangles.resize(cup.triangles.size() - 2);
+  const Result<PartFile> file = prepare_part(as_imported({cup}), {.unit = "m"});
+  ASSERT_TRUE(file) << file.error().message();
+  std::vector<std::string> holes;
+  for (const std::string& remark : file->part.notes.remarks)
+    if (remark.find("holes are open") != std::string::npos) holes.push_back(remark);
+  ASSERT_EQ(holes.size(), 1u);
+  EXPECT_NE(holes[0].find("triangle"), std::string::npos);
+}
+
+TEST(PreparePart, AHoleBesideATriangleWithoutAreaIsClosed) {
+  TriangleMesh cup = box_mesh({1, 1, 1});
+  cup.triangles.resize(cup.triangles.size() - 2);
+  const MeshReport report = report_mesh(cup);
+  ASSERT_EQ(report.boundary_edges, 4);
+  // One edge of the rim is carried by a triangle whose third corner lies in its middle.
+  for (const Triangle& t : cup.triangles)
+    for (std::size_t i = 0; i < 3; ++i) {
+      const int a = t[i], b = t[(i + 1) % 3];
+      const auto has = [&](const Triangle& u) {
+        for (std::size_t k = 0; k < 3; ++k)
+          if (u[k] == b && u[(k + 1) % 3] == a) return true;
+        return false;
+      };
+      if (std::any_of(cup.triangles.begin(), cup.triangles.end(), has)) continue;
+      const int middle = static_cast<int>(cup.vertices.size());
+      const int c = t[(i + 2) % 3];
+      Triangle& whole = cup.triangles[std::size_t(&t - cup.triangles.data())];
+      cup.vertices.push_back(0.5 * (cup.vertices[a] + cup.vertices[b]));
+      whole = {a, middle, c};
+      cup.triangles.push_back({middle, b, c});
+      cup.triangles.push_back({a, b, middle});
+      const Result<PartFile> file = prepare_part(as_imported({cup}), {.unit = "m", .close_holes = 8});
+      ASSERT_TRUE(file) << file.error().message();
+      EXPECT_NEAR(file->part.mass.volume, 8.0, 1e-12);
+      return;
+    }
+  FAIL() << "no open edge";
+}
+
 TEST(PreparePart, RefusesInOneSentenceWhatIsNoPart) {
   const auto refusal = [](const TriangleMesh& mesh, const PrepareOptions& options) {
     const Result<PartFile> file = prepare_part(as_imported({mesh}), options);

@@ -326,6 +326,15 @@ TEST(HoleFilling, CracksBetweenFacesOfDifferentGridsAreClosed) {
   }
 }
 
+TEST(HoleFilling, SmallSheetsAndSmallRoundHolesAreNoCracks) {
+  TriangleMesh sheets;
+  for (const Vec3& place : {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(1, 1, 0)})
+    add(moved(testing::sheet(1, 2e-5), place), sheets);
+  const RepairedMesh repaired = repair_mesh(sheets);
+  EXPECT_EQ(note(repaired, "closed_cracks"), nullptr);
+  EXPECT_EQ(repaired.mesh.triangles.size(), 8u);
+}
+
 TEST(HoleFilling, AHoleOfAHundredthOfTheSizeIsNoCrack) {
   TriangleMesh mesh = box_mesh({1, 1, 1});
   const Triangle lid = mesh.triangles.back();

@@ -131,7 +131,11 @@ Error broken(const MeshBuilder& builder, const std::string& found, const std::st
 }
 
 Result<void> Accessors::read_buffers(std::string_view chunk) {
+  constexpr std::size_t kMostBuffers = 64;  // each is bounded by itself; exporters write one
   const json& buffers = list(document_, "buffers");
+  if (buffers.size() > kMostBuffers)
+    return wrong(std::to_string(buffers.size()) + " buffers", "at most " + std::to_string(kMostBuffers),
+                 "buffers");
   for (std::size_t i = 0; i < buffers.size(); ++i) {
     const std::string place = "buffer " + std::to_string(i);
     const std::optional<std::uint64_t> length = whole(buffers[i], "byteLength");

@@ -191,7 +191,7 @@ struct FitMesh {
   MeshReport report;
 };
 
-FitMesh fit_for_part(const TriangleMesh& mesh, PartNotes& notes) {
+FitMesh fit_for_part(const TriangleMesh& mesh, bool repaired_before, PartNotes& notes) {
   FitMesh fit{.closed = {}, .surface = {}, .report = report_mesh(mesh)};
   if (is_sound(fit.report)) {
     fit.closed = fit.surface = weld(mesh).mesh;
@@ -199,7 +199,7 @@ FitMesh fit_for_part(const TriangleMesh& mesh, PartNotes& notes) {
   }
   RepairedMesh repaired = repair_mesh(mesh);
   for (const RepairNote& note : repaired.notes) {
-    if (note.kind != "joined_vertices") notes.remarks.push_back(note.sentence());
+    if (note.kind != "joined_vertices" && !repaired_before) notes.remarks.push_back(note.sentence());
   }
   fit.report = report_mesh(repaired.mesh);
   fit.closed = repaired.mesh;
@@ -305,11 +305,11 @@ Result<Vec3> center_of_convex_groups(const ImportedMesh& mesh, const PartOptions
 
 Result<Part> part_from_mesh(const TriangleMesh& mesh, const PartOptions& options) {
   if (Result<void> sound = check_options(options); !sound) return sound.error();
-  TriangleMesh scaled = mesh;
+  TriangleMesh scaled = with_used_vertices(mesh);
   for (Vec3& vertex : scaled.vertices) vertex *= options.scale;
   Part part;
   part.name = options.name;
-  FitMesh fit = fit_for_part(scaled, part.notes);
+  FitMesh fit = fit_for_part(scaled, options.repaired, part.notes);
   if (options.about_center_of_mass) {
     part.origin = mass_properties_or_hull(fit.closed, 1.0).center;
     for (TriangleMesh* moved : {&fit.closed, &fit.surface})

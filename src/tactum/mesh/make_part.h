@@ -29,6 +29,7 @@ struct PartOptions {
   double scale = 1.0;                 ///< metres per unit of the input [m]
   double density_kg_per_m3 = 1000.0;  ///< [kg/m^3]
   PieceSource pieces = PieceSource::kAuto;
+  bool repaired = false;              ///< the mesh comes from repair_mesh(), whose notes the caller has
   bool about_center_of_mass = false;  ///< the part's origin is its centre of mass (Part::origin)
   int most_solid_pieces = 0;  ///< 0: 32 where the method is chosen by itself, 512 where solid is wanted
 };

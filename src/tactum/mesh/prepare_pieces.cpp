@@ -87,6 +87,7 @@ Result<Part> part_by(PieceSource pieces, const PiecesInput& input, const Vec3& o
   for (Vec3& vertex : moved.vertices) vertex -= origin;
   PartOptions options = input.options;
   options.pieces = pieces;
+  options.repaired = true;
   return part_from_mesh(moved, options);
 }
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -296,8 +297,9 @@ class PlyReader {
   }
 
   Result<void> read_list(const Element& element, const Property& property, double count, bool is_corners) {
-    if (!(count >= 0.0))
-      return builder_.error("a list has a negative count", std::to_string(count), "0 or more", place());
+    if (!(count >= 0.0) || count != std::floor(count))
+      return builder_.error("a list has no count", std::to_string(count), "a whole number, 0 or more",
+                            place());
     for (double i = 0.0; i < count; i += 1.0) {
       double value = 0.0;
       if (!next_number(*property.type, value)) return cut_short(element);
@@ -308,7 +310,7 @@ class PlyReader {
         corners_.push_back(kNewStrip);
         continue;
       }
-      const bool is_index = value >= 0.0 && value < builder_.vertex_count();
+      const bool is_index = value >= 0.0 && value < builder_.vertex_count() && value == std::floor(value);
       if (!is_index) {
         return builder_.error("a face refers to a vertex that is not there",
                               "vertex " + std::to_string(value),

@@ -40,8 +40,11 @@ std::pair<const HalfEdge*, const HalfEdge*> sides_at(const std::vector<HalfEdge>
 /// One round: every cap whose neighbours were not touched in this round. True when something was done.
 class CapRound {
  public:
-  explicit CapRound(TriangleMesh& mesh)
-      : mesh_(mesh), sides_(sorted_half_edges(mesh)), touched_(mesh.triangles.size(), false) {}
+  CapRound(TriangleMesh& mesh, std::vector<int>& source)
+      : mesh_(mesh),
+        source_(source),
+        sides_(sorted_half_edges(mesh)),
+        touched_(mesh.triangles.size(), false) {}
 
   /// Numbers of the caps mended and those to be dropped.
   void run(std::vector<int>& mended, std::vector<bool>& dropped) {
@@ -71,11 +74,13 @@ class CapRound {
     if (d == c || there != end) return false;
     mesh_.triangles[cap] = {c, a, d};
     mesh_.triangles[across.triangle] = {b, c, d};
+    if (source_[across.triangle] < 0) source_[cap] = -1;  // both are halves of what closes a hole
     touched_[cap] = touched_[across.triangle] = true;
     return true;
   }
 
   TriangleMesh& mesh_;
+  std::vector<int>& source_;
   std::vector<HalfEdge> sides_;
   std::vector<bool> touched_;
 };
@@ -101,7 +106,7 @@ CapReport mend_caps(TriangleMesh& mesh, std::vector<int>& source) {
     if (!any) break;
     std::vector<int> mended;
     std::vector<bool> dropped(mesh.triangles.size(), false);
-    CapRound(mesh).run(mended, dropped);
+    CapRound(mesh, source).run(mended, dropped);
     for (int t : mended) report.mended.push_back(source[t]);
     drop(dropped, mesh, source);
     if (mended.empty()) break;

@@ -116,14 +116,18 @@ class RimWalk {
   struct Step {
     int from = 0, edge = 0;
   };
+  static constexpr std::size_t kMostTurns = 64;  ///< where more rims meet, any turn is taken
 
   /// The edge to go on by from a vertex; -1: there is none.
-  int next_edge(int vertex) const {
+  int next_edge(int vertex) {
+    std::vector<int>& edges = at_[vertex];
+    while (!edges.empty() && walked_[edges.back()]) edges.pop_back();
+    if (edges.size() > kMostTurns) return edges.back();
     Vec3 came = Vec3::Zero();
     if (!walk_.empty()) came = (mesh_.vertices[vertex] - mesh_.vertices[walk_.back().from]).normalized();
     int best = -1;
     double least = 2.0;
-    for (int edge : at_[vertex]) {
+    for (int edge : edges) {
       if (walked_[edge]) continue;
       const int end = open_[edge].from == vertex ? open_[edge].to : open_[edge].from;
       const double along = came.dot((mesh_.vertices[end] - mesh_.vertices[vertex]).normalized());
@@ -162,6 +166,18 @@ bool is_lone_triangle(const Rim& rim, const TriangleMesh& mesh) {
          });
 }
 
+/// A square hole, whose area is a sixteenth of its rim's length squared, is no crack however small it is.
+constexpr double kSlenderness = 0.02;
+
+/// The area of the rim as seen from where it looks largest: no triangulation has less.
+double flat_area(const Rim& rim, const TriangleMesh& mesh) {
+  const Vec3& origin = mesh.vertices[rim.vertices.front()];
+  Vec3 twice = Vec3::Zero();
+  for (std::size_t i = 1; i + 1 < rim.vertices.size(); ++i)
+    twice += (mesh.vertices[rim.vertices[i]] - origin).cross(mesh.vertices[rim.vertices[i + 1]] - origin);
+  return 0.5 * twice.norm();
+}
+
 double length_of(const Rim& rim, const TriangleMesh& mesh) {
   double length = 0.0;
   for (std::size_t i = 0; i < rim.vertices.size(); ++i)
@@ -190,9 +206,12 @@ std::vector<Rim> close_holes(TriangleMesh& mesh, int most_edges) {
   for (Rim& rim : rims) {
     const int edges = static_cast<int>(rim.vertices.size());
     if (!rim.simple || edges < 3 || edges > kMostRimEdges || is_lone_triangle(rim, mesh)) continue;
+    const double length = length_of(rim, mesh);
+    const double widest_crack = std::min(narrowest * length, kSlenderness * length * length);  // its area
+    if (edges > most_edges && flat_area(rim, mesh) >= widest_crack) continue;
     const RimFill fill(mesh, rim.vertices, taken);
     if (!fill.possible()) continue;
-    rim.crack = fill.least_area() < narrowest * length_of(rim, mesh);
+    rim.crack = fill.least_area() < widest_crack;
     if (!rim.crack && edges > most_edges) continue;
     const std::size_t before = mesh.triangles.size();
     fill.append(mesh.triangles);

@@ -6,10 +6,10 @@
 ///   o         o        a crack (a rim that encloses nothing) gets triangles without area, which repair
 ///    \-------/         then gives to their neighbours. O(n^3) for a rim of n edges.
 ///
-/// A crack is closed always: rim corners in the middle of other triangles' edges, which coarse and fine
-/// tessellations of neighbouring faces leave. Loops that meet in a vertex are rims of their own. A rim that
-/// does not come back to its beginning, or that no triangulation closes without an edge that is there
-/// already, is left open.
+/// A crack is closed always, up to kMostRimEdges: rim corners in the middle of other triangles' edges, which
+/// coarse and fine tessellations of neighbouring faces leave. Loops that meet in a vertex are rims of their
+/// own. A rim that does not come back to its beginning, or that no triangulation closes without an edge that
+/// is there already, is left open.
 
 #include <vector>
 

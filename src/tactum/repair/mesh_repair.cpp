@@ -185,10 +185,15 @@ std::string RepairNote::sentence() const {
   return text_of + ".";
 }
 
+TriangleMesh with_used_vertices(TriangleMesh mesh) {
+  drop_unused_vertices(mesh);
+  return mesh;
+}
+
 RepairedMesh repair_mesh(const TriangleMesh& mesh, const RepairOptions& options) {
   RepairedMesh out;
   Notes notes(mesh, out.notes);
-  WeldedMesh welded = weld(mesh);
+  WeldedMesh welded = weld(with_used_vertices(mesh));  // others would stretch the box that tolerances go by
   out.mesh = std::move(welded.mesh);
   out.source = std::move(welded.source);
   notes.add(true, "joined_vertices", "vertices stood at the place of another and were joined",

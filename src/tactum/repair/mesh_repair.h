@@ -51,6 +51,9 @@ struct RepairedMesh {
   std::vector<RepairNote> notes;  ///< kinds that occurred, only
 };
 
+/// The mesh without vertices that no triangle uses; the others keep their order. Linear.
+TriangleMesh with_used_vertices(TriangleMesh mesh);
+
 RepairedMesh repair_mesh(const TriangleMesh& mesh, const RepairOptions& options = {});
 
 }  // namespace tactum::inline v0_1

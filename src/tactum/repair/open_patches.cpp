@@ -53,8 +53,12 @@ class OpenPatches {
     for_each_edge(sides_, [&](const HalfEdge* first, const HalfEdge* last) {
       at_edge.clear();
       for (const HalfEdge* side = first; side != last; ++side) at_edge.push_back(joined_.find(patch(*side)));
-      for (int set : at_edge)
-        if (std::count(at_edge.begin(), at_edge.end(), set) % 2 != 0) closed_[set] = false;
+      std::sort(at_edge.begin(), at_edge.end());
+      for (auto it = at_edge.begin(); it != at_edge.end();) {
+        const auto end = std::upper_bound(it, at_edge.end(), *it);
+        if ((end - it) % 2 != 0) closed_[*it] = false;
+        it = end;
+      }
     });
   }
 
@@ -89,9 +93,11 @@ class OpenPatches {
       for (const HalfEdge* side = first; side != last; ++side)
         if (const int set = set_of(patch(*side)); set >= 0)
           runs.emplace_back(set, side->forward != turned_[side->triangle] ? 1 : -1);
-      for (const auto& [set, run] : runs) {
+      std::sort(runs.begin(), runs.end());
+      for (auto it = runs.begin(); it != runs.end();) {
+        const int set = it->first;
         int sum = 0;
-        for (const auto& [other, its_run] : runs) sum += other == set ? its_run : 0;
+        for (; it != runs.end() && it->first == set; ++it) sum += it->second;
         if (sum != 0) out[set] = true;
       }
     });

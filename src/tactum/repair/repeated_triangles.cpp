@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "tactum/geometry/mesh_edges.h"
@@ -123,18 +124,18 @@ class Sorter {
 
   /// Whether the middle of the triangle lies inside what closes without walls and sheets.
   bool in_solid(int stack) {
-    if (surface_.empty()) {
+    if (!crossings_) {
       rest_ = one_of_each(mesh_, stacks_,
                           [&](int s) { return !stacks_[s].even() || is_copy(patches_[patch_of_.find(s)]); });
       const OrientedMesh oriented = orient_components(rest_);
       for (const int component : oriented.component)
         surface_.push_back(oriented.components[component].closed ? 0 : -1);
-      surface_.push_back(-1);  // never empty: the rest is oriented once
+      crossings_.emplace(rest_, surface_);
     }
     Vec3 middle = Vec3::Zero();
     for (int corner : mesh_.triangles[stacks_[stack].triangles.front()])
       middle += mesh_.vertices[corner] / 3.0;
-    return !SurfaceCrossings(rest_, surface_).windings(middle).empty();
+    return !crossings_->windings(middle).empty();
   }
 
   void sort(int stack, const std::map<int, bool>& is_wall, RepeatedTriangles& out) {
@@ -152,9 +153,10 @@ class Sorter {
   const TriangleMesh& mesh_;
   std::vector<Stack> stacks_;
   DisjointSets patch_of_;
-  std::vector<Patch> patches_;  ///< at their roots
-  TriangleMesh rest_;           ///< what is neither wall nor sheet, oriented
-  std::vector<int> surface_;    ///< of rest_, as SurfaceCrossings takes it
+  std::vector<Patch> patches_;                 ///< at their roots
+  TriangleMesh rest_;                          ///< what is neither wall nor sheet, oriented
+  std::vector<int> surface_;                   ///< of rest_, as SurfaceCrossings takes it
+  std::optional<SurfaceCrossings> crossings_;  ///< of rest_, made when it is asked for
 };
 
 }  // namespace

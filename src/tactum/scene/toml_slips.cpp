@@ -87,7 +87,8 @@ Slip other_format(const Fault& fault) {
   if (start.starts_with("{") || start.starts_with("[{")) format = "JSON";
   if (start.starts_with("---") || start.starts_with("%YAML") || start.starts_with("- ")) format = "YAML";
   if (format == nullptr) return {};
-  return slip(fmt::format("this is {}", format), fmt::format("\"{}\"", start),
+  constexpr std::size_t kMostShown = 60;
+  return slip(fmt::format("this is {}", format), fmt::format("\"{}\"", start.substr(0, kMostShown)),
               "lines such as schema = 1, see docs/scene-format.md");
 }
 
@@ -166,7 +167,10 @@ Slip open_bracket(const Fault& fault) {
   std::string open;
   int opened_in = fault.number;
   int first = fault.number;
-  while (first > 1 && line_of(fault.text, first - 1).find('=') == std::string_view::npos) --first;
+  constexpr int kMostLines = 200;  // that a bracket stays open, in what people write
+  while (first > 1 && fault.number - first < kMostLines &&
+         line_of(fault.text, first - 1).find('=') == std::string_view::npos)
+    --first;
   if (first > 1) --first;
   for (int n = first; n <= fault.number; ++n) {
     const std::string code = source_line(line_of(fault.text, n)).code;
