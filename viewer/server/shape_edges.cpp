@@ -1,7 +1,9 @@
 #include "viewer/server/shape_edges.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <set>
 
 #include "tactum/geometry/mesh_edges.h"
 
@@ -101,8 +103,18 @@ std::vector<DrawnEdge> edges_of_solids(const Part& part) {
   return edges;
 }
 
+/// The places of an edge's ends, whichever is the tail.
+std::array<double, 6> place_of(const Vec3& tail, const Vec3& head) {
+  const std::array<double, 3> a{tail.x(), tail.y(), tail.z()}, b{head.x(), head.y(), head.z()};
+  const auto& [low, high] = std::minmax(a, b);
+  return {low[0], low[1], low[2], high[0], high[1], high[2]};
+}
+
+/// The backs of open surfaces stand behind their fronts and have the same edges (repair/two_sided.h): of two
+/// at one place the first is drawn.
 std::vector<DrawnEdge> edges_of_surface(const Part& part) {
   const TriangleMesh& mesh = part.surface;
+  std::set<std::array<double, 6>> drawn;
   const auto normal = [&](int triangle) { return triangle_normal(mesh, static_cast<std::size_t>(triangle)); };
   const double flattest = std::cos(kDrawnBend_rad);
   std::vector<DrawnEdge> edges;
@@ -111,11 +123,12 @@ std::vector<DrawnEdge> edges_of_surface(const Part& part) {
     const Vec3& tail = mesh.vertices[static_cast<std::size_t>(first->low)];
     const Vec3& head = mesh.vertices[static_cast<std::size_t>(first->high)];
     if (last - first != 2) {
+      if (!drawn.insert(place_of(tail, head)).second) return;
       edges.push_back({tail, head, last - first == 1 ? EdgeKind::kOpen : EdgeKind::kCrowded});
       return;
     }
     const Vec3 here = normal(first[0].triangle);
-    if (here.dot(normal(first[1].triangle)) > flattest) return;
+    if (here.dot(normal(first[1].triangle)) > flattest || !drawn.insert(place_of(tail, head)).second) return;
     const Triangle& beyond = mesh.triangles[static_cast<std::size_t>(first[1].triangle)];
     const Vec3& far = mesh.vertices[static_cast<std::size_t>(beyond[(first[1].corner + 2) % 3])];
     edges.push_back({tail, head, here.dot(far - tail) > 0.0 ? EdgeKind::kReflex : EdgeKind::kSharp});
