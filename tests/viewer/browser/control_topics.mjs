@@ -36,11 +36,11 @@ export const topics = {
     const field = page.locator('[id="set-coupling.stiffness_N_per_m"]');
     check((await page.locator('[id="set-response"] option').allTextContents()).join() === "penalty,constraint", "a choice is told by its words");
     const margin = () => page.textContent("#margin");
-    check((await margin()).includes("coupling 600 N/m"), `the stability margin is told: ${await margin()}`);
+    check((await margin()).includes("The coupling of 600 N/m"), `the stability margin is told: ${await margin()}`);
     await field.fill("432");
     await field.press("Enter");
     await field.blur();
-    await until("the margin follows the gain", async () => (await margin()).includes("coupling 432 N/m"));
+    await until("the margin follows the gain", async () => (await margin()).includes("coupling of 432 N/m"));
     const toml = (await downloaded(page, "#save-toml")).toString();
     check(toml.includes("[coupling]") && toml.includes("stiffness_N_per_m = 432  #"), `the saved settings have it: ${toml}`);
     await field.fill("99999999");
