@@ -43,6 +43,7 @@ struct FeelOptions {
   std::string device;
   std::string hand;
   std::string response;
+  std::string settings;
   std::string json;
   std::string trace;
   bool trace_bodies = false;
@@ -50,6 +51,7 @@ struct FeelOptions {
   bool referee = false;
   bool view = false;
   int port = 0;
+  double wait_s = 0.0;
 };
 
 constexpr int kGoalsNotMet = 2;  // the exit code
@@ -119,6 +121,9 @@ SceneDescription description_of(const FeelOptions& options) {
     description = describe_scene(options.scenes.front());
   }
   if (!description) fail(description.error());
+  if (!options.settings.empty())
+    if (const Result<void> changed = change_settings(options.settings, *description); !changed)
+      fail(changed.error());
   return std::move(*description);
 }
 
@@ -269,18 +274,25 @@ void sum_up(std::FILE* out, const FeelOptions& options, const std::vector<SceneR
 
 void feel_with_pages(const FeelOptions& options, const std::vector<SceneRemark>& remarks, Scene scene,
                      std::FILE* out) {
-  Result<std::unique_ptr<Viewer>> opened = Viewer::open(
-      std::move(scene), {.device = options.device, .grip = options.hand, .rate_Hz = 0.0}, options.port);
+  Result<std::unique_ptr<Viewer>> opened =
+      Viewer::open(std::move(scene), {.device = options.device, .grip = options.hand, .rate_Hz = 0.0},
+                   options.port, remarks);
   if (!opened) fail(opened.error());
   Viewer& viewer = **opened;
   report_what_is_felt(out, viewer.session(), options.hand);
   open_page(out, viewer.server().address());
+  if (options.wait_s > 0.0)
+    fmt::print(out,
+               "it waits {:.0f} s for the page to be opened, and stays as long as one is open; Ctrl-C "
+               "ends it\n",
+               options.wait_s);
+  std::fflush(out);
   const std::uint64_t asked =
       options.updates > 0 ? options.updates
                           : static_cast<std::uint64_t>(options.duration_s * viewer.session().rate_Hz());
   const Summary times = options.virtual_clock
                             ? feel_viewed_virtually(viewer, frames_asked_for(options, viewer.session()))
-                            : run_viewed(viewer, asked);
+                            : run_viewed(viewer, asked, options.wait_s);
   sum_up(out, options, remarks, viewer.session(), times, viewer.stages(), {});
 }
 
@@ -341,7 +353,21 @@ void add_what_is_felt(CLI::App* command, FeelOptions* options) {
           "--response", options->response,
           "constraint (nothing is entered) or penalty (the published springs), instead of the scene's")
       ->check(one_word_of({"constraint", "penalty"}));
+  command->add_option("--settings", options->settings,
+                      "put the settings of this file over those of the scene; the page saves such files");
   command->add_option("--json", options->json, "write the summary to this file (- for standard output)");
+}
+
+/// The options of the page.
+void add_page(CLI::App* command, FeelOptions* options, CLI::Option* view) {
+  command->add_option("--port", options->port, "of the page; by default one that is free")
+      ->check(whole_number_between(1, 65535, "a port"))
+      ->needs(view);
+  command
+      ->add_option("--wait", options->wait_s,
+                   "how long a run with an end waits for a page to be opened, once its frames are over [s]")
+      ->check(number_between(0.0, 1e5, "seconds"))
+      ->needs(view);
 }
 
 }  // namespace
@@ -384,9 +410,7 @@ void add_feel(CLI::App& app) {
   replays->excludes(view);
   referee->excludes(view);
   trace->excludes(view);
-  command->add_option("--port", options->port, "of the page; by default one that is free")
-      ->check(whole_number_between(1, 65535, "a port"))
-      ->needs("--view");
+  add_page(command, options.get(), view);
   command->callback([options] { feel(*options); });
 }
 

@@ -62,7 +62,7 @@ void open_page(std::FILE* out, const std::string& address) {
   if (std::system(command.c_str()) != 0) fmt::print(stderr, "cannot start a browser; open the address\n");
 }
 
-Summary run_viewed(Viewer& viewer, std::uint64_t frames) {
+Summary run_viewed(Viewer& viewer, std::uint64_t frames, double wait_s) {
   constexpr double kReload_s = 2.0;  // a page that comes back within this was only loaded anew
   if (const Result<void> started = viewer.start(); !started) fail(started.error());
   for (const std::string& sentence : viewer.session().privileges().sentences)
@@ -77,7 +77,8 @@ Summary run_viewed(Viewer& viewer, std::uint64_t frames) {
     if (loop.frames < last) earlier += last;
     last = loop.frames;
     const bool page_was_here = viewer.server().status().pages_ever > 0;
-    if (frames > 0 && earlier + loop.frames >= frames && viewer.alone_s() > (page_was_here ? kReload_s : 0.0))
+    if (frames > 0 && earlier + loop.frames >= frames &&
+        viewer.alone_s() > (page_was_here ? kReload_s : wait_s))
       break;
     if (std::chrono::steady_clock::now() - last_line < std::chrono::milliseconds(100)) continue;
     last_line = std::chrono::steady_clock::now();

@@ -35,7 +35,7 @@ class StatusLine {
 void open_page(std::FILE* out, const std::string& address);
 
 /// Runs the loop on its own thread until it is interrupted; or, where an end was asked for, until that many
-/// frames are over and no page is open any more. The times of the frames.
-Summary run_viewed(Viewer& viewer, std::uint64_t frames);
+/// frames are over and no page is open any more, nor has been waited for so long. The times of the frames.
+Summary run_viewed(Viewer& viewer, std::uint64_t frames, double wait_s = 0.0);
 
 }  // namespace tactum

@@ -116,6 +116,16 @@ TEST(CouplingGains, TheMarginIsToldInWords) {
   EXPECT_NE(touch.find("sends no torque"), std::string::npos) << touch;
 }
 
+TEST(CouplingGains, StabilityIsWhatTheMarginSays) {
+  const auto stability = [](const char* device, double stiffness_N_per_m) {
+    return stability_of({.stiffness_N_per_m = stiffness_N_per_m}, info_of(device), 1000.0);
+  };
+  EXPECT_EQ(stability("virtuose-6d", 600.0), Stability::kAlways);
+  EXPECT_EQ(stability("premium-1.5-6dof", 600.0), Stability::kInHand);
+  EXPECT_EQ(stability("premium-1.5-6dof", 5000.0), Stability::kUncertain);
+  EXPECT_EQ(stability("touch", 600.0), Stability::kInHand);  // what it cannot turn has no bound there
+}
+
 TEST(PortSettings, AreWhatTheDeviceTellsOfItself) {
   for (const SimulatedDeviceModel& model : simulated_device_presets()) {
     const PortSettings port = port_settings(info_of(model.name));

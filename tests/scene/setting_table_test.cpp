@@ -6,7 +6,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
+#include <limits>
 #include <string>
+#include <tuple>
 
 #include "support/generated_page.h"
 #include "tactum/scene/scene_file.h"
@@ -38,7 +41,10 @@ TEST(SettingTable, WhatItWritesReadsBackToTheSameSettings) {
     setting.set(settings.frame, settings.safety, value);
     EXPECT_NEAR(setting.get(settings.frame, settings.safety), value, 1e-12 * std::abs(value)) << setting.key;
   }
-  const std::string text = kBody + settings_toml(settings.frame, settings.safety) + kPart;
+  // Behind a file whose sections say something else.
+  const std::string text = std::string(kBody) + kPart +
+                           "[coupling]\nstiffness_N_per_m = 99\n[safety]\nmax_force_N = 1\n" +
+                           changed_settings_toml(settings, defaults, false);
   const Result<Scene> scene = parse_scene(text, "saved", "saved.toml", {});
   ASSERT_TRUE(scene) << scene.error().message() << "\n" << text;
   for (const SettingInfo& setting : setting_table()) {
@@ -134,10 +140,66 @@ TEST(SettingTable, TheDefaultsLieInTheirRangesAndReadBack) {
     EXPECT_TRUE(std::isinf(value) || in_range(setting, value))
         << setting.section << "." << setting.key << " " << value;
   }
-  const Result<Scene> scene =
-      parse_scene(kBody + settings_toml(settings.frame, settings.safety) + kPart, "saved", "saved.toml", {});
+  EXPECT_EQ(changed_settings_toml(settings, settings, false), "");
+}
+
+TEST(SettingTable, ALimitThatWasTakenAwayIsWrittenAsTheEndOfItsRange) {
+  UserSettings usual;
+  usual.safety.max_force_N = 3.0;
+  const std::string text = changed_settings_toml(UserSettings(), usual, false);
+  EXPECT_NE(text.find("[settings]\nsafety.max_force_N = 50 "), std::string::npos) << text;
+  EXPECT_TRUE(parse_scene(std::string(kBody) + kPart + text, "a", "a.toml", {}));
+}
+
+TEST(SettingTable, OnlyLimitsMayBeInfinite) {
+  int unlimited = 0;
+  for (const SettingInfo& setting : setting_table()) {
+    EXPECT_EQ(in_range(setting, std::numeric_limits<double>::infinity()), may_be_unlimited(setting));
+    EXPECT_FALSE(in_range(setting, -std::numeric_limits<double>::infinity()));
+    EXPECT_TRUE(!may_be_unlimited(setting) || std::string_view(setting.section) == "safety") << setting.key;
+    unlimited += may_be_unlimited(setting) ? 1 : 0;
+  }
+  EXPECT_GE(unlimited, 4);
+}
+
+/// A device that chooses the coupling chooses all of it or nothing.
+TEST(SettingTable, ACouplingThatTheDeviceHadChosenIsWrittenWhole) {
+  UserSettings usual, now;
+  usual.frame.coupling = {1234.0, 2.5, 0.3, 0.001};
+  now = usual;
+  now.frame.coupling.stiffness_N_per_m = 1000.0;
+  const std::string text = changed_settings_toml(now, usual, true);
+  const Result<Scene> scene = parse_scene(std::string(kBody) + kPart + text, "a", "a.toml", {});
   ASSERT_TRUE(scene) << scene.error().message();
-  EXPECT_EQ(settings_toml(scene->settings, scene->safety), settings_toml(settings.frame, settings.safety));
+  EXPECT_FALSE(scene->coupling_by_device);
+  EXPECT_EQ(scene->settings.coupling.stiffness_N_per_m, 1000.0);
+  EXPECT_EQ(scene->settings.coupling.damping_Ns_per_m, 0.3);
+}
+
+TEST(SettingTable, AFileOfSettingsChangesASceneAndSaysWhatIsWrongWithIt) {
+  const std::string path = ::testing::TempDir() + "/settings.toml";
+  const auto change = [&](const std::string& text) -> std::string {
+    std::ofstream(path) << text;
+    Result<SceneDescription> scene = parse_description(std::string(kBody) + kPart, "a", "a.toml", {});
+    const Result<void> changed = change_settings(path, *scene);
+    if (!changed) return changed.error().message();
+    return fmt::format("{} {} {}", scene->settings.frame.coupling.stiffness_N_per_m,
+                       scene->settings.frame.dt_s, scene->settings.coupling_by_device);
+  };
+  EXPECT_EQ(change("[settings]\ncoupling.stiffness_N_per_m = 432\ndt_s = 0.002\n"), "432 0.002 false");
+  EXPECT_EQ(change("[settings]\ndt_s = 0.002\n"), "600 0.002 true");
+  for (const auto& [text, where, what] :
+       {std::tuple("[settings]\n\ncoupling.stiffnes_N_per_m = 1\n", "settings.toml:3:", "stiffness_N_per_m"),
+        std::tuple("[settings]\ncoupling.stiffness_N_per_m = 1e9\n", "settings.toml:2:", "50000"),
+        std::tuple("[coupling]\nstiffness_N_per_m = 1\n", "settings.toml:1:", "settings"),
+        std::tuple("", "settings.toml", "[settings]"),
+        std::tuple("[settings]\nworkspace.pos_m = [0, 0, 0]\n", "settings.toml:2:", "pos_m")}) {
+    const std::string said = change(text);
+    EXPECT_NE(said.find(where), std::string::npos) << said;
+    EXPECT_NE(said.find(what), std::string::npos) << said;
+  }
+  Result<SceneDescription> scene = parse_description(std::string(kBody) + kPart, "a", "a.toml", {});
+  EXPECT_FALSE(change_settings("/no/such/settings.toml", *scene));
 }
 
 TEST(SettingTable, IsFoundByNameAndKeepsItsRanges) {

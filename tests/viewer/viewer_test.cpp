@@ -189,7 +189,7 @@ TEST(FrameFeed, TakingAFrameAllocatesNothingAndLosesTheNewestWhenFull) {
   ASSERT_TRUE(scene);
   Result<std::unique_ptr<Session>> session = Session::open(std::move(*scene), {});
   ASSERT_TRUE(session);
-  FrameFeed feed(2, 1000.0);
+  FrameFeed feed((*session)->scene().world, 1000.0);
   (*session)->show_to(&feed);
   ASSERT_TRUE((*session)->run_virtual(FrameFeed::kSamples + 100, nullptr));
   EXPECT_EQ(feed.dropped(), 100u);
@@ -216,7 +216,7 @@ TEST_P(PictureForces, AddUpToTheContactStage) {
   ASSERT_TRUE(scene);
   Result<std::unique_ptr<Session>> session = Session::open(std::move(*scene), {});
   ASSERT_TRUE(session);
-  FrameFeed feed((*session)->scene().world.bodies.size(), 1000.0);
+  FrameFeed feed((*session)->scene().world, 1000.0);
   class Watch final : public LoopObserver {
    public:
     Watch(FrameFeed& feed, const Session& session) : feed_(feed), session_(session) {}
@@ -262,7 +262,7 @@ TEST(FrameFeed, APictureTellsWhichContactsStickAndHowMuchOfTheirConeIsUsed) {
   scene->settings.friction = {std::vector<double>(bodies * bodies, 0.3), static_cast<int>(bodies)};
   Result<std::unique_ptr<Session>> session = Session::open(std::move(*scene), {});
   ASSERT_TRUE(session);
-  FrameFeed feed(bodies, 1000.0);
+  FrameFeed feed((*session)->scene().world, 1000.0);
   class Watch final : public LoopObserver {
    public:
     Watch(FrameFeed& feed, const Session& session) : feed_(feed), session_(session) {}

@@ -16,8 +16,8 @@ struct ChartSample {
   float wakeup_latency_s = 0.0F;  ///< begun after its deadline by; not a number on a virtual clock [s]
 };
 
-/// Numbers a sample has on the wire: those of the frame, then the two times.
-int chart_sample_size() noexcept;
+/// Numbers a sample has on the wire: those of the frame, the two times, and the poses of so many bodies.
+int chart_sample_size(int posed = 0) noexcept;
 
 class History {
  public:
@@ -35,9 +35,12 @@ class History {
   /// A new run begins: later pages do not get the samples before.
   void cut() noexcept { first_ = end_; }
 
+  struct Rows {
+    std::uint32_t count = 0, numbers = 0;  ///< rows, and numbers in each
+  };
   /// Appends the samples from `place` on, at most kAtOnce, as rows: frame index (u32), then the numbers
-  /// (f32). Moves `place` behind them and adds to `dropped` the number it was too late for. Returns the rows.
-  std::size_t write_rows(std::uint64_t& place, std::uint64_t& dropped, std::string& out) const;
+  /// (f32). Moves `place` behind them and adds to `dropped` the number it was too late for.
+  Rows write_rows(std::uint64_t& place, std::uint64_t& dropped, std::string& out) const;
 
  private:
   std::vector<ChartSample> samples_;

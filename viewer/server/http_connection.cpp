@@ -101,7 +101,14 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
   void refuse(Refusal reason, http::status status) {
     hub_.inbox.refuse(reason);
     keep_alive_ = false;
-    send(status, "text/plain; charset=utf-8", fmt::format("refused: {}\n", refusal_name(reason)), false);
+    const bool by_token = reason == Refusal::kWrongToken;
+    send(status, "text/html; charset=utf-8",
+         fmt::format(
+             "<!doctype html><title>Tactum</title><h1>Refused: {}</h1>\n<p>{}</p>\n", refusal_name(reason),
+             by_token ? "The address of the page ends in a long number that only the terminal shows in which "
+                        "tactum was started. Open that address; each start has a new one."
+                      : ""),
+         false);
   }
 
   void send(http::status status, std::string_view type, std::string body, bool gzip) {

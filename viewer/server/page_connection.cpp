@@ -177,13 +177,13 @@ class PageConnection : public std::enable_shared_from_this<PageConnection> {
     const bool newer = picture_ != hub_.picture.version;
     const std::string& picture = newer ? *hub_.picture.text : std::string();
     const std::uint64_t lost_before = lost_;
-    const auto numbers = static_cast<std::uint32_t>(chart_sample_size());
     for (std::uint32_t word :
-         {kFramesMessage, ++sent_, run_, 0u, numbers, 0u, static_cast<std::uint32_t>(picture.size()), 0u})
+         {kFramesMessage, ++sent_, run_, 0u, 0u, 0u, static_cast<std::uint32_t>(picture.size()), 0u})
       wire::put(out, word);
     out += picture;
-    const std::size_t rows = hub_.history.write_rows(place_, lost_, out);
-    wire::put_at(out, 3 * 4, static_cast<std::uint32_t>(rows));
+    const History::Rows rows = hub_.history.write_rows(place_, lost_, out);
+    wire::put_at(out, 3 * 4, rows.count);
+    wire::put_at(out, 4 * 4, rows.numbers);
     wire::put_at(out, 5 * 4, static_cast<std::uint32_t>(lost_));
     picture_ = hub_.picture.version;
     const std::uint64_t lost = lost_ - lost_before;

@@ -1,6 +1,7 @@
 #include "viewer/server/request.h"
 
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 namespace tactum {
@@ -19,10 +20,11 @@ struct Form {
   const char* keys;
 };
 constexpr Form kForms[] = {
-    {"ack", What::kAck, "seq"},      {"steer", What::kSteer, ""},       {"release", What::kRelease, ""},
-    {"stop", What::kStop, ""},       {"resume", What::kResume, ""},     {"aim", What::kAim, "p q buttons"},
-    {"rest", What::kRest, ""},       {"set", What::kSet, "key value"},  {"reset", What::kReset, ""},
-    {"scene", What::kScene, "name"}, {"device", What::kDevice, "name"}, {"grip", What::kGrip, "name"},
+    {"ack", What::kAck, "seq"},    {"steer", What::kSteer, ""},      {"release", What::kRelease, ""},
+    {"stop", What::kStop, ""},     {"resume", What::kResume, ""},    {"aim", What::kAim, "p q buttons"},
+    {"rest", What::kRest, ""},     {"set", What::kSet, "key value"}, {"unset", What::kUnset, "key"},
+    {"reset", What::kReset, ""},   {"scene", What::kScene, "name"},  {"device", What::kDevice, "name"},
+    {"grip", What::kGrip, "name"},
 };
 
 Error malformed(const std::string& what, const std::string& where = "") { return {what, "", "", where}; }
@@ -56,12 +58,19 @@ bool read(const Json& json, double& out) {
   return std::isfinite(out);
 }
 
+/// Null: no limit.
+bool read_value(const Json& json, double& out) {
+  if (!json.is_null()) return read(json, out);
+  out = std::numeric_limits<double>::infinity();
+  return true;
+}
+
 bool read_key(const std::string& key, const Json& value, Request& request) {
   if (key == "seq") return read(value, request.sequence);
   if (key == "buttons") return read(value, request.buttons);
   if (key == "key") return read(value, request.key);
   if (key == "name") return read(value, request.name);
-  if (key == "value") return read(value, request.value);
+  if (key == "value") return read_value(value, request.value);
   if (key == "p") return read(value, kFarthest_m, request.p);
   if (key != "q" || !read(value, 1.1, request.q)) return false;
   double squared = 0.0;

@@ -20,7 +20,8 @@ struct Request {
     kResume,   ///< after a stop
     kAim,      ///< `p`, `q`, `buttons`: the hand's pose in the world
     kRest,     ///< the hand stays where it is
-    kSet,      ///< `key`, `value`: a setting
+    kSet,      ///< `key`, `value`: a setting; infinite: no limit
+    kUnset,    ///< `key`: a setting, as the scene has it
     kReset,    ///< the scene from its start
     kScene,    ///< `name`
     kDevice,   ///< `name`
@@ -31,7 +32,7 @@ struct Request {
   std::array<double, 3> p{};                    ///< [m]
   std::array<double, 4> q{1.0, 0.0, 0.0, 0.0};  ///< w, x, y, z
   std::uint32_t buttons = 0;
-  std::string key;   ///< of kSet
+  std::string key;   ///< of kSet, kUnset
   std::string name;  ///< of kScene, kDevice, kGrip
   double value = 0.0;
 

@@ -1,5 +1,7 @@
 #include "viewer/server/scene_message.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -7,6 +9,7 @@
 #include "tactum/haptics/coupling_gains.h"
 #include "tactum/loop/safety.h"
 #include "tactum/scene/builtin_scenes.h"
+#include "tactum/version.h"
 #include "viewer/server/access.h"
 #include "viewer/server/field_arrows.h"
 #include "viewer/server/shape_edges.h"
@@ -56,6 +59,11 @@ const char* joint_name(JointKind kind) {
   return "";
 }
 
+/// Whether the joint pushes beside leading the body: by spring, damper, friction or a stop.
+bool acts(const Joint& joint) {
+  return joint.stiffness > 0.0 || joint.damping > 0.0 || joint.friction > 0.0 || joint.limited();
+}
+
 OrderedJson bodies_json(const World& world) {
   const Shapes shapes = shapes_of(world);
   OrderedJson bodies = OrderedJson::array();
@@ -67,6 +75,9 @@ OrderedJson bodies_json(const World& world) {
                         {"joint", joint_name(world.joint_of(static_cast<int>(i)).kind)},
                         {"pieces", body.part->pieces.size()},
                         {"mass_kg", body.mass_kg},
+                        {"weight_N", body.moves() ? body.mass_kg * world.gravity_W.norm() : 0.0},
+                        {"joint_acts", acts(world.joint_of(static_cast<int>(i)))},
+                        {"load_acts", body.load.acts()},
                         {"radius_m", body.part->radius},
                         {"X_WB", pose_json(body.X_WB)}};
     if (body.joint.kind == JointKind::kHinge) {
@@ -87,10 +98,15 @@ OrderedJson field_json(const World& world) {
   return numbers;
 }
 
-OrderedJson settings_json(const FrameSettings& frame, const SafetySettings& safety) {
+/// Null: no limit.
+OrderedJson value_json(const SettingInfo& setting, const UserSettings& settings) {
+  const double value = setting.get(settings.frame, settings.safety);
+  return std::isfinite(value) ? OrderedJson(value) : OrderedJson();
+}
+
+OrderedJson settings_json(const ShownSettings& shown) {
   OrderedJson settings = OrderedJson::array();
   for (const SettingInfo& setting : setting_table()) {
-    const double value = setting.get(frame, safety);
     constexpr const char* kKinds[] = {"number", "integer", "on-off", "choice"};  // as in SettingKind
     const char* kind = kKinds[static_cast<std::size_t>(setting.kind)];
     OrderedJson choices = OrderedJson::array();
@@ -105,7 +121,9 @@ OrderedJson settings_json(const FrameSettings& frame, const SafetySettings& safe
                         {"kind", kind},
                         {"choices", choices},
                         {"live", setting.live},
-                        {"value", std::isfinite(value) ? OrderedJson(value) : OrderedJson()}});
+                        {"unlimited", may_be_unlimited(setting)},
+                        {"usual", value_json(setting, shown.usual)},
+                        {"value", value_json(setting, shown.now)}});
   }
   return settings;
 }
@@ -168,11 +186,28 @@ OrderedJson flags_json() {
   return {{"safety", safety}, {"frame", frame}};
 }
 
-OrderedJson scenes_json() {
+/// Every scene that comes with the program, and the files it needs that are not there.
+OrderedJson list_of_scenes() {
   OrderedJson scenes = OrderedJson::array();
-  for (const SceneEntry& scene : list_scenes())
-    scenes.push_back({{"name", scene.name}, {"description", scene.description}});
+  for (const SceneEntry& scene : list_scenes()) {
+    const Result<SceneDescription> description = describe_scene(scene.name);
+    scenes.push_back({{"name", scene.name},
+                      {"description", scene.description},
+                      {"absent", description ? missing_files(*description) : std::vector<std::string>{}}});
+  }
   return scenes;
+}
+
+const OrderedJson& scenes_json() {
+  static const OrderedJson scenes = list_of_scenes();  // the same for every run of the program
+  return scenes;
+}
+
+OrderedJson remarks_json(const std::vector<SceneRemark>& remarks) {
+  OrderedJson list = OrderedJson::array();
+  for (const SceneRemark& remark : remarks)
+    list.push_back({{"warning", remark.warning}, {"text", remark.text}});
+  return list;
 }
 
 void put(std::string& out, const Pose& X) {
@@ -242,43 +277,51 @@ bool same_triangles(const TriangleMesh& surface, const TriangleMesh& faces) {
   return true;
 }
 
-/// Which fraction of the device's stability bounds the coupling uses, as it is set now.
-std::string margin_of(const Session& session, const UserSettings& settings) {
-  return margin_sentence(settings.frame.coupling, session.device(), session.rate_Hz());
+/// What both messages say of the settings.
+OrderedJson settings_part(const Session& session, const ShownSettings& shown) {
+  constexpr const char* kLevels[] = {"always", "in hand", "uncertain"};  // as in Stability
+  const Coupling& coupling = shown.now.frame.coupling;
+  const Stability stability = stability_of(coupling, session.device(), session.rate_Hz());
+  const bool whole_coupling = shown.usual_coupling_by_device && !shown.coupling_by_device;
+  return {{"settings", settings_json(shown)},
+          {"margin", margin_sentence(coupling, session.device(), session.rate_Hz())},
+          {"stability", kLevels[static_cast<std::size_t>(stability)]},
+          {"coupling_by_device", shown.coupling_by_device},
+          {"toml", changed_settings_toml(shown.now, shown.usual, whole_coupling)}};
 }
 
 }  // namespace
 
-std::string run_message(const Session& session, const UserSettings& settings, const RunFacts& facts) {
+std::string run_message(const Session& session, const ShownSettings& settings, const RunFacts& facts) {
   const Scene& scene = session.scene();
   const Tool& tool = scene.settings.tool;
-  const OrderedJson message = {{"type", "run"},
-                               {"run", facts.run},
-                               {"scene", scene.name},
-                               {"description", scene.description},
-                               {"scenes", scenes_json()},
-                               {"rate_Hz", session.rate_Hz()},
-                               {"real_time", facts.loop_in_real_time},
-                               {"bodies", bodies_json(scene.world)},
-                               {"field", field_json(scene.world)},
-                               {"grasped", tool.body},
-                               {"picks", tool.picks},
-                               {"X_BH", pose_json(tool.X_BH)},
-                               {"device", device_json(session, facts)},
-                               {"stages", stages_json()},
-                               {"channels", channels_json()},
-                               {"flags", flags_json()},
-                               {"settings", settings_json(settings.frame, settings.safety)},
-                               {"margin", margin_of(session, settings)},
-                               {"toml", settings_toml(settings.frame, settings.safety)}};
+  OrderedJson message = {
+      {"type", "run"},
+      {"run", facts.run},
+      {"version", fmt::format("{}.{}.{}", TACTUM_VERSION_MAJOR, TACTUM_VERSION_MINOR, TACTUM_VERSION_PATCH)},
+      {"scene", scene.name},
+      {"description", scene.description},
+      {"scenes", scenes_json()},
+      {"remarks", remarks_json(facts.remarks)},
+      {"rate_Hz", session.rate_Hz()},
+      {"real_time", facts.loop_in_real_time},
+      {"bodies", bodies_json(scene.world)},
+      {"posed", posed_bodies(scene.world)},
+      {"field", field_json(scene.world)},
+      {"grasped", tool.body},
+      {"picks", tool.picks},
+      {"X_BH", pose_json(tool.X_BH)},
+      {"device", device_json(session, facts)},
+      {"stages", stages_json()},
+      {"channels", channels_json()},
+      {"flags", flags_json()}};
+  message.update(settings_part(session, settings));
   return message.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
 }
 
-std::string settings_message(const Session& session, const UserSettings& settings) {
-  const OrderedJson message = {{"type", "settings"},
-                               {"settings", settings_json(settings.frame, settings.safety)},
-                               {"margin", margin_of(session, settings)},
-                               {"toml", settings_toml(settings.frame, settings.safety)}};
+std::string settings_message(const Session& session, const ShownSettings& settings) {
+  OrderedJson message = {{"type", "settings"}};
+  message.update(settings_part(session, settings));
   return message.dump();
 }
 
@@ -321,6 +364,7 @@ void write_picture(const FramePicture& picture, std::string& out) {
       wire::put(out, static_cast<float>(number));
     wire::put(out, static_cast<std::int32_t>(contact.grip));
     wire::put(out, static_cast<float>(contact.cone_used));
+    wire::put(out, static_cast<std::int32_t>(contact.rests ? 1 : 0));
   }
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "tactum/haptics/setting_table.h"
+#include "tactum/scene/scene_remarks.h"
 #include "tactum/session/session.h"
 
 namespace tactum {
@@ -16,13 +17,22 @@ struct RunFacts {
   std::string device;     ///< as in the registry
   std::string grip;
   bool loop_in_real_time = true;
+  std::vector<SceneRemark> remarks;  ///< on the scene
+};
+
+/// The settings as they are and as the scene has them. The coupling that the device has chosen is the scene's
+/// own.
+struct ShownSettings {
+  UserSettings now, usual;
+  bool coupling_by_device = false;        ///< the device has chosen the coupling ...
+  bool usual_coupling_by_device = false;  ///< ... as the scene wants it
 };
 
 /// Scene, bodies, device, tables of stages, channels and settings with their values, choices.
-std::string run_message(const Session& session, const UserSettings& settings, const RunFacts& facts);
+std::string run_message(const Session& session, const ShownSettings& settings, const RunFacts& facts);
 
 /// The settings alone, after one was changed, and which fraction of the stability bounds they use.
-std::string settings_message(const Session& session, const UserSettings& settings);
+std::string settings_message(const Session& session, const ShownSettings& settings);
 
 /// The surfaces of the parts, each once: vertices, triangles with piece and face, and the edges worth
 /// drawing.

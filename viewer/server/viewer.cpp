@@ -9,6 +9,7 @@
 
 #include "tactum/devices/registry.h"
 #include "tactum/haptics/setting_table.h"
+#include "tactum/scene/build_scene.h"
 #include "tactum/scene/builtin_scenes.h"
 
 namespace tactum {
@@ -21,43 +22,85 @@ constexpr auto kStatusEvery = 500ms;
 constexpr std::uint64_t kVirtualFramesAtOnce = 16;
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 
+/// The setting that a request names; null when there is none.
+const SettingInfo* setting_of(const Request& request) {
+  const int index = setting_called(request.key);
+  return index < 0 ? nullptr : &setting_table()[static_cast<std::size_t>(index)];
+}
+
+bool same_coupling(const FrameSettings& a, const FrameSettings& b) {
+  return std::ranges::all_of(setting_table(), [&](const SettingInfo& setting) {
+    return std::string_view(setting.section) != "coupling" || setting.get(a, {}) == setting.get(b, {});
+  });
+}
+
+/// The scene's goals and how far they are.
+nlohmann::ordered_json goals_json(const Scene& scene, const SessionStatus& newest) {
+  nlohmann::ordered_json goals = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < std::min(scene.goals.size(), newest.goals.size()); ++i) {
+    const double best = static_cast<double>(newest.goals[i]);
+    goals.push_back(
+        {{"met", is_met(scene.goals[i], best)}, {"text", describe_goal(scene.world, scene.goals[i], best)}});
+  }
+  return goals;
+}
+
 }  // namespace
 
-Result<std::unique_ptr<Viewer>> Viewer::open(Scene scene, SessionOptions options, int port) {
+Result<std::unique_ptr<Viewer>> Viewer::open(Scene scene, SessionOptions options, int port,
+                                             std::vector<SceneRemark> remarks) {
   if (options.device.empty()) options.device = "pointer:" + scene.device;
   if (options.grip.empty()) options.grip = scene.grip;
   Result<std::unique_ptr<Server>> server = Server::start(port);
   if (!server) return server.error();
-  std::unique_ptr<Viewer> viewer(new Viewer(std::move(scene), std::move(options), std::move(*server)));
+  std::unique_ptr<Viewer> viewer(
+      new Viewer(std::move(scene), std::move(options), std::move(*server), std::move(remarks)));
   if (Result<void> begun = viewer->begin_run(); !begun) return begun.error();
   return viewer;
 }
 
-Viewer::Viewer(Scene scene, SessionOptions options, std::unique_ptr<Server> server)
-    : scene_(std::move(scene)), options_(std::move(options)), server_(std::move(server)) {
+Viewer::Viewer(Scene scene, SessionOptions options, std::unique_ptr<Server> server,
+               std::vector<SceneRemark> remarks)
+    : scene_(std::move(scene)),
+      remarks_(std::move(remarks)),
+      options_(std::move(options)),
+      server_(std::move(server)) {
   if (options_.rate_Hz > 0.0) scene_.settings.dt_s = 1.0 / options_.rate_Hz;
   options_.rate_Hz = 0.0;  // from here on a setting like any other
+  remember_usual();
+}
+
+void Viewer::remember_usual() {
+  usual_ = {scene_.settings, scene_.safety};
+  device_chooses_ = scene_.coupling_by_device;
+}
+
+ShownSettings Viewer::shown_settings() const {
+  return {{scene_.settings, scene_.safety}, usual_, scene_.coupling_by_device, device_chooses_};
+}
+
+std::string Viewer::message_of_run() const {
+  return run_message(*session_, shown_settings(), {run_, options_.device, options_.grip, true, remarks_});
 }
 
 Result<void> Viewer::begin_run() {
   Result<std::unique_ptr<Session>> session = Session::open(scene_, options_);
   if (!session) return session.error();
-  auto feed = std::make_unique<FrameFeed>(scene_.world.bodies.size(), (*session)->rate_Hz());
+  auto feed = std::make_unique<FrameFeed>(scene_.world, (*session)->rate_Hz());
   auto stages = std::make_unique<StageClock>();
   (*session)->show_to(feed.get());
   (*session)->time_stages(stages.get());
   (*session)->hold_wrench_at_zero(stopped_);
   session_ = std::move(*session);  // the old one first: it refers to the old feed
   scene_.settings.coupling = session_->scene().settings.coupling;  // it may have chosen
+  if (scene_.coupling_by_device) usual_.frame.coupling = scene_.settings.coupling;
   feed_ = std::move(feed);
   stages_ = std::move(stages);
   waiting_.clear();
   timings_.clear();
   newest_ = {};
   ++run_;
-  const RunFacts facts{run_, options_.device, options_.grip, true};
-  server_->begin_run(run_, run_message(*session_, {scene_.settings, scene_.safety}, facts),
-                     geometry_of(scene_.world));
+  server_->begin_run(run_, message_of_run(), geometry_of(scene_.world));
   return {};
 }
 
@@ -151,6 +194,8 @@ void Viewer::obey(const Request& request) {
       return;
     case What::kSet:
       return set(request);
+    case What::kUnset:
+      return unset(request);
     case What::kReset:
       return restart();
     case What::kScene:
@@ -167,25 +212,38 @@ void Viewer::obey(const Request& request) {
 }
 
 void Viewer::set(const Request& request) {
-  const int index = setting_called(request.key);
-  if (index < 0) return server_->send_notice("there is no setting called " + request.key);
-  const SettingInfo& setting = setting_table()[static_cast<std::size_t>(index)];
-  if (!in_range(setting, request.value)) {
-    server_->send_notice(fmt::format("{}: {} is not from {} to {} {}", setting.name, request.value,
-                                     setting.low, setting.high, setting.unit));
+  const SettingInfo* const setting = setting_of(request);
+  if (setting == nullptr) return server_->send_notice("there is no setting called " + request.key);
+  if (!in_range(*setting, request.value)) {
+    server_->send_notice(fmt::format("{}: {} is not from {} to {} {}", setting->name, request.value,
+                                     setting->low, setting->high, setting->unit));
     return send_settings();
   }
-  setting.set(scene_.settings, scene_.safety, request.value);
-  if (std::string_view(setting.section) == "coupling") scene_.coupling_by_device = false;
+  setting->set(scene_.settings, scene_.safety, request.value);
+  if (std::string_view(setting->section) == "coupling") scene_.coupling_by_device = false;
+  apply(*setting, request.value);
+}
+
+/// One part of a coupling that the device chooses cannot be taken back alone while the others stay set.
+void Viewer::unset(const Request& request) {
+  const SettingInfo* const setting = setting_of(request);
+  if (setting == nullptr) return server_->send_notice("there is no setting called " + request.key);
+  const double usual = setting->get(usual_.frame, usual_.safety);
+  setting->set(scene_.settings, scene_.safety, usual);
+  scene_.coupling_by_device = device_chooses_ && same_coupling(scene_.settings, usual_.frame);
+  apply(*setting, usual);
+}
+
+/// The setting is in the scene; the session takes it over.
+void Viewer::apply(const SettingInfo& setting, double value) {
   if (!setting.live) return restart();
-  session_->ask({.kind = SessionCommand::Kind::kSet, .setting = index, .value = request.value});
+  const auto index = static_cast<int>(&setting - setting_table().data());
+  session_->ask({.kind = SessionCommand::Kind::kSet, .setting = index, .value = value});
   send_settings();
 }
 
 void Viewer::send_settings() {
-  const RunFacts facts{run_, options_.device, options_.grip, true};
-  server_->send_settings(settings_message(*session_, {scene_.settings, scene_.safety}),
-                         run_message(*session_, {scene_.settings, scene_.safety}, facts));
+  server_->send_settings(settings_message(*session_, shown_settings()), message_of_run());
 }
 
 /// Only scenes that come with the program, and the one it was started with: a page cannot name files.
@@ -194,10 +252,14 @@ void Viewer::change_scene(const std::string& name) {
   const std::vector<SceneEntry> known = list_scenes();
   if (std::none_of(known.begin(), known.end(), [&](const SceneEntry& s) { return s.name == name; }))
     return server_->send_notice("there is no scene called " + name);
-  Result<Scene> scene = open_scene(name);
+  const Result<SceneDescription> description = describe_scene(name);
+  if (!description) return server_->send_notice(description.error().message());
+  Result<Scene> scene = build_scene(*description);
   if (!scene) return server_->send_notice(scene.error().message());
+  remarks_ = remarks_on(*description, *scene);
   const bool follows_scene = options_.device == "pointer:" + scene_.device;
   scene_ = std::move(*scene);
+  remember_usual();
   if (follows_scene) options_.device = "pointer:" + scene_.device;
   options_.grip = scene_.grip;
   restart();
@@ -239,6 +301,7 @@ std::string Viewer::status_json() {
                                            {"p999", times.p999_ns * 1e-3},
                                            {"max", times.max_ns * 1e-3}}},
                                          {"safety", safety_flag_names(newest_.safety)},
+                                         {"goals", goals_json(scene_, newest_)},
                                          {"remarks", privileges}};
   return status.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }

@@ -18,8 +18,9 @@ namespace tactum {
 class Viewer {
  public:
   /// Opens the session and the server; `port` 0 finds a free one. The scene's simulated device is led by the
-  /// page unless the options name another device.
-  static Result<std::unique_ptr<Viewer>> open(Scene scene, SessionOptions options, int port);
+  /// page unless the options name another device. The page shows the remarks on the scene.
+  static Result<std::unique_ptr<Viewer>> open(Scene scene, SessionOptions options, int port,
+                                              std::vector<SceneRemark> remarks = {});
 
   /// The loop on its own thread.
   Result<void> start();
@@ -39,12 +40,18 @@ class Viewer {
 
  private:
   using Clock = std::chrono::steady_clock;
-  Viewer(Scene scene, SessionOptions options, std::unique_ptr<Server> server);
+  Viewer(Scene scene, SessionOptions options, std::unique_ptr<Server> server,
+         std::vector<SceneRemark> remarks);
 
   Result<void> begin_run();
   void restart();
   void obey(const Request& request);
   void set(const Request& request);
+  void unset(const Request& request);
+  void apply(const SettingInfo& setting, double value);
+  void remember_usual();
+  ShownSettings shown_settings() const;
+  std::string message_of_run() const;
   void change_scene(const std::string& name);
   void change_device(const std::string& name, std::string SessionOptions::*choice);
   void gather();
@@ -52,7 +59,10 @@ class Viewer {
   void send_settings();
   std::string status_json();
 
-  Scene scene_;  // as it starts, with the settings as they are now
+  Scene scene_;                  // as it starts, with the settings as they are now
+  UserSettings usual_;           // as the scene has them
+  bool device_chooses_ = false;  // the scene leaves the coupling to the device
+  std::vector<SceneRemark> remarks_;
   SessionOptions options_;
   std::unique_ptr<Server> server_;
   std::unique_ptr<FrameFeed> feed_;

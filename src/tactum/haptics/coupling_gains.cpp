@@ -119,39 +119,60 @@ std::string scale_sentence(const Coupling& coupling, double scale) {
       scale, scaled.stiffness_N_per_m, scaled.stiffness_Nm_per_rad);
 }
 
-std::string margin_sentence(const Coupling& coupling, const DeviceInfo& info, double rate_Hz) {
+namespace {
+
+/// Both halves, as far as the device has them.
+struct Margins {
+  Margin push, turn;
+  bool turns;  // the device sends torque
+};
+Margins margins_of(const Coupling& coupling, const DeviceInfo& info, double rate_Hz) {
   const double period_s = 1.0 / rate_Hz;
   const HandModel hand = loose_hand();
   const HandleDynamics& handle = info.handle;
   const auto allowed = [&](double damping, double damper) {
     return stiffness_allowed(damping, damper, period_s, handle.delay_s);
   };
-  const Margin push{coupling.stiffness_N_per_m,
-                    allowed(handle.damping_Ns_per_m + hand.damping_Ns_per_m, coupling.damping_Ns_per_m),
-                    allowed(handle.damping_Ns_per_m, 0.0), "N/m"};
-  const Margin turn{
-      coupling.stiffness_Nm_per_rad,
-      allowed(handle.damping_Nms_per_rad + hand.damping_Nms_per_rad, coupling.damping_Nms_per_rad),
-      allowed(handle.damping_Nms_per_rad, 0.0), "N m/rad"};
-  const bool turns = info.actuates_torque;
-  const auto both = [&](std::string (Margin::*text)() const) {
-    return joined((push.*text)(), " and ", turns ? (turn.*text)() : "");
+  return {{coupling.stiffness_N_per_m,
+           allowed(handle.damping_Ns_per_m + hand.damping_Ns_per_m, coupling.damping_Ns_per_m),
+           allowed(handle.damping_Ns_per_m, 0.0), "N/m"},
+          {coupling.stiffness_Nm_per_rad,
+           allowed(handle.damping_Nms_per_rad + hand.damping_Nms_per_rad, coupling.damping_Nms_per_rad),
+           allowed(handle.damping_Nms_per_rad, 0.0), "N m/rad"},
+          info.actuates_torque};
+}
+
+Stability stability_of(const Margins& margins) {
+  const auto& [push, turn, turns] = margins;
+  if (!push.in_loose_hand() || (turns && !turn.in_loose_hand())) return Stability::kUncertain;
+  return push.released() && (!turns || turn.released()) ? Stability::kAlways : Stability::kInHand;
+}
+
+}  // namespace
+
+Stability stability_of(const Coupling& coupling, const DeviceInfo& info, double rate_Hz) {
+  return stability_of(margins_of(coupling, info, rate_Hz));
+}
+
+std::string margin_sentence(const Coupling& coupling, const DeviceInfo& info, double rate_Hz) {
+  const Margins margins = margins_of(coupling, info, rate_Hz);
+  const Stability stability = stability_of(margins);
+  const auto both = [&margins](std::string (Margin::*text)() const) {
+    return joined((margins.push.*text)(), " and ", margins.turns ? (margins.turn.*text)() : "");
   };
-  const bool in_hand = push.in_loose_hand() && (!turns || turn.in_loose_hand());
-  const bool alone = push.released() && (!turns || turn.released());
   std::string text = "The coupling of " + both(&Margin::text);
-  if (!in_hand)
+  if (stability == Stability::kUncertain)
     text += fmt::format(
         " is too stiff for this device: in a loose hand it may buzz (limit {}), and let go (limit {}) as "
         "well",
         both(&Margin::limit_in_hand), both(&Margin::limit_alone));
-  else if (!alone)
+  else if (stability == Stability::kInHand)
     text += fmt::format(" is stable in any hand that holds the device; let go, it may buzz (limit {})",
                         both(&Margin::limit_alone));
   else
     text += " is stable in any hand that holds the device, and when it is let go";
-  text += in_hand && alone ? "." : "; its stiffness is lowered where it does.";
-  if (!turns) text += " The device sends no torque: turns of the hand are followed.";
+  text += stability == Stability::kAlways ? "." : "; its stiffness is lowered where it does.";
+  if (!margins.turns) text += " The device sends no torque: turns of the hand are followed.";
   return text + " See docs/algorithms/stability.md.";
 }
 

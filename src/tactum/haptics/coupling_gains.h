@@ -58,6 +58,14 @@ PortSettings port_settings(const DeviceInfo& info);
 /// empty.
 std::string scale_sentence(const Coupling& coupling, double scale);
 
+/// Where a coupling is stable on a device.
+enum class Stability {
+  kAlways,    ///< in any hand, and when the handle is let go
+  kInHand,    ///< in any hand that holds the handle
+  kUncertain  ///< not even in a loose hand
+};
+Stability stability_of(const Coupling& coupling, const DeviceInfo& info, double rate_Hz);
+
 /// Whether a coupling is stable on this device in a loose hand and when it is let go, with the bounds that it
 /// exceeds, in sentences for people.
 std::string margin_sentence(const Coupling& coupling, const DeviceInfo& info, double rate_Hz);

@@ -181,32 +181,41 @@ int setting_called(std::string_view section_and_key) noexcept {
   return -1;
 }
 
+bool may_be_unlimited(const SettingInfo& setting) { return std::isinf(setting.get({}, {})); }
+
 bool in_range(const SettingInfo& setting, double value) noexcept {
+  if (std::isinf(value)) return value > 0.0 && may_be_unlimited(setting);
   if (!(value >= setting.low && value <= setting.high)) return false;
   return setting.kind == SettingKind::kNumber || std::floor(value) == value;
 }
 
-std::string settings_toml(const FrameSettings& frame, const SafetySettings& safety) {
-  std::string top, text;
-  std::string_view section;
+namespace {
+
+/// "stiffness_N_per_m = 600  # spring ... [N/m]".
+std::string toml_line(const SettingInfo& setting, double value) {
+  const std::string shown = setting.kind == SettingKind::kOnOff ? (value != 0.0 ? "true" : "false")
+                            : setting.kind == SettingKind::kChoice
+                                ? fmt::format("\"{}\"", setting.choices[static_cast<std::size_t>(value)])
+                            : setting.kind == SettingKind::kInteger ? fmt::format("{:.0f}", value)
+                                                                    : fmt::format("{}", value);
+  const std::string unit = *setting.unit ? fmt::format(" [{}]", setting.unit) : "";
+  return fmt::format("{} = {}  # {}{}\n", setting.key, shown, setting.meaning, unit);
+}
+
+}  // namespace
+
+std::string changed_settings_toml(const UserSettings& now, const UserSettings& usual, bool whole_coupling) {
+  std::string lines;
   for (const SettingInfo& setting : kSettings) {
-    const double value = setting.get(frame, safety);
-    if (!std::isfinite(value)) continue;  // no limit: the key is left out
-    const std::string shown = setting.kind == SettingKind::kOnOff ? (value != 0.0 ? "true" : "false")
-                              : setting.kind == SettingKind::kChoice
-                                  ? fmt::format("\"{}\"", setting.choices[static_cast<std::size_t>(value)])
-                              : setting.kind == SettingKind::kInteger ? fmt::format("{:.0f}", value)
-                                                                      : fmt::format("{}", value);
-    const std::string unit = *setting.unit ? fmt::format(" [{}]", setting.unit) : "";
-    const std::string line = fmt::format("{} = {}  # {}{}\n", setting.key, shown, setting.meaning, unit);
-    if (*setting.section == '\0') {
-      top += line;
+    const double value = setting.get(now.frame, now.safety);
+    const std::string_view section = setting.section;
+    if (value == setting.get(usual.frame, usual.safety) && !(whole_coupling && section == "coupling"))
       continue;
-    }
-    if (section != setting.section) text += fmt::format("\n[{}]\n", section = setting.section);
-    text += line;
+    // A limit that was taken away: the end of its range lets the device's own hold.
+    lines += section.empty() ? "" : std::string(section) + ".";
+    lines += toml_line(setting, std::isfinite(value) ? value : setting.high);
   }
-  return top + text;
+  return lines.empty() ? "" : "[settings]\n" + lines;
 }
 
 }  // namespace tactum::inline v0_1

@@ -46,11 +46,17 @@ std::span<const SettingInfo> setting_table() noexcept;
 /// Index of "coupling.stiffness_N_per_m" (or "dt_s"); -1 when there is none.
 int setting_called(std::string_view section_and_key) noexcept;
 
-/// Whether the value lies in the setting's range (and is whole, or 0 or 1, where it must be).
+/// Whether a limit may be infinite: then the device's own holds.
+bool may_be_unlimited(const SettingInfo& setting);
+
+/// Whether the value lies in the setting's range (and is whole, or 0 or 1, where it must be), or is infinite
+/// where it may be.
 bool in_range(const SettingInfo& setting, double value) noexcept;
 
-/// All of them as sections of a scene file, with units and meanings as comments. Reading them gives the same
-/// settings of this table.
-std::string settings_toml(const FrameSettings& frame, const SafetySettings& safety);
+/// Those that differ from `usual`, as the table [settings] with units and meanings as comments. Such a table
+/// counts more than the sections of a scene file, so it can be put behind any; reading it gives the same
+/// settings. Empty when none differs. With `whole_coupling` all of the coupling is there, as it must be for a
+/// scene that leaves it to the device.
+std::string changed_settings_toml(const UserSettings& now, const UserSettings& usual, bool whole_coupling);
 
 }  // namespace tactum::inline v0_1

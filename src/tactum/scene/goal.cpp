@@ -82,26 +82,23 @@ void GoalRecord::watch(const World& world, const WorldState& state, int grasped,
   }
 }
 
-bool GoalRecord::met(std::size_t goal) const noexcept {
-  const Goal& g = goals_[goal];
-  return smaller_is_better(g.kind) ? best_[goal] <= g.tolerance : best_[goal] >= std::abs(g.amount);
-}
-
 bool GoalRecord::all_met() const noexcept {
   for (Index g = 0; g < goals_.size(); ++g)
     if (!met(g)) return false;
   return true;
 }
 
-std::string GoalRecord::describe(const World& world, std::size_t goal) const {
-  const Goal& g = goals_[goal];
+bool is_met(const Goal& goal, double best) noexcept {
+  return smaller_is_better(goal.kind) ? best <= goal.tolerance : best >= std::abs(goal.amount);
+}
+
+std::string describe_goal(const World& world, const Goal& g, double best) {
   const std::string& body = world.bodies[Index(g.body)].name;
-  const char* verdict = met(goal) ? "met" : "not met";
-  const double best = best_[goal];
+  const char* verdict = is_met(g, best) ? "met" : "not met";
   switch (g.kind) {
     case GoalKind::kTurned:
       return fmt::format("{} turned by {:.2f} degrees, wanted {:.2f}: {}", body,
-                         degrees(std::copysign(best, g.amount * best)), degrees(g.amount), verdict);
+                         degrees(g.amount < 0.0 ? -best : best) + 0.0, degrees(g.amount), verdict);
     case GoalKind::kTurnedTo:
       return fmt::format("{} stopped {:.2f} degrees from {:.2f}, allowed {:.2f}: {}", body, degrees(best),
                          degrees(g.amount), degrees(g.tolerance), verdict);

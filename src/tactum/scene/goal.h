@@ -32,6 +32,11 @@ struct Goal {
   double tolerance = 0.0;        ///< [rad] or [m]
 };
 
+/// Whether a goal is met by its best number so far (GoalRecord::best).
+bool is_met(const Goal& goal, double best) noexcept;
+/// "driven followed driving: off by 0.31 degrees, allowed 1.20: met", for that number.
+std::string describe_goal(const World& world, const Goal& goal, double best);
+
 /// The progress of the goals so far.
 class GoalRecord {
  public:
@@ -43,13 +48,18 @@ class GoalRecord {
   void watch(const World& world, const WorldState& state, int grasped = -1,
              std::span<const ContactRow> rows = {}) noexcept;
 
-  bool met(std::size_t goal) const noexcept;
+  std::size_t size() const noexcept { return goals_.size(); }
+  /// The number that decides the goal: the best so far, or the present one where the end counts.
+  double best(std::size_t goal) const noexcept { return best_[goal]; }
+  bool met(std::size_t goal) const noexcept { return is_met(goals_[goal], best_[goal]); }
   /// Whether all are met; true when there is none.
   bool all_met() const noexcept;
   /// Angle of a hinge since the start, full turns included [rad].
   double angle(std::size_t body) const noexcept { return angles_[body]; }
-  /// "driven followed driving: off by 0.31 degrees, allowed 1.20: met".
-  std::string describe(const World& world, std::size_t goal) const;
+  /// As describe_goal says it.
+  std::string describe(const World& world, std::size_t goal) const {
+    return describe_goal(world, goals_[goal], best_[goal]);
+  }
 
  private:
   /// The number that decides a goal now: an angle, a displacement, a distance, or an error.

@@ -214,6 +214,9 @@ void visit_items(ItemVisitor& visitor, ComponentDescription& component);
 void visit_items(ItemVisitor& visitor, SamplePoint& point);
 void visit_items(ItemVisitor& visitor, BodyDescription& body);
 
+/// The table [settings], whose settings count more than those of the sections.
+void visit_changes(ItemVisitor& visitor, SettingsDescription& settings);
+
 // Fields and goals: visit_fields.cpp, visit_goals.cpp.
 void visit_items(ItemVisitor& visitor, FieldDescription& field);
 void visit_items(ItemVisitor& visitor, GoalDescription& goal);

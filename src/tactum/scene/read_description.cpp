@@ -179,4 +179,13 @@ void read_description(const toml::table& document, SceneDescription& scene, Firs
   visit_items(visitor, scene);
 }
 
+void read_changes(const toml::table& document, const std::string& file, SettingsDescription& settings,
+                  FirstError& errors) {
+  SceneSource source;
+  source.file = file;
+  TomlVisitor visitor(TomlReader(document, file, "", {"settings"}, errors), source);
+  if (!visitor.present("settings", false)) visitor.missing("settings", "a table [settings]");
+  visit_changes(visitor, settings);
+}
+
 }  // namespace tactum::inline v0_1

@@ -10,4 +10,8 @@ namespace tactum::inline v0_1 {
 /// keys, wrong types and numbers out of range go to `errors`.
 void read_description(const toml::table& document, SceneDescription& scene, FirstError& errors);
 
+/// Reads a file that has nothing but a table [settings], over those of the scene. Errors call it `file`.
+void read_changes(const toml::table& document, const std::string& file, SettingsDescription& settings,
+                  FirstError& errors);
+
 }  // namespace tactum::inline v0_1

@@ -13,45 +13,70 @@
 namespace tactum::inline v0_1 {
 namespace {
 
+namespace fs = std::filesystem;
+
 constexpr std::uintmax_t kMaxBytes = 1 << 20;  // of a scene file; parts are in files of their own
+
+Result<toml::table> parse_document(std::string_view text, const std::string& file) {
+  try {
+    return toml::table(toml::parse(text, file));
+  } catch (const toml::parse_error& error) {
+    return toml_error(text, file, error);
+  }
+}
+
+/// The text of a TOML file. Errors call what it holds `noun`: "scene".
+Result<std::string> text_of(const char* noun, const std::string& path) {
+  const auto error = [&](std::string found, const char* expected) {
+    return Error{fmt::format("cannot read the {}", noun), std::move(found), expected, path};
+  };
+  const std::string usual = fmt::format("a {} file (.toml)", noun);
+  std::error_code failure;
+  if (!fs::is_regular_file(path, failure))
+    return error(fs::is_directory(path, failure) ? "a folder" : "no such file", usual.c_str());
+  const std::uintmax_t size = fs::file_size(path, failure);
+  if (failure || size > kMaxBytes)
+    return error(failure ? failure.message() : "more than a megabyte", usual.c_str());
+  std::string text(size, '\0');
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream.read(text.data(), static_cast<std::streamsize>(size)))
+    return error("a read error", "a readable file");
+  return text;
+}
 
 }  // namespace
 
 Result<SceneDescription> parse_description(std::string_view text, const std::string& name,
                                            const std::string& file, const std::vector<std::string>& folders) {
-  toml::table document;
-  try {
-    document = toml::parse(text, file);
-  } catch (const toml::parse_error& error) {
-    return toml_error(text, file, error);
-  }
+  const Result<toml::table> document = parse_document(text, file);
+  if (!document) return document.error();
   SceneDescription scene;
   scene.name = name;
   scene.source.file = file;
   scene.source.folders = folders;
   FirstError errors;
-  read_description(document, scene, errors);
+  read_description(*document, scene, errors);
   if (errors) return errors.error();
   return scene;
 }
 
 Result<SceneDescription> read_description_file(const std::string& path) {
-  namespace fs = std::filesystem;
-  std::error_code failure;
-  if (!fs::is_regular_file(path, failure))
-    return Error{"cannot read the scene", fs::is_directory(path, failure) ? "a folder" : "no such file",
-                 "a scene file (.toml)", path};
-  const std::uintmax_t size = fs::file_size(path, failure);
-  if (failure || size > kMaxBytes)
-    return Error{"cannot read the scene", failure ? failure.message() : "more than a megabyte",
-                 "a scene file (.toml)", path};
-  std::string text(size, '\0');
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream.read(text.data(), static_cast<std::streamsize>(size)))
-    return Error{"cannot read the scene", "a read error", "a readable file", path};
+  const Result<std::string> text = text_of("scene", path);
+  if (!text) return text.error();
   std::vector<std::string> folders = data_folders();
   folders.insert(folders.begin(), fs::path(path).parent_path().string());
-  return parse_description(text, fs::path(path).stem().string(), path, folders);
+  return parse_description(*text, fs::path(path).stem().string(), path, folders);
+}
+
+Result<void> change_settings(const std::string& path, SceneDescription& scene) {
+  const Result<std::string> text = text_of("settings", path);
+  if (!text) return text.error();
+  const Result<toml::table> document = parse_document(*text, path);
+  if (!document) return document.error();
+  FirstError errors;
+  read_changes(*document, path, scene.settings, errors);
+  if (errors) return errors.error();
+  return {};
 }
 
 Result<Scene> parse_scene(std::string_view text, const std::string& name, const std::string& file,

@@ -25,6 +25,10 @@ Result<SceneDescription> read_description_file(const std::string& path);
 Result<SceneDescription> parse_description(std::string_view text, const std::string& name,
                                            const std::string& file, const std::vector<std::string>& folders);
 
+/// Puts the settings of a file that has nothing but a table [settings], such as the page saves, over those
+/// of a scene.
+Result<void> change_settings(const std::string& path, SceneDescription& scene);
+
 /// The scene of a file: its description, built (build_scene.h).
 Result<Scene> read_scene_file(const std::string& path);
 

@@ -17,21 +17,21 @@ void visit_section(ItemVisitor& visitor, std::string_view section, SettingsDescr
                [&](const SettingInfo& info) { visitor.setting(info, settings.frame, settings.safety); });
 }
 
-/// The sections of settings; that of the workspace also has the place of the device.
-void visit_sections(ItemVisitor& visitor, SettingsDescription& settings, WorkspaceDescription& workspace) {
+/// The sections of settings; that of the workspace also has the place of the device, where that is asked for.
+void visit_sections(ItemVisitor& visitor, SettingsDescription& settings, WorkspaceDescription* workspace) {
   std::string_view last;
   for (const SettingInfo& info : setting_table()) {
     const std::string_view section = info.section;
     if (section.empty() || section == last) continue;
     last = section;
-    const bool places = section == "workspace";
+    const bool places = workspace != nullptr && section == "workspace";
     KeyList keys;
     each_setting(section, [&](const SettingInfo& setting) { keys.push_back(setting.key); });
     const KeyList& pose = known_keys<WorkspaceDescription>();
     if (places) keys.insert(keys.end(), pose.begin(), pose.end());
     visitor.table(info.section, keys, [&](ItemVisitor& inside) {
       visit_section(inside, section, settings);
-      if (places) visit_items(inside, workspace);
+      if (places) visit_items(inside, *workspace);
     });
   }
 }
@@ -72,13 +72,27 @@ void check_settings(ItemVisitor& visitor, const SettingsDescription& settings) {
 void visit_settings(ItemVisitor& visitor, SettingsDescription& settings, WorkspaceDescription& workspace) {
   settings.coupling_by_device = !visitor.present("coupling", !settings.coupling_by_device);
   visit_section(visitor, "", settings);
-  visit_sections(visitor, settings, workspace);
+  visit_sections(visitor, settings, &workspace);
+  visit_changes(visitor, settings);
   visit_pairs(visitor, "friction", settings.friction, kNotNegative);
   visit_pairs(visitor, "restitution", settings.restitution, {0.0, 1.0});
   check_settings(visitor, settings);
 }
 
 }  // namespace
+
+void visit_changes(ItemVisitor& visitor, SettingsDescription& settings) {
+  KeyList keys;
+  for (const SettingInfo& info : setting_table()) {
+    const char* key = *info.section == '\0' ? info.key : info.section;
+    if (keys.empty() || std::string_view(keys.back()) != key) keys.push_back(key);
+  }
+  visitor.table("settings", keys, [&](ItemVisitor& inside) {
+    if (inside.present("coupling", false)) settings.coupling_by_device = false;
+    visit_section(inside, "", settings);
+    visit_sections(inside, settings, nullptr);
+  });
+}
 
 void visit_items(ItemVisitor& visitor, SceneDescription& scene) {
   int schema = kSceneSchema;

@@ -1,5 +1,6 @@
 #include "tactum/session/session.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "tactum/devices/registry.h"
@@ -130,9 +131,17 @@ Wrench Session::run(const DeviceSample& sample, const FrameTick& tick) noexcept 
   goals_.watch(scene_.world, state_.world, state_.hand.grasp.body, state_.response.rows());
   if (feed_ != nullptr) feed_->take({report_, state_, scene_.settings}, stage_clock_);
   if (trace_ != nullptr) trace_->take({report_, state_, scene_.settings}, stage_clock_);
+  SessionStatus glance{report_.index,
+                       report_.shown.f.norm(),
+                       report_.shown.t.norm(),
+                       report_.contact_points,
+                       (report_.X_WH_proxy.p - report_.X_WH.p).norm(),
+                       report_.safety,
+                       {}};
+  for (std::size_t goal = 0; goal < std::min(goals_.size(), glance.goals.size()); ++goal)
+    glance.goals[goal] = static_cast<float>(goals_.best(goal));
   // A full ring means that nothing was polled for seconds: the newest glance is then lost, the frame is not.
-  glances_.push({report_.index, report_.shown.f.norm(), report_.shown.t.norm(), report_.contact_points,
-                 (report_.X_WH_proxy.p - report_.X_WH.p).norm(), report_.safety});
+  glances_.push(glance);
   return F_D;
 }
 

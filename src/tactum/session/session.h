@@ -7,6 +7,7 @@
 /// The loop's thread owns the frame; other threads see it only through rings of small records, and request
 /// changes through another (command.h), which the loop empties between two frames.
 
+#include <array>
 #include <atomic>
 #include <memory>
 #include <string>
@@ -40,6 +41,9 @@ struct SessionStatus {
   int contact_points = 0;
   double stretch_m = 0.0;    ///< probe to proxy [m]
   std::uint32_t safety = 0;  ///< safety_flag
+  /// The numbers that decide the scene's first goals (GoalRecord::best).
+  static constexpr std::size_t kGoals = 16;
+  std::array<float, kGoals> goals{};
 };
 
 class Session final : private HapticFrame {

@@ -38,6 +38,23 @@ constexpr WrenchStage kStages[] = {
    [](Source f) noexcept -> Wrench { return from_device_axes(f, f.report.shown); }},
 };
 
+Vec3 place_of_hand(Source f) noexcept { return f.report.X_WH.p; }
+Vec3 place_of_proxy(Source f) noexcept { return f.report.X_WH_proxy.p; }
+Vec3 place_in_device(Source f) noexcept { return f.state.port.X_DH.p; }
+const Mat3& turn_of_hand(Source f) noexcept { return f.report.X_WH.R; }
+const Mat3& turn_of_proxy(Source f) noexcept { return f.report.X_WH_proxy.R; }
+
+template <auto Place, int Axis>
+double coordinate(Source frame) noexcept {
+  return Place(frame)[Axis];
+}
+/// A component of the quaternion w, x, y, z.
+template <auto Turn, int Component>
+double component(Source frame) noexcept {
+  const Quat q(Turn(frame));
+  return Component == 0 ? q.w() : q.vec()[Component - 1];
+}
+
 // Values that are no field of the report, but made from some or from the state.
 constexpr Channel kMadeChannels[] = {
   {"stretch_m", "Stretch", "m", "stretch", "from the hand to where the held part would have it",
@@ -54,6 +71,23 @@ constexpr Channel kMadeChannels[] = {
    [](Source f) noexcept { return f.report.field.t.norm(); }},
   {"field_given_J", "From force fields", "J", "energy", "work they have done on what was held, of either sign",
    [](Source f) noexcept { return f.state.hand.field.given_J / f.settings.workspace.scale; }},
+  {"hand_px_m", "Hand x", "m", "place of the hand", "the handle in the world", coordinate<place_of_hand, 0>},
+  {"hand_py_m", "Hand y", "m", "place of the hand", "the handle in the world", coordinate<place_of_hand, 1>},
+  {"hand_pz_m", "Hand z", "m", "place of the hand", "the handle in the world", coordinate<place_of_hand, 2>},
+  {"hand_qw", "Hand qw", "", "orientation of the hand", "the handle in the world", component<turn_of_hand, 0>},
+  {"hand_qx", "Hand qx", "", "orientation of the hand", "the handle in the world", component<turn_of_hand, 1>},
+  {"hand_qy", "Hand qy", "", "orientation of the hand", "the handle in the world", component<turn_of_hand, 2>},
+  {"hand_qz", "Hand qz", "", "orientation of the hand", "the handle in the world", component<turn_of_hand, 3>},
+  {"device_px_m", "Device x", "m", "place in the device", "the handle in the frame of the device", coordinate<place_in_device, 0>},
+  {"device_py_m", "Device y", "m", "place in the device", "the handle in the frame of the device", coordinate<place_in_device, 1>},
+  {"device_pz_m", "Device z", "m", "place in the device", "the handle in the frame of the device", coordinate<place_in_device, 2>},
+  {"proxy_px_m", "Proxy x", "m", "place of the proxy", "the handle on the held part, in the world", coordinate<place_of_proxy, 0>},
+  {"proxy_py_m", "Proxy y", "m", "place of the proxy", "the handle on the held part, in the world", coordinate<place_of_proxy, 1>},
+  {"proxy_pz_m", "Proxy z", "m", "place of the proxy", "the handle on the held part, in the world", coordinate<place_of_proxy, 2>},
+  {"proxy_qw", "Proxy qw", "", "orientation of the proxy", "the handle on the held part, in the world", component<turn_of_proxy, 0>},
+  {"proxy_qx", "Proxy qx", "", "orientation of the proxy", "the handle on the held part, in the world", component<turn_of_proxy, 1>},
+  {"proxy_qy", "Proxy qy", "", "orientation of the proxy", "the handle on the held part, in the world", component<turn_of_proxy, 2>},
+  {"proxy_qz", "Proxy qz", "", "orientation of the proxy", "the handle on the held part, in the world", component<turn_of_proxy, 3>},
   {"safety_gain", "Ramp", "", "ramp", "of the start and stop ramps, 0 to 1",
    [](Source f) noexcept { return f.state.safety.gain; }},
 };

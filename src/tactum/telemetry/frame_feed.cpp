@@ -16,6 +16,18 @@ float* put(const Wrench& F, float* out) noexcept {
   return out;
 }
 
+bool stands_still(const FrameSource& frame, std::int32_t body) noexcept {
+  const Twist& V = frame.state.world.V_WB[Index(body)];
+  return V.v.isZero(0.0) && V.w.isZero(0.0) && body != frame.state.hand.grasp.body;
+}
+
+float* put(const Pose& X, float* out) noexcept {
+  for (int i = 0; i < 3; ++i) *out++ = static_cast<float>(X.p[i]);
+  const Quat q(X.R);
+  for (const double number : {q.w(), q.x(), q.y(), q.z()}) *out++ = static_cast<float>(number);
+  return out;
+}
+
 ShownContact shown_contact(const FrameSource& frame, const ContactRow& row) noexcept {
   ShownContact contact{};
   contact.body_a = row.body_a;
@@ -27,6 +39,7 @@ ShownContact shown_contact(const FrameSource& frame, const ContactRow& row) noex
   const double rest = frame.settings.dt_s - frame.report.time_of_impact_s;  // the impulses acted so long
   contact.force_N = rest > 0.0 ? row.impulse / rest : 0.0;
   contact.patch = row.patch;
+  contact.rests = stands_still(frame, row.body_a) && stands_still(frame, row.body_b);
   if (row.friction_patch >= 0) {
     const FrictionUse& use = frame.state.response.friction_uses()[Index(row.friction_patch)];
     contact.grip = use.sticks ? Grip::kSticks : Grip::kSlips;
@@ -48,12 +61,20 @@ int sample_size() noexcept {
   return static_cast<int>(6 * wrench_stages().size() + channels().size()) + kStageCount;
 }
 
-FrameFeed::FrameFeed(std::size_t bodies, double rate_Hz)
+std::vector<int> posed_bodies(const World& world) {
+  std::vector<int> posed;
+  for (Index body = 0; body < world.bodies.size() && posed.size() < FrameSample::kPosed; ++body)
+    if (world.bodies[body].moves()) posed.push_back(static_cast<int>(body));
+  return posed;
+}
+
+FrameFeed::FrameFeed(const World& world, double rate_Hz)
     : samples_(kSamples),
-      pictures_([bodies](FramePicture& picture) {
+      pictures_([bodies = world.bodies.size()](FramePicture& picture) {
         picture.X_WB.resize(bodies);
         picture.contacts.reserve(kContacts);
       }),
+      posed_(posed_bodies(world)),
       frames_a_picture_(std::max<std::uint64_t>(1, static_cast<std::uint64_t>(rate_Hz / kPictures_Hz))) {
   TACTUM_DEMAND(sample_size() <= FrameSample::kRoom);
 }
@@ -66,6 +87,9 @@ void FrameFeed::take(const FrameSource& frame, const StageClock* clock) noexcept
   for (const Channel& channel : channels()) *out++ = static_cast<float>(channel.of(frame));
   for (int i = 0; clock != nullptr && i < kStageCount; ++i)
     *out++ = static_cast<float>(static_cast<double>(clock->stage_ns(static_cast<Stage>(i))) / 1e9);
+  sample.posed = static_cast<int>(posed_.size());
+  float* pose = sample.poses.data();
+  for (const int body : posed_) pose = put(frame.state.world.X_WB[Index(body)], pose);
   if (!samples_.push(sample))
     dropped_.store(dropped_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
   if (frame.report.index % frames_a_picture_ != 0) return;

@@ -20,15 +20,22 @@
 namespace tactum::inline v0_1 {
 
 /// The numbers of one frame: six a wrench stage (force, torque), then the channels, then the times of the
-/// frame's stages [s] (zero when nobody takes them).
+/// frame's stages [s] (zero when nobody takes them); and the poses of the first bodies that move.
 struct FrameSample {
-  static constexpr int kRoom = 64;
-  std::uint64_t index = 0;  ///< frames since the start
+  static constexpr int kRoom = 96;
+  static constexpr int kPosed = 12;       ///< most bodies whose pose it has
+  static constexpr int kPoseNumbers = 7;  ///< of a pose: place [m], quaternion w, x, y, z
+  std::uint64_t index = 0;                ///< frames since the start
   std::array<float, kRoom> values{};
+  std::array<float, kPosed * kPoseNumbers> poses{};  ///< X_WB of posed_bodies(), one after the other
+  int posed = 0;                                     ///< bodies whose pose it has
 };
 
 /// How many of FrameSample::values are used.
 int sample_size() noexcept;
+
+/// The bodies whose poses samples have: those that move, the first kPosed of them.
+std::vector<int> posed_bodies(const World& world);
 
 /// The state of friction at a contact point that pushes.
 enum class Grip : std::int32_t { kNone, kSticks, kSlips };
@@ -45,6 +52,7 @@ struct ShownContact {
   std::int32_t patch = -1;   ///< points of one patch have one number
   Grip grip = Grip::kNone;   ///< of the surfaces it is part of
   double cone_used = 0.0;    ///< the fraction of their friction cone in use, 0 to 1 [-]
+  bool rests = false;        ///< neither body moves: no force is computed between bodies that sleep
 };
 
 /// The poses and contacts of one frame.
@@ -63,7 +71,7 @@ class FrameFeed {
   static constexpr std::size_t kSamples = 1u << 14;  ///< sixteen seconds at 1 kHz until they are popped
   static constexpr std::size_t kContacts = 256;      ///< contacts of a picture: those that push most
 
-  FrameFeed(std::size_t bodies, double rate_Hz);
+  FrameFeed(const World& world, double rate_Hz);
 
   /// The loop's thread, after the frame. `clock` may be null. No allocation, no lock, no clock.
   void take(const FrameSource& frame, const StageClock* clock) noexcept;
@@ -81,6 +89,7 @@ class FrameFeed {
 
   SpscRing<FrameSample> samples_;
   Newest<FramePicture> pictures_;
+  std::vector<int> posed_;
   std::atomic<std::uint64_t> dropped_{0};
   std::uint64_t frames_a_picture_;
 };

@@ -74,6 +74,26 @@ export const topics = {
     await program.end();
   },
 
+  async gone(browser, tactum) {
+    const program = await Program.start(tactum, "gears");
+    const page = await openPage(browser, program);
+    check(!(await page.isVisible("#gone")), "no word of a loss while all is well");
+    const port = program.port;
+    await program.end();
+    await until("the page says that nobody is there", async () => (await page.isVisible("#gone")) && (await page.textContent("#gone")).includes("has ended or cannot be reached"));
+    check(await page.evaluate(() => document.body.classList.contains("gone")), "the numbers are marked as old");
+    const frozen = (await state(page)).newest;
+    await page.keyboard.press("Space");
+    await until("a stop that reaches nobody is no stop", async () => (await page.textContent("#notice")).includes("was not stopped"));
+    check(!(await page.isVisible("#stopped")), "... and is not shown as one");
+    check((await state(page)).newest === frozen, "the numbers stand still");
+    const next = await Program.start(tactum, "peg-in-hole", ["--port", String(port)]);
+    await until("a new run at the same port is told", async () => (await page.textContent("#gone")).includes("a new one answers"));
+    const bareAnswer = await bare(port, `GET /${program.token}/ HTTP/1.1\r\nHost: 127.0.0.1:${port}\r\n\r\n`);
+    check(bareAnswer.includes("terminal shows"), `who comes with an old address is told where the new one is: ${bareAnswer}`);
+    await next.end();
+  },
+
   async refusals(browser, tactum) {
     const program = await Program.start(tactum, "gears");
     const page = await openPage(browser, program);

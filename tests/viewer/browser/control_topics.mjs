@@ -1,5 +1,8 @@
 // The panels, the keyboard, and a page on a narrow screen.
-import { check, downloaded, graspedAt, openPage, pause, Program, state, until } from "./support.mjs";
+import { mkdtempSync, readFileSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { check, downloaded, graspedAt, openPage, pause, Program, readCsv, root, shownForce, state, until } from "./support.mjs";
 
 export const topics = {
   async why(browser, tactum) {
@@ -42,7 +45,7 @@ export const topics = {
     await field.blur();
     await until("the margin follows the gain", async () => (await margin()).includes("coupling of 432 N/m"));
     const toml = (await downloaded(page, "#save-toml")).toString();
-    check(toml.includes("[coupling]") && toml.includes("stiffness_N_per_m = 432  #"), `the saved settings have it: ${toml}`);
+    check(toml.includes("[settings]") && toml.includes("coupling.stiffness_N_per_m = 432  #"), `the saved settings have it: ${toml}`);
     await field.fill("99999999");
     await field.press("Enter");
     await until("what is out of range is told", async () => await page.isVisible("#notice"));
@@ -56,6 +59,93 @@ export const topics = {
     check(unnamed === 0, `${unnamed} controls have no name`);
     check(page.complaints.length === 0, page.complaints.join("; "));
     await program.end();
+  },
+
+  /** Limits and gains go back to where they were, and what was changed goes back into its scene. */
+  async settings(browser, tactum) {
+    const folder = mkdtempSync(join(tmpdir(), "tactum-settings-"));
+    const scene = join(folder, "press.toml"); // the scripted hand presses the block down
+    writeFileSync(scene, `${readFileSync(join(root, "scenes/block-on-plate.toml"), "utf8")}\n[safety]\nmax_torque_Nm = 0.3\n`);
+    const program = await Program.start(tactum, scene);
+    const page = await openPage(browser, program);
+    await page.click("#tab-panel");
+    const field = (id) => page.locator(`[id="set-${id}"]`);
+    const usual = (id) => page.locator(`[id="usual-${id}"]`);
+    const fill = async (id, text) => {
+      await field(id).fill(text);
+      await field(id).press("Enter");
+      await field(id).blur();
+    };
+    const isNow = (id, text) => until(`${id} is ${text}`, async () => (await field(id).inputValue()) === text);
+    check(await page.isDisabled("#save-toml"), "nothing was changed, so there is nothing to save");
+    await fill("safety.max_force_N", "0.2");
+    await isNow("safety.max_force_N", "0.2");
+    await pause(6); // of the scripted press
+    const forces = async () => readCsv(await downloaded(page, "#csv")).map(shownForce);
+    check(Math.max(...(await forces()).slice(-3000)) < 0.2001, "the limit holds");
+    await fill("safety.max_force_N", "");
+    await isNow("safety.max_force_N", "");
+    await until("the force is beyond the limit that was taken away", async () => Number((await state(page)).force) > 0.3, 60);
+    check(!(await usual("safety.max_force_N").isVisible()), "that is as the scene has it");
+    await fill("safety.max_torque_Nm", ""); // a limit of the scene's own
+    await isNow("safety.max_torque_Nm", "");
+    check((await usual("safety.max_torque_Nm").getAttribute("title")).includes("0.3 N m"), "the way back says where it leads");
+    await usual("safety.max_torque_Nm").click();
+    await isNow("safety.max_torque_Nm", "0.3");
+    await fill("coupling.stiffness_N_per_m", "432");
+    await fill("coupling.damping_Ns_per_m", "");
+    await fill("penalty.stiffness_N_per_m", "777");
+    await isNow("coupling.stiffness_N_per_m", "432");
+    await isNow("penalty.stiffness_N_per_m", "777");
+    const toml = (await downloaded(page, "#save-toml")).toString();
+    const keys = toml.split("\n").filter((line) => line !== "").map((line) => line.split(" ")[0]);
+    check(keys.join() === "[settings],coupling.stiffness_N_per_m,penalty.stiffness_N_per_m", `only what was changed is saved: ${toml}`);
+    check(page.complaints.length === 0, page.complaints.join("; "));
+    await program.end();
+    const saved = join(folder, "saved.toml");
+    writeFileSync(saved, toml);
+    writeFileSync(scene, `${readFileSync(scene, "utf8")}\n${toml}`);
+    for (const words of [[scene], ["block-on-plate", "--settings", saved]]) {
+      const again = await Program.command(tactum, ["feel", ...words]);
+      const other = await openPage(browser, again);
+      await other.click("#tab-panel");
+      for (const [id, text] of [["coupling.stiffness_N_per_m", "432"], ["penalty.stiffness_N_per_m", "777"]])
+        check((await other.locator(`[id="set-${id}"]`).inputValue()) === text, `${words.join(" ")} has ${id} = ${text}`);
+      await again.end();
+    }
+  },
+
+  /** What the page says of a scene and its goals, and a scene that cannot be opened. */
+  async remarks(browser, tactum) {
+    const folder = mkdtempSync(join(tmpdir(), "tactum-remarks-"));
+    const scene = join(folder, "odd.toml");
+    writeFileSync(scene, readFileSync(join(root, "scenes/block-on-plate.toml"), "utf8")
+      .replace(/^schema = 1/m, "schema = 1\ngravity_m_per_s2 = [0, 0, -1]").replace("density_kg_per_m3 = 1000", "density_kg_per_m3 = 40000"));
+    const program = await Program.start(tactum, scene);
+    const page = await openPage(browser, program);
+    const warnings = await page.locator(".remarks li.warning").allTextContents();
+    check(warnings.some((text) => text.includes("densest metal")), `the remarks of the terminal stand on the page: ${warnings}`);
+    check((await page.locator(".about li").count()) > 0, "and what the scene is");
+    const sentence = await until("nothing touches yet", async () => { const text = await page.textContent(".sentence"); return text.includes("Nothing") && text; });
+    check(sentence.includes("its weight is") && !sentence.includes("joint"), `weight is named where there is one, a joint is not where there is none: ${sentence}`);
+    const absent = await page.locator("#scene option:disabled").allTextContents();
+    check(absent.some((text) => text.startsWith("nut-bolt-file") && text.includes("absent")), `scenes without their meshes cannot be chosen: ${absent}`);
+    await page.evaluate(() => { // ... and one that is asked for all the same leaves the list where it was
+      const list = document.getElementById("scene");
+      list.querySelector("option:disabled").disabled = false;
+      list.value = "nut-bolt-file";
+      list.dispatchEvent(new Event("change"));
+    });
+    await until("the page says why", async () => await page.isVisible("#notice"));
+    check((await page.inputValue("#scene")) === "odd", "the list names the scene that runs");
+    check(page.complaints.length === 0, page.complaints.join("; "));
+    await program.end();
+    const gears = await Program.start(tactum, "gears");
+    const other = await openPage(browser, gears);
+    await until("the goals are on the page", async () => (await other.locator(".goals li").count()) > 0);
+    await until("a goal is met", async () => (await other.locator(".goals li.met").count()) > 0, 60);
+    check(!(await other.textContent(".sentence")).includes("weight"), "there is no weight in this scene");
+    await gears.end();
   },
 
   async keyboard(browser, tactum) {

@@ -2,9 +2,40 @@
 import { mkdirSync, mkdtempSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
-import { check, graspedAt, openPage, pause, Program, root, state, until } from "./support.mjs";
+import { check, downloaded, graspedAt, openPage, pause, Program, readCsv, root, state, until } from "./support.mjs";
+
+/** Width and height of a PNG file. */
+const sizeOf = (png) => [png.readUInt32BE(16), png.readUInt32BE(20)];
 
 export const topics = {
+  /** What is saved can be used: the table has poses and says what it is, pictures are large and have their numbers. */
+  async exports(browser, tactum) {
+    const program = await Program.start(tactum, "gears");
+    const page = await openPage(browser, program);
+    await until("the gears touch", async () => (await page.textContent(".sentence")).includes("touches"));
+    const csv = (await downloaded(page, "#csv")).toString();
+    const head = csv.split("\n").filter((line) => line.startsWith("#"));
+    for (const word of ["scene: gears", "device: ", "rate_Hz: 1000", "date: 20", "setting coupling.stiffness_N_per_m = 600", "column shown.fx"])
+      check(head.some((line) => line.includes(word)), `the head of the table has ${word}`);
+    const rows = readCsv(Buffer.from(csv));
+    const [first] = rows;
+    const inHead = (name) => head.some((line) => line.includes(`column ${name}`) || line.includes(`column ${name.split(".")[0]}.`) || line.includes("column BODY"));
+    for (const name of Object.keys(first).filter((one) => one !== "frame" && one !== "time [s]")) check(inHead(name.split(" ")[0]), `the head explains ${name}`);
+    const length = (row, what) => Math.hypot(...["qw", "qx", "qy", "qz"].map((part) => row[`${what}_${part}`]));
+    check(rows.every((row) => Math.abs(length(row, "hand") - 1) < 1e-5 && Math.abs(length(row, "proxy") - 1) < 1e-5), "poses of hand and proxy in every frame");
+    const apart = (row) => Math.hypot(...["x", "y", "z"].map((axis) => row[`hand_p${axis}_m [m]`] - row[`proxy_p${axis}_m [m]`]));
+    check(rows.every((row) => Math.abs(apart(row) - row["stretch_m [m]"]) < 1e-6), "they are as far apart as the stretch says");
+    const q = (row, body) => Math.hypot(...["qw", "qx", "qy", "qz"].map((part) => row[`${body}.${part}`]));
+    for (const body of ["driving", "driven"]) check(rows.every((row) => Math.abs(q(row, body) - 1) < 1e-5), `the pose of ${body} in every frame`);
+    const charts = sizeOf(await downloaded(page, "#charts-png"));
+    check(charts[0] >= 1200 && charts[1] >= 1000, `the charts as a picture are ${charts.join(" x ")} pixels`);
+    const view = sizeOf(await downloaded(page, "#picture"));
+    const canvas = await page.evaluate(() => [document.getElementById("canvas").width, document.getElementById("canvas").height]);
+    check(view[0] === canvas[0] && view[1] > canvas[1] + 60, `the view has lines of text above and below: ${view.join(" x ")}`);
+    check(page.complaints.length === 0, page.complaints.join("; "));
+    await program.end();
+  },
+
   /** The pictures of the README. TACTUM_PICTURES=keep writes them into the sources. */
   async pictures(browser, tactum) {
     const keep = process.env.TACTUM_PICTURES === "keep";
@@ -31,7 +62,6 @@ export const topics = {
       await pause(2);
     });
     await take("peg-in-hole", { colorScheme: "light" }, async (page) => {
-      await page.click("#see-through");
       const deep = async () => Number((await state(page)).newest) % 22000 > 6500; // the demonstration, forth and back
       await until("the peg has been deep in its hole", deep, 60);
       await page.click("#pause");
@@ -40,7 +70,7 @@ export const topics = {
       let best = [0, 0];
       for (let share = 0.05; share < 1; share += 0.03) {
         await page.mouse.move(chart.x + share * chart.width, chart.y + chart.height / 2);
-        const [, size, prefix] = (await page.textContent("#cursor")).match(/size ([\d.]+) (m?)N/) ?? [];
+        const [, size, prefix] = (await page.locator("#strips .key").first().textContent()).match(/size([\d.]+) (m?)N/) ?? [];
         const force = Number(size ?? 0) * (prefix ? 1e-3 : 1);
         if (force > best[0]) best = [force, share];
       }
@@ -65,7 +95,6 @@ export const topics = {
     for (const [scene, frame, options] of all ? stories : stories.slice(0, 1)) {
       await take(scene, options, async (page) => {
         await page.keyboard.press("e");
-        if (scene === "shaft" || scene === "lock") await page.click("#see-through");
         await until(`${scene} has come so far`, async () => Number((await state(page)).newest) > frame, 120);
         await page.click("#pause");
         await pause(1);

@@ -135,7 +135,7 @@ export async function downloaded(page, selector) {
 
 /** Rows of a CSV file as objects. */
 export function readCsv(bytes) {
-  const [head, ...lines] = bytes.toString("utf8").trim().split("\n");
+  const [head, ...lines] = bytes.toString("utf8").trim().split("\n").filter((line) => !line.startsWith("#"));
   const names = head.split(",");
   return lines.map((line) => Object.fromEntries(line.split(",").map((value, i) => [names[i], value === "" ? Number.NaN : Number(value)])));
 }

@@ -8,8 +8,13 @@ const farPixels = 70; // a body smaller than this on the screen is far
 const mostWithEdges = 80; // bodies
 
 interface Drawn {
-  shape: Shape; bodies: number[]; near: THREE.InstancedMesh; far: THREE.InstancedMesh | null; radius: number;
+  shape: Shape; bodies: number[]; near: THREE.InstancedMesh; far: THREE.InstancedMesh | null; radius: number; glass: boolean;
 }
+
+export type Glass = "auto" | "all" | "none";
+// Of the six middles of the sides of the held part's box: so many hidden ones make a part transparent, and keep it so.
+const [becomesGlass, staysGlass] = [3, 2];
+const hiddenBy = 0.01; // view units that the hiding surface is nearer
 
 export class Bodies {
   readonly root = new THREE.Group();
@@ -25,7 +30,7 @@ export class Bodies {
   });
   private pieces = false;
   private kinds = false;
-  private seeThrough = false;
+  private glassFor: Glass = "auto";
 
   constructor(private readonly run: Run, private readonly shapes: Shape[], private look: Look) {
     this.matrices = run.bodies.map(() => new THREE.Matrix4());
@@ -49,7 +54,7 @@ export class Bodies {
       const { near, far } = geometries[which];
       this.drawn.push({
         shape: shapes[which], bodies, near: this.instanced(near, bodies.length), far: far && this.instanced(far, bodies.length),
-        radius: near.boundingSphere?.radius ?? 1,
+        radius: near.boundingSphere?.radius ?? 1, glass: false,
       });
     }
     this.edges = run.bodies.map((body) => {
@@ -101,15 +106,44 @@ export class Bodies {
     this.setLook(this.look);
   }
 
-  showThrough(on: boolean) {
-    this.seeThrough = on;
-    for (const drawn of this.drawn) {
-      const fixed = !this.run.bodies[drawn.bodies[0]].moves;
-      for (const mesh of [drawn.near, drawn.far])
-        if (mesh) {
-          mesh.material = on && fixed ? this.glass : this.material;
-          mesh.castShadow = !(on && fixed);
+  /** Which of the fixed parts are transparent: those that hide the held one, all, or none. */
+  showThrough(which: Glass) {
+    this.glassFor = which;
+    for (const drawn of this.drawn) this.setGlass(drawn, which === "all" && !this.run.bodies[drawn.bodies[0]].moves);
+  }
+
+  private setGlass(drawn: Drawn, on: boolean) {
+    if (drawn.glass === on) return;
+    drawn.glass = on;
+    for (const mesh of [drawn.near, drawn.far])
+      if (mesh) {
+        mesh.material = on ? this.glass : this.material;
+        mesh.castShadow = !on;
+      }
+  }
+
+  /** Finds out which fixed parts hide the held one from the camera: rays to the middles of the sides of its box. */
+  showHiding(grasped: number, camera: THREE.Camera, toView: THREE.Matrix4, mostTriangles: number) {
+    if (this.glassFor !== "auto") return;
+    const hiding = new Map<Drawn, number>();
+    const own = this.drawn.find((d) => d.bodies.includes(grasped));
+    const box = own?.near.geometry.boundingBox;
+    const fixed = this.drawn.filter((d) => d !== own && !this.run.bodies[d.bodies[0]].moves && d.shape.piece.length <= mostTriangles);
+    if (box && fixed.length > 0) {
+      const centre = box.getCenter(new THREE.Vector3());
+      const toWorld = new THREE.Matrix4().copy(toView).multiply(this.matrices[grasped]);
+      for (const side of [box.min, box.max])
+        for (let axis = 0; axis < 3; ++axis) {
+          const point = centre.clone().setComponent(axis, side.getComponent(axis)).applyMatrix4(toWorld);
+          const away = point.distanceTo(camera.position);
+          const ray = new THREE.Raycaster(camera.position, point.sub(camera.position).normalize(), 0, away - hiddenBy);
+          for (const drawn of fixed)
+            if (ray.intersectObject(drawn.near, false).length > 0) hiding.set(drawn, (hiding.get(drawn) ?? 0) + 1);
         }
+    }
+    for (const drawn of this.drawn) {
+      const count = hiding.get(drawn) ?? 0;
+      this.setGlass(drawn, drawn.glass ? count >= staysGlass : count >= becomesGlass);
     }
   }
 
@@ -156,7 +190,7 @@ export class Bodies {
 
   /** The body under a ray, and where. */
   pick(ray: THREE.Raycaster): { body: number; point: THREE.Vector3 } | null {
-    const solid = this.seeThrough ? this.drawn.filter((d) => this.run.bodies[d.bodies[0]].moves) : this.drawn;
+    const solid = this.drawn.filter((d) => !d.glass);
     const hit = ray.intersectObjects(solid.map((d) => d.near), false)[0];
     if (!hit || hit.instanceId === undefined) return null;
     return { body: hit.object.userData[hit.instanceId] as number, point: hit.point };

@@ -4,17 +4,20 @@ import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
 import { make } from "./dom";
 import { lines, rawLine } from "./look";
-import type { ChannelInfo, Run } from "./protocol";
-import type { Samples } from "./samples";
+import type { ChannelInfo, Picture, Run } from "./protocol";
+import { poseParts, type Samples } from "./samples";
 import { axisUnit, withUnit } from "./units";
 
 interface Line { label: string; colour: number; value(samples: Samples, at: number): number }
-interface Strip { key: string; title: string; unit: string; lines: Line[]; tail?: boolean; named?: boolean }
+interface Strip { key: string; title: string; unit: string; lines: Line[]; tail?: boolean }
+/** Facts of a run that exports carry in their heads. */
+export interface Facts { scene: string; device: string; version: string; settings: string[] }
 
 const turningEnergy = "energy of turning";
 const energies = ["energy", turningEnergy]; // groups of channels
 const spans = [0.5, 1, 2, 5, 10, 20, 40]; // [s]
 const gapHeight = 26;
+const [sheetWidth, sheetStrip, sheetMargin] = [1200, 240, 18]; // of the charts as a picture [px]
 
 /** The smallest value that at least the share `q` of the values do not exceed. */
 function quantile(values: ArrayLike<number>, q: number): number {
@@ -37,7 +40,7 @@ function wrenchStrip(stage: number, half: 0 | 3, title: string, unit: string): S
 function rawStrip(raw: number, shown: number, half: 0 | 3, title: string, unit: string): Strip {
   const size = (stage: number) => (samples: Samples, at: number) => samples.length(stage, half, at);
   return {
-    key: title, title, unit, named: true,
+    key: title, title, unit,
     lines: [{ label: "raw", colour: rawLine, value: size(raw) }, { label: "shown", colour: 3, value: size(shown) }],
   };
 }
@@ -48,13 +51,14 @@ function channelStrip(channels: ChannelInfo[], group: string, samples: Samples):
     { stretch: "Stretch", frame: "Frame", contacts: "Contacts", energy: "Energy", [turningEnergy]: "Energy of turning" };
   return {
     key: group, title: names[group] ?? members.map((m) => m.name)[0], unit: members[0].unit, tail: group === "frame",
-    named: energies.includes(group),
     lines: members.map((channel, i) => {
       const column = samples.column(channel.key);
-      return { label: members.length > 1 ? channel.name.replace(/, turning$/, "") : "", colour: members.length > 1 ? i : 3, value: (s, at) => s.at(column, at) };
+      return { label: channel.name.replace(/, turning$/, ""), colour: members.length > 1 ? i : 3, value: (s, at) => s.at(column, at) };
     }),
   };
 }
+
+interface DrawnStrip { strip: Strip; plot: uPlot; box: HTMLElement; note: HTMLElement; values: HTMLElement[]; factor: number }
 
 export class Charts {
   paused = false;
@@ -62,7 +66,8 @@ export class Charts {
   moment: number | null = null;
   onPick: ((sample: number) => void) | null = null;
   private samples: Samples | null = null;
-  private strips: { strip: Strip; plot: uPlot; box: HTMLElement; note: HTMLElement; factor: number }[] = [];
+  private strips: DrawnStrip[] = [];
+  private hovered: number | null = null; // the sample under the pointer
   private all: Strip[] = [];
   private span = 5;
   private from = 0; // of a paused window: samples
@@ -140,11 +145,44 @@ export class Charts {
   }
 
   private build() {
+    this.hovered = null;
     for (const { plot } of this.strips) plot.destroy();
     this.root.replaceChildren();
     this.strips = this.chosen().map((strip) => this.make(strip));
     this.resize();
     this.draw(true);
+  }
+
+  private colourOf(line: Line): string {
+    const palette = this.isDark ? lines.dark : lines.light;
+    return palette[line.colour % palette.length];
+  }
+
+  /** A plot that shows the strip of the page's window, or for export a still one. */
+  private plotOf(entry: { strip: Strip; factor: number }, box: HTMLElement, size: { width: number; height: number }, still = false): uPlot {
+    const { strip } = entry;
+    const ink = this.isDark ? "#9fb0bf" : "#4a5a68";
+    const rule = { stroke: this.isDark ? "#26323d" : "#d5dde4", width: 1 };
+    return new uPlot(
+      {
+        ...size, legend: { show: false }, pxAlign: false,
+        cursor: still ? { show: false } : { sync: { key: "strips" }, drag: { x: true, y: false }, points: { show: false } },
+        scales: { x: { time: false }, y: { range: (_plot, low, high) => this.range(low, high) } },
+        axes: [
+          { stroke: ink, grid: rule, ticks: rule, size: gapHeight, font: "11px system-ui", values: (_p, v) => v.map((s) => `${Number(s.toFixed(3))} s`) },
+          { stroke: ink, grid: rule, ticks: rule, size: still ? 62 : 46, font: "11px system-ui", space: 26,
+            values: (_p, v) => v.map((y) => String(Number((y * entry.factor).toPrecision(4)))) },
+        ],
+        series: [{}, ...strip.lines.map((line) => ({
+          label: line.label, stroke: this.colourOf(line), width: line.colour === 3 ? 1.6 : 1.1, points: { show: false },
+        }))],
+        hooks: still ? {} : {
+          setCursor: [(plot) => this.moved(plot)],
+          setSelect: [(plot) => this.zoom(plot)],
+          draw: [(plot) => this.drawMoment(plot)],
+        },
+      },
+      [[], ...strip.lines.map(() => [])] as unknown as uPlot.AlignedData, box);
   }
 
   private make(strip: Strip) {
@@ -154,35 +192,14 @@ export class Charts {
     title.append(strip.title, note);
     box.append(title);
     this.root.append(box);
-    const palette = this.isDark ? lines.dark : lines.light;
-    if (strip.named) box.append(make("div", { class: "key" }, ...strip.lines.map((line) => {
-      const name = make("span", {}, line.label);
-      name.style.color = palette[line.colour % palette.length];
-      return name;
+    const values = strip.lines.map(() => make("b"));
+    box.append(make("div", { class: "key" }, ...strip.lines.map((line, i) => {
+      const name = make("i", {}, line.label);
+      name.style.color = this.colourOf(line);
+      return make("span", { title: line.label }, name, values[i]);
     })));
-    const ink = this.isDark ? "#9fb0bf" : "#4a5a68";
-    const rule = { stroke: this.isDark ? "#26323d" : "#d5dde4", width: 1 };
-    const entry = { strip, box, note, factor: 1, plot: null as unknown as uPlot };
-    entry.plot = new uPlot(
-      {
-        width: 300, height: 100, legend: { show: false }, pxAlign: false,
-        cursor: { sync: { key: "strips" }, drag: { x: true, y: false }, points: { show: false } },
-        scales: { x: { time: false }, y: { range: (_plot, low, high) => this.range(low, high) } },
-        axes: [
-          { stroke: ink, grid: rule, ticks: rule, size: gapHeight, font: "11px system-ui", values: (_p, v) => v.map((s) => `${Number(s.toFixed(3))} s`) },
-          { stroke: ink, grid: rule, ticks: rule, size: 46, font: "11px system-ui", space: 26,
-            values: (_p, v) => v.map((y) => String(Number((y * entry.factor).toPrecision(4)))) },
-        ],
-        series: [{}, ...strip.lines.map((line) => ({
-          label: line.label, stroke: palette[line.colour % palette.length], width: line.colour === 3 ? 1.6 : 1.1, points: { show: false },
-        }))],
-        hooks: {
-          setCursor: [(plot) => this.moved(plot, entry.strip)],
-          setSelect: [(plot) => this.zoom(plot)],
-          draw: [(plot) => this.drawMoment(plot)],
-        },
-      },
-      [[], ...strip.lines.map(() => [])] as unknown as uPlot.AlignedData, box);
+    const entry: DrawnStrip = { strip, box, note, values, factor: 1, plot: null as unknown as uPlot };
+    entry.plot = this.plotOf(entry, box, { width: 300, height: 100 });
     entry.plot.over.addEventListener("click", () => {
       const sample = this.from + (entry.plot.cursor.idx ?? -1);
       if (entry.plot.cursor.idx != null && entry.plot.select.width < 3) this.onPick?.(sample);
@@ -213,12 +230,20 @@ export class Charts {
     ctx.restore();
   }
 
-  private moved(plot: uPlot, strip: Strip) {
-    const index = plot.cursor.idx;
-    if (index == null || !this.samples || plot.cursor.event == null) return;
-    const sample = this.from + index;
-    const values = strip.lines.map((line) => `${line.label} ${withUnit(line.value(this.samples as Samples, sample), strip.unit)}`);
-    this.cursor.textContent = `${this.samples.timeOf(sample).toFixed(3)} s: ${values.join(", ")}`;
+  /** The values beside the names of the curves are those under the pointer while there is one. */
+  private moved(plot: uPlot) {
+    if (plot.cursor.event == null) return; // moved along with another chart
+    this.hovered = plot.cursor.idx == null ? null : this.from + plot.cursor.idx;
+    this.showValues();
+  }
+
+  private showValues() {
+    const { samples } = this;
+    if (!samples || samples.count === 0) return;
+    const sample = this.hovered ?? this.moment ?? this.to - 1;
+    for (const { strip, values } of this.strips)
+      strip.lines.forEach((line, i) => (values[i].textContent = withUnit(line.value(samples, sample), strip.unit)));
+    this.cursor.textContent = `at ${samples.timeOf(sample).toFixed(3)} s`;
   }
 
   private zoom(plot: uPlot) {
@@ -257,25 +282,31 @@ export class Charts {
       this.to = samples.count;
       this.from = Math.max(samples.oldest, this.to - Math.round(this.span / samples.dt));
     }
+    for (const entry of this.strips) this.fill(entry, entry.note);
+    this.showValues();
+    this.cost_ms = performance.now() - time;
+  }
+
+  /** Puts the window's samples on a plot, and the unit of its axis beside its title. */
+  private fill(entry: { strip: Strip; plot: uPlot; factor: number }, note: HTMLElement | null) {
+    const samples = this.samples as Samples;
+    const { strip, plot } = entry;
     const count = this.to - this.from;
     const times = new Float64Array(count);
     for (let i = 0; i < count; ++i) times[i] = samples.timeOf(this.from + i);
-    for (const entry of this.strips) {
-      const { strip, plot, note } = entry;
-      const data = strip.lines.map((line) => {
-        const values = new Float64Array(count);
-        for (let i = 0; i < count; ++i) values[i] = line.value(samples, this.from + i);
-        return values;
-      });
-      const largest = data.reduce((most, values) => values.reduce((m, v) => (Math.abs(v) > m ? Math.abs(v) : m), most), 0);
-      const [factor, unit] = axisUnit(largest, strip.unit);
-      entry.factor = factor;
-      plot.setData([times, ...data] as unknown as uPlot.AlignedData);
-      const last = data[data.length - 1][count - 1];
-      note.textContent = strip.tail ? ` ${unit} · p99.9 ${withUnit(quantile(data[0], 0.999), strip.unit)}`
-        : ` ${unit} · ${withUnit(last, strip.unit)}`;
-    }
-    this.cost_ms = performance.now() - time;
+    const data = strip.lines.map((line) => {
+      const values = new Float64Array(count);
+      for (let i = 0; i < count; ++i) values[i] = line.value(samples, this.from + i);
+      return values;
+    });
+    const largest = data.reduce((most, values) => values.reduce((m, v) => (Math.abs(v) > m ? Math.abs(v) : m), most), 0);
+    const [factor, unit] = axisUnit(largest, strip.unit);
+    entry.factor = factor;
+    plot.setData([times, ...data] as unknown as uPlot.AlignedData);
+    const tail = strip.tail ? ` p99.9 ${withUnit(quantile(data[0], 0.999), strip.unit)}` : "";
+    const text = `${unit ? ` [${unit}]` : ""}${tail}`;
+    if (note) note.textContent = text;
+    return text;
   }
 
   private resize() {
@@ -291,51 +322,88 @@ export class Charts {
     }
   }
 
-  /** The samples in the window, every number, as text that reads back to the same values. */
-  csv(): string {
-    const samples = this.samples;
-    if (!samples) return "";
-    const heads = samples.names.map((name, i) => (samples.units[i] ? `${name} [${samples.units[i]}]` : name));
-    const rows = [["frame", "time [s]", ...heads].join(",")];
+  /**
+   * Every frame of the window as a table: wrenches, channels, poses. Values read back to the same numbers. Every sample has the
+   * poses of the first dozen bodies that move; those of the others are known in the frames of which the page has a picture, else
+   * their cells are empty.
+   */
+  csv(facts: Facts): string {
+    const { samples, run } = this;
+    if (!samples || !run || samples.count === 0) return "";
+    const quoted = (text: string) => (/[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
+    const headed = (name: string, unit: string) => quoted(unit ? `${name} [${unit}]` : name);
+    const others = run.bodies.flatMap((body, i) => (body.moves && !run.posed.includes(i) ? [i] : []));
+    const heads = [...samples.names.map((name, i) => headed(name, samples.units[i])),
+      ...others.flatMap((body) => poseParts.map(([part, unit]) => headed(`${run.bodies[body].name}.${part}`, unit)))];
+    const rows = [...this.head(facts), ["frame", "time [s]", ...heads].join(",")];
+    const pictures = samples.picturesBetween(samples.frameOf(this.from), samples.frameOf(this.to - 1));
+    const text = (value: number) => (Number.isNaN(value) ? "" : String(Number(value.toPrecision(9))));
+    const poseOf = (picture: Picture | undefined, body: number) => poseParts.map((_part, k) => (picture ? text(picture.bodies[7 * body + k]) : ""));
     for (let i = this.from; i < this.to; ++i) {
-      const values = samples.names.map((_name, column) => {
-        const value = samples.at(column, i);
-        return Number.isNaN(value) ? "" : String(Number(value.toPrecision(9)));
-      });
-      rows.push([samples.frameOf(i), Number(samples.timeOf(i).toFixed(9)), ...values].join(","));
+      const picture = pictures.get(samples.frameOf(i));
+      const values = samples.names.map((_name, column) => text(samples.at(column, i)));
+      rows.push([samples.frameOf(i), Number(samples.timeOf(i).toFixed(9)), ...values, ...others.flatMap((body) => poseOf(picture, body))].join(","));
     }
     return `${rows.join("\n")}\n`;
   }
 
-  /** All strips on one picture, with their titles. */
-  async png(): Promise<Blob> {
-    const plots = this.strips.map((s) => s.plot.ctx.canvas);
+  /** What a table is about, as comments. */
+  private head(facts: Facts): string[] {
+    const run = this.run as Run;
+    return [
+      `Tactum ${facts.version}: every frame of the charts' window, docs/viewer.md#the-csv-file`, `scene: ${facts.scene}`, `device: ${facts.device}`,
+      `rate_Hz: ${run.rate_Hz}`, `date: ${new Date().toISOString()}`,
+      "axes: of the world; wrenches act on the hand, at the handle; device.* is in the frame of the device; quaternions are w, x, y, z",
+      ...run.stages.map((stage) => `column ${stage.key}.fx to .tz [N, N m]: ${stage.name}; ${stage.meaning}`),
+      ...run.channels.map((channel) => `column ${channel.key}${channel.unit ? ` [${channel.unit}]` : ""}: ${channel.name}; ${channel.meaning}`),
+      "column BODY.px to .qz [m]: centre of mass and orientation of each body that moves; beyond the first dozen only in frames of which the page has a picture",
+      ...run.bodies.filter((one) => !one.moves).map(({ name, X_WB: { p, q } }) => `fixed body ${name}: px, py, pz [m], qw, qx, qy, qz = ${[...p, ...q].join(" ")}`),
+      ...facts.settings.map((line) => `setting ${line}`),
+    ].map((line) => `# ${line.replaceAll("\n", " ")}`);
+  }
+
+  /** All charts of the window on one sheet, with titles, units and names. */
+  async png(facts: Facts): Promise<Blob> {
+    const samples = this.samples as Samples;
     const ratio = devicePixelRatio;
-    const width = Math.max(...plots.map((p) => p.width));
-    const title = 22 * ratio;
+    const bench = make("div", { class: "spoken" }); // where plots are made that nobody sees
+    document.body.append(bench);
+    const drawn = this.strips.map(({ strip }) => {
+      const entry = { strip, factor: 1, plot: null as unknown as uPlot };
+      entry.plot = this.plotOf(entry, bench, { width: sheetWidth - 2 * sheetMargin, height: sheetStrip }, true);
+      return { ...entry, note: this.fill(entry, null), entry };
+    });
+    for (const { entry } of drawn) entry.plot.redraw(false); // with the axes' factors, which are known by now
+    await new Promise((resolve) => setTimeout(resolve, 60));
+    const [head, title] = [52, 26];
     const sheet = document.createElement("canvas");
-    sheet.width = width;
-    sheet.height = plots.reduce((sum, p) => sum + p.height + title, 0);
+    sheet.width = sheetWidth * ratio;
+    sheet.height = (head + drawn.length * (sheetStrip + title) + sheetMargin) * ratio;
     const ctx = sheet.getContext("2d") as CanvasRenderingContext2D;
+    ctx.scale(ratio, ratio);
     ctx.fillStyle = this.isDark ? "#151d26" : "#ffffff";
     ctx.fillRect(0, 0, sheet.width, sheet.height);
-    ctx.fillStyle = this.isDark ? "#e8eef4" : "#1a242d";
-    ctx.font = `600 ${13 * ratio}px system-ui`;
-    let top = 0;
-    this.strips.forEach(({ strip, note }, i) => {
-      ctx.fillText(`${strip.title}${note.textContent ?? ""}`, 8 * ratio, top + 15 * ratio);
-      const palette = this.isDark ? lines.dark : lines.light;
-      let right = width - 8 * ratio;
-      for (const line of strip.named ? [...strip.lines].reverse() : []) {
-        right -= ctx.measureText(line.label).width + 8 * ratio;
-        ctx.save();
-        ctx.fillStyle = palette[line.colour % palette.length];
-        ctx.fillText(line.label, right, top + 15 * ratio);
-        ctx.restore();
+    const ink = this.isDark ? "#e8eef4" : "#1a242d";
+    const write = (text: string, x: number, y: number, font: string, colour = ink) => {
+      [ctx.font, ctx.fillStyle] = [font, colour];
+      ctx.fillText(text, x, y);
+      return ctx.measureText(text).width;
+    };
+    write(`Tactum: ${facts.scene}`, sheetMargin, 26, "600 17px system-ui");
+    write(`${facts.device}, ${samples.timeOf(this.from).toFixed(3)} to ${samples.timeOf(this.to - 1).toFixed(3)} s, ${new Date().toISOString().slice(0, 16)}Z`,
+      sheetMargin, 45, "12px system-ui");
+    drawn.forEach(({ strip, note, plot }, i) => {
+      const top = head + i * (sheetStrip + title);
+      let x = sheetMargin + write(`${strip.title}${note}`, sheetMargin, top + 19, "600 14px system-ui") + 24;
+      for (const line of strip.lines) {
+        ctx.fillStyle = this.colourOf(line);
+        ctx.fillRect(x, top + 13, 18, 3);
+        x += 24 + write(line.label, x + 24, top + 19, "13px system-ui") + 16;
       }
-      ctx.drawImage(plots[i], 0, top + title);
-      top += plots[i].height + title;
+      ctx.drawImage(plot.ctx.canvas, sheetMargin, top + title, sheetWidth - 2 * sheetMargin, sheetStrip);
+      plot.destroy();
     });
+    bench.remove();
     return await new Promise((resolve, reject) => sheet.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("no picture"))), "image/png"));
   }
 }

@@ -5,6 +5,8 @@ export interface Listener {
   received(message: ServerMessage): void;
   frames(frames: Frames): void;
   linked(up: boolean): void;
+  /** After a loss, at each try: "other": another program answers, which has another address. */
+  gone(why: "nobody" | "other"): void;
 }
 
 export class Connection {
@@ -36,10 +38,17 @@ export class Connection {
     socket.onclose = () => {
       this.socket = null;
       this.listener.linked(false);
+      void this.findOut();
       setTimeout(() => this.open(), this.wait_ms);
       this.wait_ms = Math.min(4000, 2 * this.wait_ms);
     };
     this.socket = socket;
+  }
+
+  /** Whether anybody is there. */
+  private async findOut() {
+    const status = await fetch("geometry", { method: "GET" }).then((answer) => answer.status, () => 0);
+    if (status === 0 || status === 403) this.listener.gone(status === 403 ? "other" : "nobody");
   }
 
   send(message: Record<string, unknown>) {

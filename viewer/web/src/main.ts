@@ -1,6 +1,7 @@
 // The page: what is felt, seen. Puts the parts together; each file beside this one is one part.
 import "./style.css";
-import { Charts } from "./charts";
+import type { Glass } from "./bodies";
+import { Charts, type Facts } from "./charts";
 import { Connection } from "./connection";
 import { download, get, make } from "./dom";
 import { Hand } from "./hand";
@@ -14,7 +15,7 @@ import { Why } from "./why";
 
 const body = document.body;
 const canvas = get<HTMLCanvasElement>("canvas");
-const view = new View(canvas, get("labels"), get("scale"));
+const view = new View(canvas, get("labels"), get("scale"), get("cube"));
 const charts = new Charts(get("strips"), get("span"), get("also"), get("cursor"));
 const why = new Why(get("why"));
 let run: Run | null = null;
@@ -23,8 +24,10 @@ let status: Status | null = null;
 let shapes: Shape[] = [];
 let waitingFrames: Frames[] = []; // of a run whose geometry is on its way
 let stopped = false;
+let askedToStop = 0; // when the page last asked for what the program has not confirmed yet
+let cutOff = false; // what is shown is the last that the program sent
 
-const connection = new Connection({ received, frames, linked });
+const connection = new Connection({ received, frames, linked, gone });
 const ask = (message: Record<string, unknown>) => connection.send(message);
 const panel = new Panel(get("panel"), (message) => {
   if (maySteer()) ask(message);
@@ -54,7 +57,10 @@ function notice(text: string) {
 function received(message: ServerMessage) {
   if (message.type === "run") void begin(message);
   else if (message.type === "settings") panel.showSettings(message);
-  else if (message.type === "notice") notice(message.sentence);
+  else if (message.type === "notice") {
+    notice(message.sentence);
+    if (run) get<HTMLSelectElement>("scene").value = run.scene; // a scene that could not be opened is not the one that runs
+  }
   else showStatus(message);
 }
 
@@ -62,6 +68,8 @@ async function begin(next: Run) {
   const response = await fetch("geometry");
   if (!response.ok) return notice("The scene's geometry could not be loaded.");
   shapes = readShapes(await response.arrayBuffer());
+  cutOff = false;
+  showGone("");
   run = next;
   samples = new Samples(next);
   view.begin(next, shapes);
@@ -70,13 +78,18 @@ async function begin(next: Run) {
   why.begin(next);
   panel.begin(next);
   view.bodies?.showPieces(pressed("pieces"));
-  view.bodies?.showThrough(pressed("see-through"));
+  view.bodies?.showThrough(glass);
   showKinds(pressed("edges"));
   const choice = get<HTMLSelectElement>("scene");
   const known = next.scenes.some((scene) => scene.name === next.scene);
   choice.replaceChildren(
     ...(known ? [] : [new Option(next.scene, next.scene)]),
-    ...next.scenes.map((scene) => new Option(`${scene.name}: ${scene.description}`, scene.name)));
+    ...next.scenes.map((scene) => {
+      const absent = scene.absent.length > 0;
+      const option = new Option(`${scene.name}: ${absent ? "its meshes are absent, see docs/real-parts.md" : scene.description}`, scene.name);
+      option.disabled = absent;
+      return option;
+    }));
   choice.value = next.scene;
   document.title = `Tactum: ${next.scene}`;
   body.classList.toggle("only-looks", next.grasped < 0 && next.bodies.every((one) => !one.moves)); // a part alone
@@ -89,8 +102,8 @@ async function begin(next: Run) {
 }
 
 function frames(message: Frames) {
-  if (!run || message.run !== run.run) {
-    if (!run || message.run > run.run) waitingFrames.push(message);
+  if (!run || cutOff || message.run !== run.run) {
+    if (!run || cutOff || message.run > run.run) waitingFrames.push(message);
     return;
   }
   samples?.take(message);
@@ -104,10 +117,24 @@ function linked(up: boolean) {
   get("link").textContent = up ? "connected" : "connection lost, trying again";
   get("link").classList.toggle("bad", !up);
   if (!up) {
-    run = null;
+    cutOff = true;
     waitingFrames = [];
     hand.lose();
   }
+}
+
+/** Says across the scene that its numbers are old; with an empty text, that they are not. */
+function showGone(text: string) {
+  get("gone").textContent = text;
+  get("gone").hidden = text === "";
+  body.classList.toggle("gone", text !== "");
+}
+function gone(why: "nobody" | "other") {
+  if (!cutOff) return;
+  get("link").textContent = why === "other" ? "another run" : "no program";
+  showGone(why === "other"
+    ? "This run has ended, and a new one answers at this port: open the address that its terminal shows. What is seen here is the last of the old run."
+    : "The program has ended or cannot be reached. What is seen here is the last that it sent; the page goes on asking.");
 }
 
 function showStatus(message: Status) {
@@ -117,9 +144,9 @@ function showStatus(message: Status) {
     hand.lose();
     notice("Another page has taken the hand.");
   }
-  stopped = message.program.stopped ?? false;
-  get("stopped").hidden = !stopped;
-  get("stop").setAttribute("aria-pressed", String(stopped));
+  const confirmed = message.program.stopped ?? false;
+  if (confirmed === stopped || performance.now() - askedToStop > answerWithin_ms) showStopped(confirmed);
+  why.showGoals(message.program.goals ?? []);
   get("steer").hidden = message.steering || !message.somebody_steers;
   const link = get("link");
   const health = message.program;
@@ -127,7 +154,7 @@ function showStatus(message: Status) {
   link.classList.toggle("bad", health.device_lost ?? false);
   panel.showStatus(message);
   body.dataset.steering = String(message.steering);
-  body.dataset.stopped = String(stopped);
+  body.dataset.stopped = String(confirmed);
   body.dataset.pages = String(message.pages);
   body.dataset.refused = JSON.stringify(message.refused);
   body.dataset.frames = String(health.frames ?? 0);
@@ -142,7 +169,7 @@ function showSummary(sample: number) {
   const force = samples.length(shown, 0, sample);
   const torque = samples.length(shown, 3, sample);
   const points = samples.at(samples.column("grasped_contact_points"), sample);
-  get("summary").textContent = `${withUnit(force, "N")} · ${withUnit(torque, "N m")} · ${points > 0 ? `touching at ${points} points` : "free"}`;
+  get("summary").textContent = run.grasped < 0 ? "nothing is held" : `${withUnit(force, "N")} · ${withUnit(torque, "N m")} · ${points > 0 ? `touching at ${points} ${points === 1 ? "point" : "points"}` : "free"}`;
   body.dataset.force = String(force);
   body.dataset.torque = String(torque);
   body.dataset.peakForce = String(samples.peakForce);
@@ -196,11 +223,50 @@ function toggle(id: string, to = !pressed(id)) {
   return to;
 }
 
+const answerWithin_ms = 1500; // a program that has not confirmed a stop by then has not stopped
+
+/** What the page shows of a stop: at once what was asked for, then what the program confirms. */
+function showStopped(on: boolean) {
+  if (on && !stopped) window.setTimeout(() => get("resume").focus({ preventScroll: true })); // Enter feels again
+  stopped = on;
+  get("stopped").hidden = !on;
+  (get("stopped").firstElementChild as HTMLElement).textContent = "Stopped: no force is shown.";
+  get("stop").setAttribute("aria-pressed", String(on));
+}
 function stop() {
   ask({ do: "stop" });
+  if (cutOff) return notice("The program cannot be reached, so it was not stopped from here.");
+  askedToStop = performance.now();
+  showStopped(true);
 }
 function resume() {
-  if (maySteer()) ask({ do: "resume" });
+  if (!maySteer()) return;
+  ask({ do: "resume" });
+  askedToStop = performance.now();
+  showStopped(false);
+}
+function factsOf(): Facts {
+  return {
+    scene: run?.scene ?? "", version: run?.version ?? "", device: run ? `${run.device.label}, ${run.device.grip} hand` : "",
+    settings: panel.lines(),
+  };
+}
+function savePicture() {
+  if (!run || !samples) return;
+  const sample = charts.moment ?? samples.count - 1;
+  const [force, torque] = [0, 3].map((half) => samples?.length((run as Run).stages.length - 1, half as 0 | 3, sample) ?? 0);
+  const title = `Tactum: ${run.scene}, ${samples.timeOf(sample).toFixed(3)} s, ${new Date().toISOString().slice(0, 16)}Z`;
+  const felt = run.grasped < 0 ? "nothing is held" : `on the hand: ${withUnit(force, "N")}, ${withUnit(torque, "N m")}`;
+  void view.png(title, [felt]).then((png) => download(`tactum-${run?.scene ?? "scene"}.png`, png));
+}
+const glassNames: Record<Glass, [string, string]> = { auto: ["Glass: auto", "mixed"], all: ["Glass: all", "true"], none: ["Glass: off", "false"] };
+let glass: Glass = "auto";
+function nextGlass() {
+  glass = ({ auto: "all", all: "none", none: "auto" } as const)[glass];
+  const [name, state] = glassNames[glass];
+  get("see-through").textContent = name;
+  get("see-through").setAttribute("aria-pressed", state);
+  view.bodies?.showThrough(glass);
 }
 function back() {
   charts.moment = null;
@@ -246,10 +312,12 @@ const actions: [string, string, () => void][] = [
   ["reset", "r", reset],
   ["steer", "", () => ask({ do: "steer" })],
   ["theme", "", () => theme(document.documentElement.dataset.theme !== "dark")],
-  ["help-button", "?", () => showHelp(get("help").hidden)],
+  ["help-button", "?", () => showHelp(!get<HTMLDialogElement>("help").open)],
   ["pieces", "p", () => view.bodies?.showPieces(toggle("pieces"))],
   ["edges", "e", () => showKinds(toggle("edges"))],
-  ["see-through", "x", () => view.bodies?.showThrough(toggle("see-through"))],
+  ["see-through", "x", nextGlass],
+  ["arrows-smaller", "-", () => view.scaleArrows(false)],
+  ["arrows-larger", "+", () => view.scaleArrows(true)],
   ["trail", "t", () => (view.overlay.showsTrail = toggle("trail"))],
   ["field", "f", () => view.field.show(toggle("field"))],
   ["raw", "w", () => {
@@ -258,12 +326,12 @@ const actions: [string, string, () => void][] = [
     charts.showRaw(on);
   }],
   ["energy", "n", () => charts.showEnergy(toggle("energy"))],
-  ["picture", "", () => void view.png().then((png) => download(`tactum-${run?.scene ?? "scene"}.png`, png))],
+  ["picture", "", savePicture],
   ["mode", "m", () => { hand.turns = toggle("mode"); showHint(); }],
   ["grasp", "g", grasp],
   ["pause", "c", () => charts.pause(!charts.paused)],
-  ["csv", "", () => download(`tactum-${run?.scene ?? "run"}.csv`, new Blob([charts.csv()], { type: "text/csv" }))],
-  ["charts-png", "", () => void charts.png().then((png) => download(`tactum-${run?.scene ?? "run"}-charts.png`, png))],
+  ["csv", "", () => download(`tactum-${run?.scene ?? "run"}.csv`, new Blob([charts.csv(factsOf())], { type: "text/csv" }))],
+  ["charts-png", "", () => void charts.png(factsOf()).then((png) => download(`tactum-${run?.scene ?? "run"}-charts.png`, png))],
   ["live", "l", back],
 ];
 for (const [id, , action] of actions) get(id).addEventListener("click", action);
@@ -283,7 +351,6 @@ window.addEventListener("keydown", (event) => {
     return;
   }
   if (event.ctrlKey || event.metaKey || isTyping(event.target) || event.target instanceof HTMLSelectElement) return;
-  if (event.key === "Escape") return showHelp(false);
   const number = Number(event.key);
   if (number >= 1 && number <= views.length) view.look_from(views[number - 1]);
   actions.find(([, key]) => key !== "" && key === event.key.toLowerCase())?.[2]();
@@ -309,8 +376,10 @@ charts.onPick = (sample) => {
   charts.moment = sample;
   charts.draw(true);
   get("past").hidden = false;
-  (get("past").firstElementChild as HTMLElement).textContent = `This was ${samples.timeOf(sample).toFixed(3)} s, frame ${samples.frameOf(sample)}.`;
   const picture = samples.picture(samples.frameOf(sample));
+  const off = picture ? Math.abs(picture.index - samples.frameOf(sample)) : 0;
+  (get("past").firstElementChild as HTMLElement).textContent = `This was ${samples.timeOf(sample).toFixed(3)} s, frame ${samples.frameOf(sample)}` +
+    `${off > 0 ? `; places and contacts are those of frame ${picture?.index}` : ""}.`;
   if (picture) why.update(samples, sample, picture, true);
 };
 why.onChoose = (contact) => {
@@ -348,21 +417,26 @@ const helpRows: [string, string][] = [
   ["Letting go", "the part stays where the hand was; R starts again with the scripted hand"],
   ["Arrows, page up and down", "fine steps (shift turns, alt is finer) when the scene has the focus"],
   ["G", "the device's button: grasp"],
-  ["Drag beside it, wheel, right drag", "look around, zoom, shift the view"],
-  ["1 2 3 4", "slanted, front, side, top"],
-  ["P, E, X, T, F", "pieces, kinds of edges, glass, trail, force fields"],
+  ["Drag beside it, wheel, right drag", "look around, zoom to the pointer, shift the view; a double click becomes the middle"],
+  ["1 2 3 4, the cube", "slanted, front, side, top; a face of the cube"],
+  ["P, E, X, T, F", "pieces, kinds of edges, glass (parts that hide the held one, all, none), trail, force fields"],
+  ["+ −", "longer, shorter arrows; without that one newton has the same length in every moment"],
   ["W, N", "the raw wrench beside the shown one, energy charts"],
-  ["Space", "STOP: zero force and torque, at once led to nothing"],
+  ["Space, then Enter", "STOP: force and torque are led to zero at once; feel again"],
   ["C, click on a chart", "pause; show that moment"],
   ["L, R", "back to now; start again"],
 ];
 function showHelp(on: boolean) {
-  const help = get("help");
-  help.hidden = !on;
-  get("help-button").setAttribute("aria-expanded", String(on));
-  if (!on || help.childElementCount > 0) return;
+  const help = get<HTMLDialogElement>("help");
+  if (!on) return help.close();
+  if (help.childElementCount === 0) fillHelp(help);
+  help.showModal();
+  get("help-button").setAttribute("aria-expanded", "true");
+}
+function fillHelp(help: HTMLDialogElement) {
   const close = make("button", { "aria-label": "Close" }, "×");
   close.onclick = () => showHelp(false);
+  help.onclose = () => get("help-button").setAttribute("aria-expanded", "false");
   help.append(close, make("h2", {}, "How to"), make("dl", {}, ...helpRows.flatMap(([key, what]) => [make("dt", {}, key), make("dd", {}, what)])),
     make("p", { class: "quiet" }, "Orange: the part in your hand. Blue ghost: where the device is. Red arrow: force on the hand. Pink arc: torque. White discs: contact points. Arrows at contacts are green where friction sticks, yellow where it slips."));
 }

@@ -84,11 +84,13 @@ class Rod {
   }
 }
 
-export interface Scales { force: number; torque: number } // view units a newton, radians a newton metre
+/** View units a newton, radians a newton metre; arrows end at the longest. */
+export interface Scales { force: number; torque: number; longest: number }
 
 export class Overlay {
   readonly root = new THREE.Group();
-  readonly ghostMaterial = new THREE.MeshStandardMaterial({ transparent: true, opacity: 0.3, depthWrite: false, roughness: 0.6 });
+  readonly ghostMaterial = new THREE.MeshStandardMaterial({ transparent: true, opacity: 0.3, depthWrite: false, roughness: 0.6,
+    polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 2 }); // where ghost and part agree, the part is seen
   private readonly materials = {
     force: plain(), torque: plain(), contact: plain(0.95), arrow: plain(), raw: plain(0.5), patch: plain(0.35), stretch: plain(), trail: new THREE.LineBasicMaterial(
       { vertexColors: true, transparent: true, toneMapped: false }), handle: plain(), pull: plain(0.7),
@@ -211,7 +213,7 @@ export class Overlay {
   }
 
   private setPair(arrow: Arrow, arc: Arc, at: THREE.Vector3, wrench: number[], scales: Scales): THREE.Vector3 {
-    const force = new THREE.Vector3(wrench[0], wrench[1], wrench[2]).multiplyScalar(scales.force);
+    const force = new THREE.Vector3(wrench[0], wrench[1], wrench[2]).multiplyScalar(scales.force).clampLength(0, scales.longest);
     arrow.set(at, force);
     const torque = new THREE.Vector3(wrench[3], wrench[4], wrench[5]);
     const size = torque.length();
@@ -225,7 +227,7 @@ export class Overlay {
     if (from && to) this.pull.set(from, to);
   }
 
-  setContacts(contacts: Contact[], pushes: Push[], grasped: number, toView: THREE.Matrix4, forceScale: number) {
+  setContacts(contacts: Contact[], pushes: Push[], grasped: number, toView: THREE.Matrix4, scales: Scales) {
     const count = Math.min(contacts.length, mostContacts);
     const at = new THREE.Vector3();
     const along = new THREE.Vector3();
@@ -248,7 +250,7 @@ export class Overlay {
     for (const push of pushes) {
       along.fromArray(push.force);
       const force = along.length();
-      const length = force * forceScale;
+      const length = Math.min(scales.longest, force * scales.force);
       if (length < 0.01 || arrows === mostContacts) continue;
       along.divideScalar(force);
       turn.setFromUnitVectors(up, along);

@@ -1,16 +1,23 @@
 // The settings, made from the program's own description of them: name, unit, range, meaning. And the device, the health of
 // the loop, and what the program has refused.
 import { download, get, make } from "./dom";
-import type { Run, Setting, Status } from "./protocol";
+import type { Run, Setting, Settings, Status } from "./protocol";
 import { withUnit } from "./units";
 
 export interface Ask { (message: Record<string, unknown>): void }
 
 const idOf = (setting: Setting) => (setting.section ? `${setting.section}.${setting.key}` : setting.key);
 const sections: Record<string, string> = {
-  coupling: "Coupling of hand and part", penalty: "Contact", shading: "Shading", smoothing: "Smoothing", safety: "Safety: only tighter",
-  "": "Response and rate", constraint: "Nothing is entered", impacts: "Blows", budget: "Work budget", workspace: "Workspace",
+  coupling: "Coupling of hand and part", penalty: "Penalty response", shading: "Shading", smoothing: "Smoothing", safety: "Safety: only tighter",
+  "": "Response and rate", constraint: "Constraint response", impacts: "Impacts", budget: "Work budget", workspace: "Workspace",
 };
+
+/** A value as people read it. */
+function wordOf(setting: Setting, value: number | null): string {
+  if (value === null) return "the device's own limit";
+  if (setting.kind === "on-off") return value ? "on" : "off";
+  return setting.kind === "choice" ? setting.choices[value] : `${Number(value.toPrecision(6))} ${setting.unit}`;
+}
 
 /** Sliders of wide ranges go by factors, not by steps. */
 class Scale {
@@ -31,19 +38,22 @@ class Scale {
 
 export class Panel {
   private toml = "";
+  private settings: Setting[] = [];
   private scene = "";
   private readonly form = make("form", { class: "settings", autocomplete: "off" });
   private readonly device = make("div", { class: "device" });
   private readonly health = make("dl", { class: "numbers" });
   private readonly refused = make("dl", { class: "numbers" });
-  private readonly margin = make("p", { class: "quiet", id: "margin", role: "status" });
+  private readonly margin = make("p", { class: "margin", id: "margin", role: "status" });
+  private readonly save = make("button", { type: "button", id: "save-toml" }, "Save as TOML");
   private shownFor = "";
 
   constructor(root: HTMLElement, private readonly ask: Ask) {
-    const save = make("button", { type: "button", id: "save-toml", title: "Sections of a scene file" }, "Save as TOML");
-    save.onclick = () => download(`${this.scene}-settings.toml`, new Blob([this.toml], { type: "application/toml" }));
+    this.save.onclick = () => download(`${this.scene}-settings.toml`, new Blob([this.toml], { type: "application/toml" }));
+    this.save.title = "What was changed here, as the table [settings]: behind the scene file, or with tactum feel SCENE --settings FILE";
+    this.health.id = "health";
     this.form.onsubmit = (event) => event.preventDefault();
-    root.append(make("h2", {}, "Device"), this.device, make("h2", {}, "Response"), this.form, save,
+    root.append(make("h2", {}, "Device"), this.device, make("h2", {}, "Response"), this.form, this.save,
       make("h2", {}, "Health"), this.health, make("h2", {}, "Refused by the program"), this.refused);
   }
 
@@ -72,15 +82,19 @@ export class Panel {
       device.can_be_led ? "" : " It cannot be led by the mouse."));
   }
 
-  showSettings({ settings, margin, toml }: { settings: Setting[]; margin: string; toml: string }) {
+  showSettings({ settings, margin, stability, coupling_by_device, toml }: Settings) {
     this.toml = toml;
+    this.settings = settings;
+    this.save.disabled = toml === "";
+    this.save.textContent = toml === "" ? "Nothing is changed" : "Save what is changed as TOML";
     const shape = settings.map(idOf).join();
     if (shape !== this.shownFor) {
       this.shownFor = shape;
       this.build(settings);
     }
     for (const setting of settings) this.fill(setting);
-    this.margin.textContent = `Stability: ${margin}.`;
+    this.margin.className = `margin ${{ always: "", "in hand": "hand", uncertain: "uncertain" }[stability]}`;
+    this.margin.textContent = `${margin}${coupling_by_device ? " It was chosen for this device and rate." : ""}`;
   }
 
   private build(settings: Setting[]) {
@@ -96,36 +110,43 @@ export class Panel {
   private row(setting: Setting): HTMLElement {
     const id = idOf(setting);
     const note = `${setting.meaning}${setting.live ? "" : "; starts the scene again"}`;
-    const set = (value: number) => this.ask({ do: "set", key: id, value });
+    const set = (value: number | null) => this.ask({ do: "set", key: id, value });
+    const usual = make("button", { type: "button", class: "usual", id: `usual-${id}`, "aria-label": `${setting.name}: as the scene has it` }, "↺");
+    usual.onclick = () => this.ask({ do: "unset", key: id });
     if (setting.kind === "on-off") {
       const box = make("input", { type: "checkbox", id: `set-${id}` });
       box.onchange = () => set(box.checked ? 1 : 0);
-      return make("div", { class: "setting", title: note }, make("label", { for: box.id }, setting.name), box, make("small", {}, note));
+      return make("div", { class: "setting", title: note }, make("label", { for: box.id }, setting.name), box, usual, make("small", {}, note));
     }
     if (setting.kind === "choice") {
       const choice = make("select", { id: `set-${id}` });
       setting.choices.forEach((name, value) => choice.append(new Option(name, String(value))));
       choice.onchange = () => set(Number(choice.value));
-      return make("div", { class: "setting", title: note }, make("label", { for: choice.id }, setting.name), choice, make("small", {}, note));
+      return make("div", { class: "setting", title: note }, make("label", { for: choice.id }, setting.name), choice, usual, make("small", {}, note));
     }
     const scale = new Scale(setting);
     const range = `${setting.low} to ${setting.high} ${setting.unit}`;
     const slider = make("input", { type: "range", min: "0", max: "1", step: "0.002", id: `slide-${id}`, "aria-label": `${setting.name}, slider`, tabindex: "-1" });
     const number = make("input", { type: "number", step: "any", min: String(setting.low), max: String(setting.high), id: `set-${id}`,
-      "aria-describedby": `note-${id}`, placeholder: setting.section === "safety" ? "device's" : "off" });
+      "aria-describedby": `note-${id}`, placeholder: setting.unlimited ? "device's" : "" });
     slider.oninput = () => (number.value = String(scale.from(Number(slider.value))));
     slider.onchange = () => set(scale.from(Number(slider.value)));
     number.onchange = () => {
       if (number.value !== "") set(Number(number.value));
+      else if (setting.unlimited) set(null);
+      else this.ask({ do: "unset", key: id });
     };
     return make("div", { class: "setting", title: `${note} (${range})` },
-      make("label", { for: number.id }, setting.name), number, make("span", { class: "unit" }, setting.unit), slider,
+      make("label", { for: number.id }, setting.name), number, make("span", { class: "unit" }, setting.unit), usual, slider,
       make("small", { id: `note-${id}` }, `${note} (${range})`));
   }
 
   private fill(setting: Setting) {
     const id = idOf(setting);
     const field = get<HTMLInputElement>(`set-${id}`);
+    const usual = get<HTMLButtonElement>(`usual-${id}`);
+    usual.hidden = setting.value === setting.usual;
+    usual.title = `Back to ${wordOf(setting, setting.usual)}, as the scene has it`;
     if (document.activeElement === field && field.type === "number") return;
     if (setting.kind === "on-off") {
       field.checked = setting.value !== null && setting.value !== 0;
@@ -149,7 +170,7 @@ export class Panel {
       ["Late frames", String(p.late_frames ?? 0)],
       ["Failed reads, writes", `${p.failed_reads ?? 0}, ${p.failed_writes ?? 0}`],
       ["Samples lost on the way", `${(p.samples_dropped ?? 0) + status.samples_lost}`],
-      ["Pages that look", String(status.pages)],
+      ["Open pages", String(status.pages)],
       ["Safety", p.safety || "nothing acts"],
     ];
     if (p.frame_us) {
@@ -158,6 +179,12 @@ export class Panel {
     }
     const list = (entries: [string, string][]) => entries.flatMap(([name, value]) => [make("dt", {}, name), make("dd", {}, value)]);
     this.health.replaceChildren(...list(rows), ...(p.remarks ?? []).map((remark) => make("p", { class: "quiet" }, remark)));
-    this.refused.replaceChildren(...list(Object.entries(status.refused).map(([name, count]) => [name, String(count)])));
+    const refused = Object.entries(status.refused).filter(([, count]) => count > 0).map(([name, count]): [string, string] => [name, String(count)]);
+    this.refused.replaceChildren(...list(refused.length > 0 ? refused : [["requests", "none"]]));
+  }
+
+  /** What is set now, a line each. */
+  lines(): string[] {
+    return this.settings.map((setting) => `${idOf(setting)} = ${setting.value === null ? "device's" : wordOf(setting, setting.value)}`);
   }
 }

@@ -5,25 +5,32 @@ export type Vec = [number, number, number];
 export interface Pose { p: Vec; q: [number, number, number, number] } // w, x, y, z
 
 export interface Body {
-  name: string; shape: number; moves: boolean; joint: "free" | "fixed" | "hinge"; pieces: number;
-  mass_kg: number; radius_m: number; X_WB: Pose; axis_W?: Vec; anchor_W?: Vec;
+  name: string; shape: number; moves: boolean; joint: "free" | "fixed" | "hinge" | "slider" | "ball"; pieces: number;
+  mass_kg: number; weight_N: number; joint_acts: boolean; load_acts: boolean; radius_m: number; X_WB: Pose; axis_W?: Vec; anchor_W?: Vec;
 }
 export interface StageInfo { key: string; name: string; meaning: string }
 export interface ChannelInfo { key: string; name: string; unit: string; group: string; meaning: string }
 export interface Setting {
   section: string; key: string; name: string; unit: string; meaning: string; low: number; high: number;
-  kind: "number" | "integer" | "on-off" | "choice"; choices: string[]; live: boolean; value: number | null;
+  kind: "number" | "integer" | "on-off" | "choice"; choices: string[]; live: boolean; unlimited: boolean;
+  value: number | null; usual: number | null; // now and as the scene has it; null: no limit
 }
+export interface Settings {
+  settings: Setting[]; margin: string; stability: "always" | "in hand" | "uncertain"; coupling_by_device: boolean; toml: string;
+}
+export interface Remark { warning: boolean; text: string }
 export interface FlagInfo { flag: number; name: string; fault?: boolean }
 export interface DeviceFacts {
   name: string; label: string; can_be_led: boolean; senses_rotation: boolean; actuates_force: boolean;
   actuates_torque: boolean; max_force_N: number; max_torque_Nm: number; max_stiffness_N_per_m: number;
   workspace_radius_m: number; grip: string; grips: string[]; choices: { name: string; label: string }[];
 }
-export interface Run {
-  type: "run"; run: number; scene: string; description: string; scenes: { name: string; description: string }[];
+export interface Run extends Settings {
+  type: "run"; run: number; version: string; scene: string; description: string; remarks: Remark[];
+  scenes: { name: string; description: string; absent: string[] }[];
   rate_Hz: number; bodies: Body[]; grasped: number; picks: boolean; X_BH: Pose; device: DeviceFacts; stages: StageInfo[];
-  channels: ChannelInfo[]; flags: { safety: FlagInfo[]; frame: FlagInfo[] }; settings: Setting[]; margin: string; toml: string;
+  channels: ChannelInfo[]; flags: { safety: FlagInfo[]; frame: FlagInfo[] };
+  posed: number[]; // bodies whose poses every sample has, behind its other numbers
   field: number[]; // arrows of the force fields, six numbers each: place [m], force [N]
 }
 export interface Times { mean: number; p50: number; p99: number; p999: number; max: number }
@@ -34,15 +41,17 @@ export interface Status {
     stopped?: boolean; stop_ramp_s?: number; running?: boolean; device_lost?: boolean; frames?: number;
     missed_deadlines?: number; late_frames?: number; failed_reads?: number; failed_writes?: number;
     samples_dropped?: number; frame_us?: Times; safety?: string; remarks?: string[];
+    goals?: { met: boolean; text: string }[];
   };
 }
 export type ServerMessage =
-  | Run | Status | { type: "settings"; settings: Setting[]; margin: string; toml: string } | { type: "notice"; sentence: string };
+  | Run | Status | (Settings & { type: "settings" }) | { type: "notice"; sentence: string };
 
 export interface Contact {
   bodies: [number, number]; pieces: [number, number]; kinds: [number, number]; features: [number, number];
   patch: number; p: Vec; n: Vec; distance: number; tolerance: number; force: number;
   grip: Grip; coneUsed: number; // the share of the friction cone that the surfaces use, 0 to 1
+  rests: boolean; // neither body moves: no force is computed between bodies that sleep
 }
 export const grips = ["none", "sticks", "slips"] as const;
 export type Grip = (typeof grips)[number];
@@ -58,7 +67,7 @@ export interface Frames {
 }
 
 const headerWords = 8;
-const contactWords = 20;
+const contactWords = 21;
 
 function readPicture(words: Int32Array, floats: Float32Array): Picture {
   const bodies = words[2];
@@ -76,7 +85,7 @@ function readPicture(words: Int32Array, floats: Float32Array): Picture {
       kinds: [words[at + 4], words[at + 6]], features: [words[at + 5], words[at + 7]], patch: words[at + 8],
       p: [floats[at + 9], floats[at + 10], floats[at + 11]], n: [floats[at + 12], floats[at + 13], floats[at + 14]],
       distance: floats[at + 15], tolerance: floats[at + 16], force: floats[at + 17],
-      grip: grips[words[at + 18]] ?? "none", coneUsed: floats[at + 19],
+      grip: grips[words[at + 18]] ?? "none", coneUsed: floats[at + 19], rests: words[at + 20] === 1,
     });
   }
   return picture;

@@ -11,6 +11,7 @@ export interface Push {
   onGrasped: boolean;
   grip: Grip; // of the surfaces, and the share of their friction cone in use
   coneUsed: number;
+  rests: boolean; // no force is computed between bodies that sleep
 }
 
 export function pushesOf(picture: Picture, grasped: number): Push[] {
@@ -22,7 +23,7 @@ export function pushesOf(picture: Picture, grasped: number): Push[] {
     let push = pushes.get(key);
     if (!push) {
       push = { patch: contact.patch, contact, force: [0, 0, 0], at: [0, 0, 0], distance: Infinity, points: 0, onGrasped: contact.bodies.includes(grasped),
-        grip: "none", coneUsed: 0 };
+        grip: "none", coneUsed: 0, rests: contact.rests };
       pushes.set(key, push);
     }
     if (contact.grip !== "none") [push.grip, push.coneUsed] = [contact.grip, contact.coneUsed];

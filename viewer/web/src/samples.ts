@@ -4,6 +4,9 @@ import type { Frames, Picture, Run } from "./protocol";
 const room = 1 << 16; // samples: 65 s at 1 kHz
 const pictureRoom = 2048; // half a minute at 60 Hz
 
+/** The numbers of a pose and their units. */
+export const poseParts = [["px", "m"], ["py", "m"], ["pz", "m"], ["qw", ""], ["qx", ""], ["qy", ""], ["qz", ""]] as const;
+
 export class Samples {
   readonly names: string[] = []; // of the columns: "shown.fx", ..., "stretch_m", ...
   readonly units: string[] = [];
@@ -29,7 +32,15 @@ export class Samples {
       this.names.push(channel.key);
       this.units.push(channel.unit);
     }
+    for (const body of run.posed) this.addPose(run.bodies[body].name);
     for (let i = 0; i < this.names.length; ++i) this.columns.push(new Float32Array(room));
+  }
+
+  private addPose(body: string) {
+    for (const [part, unit] of poseParts) {
+      this.names.push(`${body}.${part}`);
+      this.units.push(unit);
+    }
   }
 
   take(frames: Frames) {
@@ -85,6 +96,10 @@ export class Samples {
   length(stage: number, half: 0 | 3, sample: number) {
     const i = 6 * stage + half;
     return Math.hypot(this.at(i, sample), this.at(i + 1, sample), this.at(i + 2, sample));
+  }
+  /** The pictures of the frames from `first` to `last`, by their frame. */
+  picturesBetween(first: number, last: number): Map<number, Picture> {
+    return new Map(this.pictures.filter((p) => p.index >= first && p.index <= last).map((p) => [p.index, p]));
   }
   /** The picture nearest to a frame. */
   picture(frame: number): Picture | null {

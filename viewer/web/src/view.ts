@@ -2,6 +2,7 @@
 import * as THREE from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { Bodies } from "./bodies";
+import { ViewCube } from "./cube";
 import { FieldArrows } from "./field";
 import { dark, light, type Look } from "./look";
 import { Overlay } from "./overlay";
@@ -20,6 +21,14 @@ function matrixAt(poses: Float32Array, i: number): THREE.Matrix4 {
   const v = poses.subarray(7 * i, 7 * i + 7);
   return matrixOf({ p: [v[0], v[1], v[2]], q: [v[3], v[4], v[5], v[6]] });
 }
+
+/** Sizes that arrows can be given: newtons for the side of a square of the grid, and the torque of half a turn of an arc. */
+const arrowSizes = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100];
+const usualSize = arrowSizes.indexOf(1);
+const torqueOfSize = 0.1; // half a turn, for each newton of a square [N m/N]
+const longestArrow = 1.5; // view units
+const glassEvery_ms = 250;
+const mostTriangles = 60000; // of a part that is asked whether it hides another
 
 /** A round number just below: 1, 2 or 5 times a power of ten. */
 function round125(value: number): number {
@@ -79,16 +88,24 @@ export class View {
   private run: Run | null = null;
   private ghost: THREE.Mesh | null = null;
   private readonly X_HB = new THREE.Matrix4(); // held body from the handle
-  private arrowForce = 0; // view units a newton
-  private arrowTorque = 0; // radians a newton metre
-  private recentForce = 0;
-  private recentTorque = 0;
+  private arrowSize = usualSize; // index into arrowSizes
+  private readonly cube: ViewCube;
+  private lastGlass = 0;
   private readonly forceLabel = document.createElement("span");
   private readonly torqueLabel = document.createElement("span");
   private floorZ = 0;
   onDraw: (() => void) | null = null;
 
-  constructor(private readonly canvas: HTMLCanvasElement, labels: HTMLElement, private readonly scaleNote: HTMLElement) {
+  constructor(private readonly canvas: HTMLCanvasElement, labels: HTMLElement, private readonly scaleNote: HTMLElement, cube: HTMLElement) {
+    this.cube = new ViewCube(cube);
+    cube.addEventListener("click", (event) => {
+      const side = this.cube.pick(event);
+      if (side) this.look_along(side.addScaledVector(new THREE.Vector3(0, -1, 0), Math.abs(side.z) > 0.5 ? 1e-3 : 0));
+    });
+    canvas.addEventListener("dblclick", (event) => {
+      const hit = this.bodies?.pick(this.rayAt(event.clientX, event.clientY));
+      if (hit) this.controls.target.copy(hit.point);
+    });
     const plain = drawnBySoftware() && location.hash !== "#fine"; // without a graphics card every pixel costs
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: !plain, alpha: true });
     this.renderer.setPixelRatio(plain ? 1 : Math.min(2, devicePixelRatio));
@@ -104,6 +121,8 @@ export class View {
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.enableDamping = true;
     this.controls.dampingFactor = 0.12;
+    this.controls.zoomToCursor = true;
+    this.controls.mouseButtons.MIDDLE = THREE.MOUSE.ROTATE; // as in CAD
     this.controls.minDistance = 0.4;
     this.controls.maxDistance = 20;
     this.sun.castShadow = true;
@@ -150,7 +169,6 @@ export class View {
     this.overlay.clearTrail();
     this.hold(run.grasped);
     this.picture = null;
-    this.arrowForce = this.arrowTorque = this.recentForce = this.recentTorque = 0;
     if (!again) this.look_from("iso");
   }
 
@@ -224,11 +242,17 @@ export class View {
     this.overlay.setLook(this.look);
     this.field.setColour(this.look.trail);
     this.bodies?.setLook(this.look);
+    this.cube.setTheme(isDark);
     if (this.grid && this.run) this.drawGrid(1 / this.scale);
   }
 
   look_from(name: ViewName) {
-    const direction = new THREE.Vector3(...directions[name]).normalize();
+    this.look_along(new THREE.Vector3(...directions[name]));
+  }
+
+  /** From that side, with everything in view. */
+  private look_along(side: THREE.Vector3) {
+    const direction = side.clone().normalize();
     this.controls.target.set(0, 0, 0);
     this.stepBack(direction);
     // In the middle: what is seen from above stands higher on the screen than its middle.
@@ -290,44 +314,55 @@ export class View {
     return matrixAt(picture.proxy, 0).invert().multiply(matrixAt(picture.bodies, grasped));
   }
 
-  /** The wrench at the hand (and the raw one beside it), and the contacts' share; arrows grow until the largest of late
-   * fills half the view. */
+  /** The wrench at the hand (and the raw one beside it), and the contacts' share, all at the one scale. */
   showWrench(wrench: number[], raw: number[] | null) {
     if (!this.picture || !this.run) return;
     const force = Math.hypot(wrench[0], wrench[1], wrench[2]);
     const torque = Math.hypot(wrench[3], wrench[4], wrench[5]);
     const pushes = pushesOf(this.picture, this.run.grasped);
-    const arrows = [...pushes.map((push) => push.force), raw?.slice(0, 3) ?? []]; // one scale for all
-    const largest = arrows.reduce((most, arrow) => Math.max(most, Math.hypot(...arrow)), force);
-    const largestTorque = Math.max(torque, Math.hypot(...(raw?.slice(3) ?? [])));
-    this.recentForce = Math.max(largest, 0.985 * this.recentForce);
-    this.recentTorque = Math.max(largestTorque, 0.985 * this.recentTorque);
-    const fullForce = Math.max(0.02, this.recentForce);
-    const fullTorque = Math.max(0.001, this.recentTorque);
-    const wantedForce = round125(0.6 / fullForce);
-    const wantedTorque = 4.2 / round125(2 * fullTorque);
-    if (this.arrowForce === 0 || largest * this.arrowForce > 0.65 || wantedForce > 2.4 * this.arrowForce) this.arrowForce = wantedForce;
-    if (this.arrowTorque === 0 || largestTorque * this.arrowTorque > 5.2 || wantedTorque > 2.4 * this.arrowTorque) this.arrowTorque = wantedTorque;
+    const scales = this.arrowScales();
     const hand = this.pointOf(this.picture.proxy);
-    const tips = this.overlay.setWrench(hand, wrench, raw, { force: this.arrowForce, torque: this.arrowTorque });
-    this.overlay.setContacts(this.picture.contacts, pushes, this.run.grasped, this.toView, this.arrowForce);
-    this.label(this.forceLabel, tips.force, force, "N", force * this.arrowForce > 0.03);
-    this.label(this.torqueLabel, tips.torque, torque, "N m", tips.torque !== null);
+    const tips = this.overlay.setWrench(hand, wrench, raw, scales);
+    this.overlay.setContacts(this.picture.contacts, pushes, this.run.grasped, this.toView, scales);
+    const [x, y] = this.label(this.forceLabel, tips.force, withUnit(force, "N"), force * scales.force > 0.03);
+    this.label(this.torqueLabel, tips.torque, withUnit(torque, "N m"), tips.torque !== null, [x, y]);
     this.grips = pushes.filter((push) => push.grip !== "none" && Math.hypot(...push.force) > 0).map((push) => push.grip);
-    const newton = 1 / (this.arrowForce / this.scale);
-    const note = this.run.grasped < 0 ? "" :
-      ` · arrow ${withUnit(newton * 0.01, "N")} per cm · arc ${withUnit(1 / this.arrowTorque * Math.PI, "N m")} per half turn`;
+    const square = arrowSizes[this.arrowSize];
+    const note = this.run.grasped < 0 && !this.run.picks ? "" :
+      ` · arrows: ${withUnit(square, "N")} as long as a square, arcs: ${withUnit(square * torqueOfSize, "N m")} for half a turn`;
     this.scaleNote.textContent = `grid ${withUnit(this.spacing, "m")}${note}`;
   }
 
-  private label(element: HTMLElement, at: THREE.Vector3 | null, value: number, unit: string, visible: boolean) {
+  /** The same for every force of a scene, until people change it: what looks large is large. */
+  private arrowScales() {
+    const square = arrowSizes[this.arrowSize];
+    return { force: (this.spacing * this.scale) / square, torque: Math.PI / (square * torqueOfSize), longest: longestArrow };
+  }
+
+  /** Longer or shorter arrows, by the next of the sizes. */
+  scaleArrows(longer: boolean) {
+    this.arrowSize = Math.min(arrowSizes.length - 1, Math.max(0, this.arrowSize + (longer ? -1 : 1)));
+  }
+
+  /** Makes the fixed parts that hide the held one transparent, and the others solid again. */
+  private lookThrough() {
+    const time = performance.now();
+    if (!this.bodies || !this.run || time - this.lastGlass < glassEvery_ms) return;
+    this.lastGlass = time;
+    this.bodies.showHiding(this.run.grasped, this.camera, this.toView, mostTriangles);
+  }
+
+  /** Puts a label beside a place, below another one that stands there; where it is put. */
+  private label(element: HTMLElement, at: THREE.Vector3 | null, text: string, visible: boolean, other?: [number, number]): [number, number] {
     element.hidden = !visible || !at;
-    if (!visible || !at) return;
-    element.textContent = withUnit(value, unit);
+    if (!visible || !at) return [-1000, -1000];
+    element.textContent = text;
     const p = at.clone().project(this.camera);
-    const x = (0.5 + 0.5 * p.x) * this.canvas.clientWidth;
-    const y = (0.5 - 0.5 * p.y) * this.canvas.clientHeight;
-    element.style.transform = `translate(${Math.round(x + 10)}px, ${Math.round(y - 10)}px)`;
+    const x = Math.round((0.5 + 0.5 * p.x) * this.canvas.clientWidth + 10);
+    let y = Math.round((0.5 - 0.5 * p.y) * this.canvas.clientHeight - 10);
+    if (other && Math.abs(x - other[0]) < 80 && Math.abs(y - other[1]) < 21) y = other[1] + 21;
+    element.style.transform = `translate(${x}px, ${y}px)`;
+    return [x, y];
   }
 
   /** The place of a pose, in view units. */
@@ -353,19 +388,36 @@ export class View {
   draw() {
     this.controls.update();
     this.onDraw?.();
+    this.lookThrough();
     this.renderer.render(this.scene, this.camera);
+    this.cube.draw(this.renderer, this.canvas, this.camera);
   }
 
-  /** The view as a picture. */
-  async png(): Promise<Blob> {
+  /** The view as a picture: `title` above; below the scale and `lines`; the labels where they are. */
+  async png(title: string, lines: string[]): Promise<Blob> {
     this.draw();
+    const unit = this.canvas.width / this.canvas.clientWidth;
+    const texts = [...lines, this.scaleNote.textContent ?? ""];
+    const [head, row] = [30 * unit, 19 * unit];
     const sheet = document.createElement("canvas");
     sheet.width = this.canvas.width;
-    sheet.height = this.canvas.height;
+    sheet.height = head + this.canvas.height + row * texts.length + 8 * unit;
     const ctx = sheet.getContext("2d") as CanvasRenderingContext2D;
-    ctx.fillStyle = `#${this.look.sky.toString(16).padStart(6, "0")}`;
+    const css = (colour: number) => `#${colour.toString(16).padStart(6, "0")}`;
+    ctx.fillStyle = css(this.look.sky);
     ctx.fillRect(0, 0, sheet.width, sheet.height);
-    ctx.drawImage(this.canvas, 0, 0);
+    ctx.drawImage(this.canvas, 0, head);
+    ctx.fillStyle = css(this.look.contact);
+    ctx.font = `600 ${15 * unit}px system-ui`;
+    ctx.fillText(title, 12 * unit, 20 * unit);
+    for (const label of [this.forceLabel, this.torqueLabel].filter((one) => !one.hidden)) {
+      const [x, y] = (label.style.transform.match(/-?\d+/g) ?? ["0", "0"]).map(Number);
+      ctx.fillStyle = getComputedStyle(label).color;
+      ctx.fillText(label.textContent ?? "", (x + 6) * unit, head + (y + 15) * unit);
+    }
+    ctx.fillStyle = css(this.look.contact);
+    ctx.font = `${13 * unit}px system-ui`;
+    texts.forEach((text, i) => ctx.fillText(text, 12 * unit, head + this.canvas.height + row * (i + 1) - 4 * unit));
     return await new Promise((resolve, reject) =>
       sheet.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("no picture"))), "image/png"));
   }

@@ -8,6 +8,9 @@ import { withUnit } from "./units";
 
 const kinds = ["vertex", "edge", "face"];
 const mostRows = 12;
+const mostUnfolded = 100;
+const felt_N = 5e-3; // below this nobody feels a push
+const grainOfTouch_N = 1e-3; // an answer of the device below this is nothing to explain
 
 /** Name, channel, meaning; the first is the head. */
 const energyRows: [string, string, string][] = [
@@ -39,7 +42,11 @@ export class Why {
   private readonly table = make("table", { class: "contacts" },
     make("thead", {}, make("tr", {}, make("th", { scope: "col" }, "pieces and features"), make("th", { scope: "col" }, "force"),
       make("th", { scope: "col" }, "distance, normal"))), make("tbody"));
-  private readonly more = make("p", { class: "quiet" });
+  private readonly more = make("button", { class: "plain", title: "Show or fold away what cannot be felt" });
+  private unfolded = false;
+  private readonly goals = make("ul", { class: "goals" });
+  private readonly remarks = make("ul", { class: "remarks" });
+  private readonly facts = make("ul", { class: "remarks" });
   private rows: Push[] = [];
   private readonly stages = make("table", { class: "stages" });
   private readonly energy = make("table", { class: "energy" });
@@ -48,13 +55,24 @@ export class Why {
 
   constructor(root: HTMLElement) {
     const more = make("details", {}, make("summary", {}, "Every number of this frame"), this.numbers);
-    root.append(this.sentence, make("h2", {}, "What pushes"), this.table, this.more, make("h2", {}, "From the contact to your hand"), this.stages,
+    this.more.onclick = () => (this.unfolded = !this.unfolded);
+    root.append(this.sentence, this.goals, this.remarks, make("details", { class: "about" }, make("summary", {}, "About this scene"), this.facts), make("h2", {}, "What pushes"), this.table, this.more, make("h2", {}, "From the contact to your hand"), this.stages,
       this.flags, make("h2", {}, "Energy since the start"), this.energy, more);
   }
 
   begin(run: Run) {
     this.run = run;
     this.chosen = -1;
+    this.unfolded = false;
+    this.goals.replaceChildren();
+    const list = (warning: boolean) => run.remarks.filter((remark) => remark.warning === warning)
+      .map(({ text }) => make("li", warning ? { class: "warning" } : {}, `${text[0].toUpperCase()}${text.slice(1)}.`));
+    this.remarks.replaceChildren(...list(true));
+    this.facts.replaceChildren(...list(false));
+  }
+
+  showGoals(goals: { met: boolean; text: string }[]) {
+    this.goals.replaceChildren(...goals.map((goal) => make("li", goal.met ? { class: "met" } : {}, `Goal: ${goal.text}`)));
   }
 
   update(samples: Samples, sample: number, picture: Picture | null, now = false) {
@@ -88,13 +106,34 @@ export class Why {
     const field = this.fieldText(samples, sample);
     let text: string;
     if (run.grasped < 0) text = "Nothing is held, so nothing is felt.";
-    else if (active.length === 0) text = `You feel ${wrench}. Nothing touches ${this.called(run.grasped)}${field ? `; ${field}.` : ": this is its own weight, joint and damping."}`;
+    else if (active.length === 0) text = `You feel ${wrench}. Nothing ${felt.length === 0 ? "touches" : "pushes"} ${this.called(run.grasped)}${this.otherCauses(samples, sample, force, field)}`;
     else {
       const others = [...new Set(active.map((push) => this.called(push.contact.bodies.find((b) => b !== run.grasped) ?? run.grasped)))];
       text = `You feel ${wrench}: ${this.called(run.grasped)} touches ${others.join(" and ")} in ` +
-        `${active.length} ${active.length === 1 ? "place" : "places"}, together they push ${withUnit(size(sum), "N")} ${direction(sum)}${field ? `; ${field}` : ""}.`;
+        `${active.length} ${active.length === 1 ? "place" : "places"}, together they push ${withUnit(size(sum), "N")} ${direction(sum)}${this.shared(size(sum), force)}${field ? `; ${field}` : ""}.`;
     }
     this.sentence.textContent = `${samples.timeOf(sample).toFixed(3)} s. ${text}`;
+  }
+
+  /** What acts on the held part beside contacts, as far as there is such a thing. */
+  private otherCauses(samples: Samples, sample: number, force: number, field: string): string {
+    const run = this.run as Run;
+    const body = run.bodies[run.grasped];
+    const causes = [
+      body.weight_N > 0 && body.joint === "free" && `its weight is ${withUnit(body.weight_N, "N")}`,
+      body.joint_acts && `its ${body.joint} pushes by spring, damper, friction or stop`,
+      body.load_acts && "its load acts on it",
+      field,
+    ].filter(Boolean);
+    if (causes.length === 0 && force > grainOfTouch_N)
+      causes.push(`what is left is the coupling's spring, ${withUnit(samples.at(samples.column("stretch_m"), sample), "m")} long`);
+    return causes.length > 0 ? `; ${causes.join("; ")}.` : ".";
+  }
+
+  /** Who takes the difference between what pushes the part and what the hand feels. */
+  private shared(pushed: number, force: number): string {
+    const { joint } = (this.run as Run).bodies[(this.run as Run).grasped];
+    return joint !== "free" && Math.abs(pushed - force) > 0.1 * pushed ? `, of which its ${joint} takes what the hand does not feel` : "";
   }
 
   /** What force fields do to the held part; empty where there are none. */
@@ -114,7 +153,8 @@ export class Why {
   /** Rows stay where they are and change their text: what is being pressed is never replaced under the press. */
   private showContacts(pushes: Push[], sum: number[], picture: Picture) {
     const total = size(sum);
-    const shown = pushes.slice(0, mostRows);
+    const worth = pushes.filter((push) => size(push.force) >= felt_N).slice(0, mostRows);
+    const shown = this.unfolded ? pushes.slice(0, mostUnfolded) : worth;
     const body = this.table.tBodies[0];
     while (body.rows.length < shown.length) body.append(this.contactRow(body.rows.length));
     this.rows = shown;
@@ -129,12 +169,19 @@ export class Why {
       button.setAttribute("aria-pressed", String(chosen));
       this.showGrip(row.cells[0].lastElementChild as HTMLElement, push);
       button.textContent = `${this.feature(push.contact, 0)}\n${this.feature(push.contact, 1)}`;
-      force.textContent = `${withUnit(size(push.force), "N")}\n${Number.isNaN(share) ? "to others" : `${Math.round(100 * share)} %`.replace("-", "−")}`;
+      force.textContent = push.rests ? "rests\nno force is computed"
+        : `${withUnit(size(push.force), "N")}\n${Number.isNaN(share) ? "to others" : `${Math.round(100 * share)} %`.replace("-", "−")}`;
       (row.cells[1].lastElementChild as HTMLElement).style.width = `${Math.round(100 * Math.min(1, Math.max(0, share || 0)))}%`;
       place.textContent = `${withUnit(push.distance, "m")}\n${push.contact.n.map((c) => c.toFixed(2).replace("-", "−")).join(" ")}`;
     });
-    const hidden = pushes.length - shown.length + picture.leftOut;
-    this.more.textContent = shown.length === 0 ? "no contact" : hidden > 0 ? `and ${hidden} more` : "";
+    const folded = pushes.slice(worth.length);
+    const resting = folded.filter((push) => push.rests).length;
+    const weak = folded.length - resting + picture.leftOut;
+    const parts = [weak > 0 && `${weak} ${weak === 1 ? "contact pushes" : "contacts push"} less than these or ${withUnit(felt_N, "N")}`,
+      resting > 0 && `${resting} ${resting === 1 ? "contact" : "contacts"} of bodies at rest`].filter(Boolean);
+    this.more.hidden = pushes.length === 0 && picture.leftOut === 0 ? false : parts.length === 0;
+    this.more.disabled = folded.length === 0;
+    this.more.textContent = pushes.length === 0 ? "no contact" : `${parts.join(", ")}: ${this.unfolded ? "fold away" : "show"}`;
   }
 
   private contactRow(i: number) {
