@@ -190,19 +190,21 @@ void add_bench(CLI::App& app) {
   bench->require_subcommand(1);
   auto options = std::make_shared<Table1Options>();
   CLI::App* table1 =
-      bench->add_subcommand("table1", "The timing table of the paper, beside the published values");
-  table1->add_option("--scene", options->scene, "another scene than the gears")->capture_default_str();
-  table1->add_option("--updates", options->updates, "how many frames")
+      bench->add_subcommand("table1", "Print the timing table of the paper, beside the published values");
+  table1->add_option("--scene", options->scene, "Measure another scene than the gears")
+      ->capture_default_str();
+  table1->add_option("--updates", options->updates, "Run so many frames")
       ->check(CLI::Range(1, 100000000))
       ->capture_default_str();
   table1
-      ->add_option(
-          "--replays", options->replays,
-          "identical replays; a second worst and average time are of the least of them frame by frame")
+      ->add_option("--replays", options->replays,
+                   "Repeat the run so many times, identically; the second worst and average time are those "
+                   "of the fastest "
+                   "run of each frame")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   table1->add_option("--json", options->json,
-                     "write the figures to this file (- for standard output, alone)");
+                     "Write the figures to this file (- for standard output, alone)");
   table1->callback([options] { bench_table1(*options); });
 }
 

@@ -126,7 +126,8 @@ void run(const ClearanceOptions& options) {
 }  // namespace
 
 void add_clearance(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("clearance", "Exact distance of two meshes along a motion of both.");
+  CLI::App* command =
+      app.add_subcommand("clearance", "Compute the exact distance of two meshes along a motion of both");
   auto options = std::make_shared<ClearanceOptions>();
   add_clearance_files(*command, options->files);
   command->add_option("--csv", options->csv, "Write frame,time_s,distance_m,touching_pairs to this file");

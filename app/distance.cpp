@@ -236,13 +236,14 @@ void add_distance(CLI::App& app) {
   };
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand(
-      "distance", "Signed distance of pairs of convex vertex clouds, segments, points or solid parts");
+      "distance",
+      "Compute the signed distance of pairs of convex vertex clouds, segments, points or solid parts");
   command
       ->add_option(
           "CASES", options->cases,
           R"({"cases":[{"id","a":{"vertices":[[x,y,z],...],"pose":[16 numbers, row-major]},"b":{...}}]}; one vertex is a point, two are a segment; instead of vertices also "part": a prepared part of solid pieces, beside CASES)")
       ->required();
-  command->add_option("--json", options->json, "write the results to this file instead of standard output");
+  command->add_option("--json", options->json, "Write the results to this file instead of standard output");
   command->callback([options] { distance(options->cases, options->json); });
 }
 

@@ -331,41 +331,46 @@ void add_what_is_felt(CLI::App* command, FeelOptions* options) {
       "was "
       "not met, or the command line is wrong.");
   command
-      ->add_option("SCENE", options->scenes,
-                   "a scene's name (see: tactum scenes), a scene file, or one or two meshes: one is felt "
-                   "against a plate, the second of two against the first")
+      ->add_option(
+          "SCENE", options->scenes,
+          "The name of a scene (tactum scenes lists them), a scene file, or one or two meshes: one is "
+          "felt against a plate, the second of two against the first")
       ->expected(1, 2)
       ->capture_default_str();
-  command->add_option("--save-scene", options->save_scene, "write the scene of meshes to this file");
-  command->add_flag("--strict", options->strict, "remarks on the scene that are printed are errors");
+  command->add_option("--save-scene", options->save_scene,
+                      "Write the scene that was made of the meshes to this file");
+  command->add_flag("--strict", options->strict, "Treat remarks on the scene as errors");
   command
-      ->add_option("--duration", options->duration_s, "how long [s]; by default as long as the hand's motion")
+      ->add_option("--duration", options->duration_s,
+                   "Run for so many seconds; by default as long as the hand's motion")
       ->check(number_between(1e-3, 1e7, "seconds"));
-  command->add_option("--updates", options->updates, "how many frames, instead of a duration")
+  command->add_option("--updates", options->updates, "Run so many frames, instead of a duration")
       ->check(whole_number_between(1, 1e12, "a number of frames"))
       ->excludes("--duration");
-  command->add_option(
-      "--device", options->device,
-      "see: tactum devices (touch is short for simulated:touch); by default the scene's simulated one");
-  command->add_option("--hand", options->hand, "grip of the simulated hand: loose, medium or firm");
+  command->add_option("--device", options->device,
+                      "The device (tactum devices lists them; touch is short for simulated:touch); by "
+                      "default the simulated one "
+                      "of the scene");
+  command->add_option("--hand", options->hand, "The grip of the simulated hand: loose, medium or firm");
   command
-      ->add_option(
-          "--response", options->response,
-          "constraint (nothing is entered) or penalty (the published springs), instead of the scene's")
+      ->add_option("--response", options->response,
+                   "How contacts push: constraint (no interpenetration) or penalty (the published springs); "
+                   "by default as "
+                   "the scene says")
       ->check(one_word_of({"constraint", "penalty"}));
   command->add_option("--settings", options->settings,
-                      "put the settings of this file over those of the scene; the page saves such files");
-  command->add_option("--json", options->json, "write the summary to this file (- for standard output)");
+                      "Put the settings of this file over those of the scene; the page saves such files");
+  command->add_option("--json", options->json, "Write the summary to this file (- for standard output)");
 }
 
 /// The options of the page.
 void add_page(CLI::App* command, FeelOptions* options, CLI::Option* view) {
-  command->add_option("--port", options->port, "of the page; by default one that is free")
+  command->add_option("--port", options->port, "The port of the page; by default one that is free")
       ->check(whole_number_between(1, 65535, "a port"))
       ->needs(view);
   command
       ->add_option("--wait", options->wait_s,
-                   "how long a run with an end waits for a page to be opened, once its frames are over [s]")
+                   "How long a run with an end waits for a page to be opened, once its frames are over [s]")
       ->check(number_between(0.0, 1e5, "seconds"))
       ->needs(view);
 }
@@ -378,35 +383,37 @@ void add_feel(CLI::App& app) {
   add_what_is_felt(command, options.get());
   CLI::Option* virtual_clock =
       command->add_flag("--virtual-clock", options->virtual_clock,
-                        "as fast as the machine can, with the same result on every machine");
-  CLI::Option* replays =
-      command
-          ->add_option(
-              "--replays", options->replays,
-              "run so often: the time of a frame is then its fastest, without the machine's other work")
-          ->check(whole_number_between(1, 1000, "a number of runs"))
-          ->needs(virtual_clock)
-          ->capture_default_str();
+                        "Run as fast as the machine can, with the same result on every machine");
+  CLI::Option* replays = command
+                             ->add_option("--replays", options->replays,
+                                          "Repeat the run so many times and report the fastest time of each "
+                                          "frame, which leaves out the machine's "
+                                          "other work")
+                             ->check(whole_number_between(1, 1000, "a number of runs"))
+                             ->needs(virtual_clock)
+                             ->capture_default_str();
   CLI::Option* referee = command
                              ->add_flag("--referee", options->referee,
-                                        "judge every frame by exact signs and topology: does any surface "
+                                        "Judge every frame by exact signs and topology: does any surface "
                                         "cross another, has anything got inside, or out of what it hangs in?")
                              ->needs(virtual_clock);
   CLI::Option* trace = command
                            ->add_option("--trace", options->trace,
-                                        "write every frame to this CSV file, a column for each quantity "
+                                        "Write every frame to this CSV file, a column for each quantity "
                                         "(docs/trace.md)")
                            ->check([](const std::string& path) {
                              return path.ends_with(".csv")
                                         ? std::string()
                                         : "expected a name that ends in .csv, found " + path;
                            });
-  command->add_flag("--trace-bodies", options->trace_bodies, "... with the pose and twist of every body")
+  command
+      ->add_flag("--trace-bodies", options->trace_bodies,
+                 "Write the pose and twist of every body to the trace as well")
       ->needs(trace);
   CLI::Option* view = command->add_flag(
       "--view", options->view,
-      "serve a page that shows it, and on which the mouse is the hand; without a duration until "
-      "interrupted, else until no page is open");
+      "Serve a page that shows the scene, and on which the mouse is the hand: until interrupted, or, where a "
+      "duration is given, until it is over and no page is open");
   replays->excludes(view);
   referee->excludes(view);
   trace->excludes(view);

@@ -187,14 +187,15 @@ void run(const InspectOptions& options) {
 
 void add_inspect(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
-      "inspect", "What is in mesh files and what is wrong with them; what prepared parts are.");
+      "inspect", "Say what is in mesh files and prepared parts, and what is wrong with them");
   auto options = std::make_shared<InspectOptions>();
   command->add_option("FILE", options->files, "Mesh files (OBJ, STL, PLY, OFF, glTF, GLB) and prepared parts")
       ->required();
   command->add_option("--json", options->json, "Write the reports to this file (- for stdout)");
-  command->add_option("--scale", options->scale, "Metres per unit of the files")->check(CLI::PositiveNumber);
+  command->add_option("--scale", options->scale, "Metres per unit of the numbers in the files")
+      ->check(CLI::PositiveNumber);
   command->add_flag("--view", options->view, "Serve a page that shows the first of them, until interrupted");
-  command->add_option("--port", options->port, "Of the page; by default one that is free")
+  command->add_option("--port", options->port, "The port of the page; by default one that is free")
       ->check(CLI::Range(1, 65535))
       ->needs("--view");
   command->callback([options] { run(*options); });

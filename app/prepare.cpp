@@ -134,31 +134,39 @@ void run(const PrepareCommand& options) {
 }  // namespace
 
 void add_prepare(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("prepare", "Make a verified part of meshes, ready to be felt.");
+  CLI::App* command = app.add_subcommand("prepare", "Make a verified part of meshes, ready to be felt");
   auto options = std::make_shared<PrepareCommand>();
   std::vector<std::string> ways = pieces_ways();
   ways.insert(ways.begin(), "auto");
   command
-      ->add_option("MESH", options->meshes, "OBJ, STL, PLY, OFF, glTF, GLB; several are pieces of one part")
+      ->add_option("MESH", options->meshes,
+                   "Mesh files: OBJ, STL, PLY, OFF, glTF, GLB; several are pieces of one part")
       ->required();
   command->add_option("-o,--output", options->part, "The part file to write")->required();
   CLI::Option* units = command
                            ->add_option("--units", options->prepare.unit,
-                                        "Unit of the mesh's numbers; auto guesses and says why")
+                                        "The unit of the mesh's numbers; auto guesses and says why")
                            ->check(CLI::IsMember({"auto", "m", "cm", "mm", "inch"}));
   command->add_option("--scale", options->prepare.scale, "Metres per unit of the mesh's numbers")
       ->check(CLI::PositiveNumber)
       ->excludes(units);
-  command->add_option("--pieces", options->prepare.pieces, "How to cut; auto chooses and says why")
+  command
+      ->add_option("--pieces", options->prepare.pieces,
+                   "How to cut the mesh into pieces; auto chooses and says why")
       ->check(CLI::IsMember(ways));
-  command->add_option("--close-holes", options->prepare.close_holes, "Close holes of at most so many edges")
+  command
+      ->add_option("--close-holes", options->prepare.close_holes,
+                   "Close holes that have at most so many edges")
       ->check(CLI::Range(0, 256));
-  command->add_option("--density", options->prepare.density_kg_per_m3, "[kg/m^3]")
+  command
+      ->add_option("--density", options->prepare.density_kg_per_m3,
+                   "The density of the part [kg/m^3]; 1000 by default")
       ->check(CLI::PositiveNumber);
-  command->add_option("--name", options->prepare.name, "Of the part; otherwise the file's");
+  command->add_option("--name", options->prepare.name, "The name of the part; by default that of the file");
   command->add_option("--cache", options->cache,
-                      "Folder of parts prepared before; otherwise ~/.cache/tactum");
-  command->add_flag("--no-cache", options->no_cache, "Neither look there nor keep the part there");
+                      "The folder of parts prepared before; by default ~/.cache/tactum");
+  command->add_flag("--no-cache", options->no_cache,
+                    "Neither look for the part in that folder nor keep it there");
   command->add_option("--json", options->json, "Write the report to this file (- for stdout)");
   command->callback([options] {
     if (options->prepare.name.empty())

@@ -41,6 +41,8 @@ target_link_libraries(header_selfcheck PRIVATE tactum_session tactum_warnings)
 
 # The frames of every shipped scene are the committed ones.
 add_test(NAME golden.frames COMMAND ${PYTHON3} ${tools}/golden_frames.py $<TARGET_FILE:tactum>)
+# The tutorial as a reader takes it: its commands, and what it says they print.
+add_test(NAME docs.tutorial COMMAND ${PYTHON3} ${tools}/run_tutorial.py $<TARGET_FILE:tactum>)
 # Nothing that is compiled for newer processors is called on others. Only where functions are inlined: without that the
 # wide files hold copies of everything they use.
 if(CMAKE_BUILD_TYPE STREQUAL "Release" AND CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")

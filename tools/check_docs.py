@@ -2,9 +2,10 @@
 """Keeps the documents true:  tools/check_docs.py [ROOT]
 
 In every Markdown file: relative links resolve, and paths in backticks exist, seen from the file, from the root or from
-src/tactum; programs under build/ are some that a CMakeLists.txt makes. In Markdown, C++ and scene files: sources cited as
-[Name 1999] have their entry in docs/references.bib.
-A block that is opened with ```cpp PATH is the whole of that file, seen from the root, and every examples/*.cpp is quoted.
+src/tactum, or are the reader's own: a command in an ```sh block of the page names them. Programs under build/ are some that
+a CMakeLists.txt makes. In Markdown, C++ and scene files: sources cited as [Name 1999] have their entry in
+docs/references.bib. A block that is opened with ```cpp PATH, in any language, is the whole of that file, seen from the
+root, and every examples/*.cpp is quoted.
 """
 import pathlib
 import re
@@ -17,6 +18,7 @@ MADE_BY_BUILDING = ("build/", "out/")
 LINK = re.compile(r"\[[^\]]*\]\(([^)\s]+)\)")
 FENCE = re.compile(r"^(```|~~~).*?^\1\s*$", re.MULTILINE | re.DOTALL)
 QUOTE = re.compile(r"^```\w+ (\S+)\n(.*?)^```\s*$", re.MULTILINE | re.DOTALL)
+COMMANDS = re.compile(r"^```sh\n(.*?)^```\s*$", re.MULTILINE | re.DOTALL)
 BACKTICKS = re.compile(r"`([^`\n]+)`")
 # A path: no blanks, no wildcards or placeholders; it ends as a file of this project does, or starts in a known folder
 # (so that a unit such as N/m is none).
@@ -74,12 +76,13 @@ def programs(root):
 
 def path_faults(text, path, root, built):
     bases = (path.parent, root, root / "src/tactum")
+    readers_own = set(" ".join(COMMANDS.findall(text)).split())
     for match in BACKTICKS.finditer(without_fences(text)):
         for program in PROGRAM.findall(match.group(1)):
             if program not in built:
                 yield f"{path.relative_to(root)}:{line_of(text, match.start())}: names {program}, which nothing builds"
         word = match.group(1).split()[0]  # `./run --build-only` names ./run
-        if not looks_like_path(word, bases) or word.startswith(MADE_BY_BUILDING):
+        if not looks_like_path(word, bases) or word.startswith(MADE_BY_BUILDING) or word in readers_own:
             continue
         if not any((base / word).exists() for base in bases):
             yield f"{path.relative_to(root)}:{line_of(text, match.start())}: names {word}, which is not there"

@@ -37,9 +37,9 @@ void run_schedule(const ScheduleJob& job) {
 
 void add_bench_schedule(CLI::App& parent) {
   auto job = std::make_shared<ScheduleJob>();
-  CLI::App* command = parent.add_subcommand(
-      "schedule",
-      "A heap with less budget than pairs: force error and unchecked pairs, and the time of a frame");
+  CLI::App* command = parent.add_subcommand("schedule",
+                                            "A heap of bodies with fewer tests a frame than pairs: error of "
+                                            "the force, unchecked pairs, time of a frame");
   command->add_option("--bodies", job->options.bodies, "that fall")
       ->check(CLI::Range(1, 400))
       ->capture_default_str();

@@ -155,7 +155,8 @@ void write_page(const std::vector<std::pair<std::string, Worst>>& rows, int pose
          "- **normal**: the largest angle which that leaves between the answer's normal and the true one, "
          "for gaps above\n"
          "  1e-3 of the size.\n"
-         "- **depth**: of pieces that overlap, the depth told less that of the support planes along its "
+         "- **depth**: of pieces that overlap, the depth of the answer less that of the support planes along "
+         "its "
          "normal.\n"
          "- **steps**: feature pairs looked at by one query, without and with a last frame.\n\n"
          "Lengths are shares of the larger shape's size.\n\n| pair |";

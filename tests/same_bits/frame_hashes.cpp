@@ -1,6 +1,6 @@
 /// Runs frames on the virtual clock and names the hash of each run: the gears once, the first seconds of
-/// thirteen moving bodies, and a heap with less budget than pairs. tools/same_bits.py compares what the
-/// builds print.
+/// thirteen moving bodies, and a heap with fewer tests a frame than pairs. tools/same_bits.py compares what
+/// the builds print.
 
 #include <fmt/format.h>
 

@@ -28,6 +28,10 @@ class Docs(TreeTest):
         self.assert_one_fault(self.says("see `gone.md`"), "gone.md")
         self.assert_one_fault(self.says("type `./gone --now`"), "./gone")
 
+    def test_files_that_a_command_of_the_page_names_are_the_readers_own(self):
+        self.assertEqual(list(self.says("see `out.json`\n```sh\ntactum feel --json out.json\n```\n")), [])
+        self.assert_one_fault(self.says("see `out.json`\n```\ntactum feel --json out.json\n```\n"), "out.json")
+
     def test_programs_that_nothing_builds_are_caught(self):
         self.assert_one_fault(self.says("by `build/release/bench_pairs --all`"), "page.md:1", "bench_pairs")
 

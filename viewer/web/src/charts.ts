@@ -4,14 +4,13 @@ import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
 import { make } from "./dom";
 import { lines, rawLine } from "./look";
-import type { ChannelInfo, Picture, Run } from "./protocol";
-import { poseParts, type Samples } from "./samples";
+import type { ChannelInfo, Run } from "./protocol";
+import type { Samples } from "./samples";
+import { csvOf, type Facts } from "./table";
 import { axisUnit, withUnit } from "./units";
 
 interface Line { label: string; colour: number; value(samples: Samples, at: number): number }
 interface Strip { key: string; title: string; unit: string; lines: Line[]; tail?: boolean }
-/** Facts of a run that exports carry in their heads. */
-export interface Facts { scene: string; device: string; version: string; settings: string[] }
 
 const turningEnergy = "energy of turning";
 const energies = ["energy", turningEnergy]; // groups of channels
@@ -322,44 +321,9 @@ export class Charts {
     }
   }
 
-  /**
-   * Every frame of the window as a table: wrenches, channels, poses. Values read back to the same numbers. Every sample has the
-   * poses of the first dozen bodies that move; those of the others are known in the frames of which the page has a picture, else
-   * their cells are empty.
-   */
+  /** The window as a table. */
   csv(facts: Facts): string {
-    const { samples, run } = this;
-    if (!samples || !run || samples.count === 0) return "";
-    const quoted = (text: string) => (/[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
-    const headed = (name: string, unit: string) => quoted(unit ? `${name} [${unit}]` : name);
-    const others = run.bodies.flatMap((body, i) => (body.moves && !run.posed.includes(i) ? [i] : []));
-    const heads = [...samples.names.map((name, i) => headed(name, samples.units[i])),
-      ...others.flatMap((body) => poseParts.map(([part, unit]) => headed(`${run.bodies[body].name}.${part}`, unit)))];
-    const rows = [...this.head(facts), ["frame", "time [s]", ...heads].join(",")];
-    const pictures = samples.picturesBetween(samples.frameOf(this.from), samples.frameOf(this.to - 1));
-    const text = (value: number) => (Number.isNaN(value) ? "" : String(Number(value.toPrecision(9))));
-    const poseOf = (picture: Picture | undefined, body: number) => poseParts.map((_part, k) => (picture ? text(picture.bodies[7 * body + k]) : ""));
-    for (let i = this.from; i < this.to; ++i) {
-      const picture = pictures.get(samples.frameOf(i));
-      const values = samples.names.map((_name, column) => text(samples.at(column, i)));
-      rows.push([samples.frameOf(i), Number(samples.timeOf(i).toFixed(9)), ...values, ...others.flatMap((body) => poseOf(picture, body))].join(","));
-    }
-    return `${rows.join("\n")}\n`;
-  }
-
-  /** What a table is about, as comments. */
-  private head(facts: Facts): string[] {
-    const run = this.run as Run;
-    return [
-      `Tactum ${facts.version}: every frame of the charts' window, docs/viewer.md#the-csv-file`, `scene: ${facts.scene}`, `device: ${facts.device}`,
-      `rate_Hz: ${run.rate_Hz}`, `date: ${new Date().toISOString()}`,
-      "axes: of the world; wrenches act on the hand, at the handle; device.* is in the frame of the device; quaternions are w, x, y, z",
-      ...run.stages.map((stage) => `column ${stage.key}.fx to .tz [N, N m]: ${stage.name}; ${stage.meaning}`),
-      ...run.channels.map((channel) => `column ${channel.key}${channel.unit ? ` [${channel.unit}]` : ""}: ${channel.name}; ${channel.meaning}`),
-      "column BODY.px to .qz [m]: centre of mass and orientation of each body that moves; beyond the first dozen only in frames of which the page has a picture",
-      ...run.bodies.filter((one) => !one.moves).map(({ name, X_WB: { p, q } }) => `fixed body ${name}: px, py, pz [m], qw, qx, qy, qz = ${[...p, ...q].join(" ")}`),
-      ...facts.settings.map((line) => `setting ${line}`),
-    ].map((line) => `# ${line.replaceAll("\n", " ")}`);
+    return this.run && this.samples ? csvOf(this.run, this.samples, this.from, this.to, facts) : "";
   }
 
   /** All charts of the window on one sheet, with titles, units and names. */

@@ -1,7 +1,7 @@
 // The page: what is felt, seen. Puts the parts together; each file beside this one is one part.
 import "./style.css";
 import type { Glass } from "./bodies";
-import { Charts, type Facts } from "./charts";
+import { Charts } from "./charts";
 import { Connection } from "./connection";
 import { download, get, make } from "./dom";
 import { Hand } from "./hand";
@@ -9,6 +9,7 @@ import { edgeKinds } from "./look";
 import { Panel } from "./panel";
 import { readShapes, type Frames, type Picture, type Run, type Shape, type Status, type ServerMessage } from "./protocol";
 import { Samples } from "./samples";
+import type { Facts } from "./table";
 import { withUnit } from "./units";
 import { View, type ViewName } from "./view";
 import { Why } from "./why";
