@@ -90,7 +90,7 @@ std::uint64_t frames_asked_for(const FeelOptions& options, const Session& sessio
   const double duration = options.duration_s > 0.0 ? options.duration_s : session.scene().hand->duration_s();
   const auto frames = static_cast<std::uint64_t>(duration * session.rate_Hz());
   if (frames == 0)
-    fail({"there is nothing to run", "a hand that does not move", "--duration or --updates",
+    fail({"there is nothing to run", "a hand that does not move", "--duration, --updates or --view",
           session.scene().name});
   return frames;
 }
@@ -112,11 +112,16 @@ SceneDescription description_of(const FeelOptions& options) {
     fail({"--save-scene is for scenes that are made of meshes", options.scenes.front(), "a mesh", ""});
   Result<SceneDescription> description = Error{};
   if (meshes) {
-    const MeshScene made = scene_of_meshes(options.scenes);
+    const bool saves = !options.save_scene.empty();
+    const std::string folder =
+        saves ? std::filesystem::absolute(options.save_scene).parent_path().string() : "";
+    const MeshScene made = scene_of_meshes(options.scenes, folder);
     for (const std::string& sentence : made.sentences) fmt::print(stderr, "{}\n", sentence);
-    if (!options.save_scene.empty()) write_text(options.save_scene, made.toml);
+    if (saves) write_text(options.save_scene, made.toml);
     const std::string name = std::filesystem::path(options.scenes.back()).stem().string();
-    description = parse_description(made.toml, name, "the scene of " + options.scenes.back(), data_folders());
+    std::vector<std::string> folders = data_folders();
+    if (saves) folders.insert(folders.begin(), folder);
+    description = parse_description(made.toml, name, "the scene of " + options.scenes.back(), folders);
   } else {
     description = describe_scene(options.scenes.front());
   }
@@ -220,12 +225,14 @@ Summary feel_viewed_virtually(Viewer& viewer, std::uint64_t frames) {
 
 void report_what_is_felt(std::FILE* out, const Session& session, const std::string& grip) {
   const Scene& scene = session.scene();
-  fmt::print(out, "{}: {}\n{} at {:.0f} Hz, hand {}, response {}\n", scene.name, scene.description,
-             session.device().name, session.rate_Hz(), grip.empty() ? scene.grip : grip,
+  const bool replayed = session.device().name.starts_with("replay");  // of a hand that yields to nothing
+  fmt::print(out, "{}: {}\n{} at {:.0f} Hz, {}response {}\n", scene.name, scene.description,
+             session.device().name, session.rate_Hz(),
+             replayed ? "" : fmt::format("hand {}, ", grip.empty() ? scene.grip : grip),
              scene.settings.response == ResponseModel::kPenalty ? "penalty" : "constraint");
   const Coupling& coupling = scene.settings.coupling;
   const double scale = scene.settings.workspace.scale;
-  if (session.device().actuates_force)
+  if (session.device().actuates_force && !replayed)
     fmt::print(out, "{}{}\n", margin_sentence(coupling, session.device(), session.rate_Hz()),
                scene.coupling_by_device ? " It was chosen for this device and rate." : "");
   for (const std::string& sentence :

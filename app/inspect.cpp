@@ -112,6 +112,7 @@ nlohmann::json as_json(const Inspection& of) {
           {"degenerate_area", r.zero_area},
           {"duplicate_triangles", r.duplicate_triangles},
           {"volume_m3", r.volume},
+          {"volume_known", r.balanced},
           {"area_m2", r.area},
           {"box_min_m", vector_json(r.box.min)},
           {"box_max_m", vector_json(r.box.max)},

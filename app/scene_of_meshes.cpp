@@ -32,6 +32,12 @@ std::string lower_ending(const std::string& name) {
   return ending;
 }
 
+/// The path of a file as a scene in `folder` names it.
+std::string named_from(const std::string& folder, const std::string& path) {
+  const fs::path whole = fs::absolute(path);
+  return (folder.empty() ? whole : whole.lexically_proximate(folder)).string();
+}
+
 SizedMesh sized_mesh(const std::string& path, std::vector<std::string>& sentences) {
   SizedMesh mesh{path, 1.0, is_part_file(path), {}};
   if (mesh.prepared) {
@@ -57,9 +63,10 @@ std::string vector_text(const Vec3& v) {
   return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", v.x(), v.y(), v.z());
 }
 
-std::string body_text(const std::string& name, const SizedMesh& mesh, const Vec3& p_W, bool fixed) {
+std::string body_text(const std::string& name, const std::string& folder, const SizedMesh& mesh,
+                      const Vec3& p_W, bool fixed) {
   return fmt::format("\n[[body]]\nname = {}\npart = {{ mesh = {}{} }}\npos_m = {}\n{}", quoted(name),
-                     quoted(fs::absolute(mesh.path).string()),
+                     quoted(named_from(folder, mesh.path)),
                      mesh.prepared ? "" : fmt::format(", scale = {}", mesh.scale), vector_text(p_W),
                      fixed ? "joint = { kind = \"fixed\" }\n" : "");
 }
@@ -83,7 +90,7 @@ bool is_mesh_name(const std::string& name) {
   return std::find(kEndings.begin(), kEndings.end(), lower_ending(name)) != kEndings.end();
 }
 
-MeshScene scene_of_meshes(const std::vector<std::string>& meshes) {
+MeshScene scene_of_meshes(const std::vector<std::string>& meshes, const std::string& folder) {
   constexpr double kUsualSize_m = 0.1;  // a scene of this size needs no scale of the workspace
   constexpr double kPress_m = 0.003;    // how far beyond the contact the hand is led
   MeshScene scene;
@@ -97,14 +104,14 @@ MeshScene scene_of_meshes(const std::vector<std::string>& meshes) {
   Vec3 p_W(-middle.x(), -middle.y(), gap - moving.box.min.z());
   std::string below = "a plate", bodies;
   if (meshes.size() == 1) {
-    bodies = plate_text(moving) + body_text(name == "plate" ? "part" : name, moving, p_W, false);
+    bodies = plate_text(moving) + body_text(name == "plate" ? "part" : name, folder, moving, p_W, false);
   } else {
     const SizedMesh fixed = sized_mesh(meshes.front(), scene.sentences);
     below = fs::path(fixed.path).stem().string();
     const Vec3 centre = fixed.box.center();
     p_W += Vec3(centre.x(), centre.y(), fixed.box.max.z());
-    bodies = body_text(below == name ? below + " (fixed)" : below, fixed, Vec3::Zero(), true) +
-             body_text(name, moving, p_W, false);
+    bodies = body_text(below == name ? below + " (fixed)" : below, folder, fixed, Vec3::Zero(), true) +
+             body_text(name, folder, moving, p_W, false);
   }
   const std::string moving_name = meshes.size() == 1 && name == "plate" ? "part" : name;
   const double down = gap + kPress_m * scale;

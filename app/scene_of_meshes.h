@@ -16,8 +16,9 @@ struct MeshScene {
   std::vector<std::string> sentences;  ///< the unit of each mesh, and why
 };
 
-/// The scene in which the last mesh is held above a fixed plate of its size, or above the first of two. Ends
-/// the command when a mesh cannot be read.
-MeshScene scene_of_meshes(const std::vector<std::string>& meshes);
+/// The scene in which the last mesh is held above a fixed plate of its size, or above the first of two. A
+/// scene that is saved in `folder` names its meshes from there, so that both can be moved together; without a
+/// folder by their whole paths. Ends the command when a mesh cannot be read.
+MeshScene scene_of_meshes(const std::vector<std::string>& meshes, const std::string& folder);
 
 }  // namespace tactum

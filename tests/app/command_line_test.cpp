@@ -1,6 +1,7 @@
 // The command line says what was meant, what is absent and how a run ended.
 
 #include <gtest/gtest.h>
+#include <filesystem>
 
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -168,6 +169,15 @@ TEST(CommandLine, MeshesAreFeltWithoutASceneFile) {
   const ProgramRun again = run_tactum("feel " + saved + " --strict --virtual-clock --json -");
   ASSERT_EQ(again.exit_code, 0) << again.err;
   EXPECT_EQ(Json::parse(again.out)["frame_hash"], Json::parse(one.out)["frame_hash"]);
+  // The scene and its mesh can be given away together.
+  const std::filesystem::path elsewhere = folder / "elsewhere";
+  std::filesystem::create_directory(elsewhere);
+  std::filesystem::rename(saved, elsewhere / "saved.toml");
+  std::filesystem::rename(a, elsewhere / "a.stl");
+  const ProgramRun moved =
+      run_tactum("feel " + (elsewhere / "saved.toml").string() + " --virtual-clock --json -");
+  ASSERT_EQ(moved.exit_code, 0) << moved.err;
+  EXPECT_EQ(Json::parse(moved.out)["frame_hash"], Json::parse(one.out)["frame_hash"]);
   // A box of 60 mm below.
   const std::string box = folder / "box.obj";
   write(box,

@@ -169,7 +169,12 @@ std::string describe(const MeshReport& report) {
                       report.convex_edges, report.reflex_edges);
   text += fmt::format("degenerate triangles: {} with equal corners, {} without area, {} duplicates\n",
                       report.index_degenerate.size(), report.zero_area.size(), report.duplicate_triangles);
-  text += fmt::format("volume {:.6g} m^3, area {:.6g} m^2\n", report.volume, report.area);
+  text +=
+      report.balanced
+          ? fmt::format("volume {:.6g} m^3", report.volume)
+          : fmt::format("volume not known before a repair (the triangles as they face sum up to {:.6g} m^3)",
+                        report.volume);
+  text += fmt::format(", area {:.6g} m^2\n", report.area);
   text += fmt::format("box {:.6g} {:.6g} {:.6g} ; {:.6g} {:.6g} {:.6g} m\n", report.box.min.x(),
                       report.box.min.y(), report.box.min.z(), report.box.max.x(), report.box.max.y(),
                       report.box.max.z());

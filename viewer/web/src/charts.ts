@@ -18,6 +18,12 @@ const spans = [0.5, 1, 2, 5, 10, 20, 40]; // [s]
 const gapHeight = 26;
 const [sheetWidth, sheetStrip, sheetMargin] = [1200, 240, 18]; // of the charts as a picture [px]
 
+/** A number of three digits whose unit stands at the axis. */
+function inAxisUnits(value: number): string {
+  if (Number.isNaN(value)) return "–";
+  return (Math.abs(value) < 0.0005 ? "0" : String(Number(value.toPrecision(3)))).replace("-", "−");
+}
+
 /** The smallest value that at least the share `q` of the values do not exceed. */
 function quantile(values: ArrayLike<number>, q: number): number {
   const sorted = Float64Array.from(values).filter(Number.isFinite).sort();
@@ -192,7 +198,8 @@ export class Charts {
     box.append(title);
     this.root.append(box);
     const values = strip.lines.map(() => make("b"));
-    box.append(make("div", { class: "key" }, ...strip.lines.map((line, i) => {
+    const long = strip.lines.some((line) => line.label.length > 8);
+    box.append(make("div", { class: long ? "key long" : "key" }, ...strip.lines.map((line, i) => {
       const name = make("i", {}, line.label);
       name.style.color = this.colourOf(line);
       return make("span", { title: line.label }, name, values[i]);
@@ -240,8 +247,8 @@ export class Charts {
     const { samples } = this;
     if (!samples || samples.count === 0) return;
     const sample = this.hovered ?? this.moment ?? this.to - 1;
-    for (const { strip, values } of this.strips)
-      strip.lines.forEach((line, i) => (values[i].textContent = withUnit(line.value(samples, sample), strip.unit)));
+    for (const { strip, values, factor } of this.strips)
+      strip.lines.forEach((line, i) => (values[i].textContent = inAxisUnits(line.value(samples, sample) * factor)));
     this.cursor.textContent = `at ${samples.timeOf(sample).toFixed(3)} s`;
   }
 

@@ -151,7 +151,7 @@ function showStatus(message: Status) {
   get("steer").hidden = message.steering || !message.somebody_steers;
   const link = get("link");
   const health = message.program;
-  link.textContent = health.device_lost ? "device lost" : `${Math.round(run?.rate_Hz ?? 0)} Hz · ${message.pages} ${message.pages === 1 ? "page" : "pages"}`;
+  link.textContent = health.device_lost ? "device lost" : `${run ? `${Math.round(run.rate_Hz)} Hz · ` : ""}${message.pages} ${message.pages === 1 ? "page" : "pages"}`;
   link.classList.toggle("bad", health.device_lost ?? false);
   panel.showStatus(message);
   body.dataset.steering = String(message.steering);
@@ -196,8 +196,9 @@ function tick(time: number) {
   requestAnimationFrame(tick);
   if (!run || !samples || samples.count === 0) return;
   const past = charts.moment !== null;
-  const sample = charts.moment ?? samples.count - 1;
-  const picture = past ? samples.picture(samples.frameOf(sample)) : newest;
+  const picture = charts.moment !== null ? samples.picture(samples.frameOf(charts.moment)) : newest;
+  // Numbers and places of one moment: on a slow page the newest picture is older than the newest sample.
+  const sample = charts.moment ?? (picture ? samples.find(picture.index) : samples.count - 1);
   if (picture && (picture !== view.picture || past)) view.show(picture, !past);
   if (picture) {
     const raw = pressed("raw") ? run.stages.findIndex((stage) => stage.key === "coupling") : -1;
