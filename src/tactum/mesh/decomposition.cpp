@@ -185,6 +185,8 @@ Result<void> check_usable(const TriangleMesh& mesh, int most_pieces) {
 Result<SolidPieces> cut_apart(std::vector<Vec3>& corners, Solid whole, double noise, int most_pieces) {
   Result<std::vector<Solid>> bodies = detail::bodies_of(corners, whole);
   if (!bodies) return bodies.error();
+  if (static_cast<int>(bodies->size()) > kPiecesBeforeJoining * most_pieces)  // they may touch in corners
+    return too_many(most_pieces, fmt::format("{} bodies", bodies->size()));
   std::deque<Solid> open(bodies->begin(), bodies->end());
   SolidPieces result;
   for (bool first_round = true; !open.empty();) {
