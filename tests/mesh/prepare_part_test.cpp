@@ -229,7 +229,7 @@ TEST(PreparePart, WhatIsLeftIsToldOnceWithItsPlaceInTheFile) {
   ASSERT_TRUE(file) << file.error().message();
   std::vector<std::string> holes;
   for (const std::string& remark : file->part.notes.remarks)
-    if (remark.find("holes are open") != std::string::npos) holes.push_back(remark);
+    if (remark.find("edges are open") != std::string::npos) holes.push_back(remark);
   ASSERT_EQ(holes.size(), 1u);
   EXPECT_NE(holes[0].find("triangle"), std::string::npos);
 }

@@ -8,7 +8,9 @@
 ///                  cut of ours inside the solid, not on the surface, and is only counted
 ///
 /// The grid is finer on larger triangles. A part without pieces is
-/// judged by its surface. Under trees of boxes: n log n, about two microseconds a sample.
+/// judged by its surface. Under trees of boxes: n log n, about two microseconds a sample;
+/// where thousands of long triangles lie across all axes about one place, a sample costs as many of their
+/// boxes as hold it.
 
 #include <vector>
 

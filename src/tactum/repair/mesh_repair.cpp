@@ -121,8 +121,8 @@ void note_topology(const RepairedMesh& out, const Filled& filled, Notes& notes) 
     shortest = std::min(shortest, rim.vertices.size());
     longest = std::max(longest, rim.vertices.size());
   }
-  notes.add(false, "holes", fmt::format("holes are open, with rims of {} to {} edges", shortest, longest),
-            open);
+  notes.add(false, "holes",
+            fmt::format("rims of {} to {} edges are open: of holes, or of sheets", shortest, longest), open);
   std::vector<int> crowded;  // edges of more than two triangles
   const std::vector<HalfEdge> sides = sorted_half_edges(out.mesh);
   for_each_edge(sides, [&](const HalfEdge* first, const HalfEdge* last) {
