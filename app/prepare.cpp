@@ -6,11 +6,13 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "commands.h"
 #include "output.h"
 #include "part_cache.h"
 #include "part_text.h"
+#include "tactum/base/parallel.h"
 #include "tactum/mesh/mapped_file.h"
 #include "tactum/mesh/prepare_part.h"
 
@@ -76,13 +78,12 @@ Result<ImportedMesh> import_all(const std::vector<std::string>& paths, const Pre
 
 Result<PartFile> prepared(const PrepareCommand& options, const Bar& bar) {
   bar.show("reading", 0.0);
-  const Result<ImportedMesh> mesh = import_all(options.meshes, options.prepare);
+  Result<ImportedMesh> mesh = import_all(options.meshes, options.prepare);
   if (!mesh) return mesh.error();
-  Result<PartFile> part =
-      prepare_part(*mesh, options.prepare, [&](const char* stage, double share) { bar.show(stage, share); });
-  if (part)
-    part->part.notes.remarks.insert(part->part.notes.remarks.begin(), mesh->report.remarks.begin(),
-                                    mesh->report.remarks.end());
+  const std::vector<std::string> remarks = mesh->report.remarks;
+  Result<PartFile> part = prepare_part(std::move(*mesh), options.prepare,
+                                       [&](const char* stage, double share) { bar.show(stage, share); });
+  if (part) part->part.notes.remarks.insert(part->part.notes.remarks.begin(), remarks.begin(), remarks.end());
   return part;
 }
 
@@ -136,6 +137,7 @@ void run(const PrepareCommand& options) {
 void add_prepare(CLI::App& app) {
   CLI::App* command = app.add_subcommand("prepare", "Make a verified part of meshes, ready to be felt");
   auto options = std::make_shared<PrepareCommand>();
+  options->prepare.threads = all_cores();
   std::vector<std::string> ways = pieces_ways();
   ways.insert(ways.begin(), "auto");
   command
@@ -162,6 +164,10 @@ void add_prepare(CLI::App& app) {
       ->add_option("--density", options->prepare.density_kg_per_m3,
                    "The density of the part [kg/m^3]; 1000 by default")
       ->check(CLI::PositiveNumber);
+  command
+      ->add_option("--threads", options->prepare.threads,
+                   "How many threads prepare the part; by default as many as there are cores")
+      ->check(CLI::Range(1, 1024));
   command->add_option("--name", options->prepare.name, "The name of the part; by default that of the file");
   command->add_option("--cache", options->cache,
                       "The folder of parts prepared before; by default ~/.cache/tactum");

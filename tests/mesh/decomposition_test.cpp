@@ -246,5 +246,19 @@ TEST(Decomposition, RealParts) {
   }
 }
 
+TEST(Decomposition, ThousandsOfSeparateBodiesAreRefusedAtOnce) {
+  // Joining pieces takes the square of their number; 30 000 boxes took minutes before the refusal.
+  const TriangleMesh box = testing::box_mesh({0.3, 0.3, 0.3});
+  TriangleMesh many;
+  for (int i = 0; i < 20000; ++i) {
+    const int base = static_cast<int>(many.vertices.size());
+    for (const Vec3& v : box.vertices) many.vertices.emplace_back(v + Vec3(i % 150, i / 150, 0));
+    for (const Triangle& t : box.triangles) many.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
+  }
+  const Result<SolidPieces> result = solid_pieces(many, kFewSolidPieces);
+  ASSERT_FALSE(result);
+  EXPECT_NE(result.error().message().find("20000 components"), std::string::npos) << result.error().message();
+}
+
 }  // namespace
 }  // namespace tactum

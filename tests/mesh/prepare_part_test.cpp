@@ -57,6 +57,46 @@ TEST(PreparePart, StandsAtItsCentreOfMassAndKnowsWhereThatWas) {
   EXPECT_NEAR(report["verification"]["mesh_volume_m3"].get<double>(), file->part.mass.volume, 1e-18);
 }
 
+/// `side` to the third boxes beside each other, every other one turned inside out, and a cavity in some.
+TriangleMesh many_boxes(int side) {
+  TriangleMesh all;
+  int count = 0;
+  const auto add = [&](const TriangleMesh& one, bool turned) {
+    const int base = static_cast<int>(all.vertices.size());
+    all.vertices.insert(all.vertices.end(), one.vertices.begin(), one.vertices.end());
+    for (const Triangle& t : one.triangles)
+      all.triangles.push_back(turned ? Triangle{base + t[0], base + t[2], base + t[1]}
+                                     : Triangle{base + t[0], base + t[1], base + t[2]});
+  };
+  for (int x = 0; x < side; ++x)
+    for (int y = 0; y < side; ++y)
+      for (int z = 0; z < side; ++z) {
+        const Vec3 place = 0.01 * Vec3(x, y, z);
+        add(transformed(box_mesh({0.003, 0.003, 0.003}), Mat3::Identity(), place), ++count % 2 == 0);
+        if (count % 5 == 0)
+          add(transformed(box_mesh({0.001, 0.001, 0.001}), Mat3::Identity(), place), count % 3 == 0);
+      }
+  return all;
+}
+
+TEST(PreparePart, ThePartIsTheSameWhateverTheNumberOfThreads) {
+  TriangleMesh folded = icosphere(5);  // a surface of one component, with flat, sharp and reflex edges
+  for (Vec3& v : folded.vertices) v = 0.05 * Vec3(v.x(), v.y(), std::round(8.0 * v.z()) / 8.0 + 0.2 * v.z());
+  TriangleMesh open = folded;
+  open.triangles.resize(open.triangles.size() - 400);
+  for (const TriangleMesh& mesh : {many_boxes(13), folded, open, dented_ball()}) {
+    const ImportedMesh given = as_imported({mesh});
+    std::string alone;
+    for (int threads : {1, 2, 3, 7}) {
+      const Result<PartFile> file = prepare_part(given, {.unit = "m", .threads = threads});
+      ASSERT_TRUE(file) << file.error().message();
+      const std::string bytes = part_bytes(*file);
+      if (threads == 1) alone = bytes;
+      EXPECT_TRUE(bytes == alone) << threads << " threads, " << mesh.triangles.size() << " triangles";
+    }
+  }
+}
+
 TEST(PreparePart, UnitsAreGuessedOrTaken) {
   TriangleMesh box = box_mesh({40, 20, 10});
   const Result<PartFile> guessed = prepare_part(as_imported({box}), {});
@@ -189,7 +229,7 @@ TEST(PreparePart, WhatIsLeftIsToldOnceWithItsPlaceInTheFile) {
   ASSERT_TRUE(file) << file.error().message();
   std::vector<std::string> holes;
   for (const std::string& remark : file->part.notes.remarks)
-    if (remark.find("holes are open") != std::string::npos) holes.push_back(remark);
+    if (remark.find("edges are open") != std::string::npos) holes.push_back(remark);
   ASSERT_EQ(holes.size(), 1u);
   EXPECT_NE(holes[0].find("triangle"), std::string::npos);
 }

@@ -181,6 +181,19 @@ TEST(SceneRemarks, WhatDoesNotFit) {
   EXPECT_EQ(warnings_of(peg_and_hole("sides = 32, peg_width_m = 0.01, fit = \"H7/g6\"",
                                      "sides = 32, width_m = 0.01, fit = \"H7/g6\"")),
             "");
+  // Other shapes than the hole's: only what no turn cures is told.
+  const std::string round_hole = "sides = 64, peg_width_m = 0.01, clearance_m = 0.0005";
+  EXPECT_EQ(warnings_of(peg_and_hole(round_hole, "width_m = 0.007, depth_m = 0.007, length_m = 0.03")), "");
+  expect_warning(peg_and_hole(round_hole, "width_m = 0.008, depth_m = 0.008, length_m = 0.03"),
+                 "it is 801 um too large");  // over its corners 11.31, in 10.5 mm and a little
+  EXPECT_EQ(warnings_of(peg_and_hole(eight + ", clearance_m = 0.0005", "sides = 64, width_m = 0.0082")), "");
+  expect_warning(peg_and_hole(eight + ", clearance_m = 0.0005", "sides = 64, width_m = 0.009"), "too large");
+  EXPECT_EQ(warnings_of(peg_and_hole(eight + ", clearance_m = 0", "sides = 4, width_m = 0.011")), "")
+      << "a square of 7.8 mm, given by its corners";
+  EXPECT_EQ(warnings_of(peg_and_hole("peg_width_m = 0.01, peg_depth_m = 0.01, clearance_m = 0",
+                                     "width_m = 0.0125, depth_m = 0.001, length_m = 0.03")),
+            "")
+      << "a blade that goes in across the corners";
   const std::string key =
       "[[body]]\nname = \"socket\"\npart = { socket = { across_flats_m = 0.005, clearance_m = -0.0002 } }\n"
       "joint = { kind = \"fixed\" }\n"

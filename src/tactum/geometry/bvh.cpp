@@ -3,11 +3,13 @@
 #include <algorithm>
 
 #include "tactum/base/assert.h"
+#include "tactum/base/parallel.h"
 
 namespace tactum::inline v0_1 {
 namespace {
 
 constexpr int kBins = 16;
+constexpr int kFewItems = 8192;   // below so many a thread costs more than it saves
 constexpr int kMedianDepth = 32;  // below it the median splits: 32 + log2(2^31) levels stay within kMaxDepth
 
 double surface(const Aabb& box) {
@@ -18,19 +20,24 @@ double surface(const Aabb& box) {
 
 class TreeBuilder {
  public:
-  TreeBuilder(const std::vector<Aabb>& boxes, int leaf_size, std::vector<Bvh::Node>& nodes,
+  TreeBuilder(const std::vector<Aabb>& boxes, int leaf_size, int threads, std::vector<Bvh::Node>& nodes,
               std::vector<std::int32_t>& order)
-      : boxes_(boxes), leaf_size_(leaf_size), nodes_(nodes), order_(order) {
+      : boxes_(boxes), leaf_size_(leaf_size), order_(order) {
     centers_.reserve(boxes.size());
     for (const Aabb& box : boxes) centers_.push_back(box.center());
     order_.resize(boxes.size());
     for (std::size_t i = 0; i < boxes.size(); ++i) order_[i] = static_cast<std::int32_t>(i);
-    nodes_.reserve(2 * boxes.size());
-    build(0, static_cast<int>(boxes.size()), 0);
+    nodes.reserve(2 * boxes.size() / static_cast<std::size_t>(leaf_size));
+    build(nodes, {0, static_cast<int>(boxes.size()), 0}, threads);
   }
 
  private:
-  int build(int first, int last, int depth) {
+  struct Range {
+    int first, last, depth;
+  };
+
+  int build(std::vector<Bvh::Node>& nodes, const Range& range, int threads) {
+    const auto [first, last, depth] = range;
     TACTUM_DEMAND(depth < Bvh::kMaxDepth);
     Aabb box;
     Aabb centers;
@@ -38,16 +45,32 @@ class TreeBuilder {
       box.extend(boxes_[order_[i]]);
       centers.extend(centers_[order_[i]]);
     }
-    const int index = static_cast<int>(nodes_.size());
-    nodes_.push_back({box.center(), outer_half(box), first, last - first});
+    const int index = static_cast<int>(nodes.size());
+    nodes.push_back({box.center(), outer_half(box), first, last - first});
     if (last - first <= leaf_size_) return index;
     int middle = depth < kMedianDepth ? split_by_area(first, last, centers) : first;
     if (middle == first || middle == last) middle = split_by_median(first, last, centers);
-    build(first, middle, depth + 1);
-    const int second = build(middle, last, depth + 1);
-    nodes_[index].second = second;
-    nodes_[index].count = 0;
+    const int second = build_halves(nodes, {first, middle, depth + 1}, {middle, last, depth + 1}, threads);
+    nodes[index].second = second;
+    nodes[index].count = 0;
     return index;
+  }
+
+  /// Returns where the second half begins.
+  int build_halves(std::vector<Bvh::Node>& nodes, const Range& one, const Range& other, int threads) {
+    if (threads < 2 || other.last - one.first < kFewItems) {
+      build(nodes, one, 1);
+      return build(nodes, other, 1);
+    }
+    std::vector<Bvh::Node> beyond;
+    for_both(
+        threads, [&](int share) { build(nodes, one, share); },
+        [&](int share) { build(beyond, other, share); });
+    const int second = static_cast<int>(nodes.size());
+    for (Bvh::Node& node : beyond)
+      if (!node.leaf()) node.second += second;
+    nodes.insert(nodes.end(), beyond.begin(), beyond.end());
+    return second;
   }
 
   /// Half the sides, grown so that center +- half contains the box in spite of rounding.
@@ -118,15 +141,14 @@ class TreeBuilder {
 
   const std::vector<Aabb>& boxes_;
   int leaf_size_;
-  std::vector<Bvh::Node>& nodes_;
   std::vector<std::int32_t>& order_;
   std::vector<Vec3> centers_;
 };
 
 }  // namespace
 
-Bvh::Bvh(const std::vector<Aabb>& boxes, int leaf_size) {
-  if (!boxes.empty()) TreeBuilder(boxes, std::max(1, leaf_size), nodes_, order_);
+Bvh::Bvh(const std::vector<Aabb>& boxes, int leaf_size, int threads) {
+  if (!boxes.empty()) TreeBuilder(boxes, std::max(1, leaf_size), threads, nodes_, order_);
 }
 
 }  // namespace tactum::inline v0_1

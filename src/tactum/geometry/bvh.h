@@ -34,8 +34,8 @@ class Bvh {
   };
 
   Bvh() = default;
-  /// Builds the tree over boxes that are not empty. Deterministic.
-  explicit Bvh(const std::vector<Aabb>& boxes, int leaf_size = 1);
+  /// Builds the tree over boxes that are not empty. Deterministic; the same for any number of threads.
+  explicit Bvh(const std::vector<Aabb>& boxes, int leaf_size = 1, int threads = 1);
 
   const std::vector<Node>& nodes() const noexcept { return nodes_; }
   /// The items in leaf order.

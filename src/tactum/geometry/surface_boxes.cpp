@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tactum/base/parallel.h"
 #include "tactum/base/tolerances.h"
 
 namespace tactum::inline v0_1 {
@@ -30,6 +31,24 @@ std::size_t power_of_lanes(std::size_t value) {
   return power;
 }
 
+/// Below so many features a thread costs more than it saves.
+constexpr std::size_t kFewFeatures = 8192;
+
+std::size_t leaves_of(std::size_t features) { return (features + kLanes - 1) / kLanes; }
+
+/// The features of each child of a node, but for the last.
+std::size_t unit_of(std::size_t features) {
+  return kLanes * power_of_lanes((leaves_of(features) + kLanes - 1) / kLanes);
+}
+
+/// The nodes of a box of so many features.
+std::size_t nodes_of(std::size_t features) {
+  if (features <= kLanes) return 0;
+  const std::size_t unit = unit_of(features);
+  const std::size_t full = features / unit;
+  return 1 + full * nodes_of(unit) + nodes_of(features - full * unit);
+}
+
 /// The axes of the spread of values about their mean, the longest last.
 struct Spread {
   std::array<Vec3, 3> axis;
@@ -53,18 +72,24 @@ Spread spread_of(const Values& value, std::size_t first, std::size_t last) {
 
 }  // namespace
 
-SurfaceBoxes::SurfaceBoxes(const TriangleMesh& mesh, const SurfaceCones& cones, const Vec3& center)
+SurfaceBoxes::SurfaceBoxes(const TriangleMesh& mesh, const SurfaceCones& cones, const Vec3& center,
+                           int threads)
     : mesh_(mesh), center_(center) {
   grown_ = tolerances::kSingle * bounds(mesh.vertices).diagonal();
   std::size_t leaf_count = 0;
-  for (const auto& features : cones.features) leaf_count += (features.size() + kLanes - 1) / kLanes;
+  std::size_t node_count = 0;
+  for (const auto& features : cones.features) {
+    leaf_count += leaves_of(features.size());
+    node_count += features.empty() ? 0 : 1 + nodes_of(features.size());
+  }
   leaves.reserve(leaf_count);
+  nodes.reserve(node_count);
   for (const SurfaceLayout::Kind kind :
        {SurfaceLayout::kVertices, SurfaceLayout::kEdges, SurfaceLayout::kFaces}) {
     kind_ = kind;
     order_ = cones.features[kind];
     keyed_.resize(order_.size());
-    if (!order_.empty()) root[kind] = make_tree();
+    if (!order_.empty()) root[kind] = make_tree(threads);
   }
 }
 
@@ -74,57 +99,64 @@ Vec3 SurfaceBoxes::middle(const ConedFeature& feature) const {
   return sum / static_cast<double>(points());
 }
 
-std::int32_t SurfaceBoxes::make_tree() {
+std::int32_t SurfaceBoxes::make_tree(int threads) {
   const std::size_t index = nodes.size();
-  nodes.emplace_back();
-  make_child(index, 0, {0, order_.size()});
+  const std::size_t first_leaf = leaves.size();
+  nodes.resize(index + 1 + nodes_of(order_.size()));
+  leaves.resize(first_leaf + leaves_of(order_.size()));
+  make_child(index, 0, {0, order_.size()}, {index + 1, first_leaf}, threads);
   return static_cast<std::int32_t>(index);
 }
 
-/// Makes the box of a range and the nodes below it. Nodes move while others are made.
-void SurfaceBoxes::make_child(std::size_t node, std::size_t lane, Range range) {
+/// Makes the box of a range and the nodes below it.
+void SurfaceBoxes::make_child(std::size_t node, std::size_t lane, Range range, Place below, int threads) {
   make_box(nodes[node], lane, range);
   const bool leaf = range.second - range.first <= kLanes;
-  const std::int32_t below = leaf ? make_leaf(range) : make_node(range);
-  nodes[node].child[lane] = below;
+  nodes[node].child[lane] = leaf ? make_leaf(range, below.leaf) : make_node(range, below, threads);
 }
 
-std::int32_t SurfaceBoxes::make_leaf(Range range) {
-  SurfaceLayout::Corners& leaf = leaves.emplace_back();
+std::int32_t SurfaceBoxes::make_leaf(Range range, std::size_t place) {
+  SurfaceLayout::Corners& leaf = leaves[place];
   leaf.fill(-1);
   const std::size_t count = range.second - range.first;
   for (std::size_t lane = 0; lane < count; ++lane) leaf[lane] = order_[range.first + lane].corner;
   std::sort(leaf.begin(), leaf.begin() + static_cast<std::ptrdiff_t>(count));
-  return ~static_cast<std::int32_t>(leaves.size() - 1);
+  return ~static_cast<std::int32_t>(place);
 }
 
-std::int32_t SurfaceBoxes::make_node(Range range) {
-  const std::size_t leaf_count = (range.second - range.first + kLanes - 1) / kLanes;
-  const std::size_t unit = kLanes * power_of_lanes((leaf_count + kLanes - 1) / kLanes);
-  std::vector<Range> parts;
-  split(range, unit, parts);
-  const std::size_t index = nodes.size();
-  nodes.emplace_back();
-  for (std::size_t lane = 0; lane < parts.size(); ++lane) make_child(index, lane, parts[lane]);
-  return static_cast<std::int32_t>(index);
+std::int32_t SurfaceBoxes::make_node(Range range, Place place, int threads) {
+  const std::size_t count = range.second - range.first;
+  const std::size_t unit = unit_of(count);
+  if (count < kFewFeatures) threads = 1;
+  split(range, unit, threads);
+  for_ranges(threads, count, unit, [&](std::size_t first, std::size_t last) {
+    const std::size_t lane = first / unit;
+    const Place below{place.node + 1 + lane * nodes_of(unit), place.leaf + lane * leaves_of(unit)};
+    const auto share = static_cast<int>(static_cast<std::size_t>(threads) * (last - first) / count);
+    make_child(place.node, lane, {range.first + first, range.first + last}, below, std::max(share, 1));
+  });
+  return static_cast<std::int32_t>(place.node);
 }
 
-/// Parts of `unit` features, the last perhaps of fewer.
-void SurfaceBoxes::split(Range range, std::size_t unit, std::vector<Range>& parts) {
+/// Sorts into parts of `unit` features, the last perhaps of fewer.
+void SurfaceBoxes::split(Range range, std::size_t unit, int threads) {
   const std::size_t units = (range.second - range.first + unit - 1) / unit;
-  if (units <= 1) {
-    parts.push_back(range);
-    return;
-  }
+  if (units <= 1) return;
   const std::size_t middle = range.first + (units + 1) / 2 * unit;
-  sort_halves(range, middle);
-  split({range.first, middle}, unit, parts);
-  split({middle, range.second}, unit, parts);
+  sort_halves(range, middle, threads);
+  for_both(
+      threads,
+      [&](int share) {
+        split({range.first, middle}, unit, share);
+      },
+      [&](int share) {
+        split({middle, range.second}, unit, share);
+      });
 }
 
 /// Divides into halves whose boxes are smallest, by the squares of their diagonals: cut across the longest
 /// spread of places, or where others are nearly as long across one of them, or half-way between.
-void SurfaceBoxes::sort_halves(Range range, std::size_t halfway) {
+void SurfaceBoxes::sort_halves(Range range, std::size_t halfway, int threads) {
   constexpr double kNearly = 0.3;
   const Spread spread =
       spread_of([&](std::size_t i) { return middle(order_[i]); }, range.first, range.second);
@@ -138,8 +170,16 @@ void SurfaceBoxes::sort_halves(Range range, std::size_t halfway) {
   for (const Vec3& axis : axes) {
     cut_across(axis, range, halfway);
     if (axes.size() == 1) return;
-    const double size =
-        span({range.first, halfway}).half.squaredNorm() + span({halfway, range.second}).half.squaredNorm();
+    std::array<double, 2> squares{};
+    for_both(
+        threads,
+        [&](int) {
+          squares[0] = span({range.first, halfway}).half.squaredNorm();
+        },
+        [&](int) {
+          squares[1] = span({halfway, range.second}).half.squaredNorm();
+        });
+    const double size = squares[0] + squares[1];
     if (size >= least) continue;
     least = size;
     best = axis;

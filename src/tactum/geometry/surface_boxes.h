@@ -16,7 +16,7 @@ namespace tactum::inline v0_1 {
 /// similar directions.
 class SurfaceBoxes {
  public:
-  SurfaceBoxes(const TriangleMesh& mesh, const SurfaceCones& cones, const Vec3& center);
+  SurfaceBoxes(const TriangleMesh& mesh, const SurfaceCones& cones, const Vec3& center, int threads);
 
   LargeArray<SurfaceLayout::Node> nodes;
   LargeArray<SurfaceLayout::Corners> leaves;
@@ -25,10 +25,15 @@ class SurfaceBoxes {
  private:
   using Range = std::pair<std::size_t, std::size_t>;  ///< of order_
 
-  std::int32_t make_tree();
-  std::int32_t make_leaf(Range range);
-  void make_child(std::size_t node, std::size_t lane, Range range);
-  std::int32_t make_node(Range range);
+  /// Where the nodes and leaves below a box begin. How many there are follows from the number of features
+  /// alone, so that boxes beside each other can be made at the same time.
+  struct Place {
+    std::size_t node, leaf;
+  };
+  std::int32_t make_tree(int threads);
+  std::int32_t make_leaf(Range range, std::size_t leaf);
+  void make_child(std::size_t node, std::size_t lane, Range range, Place below, int threads);
+  std::int32_t make_node(Range range, Place place, int threads);
   /// The oriented box around a range of features, its third axis along the mean direction of their cones.
   struct Span {
     std::array<Vec3, 3> axis;
@@ -36,8 +41,8 @@ class SurfaceBoxes {
   };
   Span span(Range range) const;
   void make_box(SurfaceLayout::Node& node, std::size_t lane, Range range);
-  void split(Range range, std::size_t unit, std::vector<Range>& parts);
-  void sort_halves(Range range, std::size_t halfway);
+  void split(Range range, std::size_t unit, int threads);
+  void sort_halves(Range range, std::size_t halfway, int threads);
   void cut_across(const Vec3& axis, Range range, std::size_t halfway);
 
   std::size_t points() const { return std::size_t(kind_) + 1; }  ///< of a feature of this kind

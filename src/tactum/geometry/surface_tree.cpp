@@ -10,7 +10,7 @@ namespace tactum::inline v0_1 {
 
 SurfaceTree::SurfaceTree(const TriangleMesh& welded) : SurfaceTree(welded, coplanar_groups(welded)) {}
 
-SurfaceTree::SurfaceTree(const TriangleMesh& welded, const std::vector<int>& group)
+SurfaceTree::SurfaceTree(const TriangleMesh& welded, const std::vector<int>& group, int threads)
     : vertices_(welded.vertices), triangles_(welded.triangles), group_(group.begin(), group.end()) {
   const Aabb box = bounds(vertices_);
   scalars_.size = box.diagonal();
@@ -18,14 +18,13 @@ SurfaceTree::SurfaceTree(const TriangleMesh& welded, const std::vector<int>& gro
   const Vec3 center = box.center();
   scalars_.center = {center.x(), center.y(), center.z()};
   SurfaceCones cones = surface_cones(welded, group);
-  SurfaceBoxes boxes(welded, cones, center);
+  SurfaceBoxes boxes(welded, cones, center, threads);
   beyond_ = std::move(cones.beyond);
   narrow_ = std::move(cones.narrow);
   first_around_ = std::move(cones.first_around);
   around_ = std::move(cones.around);
   nodes_ = std::move(boxes.nodes);
   leaves_ = std::move(boxes.leaves);
-  nodes_.shrink_to_fit();
   scalars_.root = boxes.root;
 }
 

@@ -42,7 +42,8 @@ class SurfaceTree : public SurfaceLayout {
   /// Over a mesh whose triangles have three different corners and an area (weld() sees to it), outward.
   explicit SurfaceTree(const TriangleMesh& welded);
   /// The same with the flat faces found already: `group` of each triangle, as coplanar_groups() numbers them.
-  SurfaceTree(const TriangleMesh& welded, const std::vector<int>& group);
+  /// The same tree for any number of threads.
+  SurfaceTree(const TriangleMesh& welded, const std::vector<int>& group, int threads = 1);
 
   bool empty() const noexcept { return triangles_.empty(); }
   double size() const noexcept { return scalars_.size; }  ///< diagonal of the bounding box [m]

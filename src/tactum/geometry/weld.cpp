@@ -42,7 +42,13 @@ class VertexGrid {
     }
     return best;
   }
-  void add(int vertex) { cells_[cell_of(kept_[vertex])].push_back(vertex); }
+  void add(int vertex) {
+    after_.push_back(-1);
+    const auto [ends, is_new] = cells_.try_emplace(cell_of(kept_[vertex]), Ends{vertex, vertex});
+    if (is_new) return;
+    after_[ends->second.last] = vertex;
+    ends->second.last = vertex;
+  }
 
  private:
   static constexpr double kCellsPerTolerance = 16.0;
@@ -58,7 +64,7 @@ class VertexGrid {
   void find_in(const Cell& cell, const Vec3& point, int& best) const {
     const auto found = cells_.find(cell);
     if (found == cells_.end()) return;
-    for (int vertex : found->second) {
+    for (int vertex = found->second.first; vertex >= 0; vertex = after_[vertex]) {
       if (best >= 0 && vertex >= best) break;  // the lists are in ascending order
       if ((kept_[vertex] - point).norm() <= tolerance_) best = vertex;
     }
@@ -68,7 +74,12 @@ class VertexGrid {
   double tolerance_;
   Vec3 origin_;
   double cell_ = 1.0;
-  std::unordered_map<Cell, std::vector<int>, CellHash> cells_;
+  /// The first and the last vertex of a cell; after_ leads from one to the next.
+  struct Ends {
+    int first, last;
+  };
+  std::unordered_map<Cell, Ends, CellHash> cells_;
+  std::vector<int> after_;
 };
 
 std::vector<int> weld_vertices(const TriangleMesh& mesh, double tolerance, std::vector<Vec3>& kept) {

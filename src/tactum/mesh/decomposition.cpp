@@ -122,7 +122,6 @@ std::vector<Candidate> candidates_of(const Body& body) {
 
 /// The bodies after one cut by the best plane that works; none when every plane has the whole body on one
 /// side: its reflex edges are then noise of the coordinates only.
-/// side: what is reflex is so by the noise of the coordinates only.
 Result<std::vector<Solid>> cut_once(std::vector<Vec3>& corners, const Body& body) {
   std::optional<Error> failure;
   const std::vector<Candidate> candidates = candidates_of(body);
@@ -150,9 +149,12 @@ Result<std::vector<Solid>> cut_once(std::vector<Vec3>& corners, const Body& body
   return std::vector<Solid>{};
 }
 
-Error too_many(int reflex_edges, int most_pieces) {
-  return {"the solid does not fall into few convex pieces", fmt::format("{} reflex edges", reflex_edges),
+Error too_many(int most_pieces, std::string found) {
+  return {"the solid does not fall into few convex pieces", std::move(found),
           fmt::format("at most {} pieces: use surface pieces", most_pieces), ""};
+}
+Error too_many(int reflex_edges, int most_pieces) {
+  return too_many(most_pieces, fmt::format("{} reflex edges", reflex_edges));
 }
 
 Error no_solid(std::string found, const TriangleMesh& mesh, int triangle) {
@@ -161,7 +163,9 @@ Error no_solid(std::string found, const TriangleMesh& mesh, int triangle) {
           ""};
 }
 
-Result<void> check_closed(const TriangleMesh& mesh) {
+/// Whether the mesh is closed, and of few components: each is a piece at least, or a cavity, which takes
+/// pieces around it. Joining costs the square of the pieces.
+Result<void> check_usable(const TriangleMesh& mesh, int most_pieces) {
   const MeshReport report = report_mesh(mesh, 0.0);
   if (report.non_manifold_edges > 0)
     return no_solid(fmt::format("{} edges of more than two triangles", report.non_manifold_edges), mesh,
@@ -172,6 +176,8 @@ Result<void> check_closed(const TriangleMesh& mesh) {
     return no_solid(fmt::format("{} edges where triangles face opposite ways", report.misoriented_edges),
                     mesh, -1);
   if (!(report.volume > 0.0)) return no_solid("normals that point inward", mesh, -1);
+  if (report.components > kPiecesBeforeJoining * most_pieces)
+    return too_many(most_pieces, fmt::format("{} components", report.components));
   return {};
 }
 
@@ -179,6 +185,8 @@ Result<void> check_closed(const TriangleMesh& mesh) {
 Result<SolidPieces> cut_apart(std::vector<Vec3>& corners, Solid whole, double noise, int most_pieces) {
   Result<std::vector<Solid>> bodies = detail::bodies_of(corners, whole);
   if (!bodies) return bodies.error();
+  if (static_cast<int>(bodies->size()) > kPiecesBeforeJoining * most_pieces)  // they may touch in corners
+    return too_many(most_pieces, fmt::format("{} bodies", bodies->size()));
   std::deque<Solid> open(bodies->begin(), bodies->end());
   SolidPieces result;
   for (bool first_round = true; !open.empty();) {
@@ -215,7 +223,7 @@ Result<SolidPieces> cut_apart(std::vector<Vec3>& corners, Solid whole, double no
 }  // namespace
 
 Result<SolidPieces> solid_pieces(const TriangleMesh& mesh, int most_pieces) {
-  if (Result<void> closed = check_closed(mesh); !closed) return closed.error();
+  if (Result<void> usable = check_usable(mesh, most_pieces); !usable) return usable.error();
   const double size = bounds(mesh.vertices).diagonal();
   const double noise = tolerances::kCoplanarMeshOffset * size;
   std::vector<Vec3> corners = mesh.vertices;

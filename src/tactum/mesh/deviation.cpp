@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "tactum/base/parallel.h"
 #include "tactum/base/tolerances.h"
 
 namespace tactum::inline v0_1 {
@@ -22,32 +23,91 @@ double area_of(const TriangleMesh& mesh, const Triangle& t) {
   return 0.5 * (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a).norm();
 }
 
-/// Calls visit(triangle, point) for every sample of the mesh.
-template <class Visitor>
-void for_each_sample(const TriangleMesh& mesh, int area_samples, Visitor&& visit) {
-  constexpr int kFinest = 64;  // rows of the grid on one triangle
-  double area = 0.0;
-  for (const Triangle& t : mesh.triangles) area += area_of(mesh, t);
-  std::vector<bool> seen(mesh.vertices.size(), false);
-  for (int i = 0; i < static_cast<int>(mesh.triangles.size()); ++i) {
-    const Triangle& t = mesh.triangles[i];
-    for (int corner = 0; corner < 3; ++corner) {
-      const Vec3& from = mesh.vertices[t[corner]];
-      visit(i, Vec3(0.5 * (from + mesh.vertices[t[(corner + 1) % 3]])));
-      if (!seen[t[corner]]) visit(i, from);
-      seen[t[corner]] = true;
+/// The samples of a mesh.
+class Samples {
+ public:
+  Samples(const TriangleMesh& mesh, int area_samples)
+      : mesh_(mesh), area_samples_(area_samples), first_at_(mesh.vertices.size(), -1) {
+    for (int i = 0; i < static_cast<int>(mesh.triangles.size()); ++i) {
+      area_ += area_of(mesh, mesh.triangles[i]);
+      for (int corner : mesh.triangles[i])
+        if (first_at_[corner] < 0) first_at_[corner] = i;
     }
-    const double share = area > 0.0 ? area_of(mesh, t) / area : 0.0;
-    const int rows = std::clamp(static_cast<int>(std::ceil(std::sqrt(area_samples * share))), 1, kFinest);
+  }
+
+  /// Calls visit(point) for every sample on the triangle; a corner belongs to the first that has it.
+  template <class Visitor>
+  void on(int triangle, Visitor&& visit) const {
+    constexpr int kFinest = 64;  // rows of the grid on one triangle
+    const Triangle& t = mesh_.triangles[triangle];
+    for (int corner = 0; corner < 3; ++corner) {
+      const Vec3& from = mesh_.vertices[t[corner]];
+      visit(Vec3(0.5 * (from + mesh_.vertices[t[(corner + 1) % 3]])));
+      if (first_at_[t[corner]] == triangle) visit(from);
+    }
+    const double share = area_ > 0.0 ? area_of(mesh_, t) / area_ : 0.0;
+    const int rows = std::clamp(static_cast<int>(std::ceil(std::sqrt(area_samples_ * share))), 1, kFinest);
     for (int u = 0; u < rows; ++u) {
       for (int v = 0; u + v < rows; ++v) {  // centres of the upright cells: one row, the centre
         const double a = (u + 1.0 / 3.0) / rows;
         const double b = (v + 1.0 / 3.0) / rows;
-        visit(i,
-              Vec3((1.0 - a - b) * mesh.vertices[t[0]] + a * mesh.vertices[t[1]] + b * mesh.vertices[t[2]]));
+        visit(
+            Vec3((1.0 - a - b) * mesh_.vertices[t[0]] + a * mesh_.vertices[t[1]] + b * mesh_.vertices[t[2]]));
       }
     }
   }
+
+ private:
+  const TriangleMesh& mesh_;
+  int area_samples_;
+  double area_ = 0.0;          ///< [m^2]
+  std::vector<int> first_at_;  ///< of each vertex, the first triangle
+};
+
+/// The sample that is farthest from the other surface, of some samples.
+struct Farthest {
+  double distance = 0.0;  ///< [m]
+  Vec3 place = Vec3::Zero();
+  int samples = 0;
+  int inner = 0;  ///< that are on cuts, and do not count
+};
+
+/// The farthest of the samples of `from` that count; on_cut(triangle, point, distance) tells those that do
+/// not, and is asked for such only as would be farther than all before them in their range.
+template <class OnCut>
+Farthest farthest_sample(const TriangleMesh& from, const TriangleMesh& to, int area_samples, int threads,
+                         OnCut&& on_cut) {
+  constexpr std::size_t kTrianglesAtOnce = 1024;
+  const Samples samples(from, area_samples);
+  const NearestOnMesh surface(to, threads);
+  std::vector<Farthest> ranges((from.triangles.size() + kTrianglesAtOnce - 1) / kTrianglesAtOnce);
+  for_ranges(threads, from.triangles.size(), kTrianglesAtOnce, [&](std::size_t first, std::size_t last) {
+    Farthest found;
+    int nearest = 0;
+    for (std::size_t t = first; t < last; ++t) {
+      samples.on(static_cast<int>(t), [&](const Vec3& point) {
+        ++found.samples;
+        const double distance = surface.distance(point, nearest);
+        if (distance <= found.distance) return;
+        if (on_cut(static_cast<int>(t), point, distance)) {
+          ++found.inner;
+          return;
+        }
+        found.distance = distance;
+        found.place = point;
+      });
+    }
+    ranges[first / kTrianglesAtOnce] = found;
+  });
+  Farthest all;
+  for (const Farthest& range : ranges) {
+    all.samples += range.samples;
+    all.inner += range.inner;
+    if (range.distance <= all.distance) continue;
+    all.distance = range.distance;
+    all.place = range.place;
+  }
+  return all;
 }
 
 /// Whether the point lies on or in a solid piece other than `own`.
@@ -79,11 +139,11 @@ bool in_other_piece(const Part& part, int own, const Vec3& point, double toleran
 
 }  // namespace
 
-NearestOnMesh::NearestOnMesh(const TriangleMesh& mesh) : mesh_(mesh) {
+NearestOnMesh::NearestOnMesh(const TriangleMesh& mesh, int threads) : mesh_(mesh) {
   std::vector<Aabb> boxes(mesh.triangles.size());
   for (std::size_t t = 0; t < boxes.size(); ++t)
     for (int corner : mesh.triangles[t]) boxes[t].extend(mesh.vertices[corner]);
-  if (!boxes.empty()) tree_ = Bvh(boxes, 2);
+  if (!boxes.empty()) tree_ = Bvh(boxes, 2, threads);
 }
 
 double NearestOnMesh::to_triangle_sq(int triangle, const Vec3& point) const {
@@ -101,9 +161,9 @@ double NearestOnMesh::to_triangle_sq(int triangle, const Vec3& point) const {
   return std::min(best, to_segment_sq(p[2], p[0], point));
 }
 
-double NearestOnMesh::distance(const Vec3& point) {
+double NearestOnMesh::distance(const Vec3& point, int& nearest) const {
   if (tree_.empty()) return 1e300;
-  double best = to_triangle_sq(last_, point);
+  double best = to_triangle_sq(nearest, point);
   const auto box_sq = [&](int node) {
     const Bvh::Node& box = tree_.nodes()[node];
     return ((point - box.center).cwiseAbs() - box.half).cwiseMax(0.0).squaredNorm();
@@ -126,7 +186,7 @@ double NearestOnMesh::distance(const Vec3& point) {
       const double found = to_triangle_sq(triangle, point);
       if (found >= best) continue;
       best = found;
-      last_ = triangle;
+      nearest = triangle;
     }
   }
   return std::sqrt(best);
@@ -156,8 +216,8 @@ TriangleMesh faces_of(const Part& part, const Vec3& origin, std::vector<int>& pi
   return faces;
 }
 
-Deviation surface_deviation(const TriangleMesh& mesh, const Part& part, const Vec3& origin,
-                            int area_samples) {
+Deviation surface_deviation(const TriangleMesh& mesh, const Part& part, const Vec3& origin, int area_samples,
+                            int threads) {
   Deviation out;
   Aabb box;
   for (const Triangle& t : mesh.triangles)
@@ -165,28 +225,21 @@ Deviation surface_deviation(const TriangleMesh& mesh, const Part& part, const Ve
   out.size = box.diagonal();
   std::vector<int> piece;
   const TriangleMesh faces = faces_of(part, origin, piece);
-  NearestOnMesh on_part(faces);
-  for_each_sample(mesh, area_samples, [&](int, const Vec3& point) {
-    ++out.mesh_samples;
-    const double distance = on_part.distance(point);
-    if (distance <= out.mesh_to_part) return;
-    out.mesh_to_part = distance;
-    out.worst_on_mesh = point;
-  });
-  NearestOnMesh on_mesh(mesh);
+  const Farthest on_mesh =
+      farthest_sample(mesh, faces, area_samples, threads, [](int, const Vec3&, double) { return false; });
   const double tolerance = tolerances::kSurfaceDeviation * out.size;
-  for_each_sample(faces, area_samples, [&](int triangle, const Vec3& point) {
-    ++out.part_samples;
-    const double distance = on_mesh.distance(point);
-    if (distance <= out.part_to_mesh) return;
-    if (distance > tolerance && part.pieces.size() > 1 &&
-        in_other_piece(part, piece[triangle], point - origin, tolerance)) {
-      ++out.inner_samples;
-      return;
-    }
-    out.part_to_mesh = distance;
-    out.worst_on_part = point;
-  });
+  const Farthest on_part = farthest_sample(
+      faces, mesh, area_samples, threads, [&](int triangle, const Vec3& point, double distance) {
+        return distance > tolerance && part.pieces.size() > 1 &&
+               in_other_piece(part, piece[triangle], point - origin, tolerance);
+      });
+  out.mesh_to_part = on_mesh.distance;
+  out.worst_on_mesh = on_mesh.place;
+  out.mesh_samples = on_mesh.samples;
+  out.part_to_mesh = on_part.distance;
+  out.worst_on_part = on_part.place;
+  out.part_samples = on_part.samples;
+  out.inner_samples = on_part.inner;
   return out;
 }
 

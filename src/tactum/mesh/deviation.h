@@ -8,7 +8,9 @@
 ///                  cut of ours inside the solid, not on the surface, and is only counted
 ///
 /// The grid is finer on larger triangles. A part without pieces is
-/// judged by its surface. Under trees of boxes: n log n, about two microseconds a sample.
+/// judged by its surface. Under trees of boxes: n log n, about two microseconds a sample;
+/// where thousands of long triangles lie across all axes about one place, a sample costs as many of their
+/// boxes as hold it.
 
 #include <vector>
 
@@ -23,17 +25,17 @@ inline constexpr int kAreaSamples = 4000;
 /// Nearest points of a mesh's triangles. The mesh must outlive it.
 class NearestOnMesh {
  public:
-  explicit NearestOnMesh(const TriangleMesh& mesh);
+  explicit NearestOnMesh(const TriangleMesh& mesh, int threads = 1);
 
-  /// Distance from the point [m]; 1e300 from no triangle. Tests the last answer first.
-  double distance(const Vec3& point);
+  /// Distance from the point [m]; 1e300 from no triangle. The triangle `nearest`, which may be any, is tested
+  /// first; it becomes the one found.
+  double distance(const Vec3& point, int& nearest) const;
 
  private:
   double to_triangle_sq(int triangle, const Vec3& point) const;
 
   const TriangleMesh& mesh_;
   Bvh tree_;
-  int last_ = 0;
 };
 
 struct Deviation {
@@ -54,8 +56,8 @@ struct Deviation {
 TriangleMesh faces_of(const Part& part, const Vec3& origin, std::vector<int>& piece);
 
 /// `origin`: where the part's frame stands in the mesh's [m].
-/// `area_samples`: of the grid over either surface, about.
+/// `area_samples`: of the grid over either surface, about. The same for any number of threads.
 Deviation surface_deviation(const TriangleMesh& mesh, const Part& part, const Vec3& origin = Vec3::Zero(),
-                            int area_samples = kAreaSamples);
+                            int area_samples = kAreaSamples, int threads = 1);
 
 }  // namespace tactum::inline v0_1

@@ -56,7 +56,7 @@ Result<void> check_options(const PartOptions& options) {
 }
 
 /// Sets the members that follow from surface, pieces and mass.
-void complete(Part& part) {
+void complete(Part& part, int threads) {
   part.size = bounds(part.surface.vertices).diagonal();
   for (const Vec3& vertex : part.surface.vertices) {
     part.radius = std::max(part.radius, (vertex - part.mass.center).norm());
@@ -66,7 +66,7 @@ void complete(Part& part) {
   for (const Polytope& piece : part.pieces) boxes.push_back(bounds(piece.vertices));
   part.hierarchy = Bvh(boxes);
   const std::vector<int> groups = coplanar_groups(part.surface);
-  part.tree = SurfaceTree(part.surface, groups);
+  part.tree = SurfaceTree(part.surface, groups, threads);
   if (part.is_surface()) part.groups.count = 1 + *std::max_element(groups.begin(), groups.end());
   find_true_surface(part);
   if (!part.mass.approximation.empty()) part.notes.remarks.push_back(part.mass.approximation);
@@ -191,21 +191,25 @@ struct FitMesh {
   MeshReport report;
 };
 
-FitMesh fit_for_part(const TriangleMesh& mesh, bool repaired_before, PartNotes& notes) {
+FitMesh fit_after_repair(RepairedMesh repaired, const MeshReport& report) {
+  FitMesh fit{.closed = repaired.mesh, .surface = {}, .report = report};
+  drop_without_area(repaired);
+  fit.surface = with_backs(repaired);
+  return fit;
+}
+
+FitMesh fit_for_part(const TriangleMesh& mesh, int threads, PartNotes& notes) {
   FitMesh fit{.closed = {}, .surface = {}, .report = report_mesh(mesh)};
   if (is_sound(fit.report)) {
     fit.closed = fit.surface = weld(mesh).mesh;
     return fit;
   }
-  RepairedMesh repaired = repair_mesh(mesh);
+  RepairedMesh repaired = repair_mesh(mesh, {.threads = threads});
   for (const RepairNote& note : repaired.notes) {
-    if (note.kind != "joined_vertices" && !repaired_before) notes.remarks.push_back(note.sentence());
+    if (note.kind != "joined_vertices") notes.remarks.push_back(note.sentence());
   }
-  fit.report = report_mesh(repaired.mesh);
-  fit.closed = repaired.mesh;
-  drop_without_area(repaired);
-  fit.surface = with_backs(repaired);
-  return fit;
+  const MeshReport report = report_mesh(repaired.mesh);
+  return fit_after_repair(std::move(repaired), report);
 }
 
 /// The options for points in metres that have been moved already.
@@ -273,13 +277,30 @@ Result<std::vector<std::vector<Vec3>>> clouds_of_groups(const ImportedMesh& mesh
   return clouds;
 }
 
+/// What follows from the mesh: mass, pieces and surface.
+Result<Part> finished(Part part, FitMesh fit, const PartOptions& options) {
+  part.name = options.name;
+  if (options.about_center_of_mass) {
+    part.origin = mass_properties_or_hull(fit.closed, 1.0).center;
+    for (TriangleMesh* moved : {&fit.closed, &fit.surface})
+      for (Vec3& vertex : moved->vertices) vertex -= part.origin;
+  }
+  part.mass = mass_properties_or_hull(fit.closed, options.density_kg_per_m3);
+  part.surface = std::move(fit.surface);
+  if (Result<void> made = add_pieces(fit.closed, fit.report.convex, options, part); !made)
+    return made.error();
+  if (part.surface.triangles.empty()) return unusable(options, "no triangle with an area", "a surface");
+  complete(part, options.threads);
+  return part;
+}
+
 }  // namespace
 
 Result<Part> part_from_clouds(const std::vector<std::vector<Vec3>>& clouds, const PartOptions& options) {
   if (Result<void> sound = check_options(options); !sound) return sound.error();
   if (options.about_center_of_mass) return clouds_about_center(clouds, options);
   Result<Part> part = hulls_of(clouds, options);
-  if (part) complete(*part);
+  if (part) complete(*part, options.threads);
   return part;
 }
 
@@ -308,20 +329,14 @@ Result<Part> part_from_mesh(const TriangleMesh& mesh, const PartOptions& options
   TriangleMesh scaled = with_used_vertices(mesh);
   for (Vec3& vertex : scaled.vertices) vertex *= options.scale;
   Part part;
-  part.name = options.name;
-  FitMesh fit = fit_for_part(scaled, options.repaired, part.notes);
-  if (options.about_center_of_mass) {
-    part.origin = mass_properties_or_hull(fit.closed, 1.0).center;
-    for (TriangleMesh* moved : {&fit.closed, &fit.surface})
-      for (Vec3& vertex : moved->vertices) vertex -= part.origin;
-  }
-  part.mass = mass_properties_or_hull(fit.closed, options.density_kg_per_m3);
-  part.surface = std::move(fit.surface);
-  if (Result<void> made = add_pieces(fit.closed, fit.report.convex, options, part); !made)
-    return made.error();
-  if (part.surface.triangles.empty()) return unusable(options, "no triangle with an area", "a surface");
-  complete(part);
-  return part;
+  FitMesh fit = fit_for_part(scaled, options.threads, part.notes);
+  return finished(std::move(part), std::move(fit), options);
+}
+
+Result<Part> part_from_repaired(RepairedMesh repaired, const MeshReport& report, const PartOptions& options) {
+  if (Result<void> sound = check_options(options); !sound) return sound.error();
+  for (Vec3& vertex : repaired.mesh.vertices) vertex *= options.scale;
+  return finished(Part{}, fit_after_repair(std::move(repaired), report), options);
 }
 
 }  // namespace tactum::inline v0_1

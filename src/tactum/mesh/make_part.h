@@ -11,8 +11,10 @@
 #include <vector>
 
 #include "tactum/base/result.h"
+#include "tactum/geometry/mesh_report.h"
 #include "tactum/geometry/part.h"
 #include "tactum/mesh/imported_mesh.h"
+#include "tactum/repair/mesh_repair.h"
 
 namespace tactum::inline v0_1 {
 
@@ -29,8 +31,8 @@ struct PartOptions {
   double scale = 1.0;                 ///< metres per unit of the input [m]
   double density_kg_per_m3 = 1000.0;  ///< [kg/m^3]
   PieceSource pieces = PieceSource::kAuto;
-  bool repaired = false;              ///< the mesh comes from repair_mesh(), whose notes the caller has
   bool about_center_of_mass = false;  ///< the part's origin is its centre of mass (Part::origin)
+  int threads = 1;                    ///< the part does not depend on it
   int most_solid_pieces = 0;  ///< 0: 32 where the method is chosen by itself, 512 where solid is wanted
 };
 
@@ -46,5 +48,10 @@ Result<Vec3> center_of_convex_groups(const ImportedMesh& mesh, const PartOptions
 /// By `options.pieces`. An error when a solid is wanted and the mesh is none, or would take too many pieces.
 /// Given pieces are groups, which a bare mesh has not: see part_from_convex_groups.
 Result<Part> part_from_mesh(const TriangleMesh& mesh, const PartOptions& options = {});
+
+/// The same from a mesh that was repaired before, which needs no second repair. `report` is of that mesh.
+/// The notes of the repair are the caller's.
+Result<Part> part_from_repaired(RepairedMesh repaired, const MeshReport& report,
+                                const PartOptions& options = {});
 
 }  // namespace tactum::inline v0_1

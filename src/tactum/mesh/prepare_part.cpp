@@ -78,7 +78,7 @@ struct Attempt {
   const PiecesInput& input;
   const TriangleMesh& reference;
   const PrepareProgress& progress;
-  int area_samples;
+  const PrepareOptions& options;
   double backs_area;  ///< that open surfaces add [m^2]
 
   Result<void> run(const PieceMethod& method, PartFile& file, PrepareReport& report) const {
@@ -91,8 +91,8 @@ struct Attempt {
     const bool solid = std::any_of(part->pieces.begin(), part->pieces.end(),
                                    [](const Polytope& piece) { return !piece.flat; });
     const double area = solid && part->pieces.size() > 1 ? -1.0 : input.report.area + backs_area;
-    report.verification =
-        verify_part(reference, *part, *center, solid ? method.volume(input) : -1.0, area, area_samples);
+    report.verification = verify_part(reference, *part, *center, solid ? method.volume(input) : -1.0, area,
+                                      options.area_samples, options.threads);
     if (Result<void> passed = verdict_on(report.verification, input.options.name); !passed) return passed;
     file.part = std::move(*part);
     file.origin = *center;
@@ -102,8 +102,8 @@ struct Attempt {
 };
 
 /// The wanted method, or the first that suits and passes; the reason lists the outcome of the others.
-Result<void> make_pieces(const Attempt& attempt, const PrepareOptions& options, PartFile& file,
-                         PrepareReport& report) {
+Result<void> make_pieces(const Attempt& attempt, PartFile& file, PrepareReport& report) {
+  const PrepareOptions& options = attempt.options;
   std::string tried;
   for (const PieceMethod& method : all_piece_methods()) {
     if (options.pieces != "auto" && options.pieces != method.name) continue;
@@ -131,9 +131,9 @@ std::vector<std::string> pieces_ways() {
 }
 
 Verification verify_part(const TriangleMesh& reference, const Part& part, const Vec3& origin, double volume,
-                         double area, int area_samples) {
+                         double area, int area_samples, int threads) {
   Verification out;
-  out.deviation = surface_deviation(reference, part, origin, area_samples);
+  out.deviation = surface_deviation(reference, part, origin, area_samples, threads);
   out.overlaps = overlapping_pieces(part, tolerances::kSurfaceDeviation * part.size);
   out.mesh_volume = volume;
   out.mesh_area = area;
@@ -184,23 +184,23 @@ Result<void> verdict_on(const Verification& found, const std::string& name) {
   return {};
 }
 
-Result<PartFile> prepare_part(const ImportedMesh& imported, const PrepareOptions& options,
+Result<PartFile> prepare_part(ImportedMesh given, const PrepareOptions& options,
                               const PrepareProgress& progress) {
   const PrepareProgress silent = [](const char*, double) {};
   const PrepareProgress& show_progress = progress ? progress : silent;
   PrepareReport report;
-  report.format = imported.report.format;
+  report.format = given.report.format;
   Aabb box;
-  for (const Triangle& t : imported.mesh.triangles)
-    for (int corner : t) box.extend(imported.mesh.vertices[corner]);
-  const Result<UnitGuess> unit = wanted_unit(imported.report, box, options);
+  for (const Triangle& t : given.mesh.triangles)
+    for (int corner : t) box.extend(given.mesh.vertices[corner]);
+  const Result<UnitGuess> unit = wanted_unit(given.report, box, options);
   if (!unit) return unit.error();
   report.unit = *unit;
 
   show_progress("repairing", 0.1);
-  ImportedMesh given = imported;
   for (Vec3& vertex : given.mesh.vertices) vertex *= report.unit.metres_per_unit;
-  const RepairedMesh repaired = repair_mesh(given.mesh, {.close_holes = options.close_holes});
+  const RepairedMesh repaired =
+      repair_mesh(given.mesh, {.close_holes = options.close_holes, .threads = options.threads});
   report.notes = repaired.notes;
   report.components = repaired.components;
   if (Result<void> usable = check_usable(repaired, report.unit, options); !usable) return usable.error();
@@ -209,13 +209,13 @@ Result<PartFile> prepare_part(const ImportedMesh& imported, const PrepareOptions
   PartOptions part_options;
   part_options.name = options.name;
   part_options.density_kg_per_m3 = options.density_kg_per_m3;
+  part_options.threads = options.threads;
   PartFile file;
   file.density_kg_per_m3 = options.density_kg_per_m3;
-  const PiecesInput input{given, repaired.mesh, report.mesh, part_options};
+  const PiecesInput input{given, repaired, report.mesh, part_options};
   const TriangleMesh reference = reference_of(given.mesh, repaired);
   if (Result<void> made =
-          make_pieces({input, reference, show_progress, options.area_samples, open_area(repaired)}, options,
-                      file, report);
+          make_pieces({input, reference, show_progress, options, open_area(repaired)}, file, report);
       !made)
     return made.error();
   for (const RepairNote& note : repaired.notes)

@@ -31,6 +31,7 @@ struct PrepareOptions {
   std::string pieces = "auto";        ///< the method: auto, or one of pieces_ways()
   int close_holes = 0;                ///< holes of at most this many edges are closed; 0: none
   double density_kg_per_m3 = 1000.0;  ///< [kg/m^3]
+  int threads = 1;                    ///< the part does not depend on it
   int area_samples = kAreaSamples;    ///< of the verification, over either surface, beside corners and sides
 };
 
@@ -60,7 +61,7 @@ struct PrepareReport {
 using PrepareProgress = std::function<void(const char* stage, double share)>;
 
 /// Prepares a mesh in the units of its file. An error says what makes it unusable and where.
-Result<PartFile> prepare_part(const ImportedMesh& imported, const PrepareOptions& options,
+Result<PartFile> prepare_part(ImportedMesh given, const PrepareOptions& options,
                               const PrepareProgress& progress = {});
 
 /// The names of the methods to make pieces.
@@ -70,7 +71,7 @@ std::vector<std::string> pieces_ways();
 /// mesh before repair with the triangles that close holes; volume and area as in Verification, negative: not
 /// checked.
 Verification verify_part(const TriangleMesh& reference, const Part& part, const Vec3& origin, double volume,
-                         double area, int area_samples = kAreaSamples);
+                         double area, int area_samples = kAreaSamples, int threads = 1);
 
 /// The faults that verification found, as an error; nothing when the part passes.
 Result<void> verdict_on(const Verification& found, const std::string& name);

@@ -2,7 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "tactum/geometry/weld.h"
+#include <utility>
+
 #include "tactum/mesh/decomposition.h"
 #include "tactum/mesh/make_part.h"
 #include "tactum/repair/mesh_repair.h"
@@ -47,7 +48,7 @@ Result<Vec3> center_of_groups(const PiecesInput& input) {
 
 /// The pieces of the groups, each by itself: where two share a wall, the whole is no closed surface.
 double volume_of_groups(const PiecesInput& input) {
-  const TriangleMesh mesh = groups_outward(input.given, bounds(input.mesh.vertices).center()).mesh;
+  const TriangleMesh mesh = groups_outward(input.given, bounds(input.repaired.mesh.vertices).center()).mesh;
   double six_volumes = 0.0;
   for (const Triangle& t : mesh.triangles)
     six_volumes += mesh.vertices[t[0]].dot(mesh.vertices[t[1]].cross(mesh.vertices[t[2]]));
@@ -64,7 +65,7 @@ double volume_of_mesh(const PiecesInput& input) {
 std::string solid_suits(const PiecesInput& input) {
   if (!input.report.closed || !input.report.oriented) return {};
   if (input.report.convex) return "the mesh is convex as it is";
-  const Result<SolidPieces> solid = solid_pieces(weld(input.mesh).mesh, kFewSolidPieces);
+  const Result<SolidPieces> solid = solid_pieces(input.repaired.mesh, kFewSolidPieces);
   if (!solid) return {};
   return fmt::format("the solid falls into {} convex pieces along {} reflex edges", solid->pieces.size(),
                      solid->reflex_edges);
@@ -79,16 +80,15 @@ std::string surface_suits(const PiecesInput& input) {
 }
 
 Result<Vec3> center_of_mesh(const PiecesInput& input) {
-  return mass_properties_or_hull(input.mesh, input.options.density_kg_per_m3).center;
+  return mass_properties_or_hull(input.repaired.mesh, input.options.density_kg_per_m3).center;
 }
 
 Result<Part> part_by(PieceSource pieces, const PiecesInput& input, const Vec3& origin) {
-  TriangleMesh moved = input.mesh;
-  for (Vec3& vertex : moved.vertices) vertex -= origin;
+  RepairedMesh moved = input.repaired;
+  for (Vec3& vertex : moved.mesh.vertices) vertex -= origin;
   PartOptions options = input.options;
   options.pieces = pieces;
-  options.repaired = true;
-  return part_from_mesh(moved, options);
+  return part_from_repaired(std::move(moved), input.report, options);
 }
 
 Result<Part> part_from_solid(const PiecesInput& input, const Vec3& origin) {

@@ -14,9 +14,9 @@ namespace tactum::inline v0_1 {
 
 /// The input of a method.
 struct PiecesInput {
-  const ImportedMesh& given;  ///< as in the file, in metres, with its groups
-  const TriangleMesh& mesh;   ///< repaired, in metres
-  const MeshReport& report;   ///< of mesh
+  const ImportedMesh& given;     ///< as in the file, in metres, with its groups
+  const RepairedMesh& repaired;  ///< in metres
+  const MeshReport& report;      ///< of the repaired mesh
   const PartOptions& options;
 };
 

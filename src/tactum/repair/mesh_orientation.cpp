@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tactum/base/parallel.h"
 #include "tactum/base/tolerances.h"
+#include "tactum/geometry/bvh.h"
 #include "tactum/geometry/mesh_edges.h"
 #include "tactum/repair/open_patches.h"
 #include "tactum/repair/surface_crossings.h"
@@ -103,40 +105,88 @@ bool encloses(const MeshComponent& component) {
   return component.closed && component.twisted_edges == 0 && !component.empty_inside();
 }
 
+/// Whether the boxes have more than their sides in common.
+bool cut(const Aabb& a, const Aabb& b) {
+  return (a.min.array() < b.max.array()).all() && (b.min.array() < a.max.array()).all();
+}
+
+/// The components that enclose something and whose boxes cut the box of another such: only these can lie in
+/// one another.
+std::vector<bool> neighbours_by_box(const std::vector<MeshComponent>& components, int threads) {
+  std::vector<int> enclosing;
+  std::vector<Aabb> boxes;
+  for (int c = 0; c < static_cast<int>(components.size()); ++c) {
+    if (!encloses(components[c])) continue;
+    enclosing.push_back(c);
+    boxes.push_back(components[c].box);
+  }
+  const Bvh tree(boxes, 1, threads);
+  const auto cuts_one = [&](int own) {
+    std::vector<int> stack = {0};
+    while (!stack.empty()) {
+      const int at = stack.back();
+      stack.pop_back();
+      const Bvh::Node& node = tree.nodes()[at];
+      if (!cut(boxes[own], {node.center - node.half, node.center + node.half})) continue;
+      if (!node.leaf()) {
+        stack.push_back(node.second);
+        stack.push_back(at + 1);
+      } else if (const int other = tree.order()[node.second]; other != own && cut(boxes[own], boxes[other])) {
+        return true;
+      }
+    }
+    return false;
+  };
+  std::vector<bool> out(components.size(), false);
+  for (int i = 0; i < static_cast<int>(enclosing.size()); ++i) out[enclosing[i]] = cuts_one(i);
+  return out;
+}
+
+/// How many of the others a component lies in, from the numbers of those that `count` of its points lie in,
+/// all points together.
+void take_depth(std::vector<int>& around, int count, MeshComponent& component) {
+  std::sort(around.begin(), around.end());
+  for (auto it = around.begin(); it != around.end();) {
+    const auto end = std::upper_bound(it, around.end(), *it);
+    if (end - it == count) {
+      ++component.depth;
+    } else {
+      component.cuts_other = true;
+    }
+    it = end;
+  }
+}
+
 /// How many closed components each closed one lies in, tested at a few of its triangles' centres.
-void find_depths(const TriangleMesh& mesh, OrientedMesh& out) {
+void find_depths(const TriangleMesh& mesh, OrientedMesh& out, int threads) {
   constexpr int kSamples = 7;
-  if (std::count_if(out.components.begin(), out.components.end(), encloses) < 2) return;
+  constexpr std::size_t kComponentsAtOnce = 64;
+  const std::vector<bool> asked = neighbours_by_box(out.components, threads);
+  if (std::find(asked.begin(), asked.end(), true) == asked.end()) return;
   std::vector<std::vector<int>> members(out.components.size());
   std::vector<int> surface = out.component;
   for (std::size_t t = 0; t < surface.size(); ++t) {
-    if (encloses(out.components[surface[t]])) {
+    if (asked[surface[t]]) {
       members[surface[t]].push_back(static_cast<int>(t));
     } else {
       surface[t] = -1;
     }
   }
-  const SurfaceCrossings crossings(mesh, surface);
-  for (std::size_t c = 0; c < out.components.size(); ++c) {
-    const int count = static_cast<int>(std::min<std::size_t>(kSamples, members[c].size()));
-    std::vector<int> around;  // numbers of the components a sample lies in, all samples together
-    for (int i = 0; i < count; ++i) {
-      const Triangle& t = mesh.triangles[members[c][members[c].size() * i / count]];
-      const Vec3 center = (mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]) / 3.0;
-      for (const auto& [other, winding] : crossings.windings(center))
-        if (other != static_cast<int>(c)) around.push_back(other);
-    }
-    std::sort(around.begin(), around.end());
-    for (auto it = around.begin(); it != around.end();) {
-      const auto end = std::upper_bound(it, around.end(), *it);
-      if (end - it == count) {
-        ++out.components[c].depth;
-      } else {
-        out.components[c].cuts_other = true;
+  const SurfaceCrossings crossings(mesh, surface, threads);
+  for_ranges(threads, members.size(), kComponentsAtOnce, [&](std::size_t first, std::size_t last) {
+    std::vector<int> around;
+    for (std::size_t c = first; c < last; ++c) {
+      const int count = static_cast<int>(std::min<std::size_t>(kSamples, members[c].size()));
+      around.clear();
+      for (int i = 0; i < count; ++i) {
+        const Triangle& t = mesh.triangles[members[c][members[c].size() * i / count]];
+        const Vec3 center = (mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]) / 3.0;
+        for (const auto& [other, winding] : crossings.windings(center))
+          if (other != static_cast<int>(c)) around.push_back(other);
       }
-      it = end;
+      take_depth(around, count, out.components[c]);
     }
-  }
+  });
 }
 
 }  // namespace
@@ -145,17 +195,17 @@ bool MeshComponent::empty_inside() const {
   return closed && std::abs(volume) <= tolerances::kNoVolume * std::pow(box.diagonal(), 3);
 }
 
-OrientedMesh orient_components(TriangleMesh& mesh) {
+OrientedMesh orient_components(TriangleMesh& mesh, int threads) {
   OrientedMesh out;
   out.component.assign(mesh.triangles.size(), -1);
   const std::vector<HalfEdge> sides = sorted_half_edges(mesh);
   std::vector<bool> turned = flood(neighbours_of(sides, mesh.triangles.size()), out);
   report_edges(sides, turned, out);
-  join_open_patches(mesh, sides, turned, out);
+  join_open_patches(mesh, sides, turned, out, threads);
   for (std::size_t t = 0; t < turned.size(); ++t)
     if (turned[t]) turn(mesh.triangles[t]);
   const std::vector<double> turned_area = measure(mesh, turned, out);
-  find_depths(mesh, out);
+  find_depths(mesh, out, threads);
   std::vector<bool> turn_whole(out.components.size(), false);
   for (std::size_t c = 0; c < out.components.size(); ++c) {
     MeshComponent& component = out.components[c];

@@ -37,8 +37,8 @@ class Notes {
 };
 
 /// Drops what find_repeated_triangles() lists, with notes that name triangles of the mesh given.
-void drop_repeated(RepairedMesh& out, Notes& notes) {
-  RepeatedTriangles repeated = find_repeated_triangles(out.mesh);
+void drop_repeated(RepairedMesh& out, int threads, Notes& notes) {
+  RepeatedTriangles repeated = find_repeated_triangles(out.mesh, threads);
   std::vector<bool> dropped(out.mesh.triangles.size(), false);
   for (std::vector<int>* list : {&repeated.copies, &repeated.walls, &repeated.sheets}) {
     for (int& triangle : *list) {
@@ -121,8 +121,8 @@ void note_topology(const RepairedMesh& out, const Filled& filled, Notes& notes) 
     shortest = std::min(shortest, rim.vertices.size());
     longest = std::max(longest, rim.vertices.size());
   }
-  notes.add(false, "holes", fmt::format("holes are open, with rims of {} to {} edges", shortest, longest),
-            open);
+  notes.add(false, "holes",
+            fmt::format("rims of {} to {} edges are open: of holes, or of sheets", shortest, longest), open);
   std::vector<int> crowded;  // edges of more than two triangles
   const std::vector<HalfEdge> sides = sorted_half_edges(out.mesh);
   for_each_edge(sides, [&](const HalfEdge* first, const HalfEdge* last) {
@@ -162,8 +162,8 @@ void note_components(const RepairedMesh& out, Notes& notes) {
 
 /// Orients and keeps count of which triangles given stand turned now; a component is turned when most of its
 /// triangles are.
-void orient(RepairedMesh& out, std::vector<bool>& turned) {
-  OrientedMesh oriented = orient_components(out.mesh);
+void orient(RepairedMesh& out, int threads, std::vector<bool>& turned) {
+  OrientedMesh oriented = orient_components(out.mesh, threads);
   for (int triangle : oriented.flipped)
     if (const int source = out.source[triangle]; source >= 0) turned[source] = !turned[source];
   std::vector<int> turned_of(oriented.components.size(), 0);
@@ -200,19 +200,22 @@ RepairedMesh repair_mesh(const TriangleMesh& mesh, const RepairOptions& options)
             welded.report.vertices_joined);
   notes.add(true, "degenerate_triangles", "triangles had two equal corners and were dropped",
             welded.report.index_degenerate);
-  drop_repeated(out, notes);
+  drop_repeated(out, options.threads, notes);
 
   std::vector<bool> turned(mesh.triangles.size(), false);  // of the triangles given
-  orient(out, turned);
+  orient(out, options.threads, turned);
   Filled filled;
   for (const Rim& rim : close_holes(out.mesh, options.close_holes))
     if (rim.closed) (rim.crack ? filled.cracks : filled.holes).push_back(out.source[rim.triangle]);
   out.source.resize(out.mesh.triangles.size(), -1);
   CapReport caps = mend_caps(out.mesh, out.source);
+  const std::size_t given_to_neighbours = caps.mended.size();
   std::erase_if(caps.mended, [](int triangle) { return triangle < 0; });  // within a hole just closed
   notes.add(true, "zero_area_mended", "triangles without area were given to their neighbours", caps.mended);
   notes.add(false, "zero_area_left", "triangles without area are left", caps.left);
-  orient(out, turned);
+  // What is oriented stays so where no triangle came or went.
+  if (!(filled.cracks.empty() && filled.holes.empty() && given_to_neighbours == 0))
+    orient(out, options.threads, turned);
   std::vector<int> flipped;
   for (std::size_t t = 0; t < turned.size(); ++t)
     if (turned[t]) flipped.push_back(static_cast<int>(t));

@@ -15,7 +15,8 @@
 ///   cracks         closed; holes only when asked, up to a number of edges                   (hole_filling.h)
 ///
 /// No vertex is ever moved, so the surface stays the file's to the last bit except for removed parts, which
-/// lie on the rest to kWeld and kDegenerateTriangle of its size. Deterministic; n log n.
+/// lie on the rest to kWeld and kDegenerateTriangle of its size. Deterministic; the cost is that of
+/// its steps.
 
 #include <string>
 #include <vector>
@@ -27,6 +28,7 @@ namespace tactum::inline v0_1 {
 
 struct RepairOptions {
   int close_holes = 0;  ///< holes of at most this many edges are closed; 0: none
+  int threads = 1;      ///< the result does not depend on it
 };
 
 /// One kind of finding: how often, and where the first one is.

@@ -3,20 +3,24 @@
 #include <algorithm>
 #include <utility>
 
+#include "tactum/base/parallel.h"
 #include "tactum/math/screw.h"
 #include "tactum/repair/surface_crossings.h"
 
 namespace tactum::inline v0_1 {
 namespace {
 
+constexpr std::size_t kTrianglesAtOnce = 1024;
+
 class OpenPatches {
  public:
   OpenPatches(const TriangleMesh& mesh, const std::vector<HalfEdge>& sides, std::vector<bool>& turned,
-              OrientedMesh& out)
+              OrientedMesh& out, int threads)
       : mesh_(mesh),
         sides_(sides),
         turned_(turned),
         out_(out),
+        threads_(threads),
         joined_(static_cast<int>(out.components.size())) {}
 
   void join() {
@@ -111,25 +115,25 @@ class OpenPatches {
     const Mat3 R = exp_rotation(Vec3(0.35, 0.81, 1.27));
     TriangleMesh rotated = mesh_;
     for (Vec3& vertex : rotated.vertices) vertex = R * vertex;
-    std::vector<bool> wrong(out_.components.size(), false);
-    for (int set = 0; set < static_cast<int>(sets.size()); ++set) {
-      if (!sets[set]) continue;
-      std::vector<int> taken(mesh_.triangles.size(), -1);
-      std::vector<double> outward_area(out_.components.size(), 0.0);
-      for (std::size_t t = 0; t < taken.size(); ++t)
-        if (set_of(out_.component[t]) == set) taken[t] = set;
-      const SurfaceCrossings crossings(rotated, taken);
-      for (std::size_t t = 0; t < taken.size(); ++t) {
+    std::vector<int> taken(mesh_.triangles.size(), -1);  // the set of each triangle
+    for (std::size_t t = 0; t < taken.size(); ++t)
+      if (const int set = set_of(out_.component[t]); set >= 0 && sets[set]) taken[t] = set;
+    const SurfaceCrossings crossings(rotated, taken, threads_);
+    std::vector<double> outward(taken.size(), 0.0);  // along the ray, twice the area
+    for_ranges(threads_, taken.size(), kTrianglesAtOnce, [&](std::size_t first, std::size_t last) {
+      for (std::size_t t = first; t < last; ++t) {
         if (taken[t] < 0) continue;
         Vec3 middle = Vec3::Zero();
         for (int corner : rotated.triangles[t]) middle += rotated.vertices[corner] / 3.0;
         const double along = (turned_[t] ? -1.0 : 1.0) * (R * normal_of(t)).x();
         const bool solid_beyond = crossings.crossed(middle, static_cast<int>(t)) % 2 != 0;
-        outward_area[out_.component[t]] += solid_beyond ? -along : along;
+        outward[t] = solid_beyond ? -along : along;
       }
-      for (std::size_t c = 0; c < wrong.size(); ++c)
-        if (set_of(static_cast<int>(c)) == set) wrong[c] = outward_area[c] < 0.0;
-    }
+    });
+    std::vector<double> of_patch(out_.components.size(), 0.0);
+    for (std::size_t t = 0; t < taken.size(); ++t) of_patch[out_.component[t]] += outward[t];
+    std::vector<bool> wrong(of_patch.size(), false);
+    for (std::size_t c = 0; c < wrong.size(); ++c) wrong[c] = of_patch[c] < 0.0;
     turn(wrong);
   }
 
@@ -153,6 +157,7 @@ class OpenPatches {
   const std::vector<HalfEdge>& sides_;
   std::vector<bool>& turned_;
   OrientedMesh& out_;
+  int threads_;
   DisjointSets joined_;
   std::vector<bool> closed_;  ///< by set: it closes
 };
@@ -160,8 +165,8 @@ class OpenPatches {
 }  // namespace
 
 void join_open_patches(const TriangleMesh& mesh, const std::vector<HalfEdge>& sides,
-                       std::vector<bool>& turned, OrientedMesh& out) {
-  OpenPatches(mesh, sides, turned, out).join();
+                       std::vector<bool>& turned, OrientedMesh& out, int threads) {
+  OpenPatches(mesh, sides, turned, out, threads).join();
 }
 
 }  // namespace tactum::inline v0_1

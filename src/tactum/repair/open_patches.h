@@ -15,9 +15,9 @@ namespace tactum::inline v0_1 {
 
 /// Makes one component of each such set, and turns its patches: as in the file when that bounds a volume,
 /// else by the parity of crossings along a ray. `turned` are the triangles that stand against the mesh given,
-/// `out` the components as edges of two triangles make them, with their open edges found. n log n, and once
-/// more for each set that the file does not orient.
+/// `out` the components as edges of two triangles make them, with their open edges found. n log n, and for
+/// what the file does not orient a ray for each triangle (surface_crossings.h).
 void join_open_patches(const TriangleMesh& mesh, const std::vector<HalfEdge>& sides,
-                       std::vector<bool>& turned, OrientedMesh& out);
+                       std::vector<bool>& turned, OrientedMesh& out, int threads = 1);
 
 }  // namespace tactum::inline v0_1

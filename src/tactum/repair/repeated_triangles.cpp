@@ -60,8 +60,11 @@ double twice_area(const TriangleMesh& mesh, const Triangle& t) {
 
 class Sorter {
  public:
-  explicit Sorter(const TriangleMesh& mesh)
-      : mesh_(mesh), stacks_(stacks_of(mesh)), patch_of_(static_cast<int>(stacks_.size())) {}
+  Sorter(const TriangleMesh& mesh, int threads)
+      : mesh_(mesh),
+        threads_(threads),
+        stacks_(stacks_of(mesh)),
+        patch_of_(static_cast<int>(stacks_.size())) {}
 
   RepeatedTriangles run() {
     const bool any_even =
@@ -127,10 +130,10 @@ class Sorter {
     if (!crossings_) {
       rest_ = one_of_each(mesh_, stacks_,
                           [&](int s) { return !stacks_[s].even() || is_copy(patches_[patch_of_.find(s)]); });
-      const OrientedMesh oriented = orient_components(rest_);
+      const OrientedMesh oriented = orient_components(rest_, threads_);
       for (const int component : oriented.component)
         surface_.push_back(oriented.components[component].closed ? 0 : -1);
-      crossings_.emplace(rest_, surface_);
+      crossings_.emplace(rest_, surface_, threads_);
     }
     Vec3 middle = Vec3::Zero();
     for (int corner : mesh_.triangles[stacks_[stack].triangles.front()])
@@ -151,6 +154,7 @@ class Sorter {
   }
 
   const TriangleMesh& mesh_;
+  int threads_;
   std::vector<Stack> stacks_;
   DisjointSets patch_of_;
   std::vector<Patch> patches_;                 ///< at their roots
@@ -161,6 +165,8 @@ class Sorter {
 
 }  // namespace
 
-RepeatedTriangles find_repeated_triangles(const TriangleMesh& mesh) { return Sorter(mesh).run(); }
+RepeatedTriangles find_repeated_triangles(const TriangleMesh& mesh, int threads) {
+  return Sorter(mesh, threads).run();
+}
 
 }  // namespace tactum::inline v0_1

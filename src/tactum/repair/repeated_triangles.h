@@ -10,7 +10,8 @@
 ///                                solid on both sides
 ///
 /// Of a copy and of a sheet one triangle is kept; walls between two solids go, since nothing reaches them.
-/// Neither orientation nor the order in the file matters. n log n.
+/// Neither orientation nor the order in the file matters. n log n; where walls and sheets must be told apart,
+/// also the cost of orientation (mesh_orientation.h) and a ray for each patch.
 
 #include <vector>
 
@@ -26,6 +27,6 @@ struct RepeatedTriangles {
 };
 
 /// The mesh is welded, and its triangles have three different corners.
-RepeatedTriangles find_repeated_triangles(const TriangleMesh& mesh);
+RepeatedTriangles find_repeated_triangles(const TriangleMesh& mesh, int threads = 1);
 
 }  // namespace tactum::inline v0_1

@@ -29,7 +29,7 @@ bool beyond_in_y(const Vec3& a, const Vec3& b, const Vec3& p) {
 
 }  // namespace
 
-SurfaceCrossings::SurfaceCrossings(const TriangleMesh& mesh, const std::vector<int>& surface)
+SurfaceCrossings::SurfaceCrossings(const TriangleMesh& mesh, const std::vector<int>& surface, int threads)
     : mesh_(mesh), surface_(surface) {
   std::vector<Aabb> boxes;
   for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
@@ -37,7 +37,7 @@ SurfaceCrossings::SurfaceCrossings(const TriangleMesh& mesh, const std::vector<i
     taken_.push_back(t);
     boxes.push_back(box_of(mesh, t));
   }
-  if (!boxes.empty()) tree_ = Bvh(boxes, 4);
+  if (!boxes.empty()) tree_ = Bvh(boxes, 4, threads);
 }
 
 int SurfaceCrossings::crossing(int triangle, const Vec3& point) const {
@@ -81,9 +81,11 @@ void SurfaceCrossings::for_each_crossing(const Vec3& point, Visitor&& visit) con
   }
 }
 
-int SurfaceCrossings::crossed(const Vec3& point, int but_triangle) const {
+int SurfaceCrossings::crossed(const Vec3& middle, int triangle) const {
   int count = 0;
-  for_each_crossing(point, [&](int triangle, int) { count += triangle != but_triangle ? 1 : 0; });
+  for_each_crossing(middle, [&](int other, int) {
+    count += other != triangle && surface_[other] == surface_[triangle] ? 1 : 0;
+  });
   return count;
 }
 

@@ -17,14 +17,14 @@ namespace tactum::inline v0_1 {
 class SurfaceCrossings {
  public:
   /// Of the mesh as it stands; `surface[t]` names the surface of triangle t, -1: left out.
-  SurfaceCrossings(const TriangleMesh& mesh, const std::vector<int>& surface);
+  SurfaceCrossings(const TriangleMesh& mesh, const std::vector<int>& surface, int threads = 1);
 
   /// (surface, winding number) of all surfaces that wind about the point, in ascending order: +1 inside one
   /// that faces outward. A point on a surface counts as either side of it.
   std::vector<std::pair<int, int>> windings(const Vec3& point) const;
 
-  /// How many triangles the ray crosses, all but one.
-  int crossed(const Vec3& point, int but_triangle) const;
+  /// How many other triangles of its surface a ray from the middle of a triangle crosses.
+  int crossed(const Vec3& middle, int triangle) const;
 
  private:
   /// Calls visit(triangle, +1 or -1) for every triangle that the ray crosses.

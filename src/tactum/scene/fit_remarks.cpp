@@ -6,15 +6,18 @@
 #include <cmath>
 #include <optional>
 
+#include "tactum/math/types.h"
+
 namespace tactum::inline v0_1 {
 namespace {
 
 /// A part that goes into another one, or that one, by the sizes that decide.
 struct Mating {
-  std::string name;  ///< of the body
-  std::string size;  ///< of a thread, which must be the same
-  double width_m = 0.0;
+  std::string name;      ///< of the body
+  std::string size;      ///< of a thread, which must be the same
+  double width_m = 0.0;  ///< of a prism's circle: about a peg, in a hole
   double depth_m = 0.0;  ///< of a rectangle; else the width
+  int sides = 0;         ///< of a prism; 0: a rectangle
 };
 
 /// The two sides of one kind of mating: what goes in, and what it goes into.
@@ -44,35 +47,64 @@ class MatingParts {
   void add(const std::string& name, const PartDescription& part) {
     if (const auto* peg = std::get_if<PegPart>(&part)) {
       const double width = as_made(peg->fit, false, peg->peg.width_m);
-      const bool round = peg->peg.sides != 0;
-      pegs.inner.push_back({name, "", width, round ? width : as_made(peg->fit, false, peg->peg.depth_m)});
+      const int sides = peg->peg.sides;
+      const double depth = sides != 0 ? width : as_made(peg->fit, false, peg->peg.depth_m);
+      pegs.inner.push_back({name, "", width, depth, sides});
     } else if (const auto* hole = std::get_if<HoleBlockPart>(&part)) {
       const HoleBlock& block = hole->block;
       const double width = hole_size(hole->fit, block.peg_width_m, block.clearance_m);
-      pegs.outer.push_back(
-          {name, "", width,
-           block.sides != 0 ? width : hole_size(hole->fit, block.peg_depth_m, block.clearance_m)});
+      const double depth =
+          block.sides != 0 ? width : hole_size(hole->fit, block.peg_depth_m, block.clearance_m);
+      pegs.outer.push_back({name, "", width, depth, block.sides});
     } else if (const auto* key = std::get_if<HexKeyPart>(&part)) {
       const double width = as_made(key->fit, false, key->key.across_flats_m);
-      keys.inner.push_back({name, "", width, width});
+      keys.inner.push_back({name, "", width, width, 0});
     } else if (const auto* socket = std::get_if<SocketPart>(&part)) {
       const double width = hole_size(socket->fit, socket->socket.across_flats_m, socket->socket.clearance_m);
-      keys.outer.push_back({name, "", width, width});
+      keys.outer.push_back({name, "", width, width, 0});
     } else if (const auto* bolt = std::get_if<BoltPart>(&part)) {
-      threads.inner.push_back({name, bolt->screw.size, 0.0, 0.0});
+      threads.inner.push_back({name, bolt->screw.size, 0.0, 0.0, 0});
     } else if (const auto* nut = std::get_if<NutPart>(&part)) {
-      threads.outer.push_back({name, nut->screw.size, 0.0, 0.0});
+      threads.outer.push_back({name, nut->screw.size, 0.0, 0.0, 0});
     }
   }
 };
 
-/// What is missing for the inner part to go into the outer one, in either direction of a rectangle; negative:
-/// there is play [m].
+/// Whether a rectangle goes into another one turned in its plane, though its long side is too long (the
+/// condition of Carver, 1957).
+bool fits_askew(double length, double width, double hole_length, double hole_width) {
+  if (length <= hole_length || width > hole_width) return false;
+  const double squares = length * length + width * width;
+  const double beyond = std::sqrt(squares - hole_length * hole_length);
+  const double needed =
+      (2.0 * length * width * hole_length + (length * length - width * width) * beyond) / squares;
+  return needed <= hole_width;
+}
+
+double excess_of_rectangles(const Mating& inner, const Mating& outer) {
+  const auto [width, length] = std::minmax(inner.width_m, inner.depth_m);
+  const auto [hole_width, hole_length] = std::minmax(outer.width_m, outer.depth_m);
+  const double over = std::max(length - hole_length, width - hole_width);
+  return over > 0.0 && fits_askew(length, width, hole_length, hole_width) ? 0.0 : over;
+}
+
+/// Prisms of so many sides stand for cylinders, and are judged by their circles.
+constexpr int kRound = 16;
+
+/// What is missing for the inner part to go into the outer one, however it is turned; at or below zero: it
+/// goes in, or may. Where the shapes differ, only a lack that no turn cures counts: a wrong remark is worse
+/// than none.
 double excess(const Mating& inner, const Mating& outer) {
-  const auto over = [&](double width, double depth) {
-    return std::max(width - outer.width_m, depth - outer.depth_m);
+  const auto flat_over_corner = [](const Mating& prism) {
+    return prism.sides == 0 ? 1.0 : std::cos(kPi / prism.sides);
   };
-  return std::min(over(inner.width_m, inner.depth_m), over(inner.depth_m, inner.width_m));
+  const double across_flats = inner.width_m * flat_over_corner(inner);    // of a prism that goes in
+  const double across_corners = outer.width_m / flat_over_corner(outer);  // of a hole
+  if (inner.sides == 0 && outer.sides == 0) return excess_of_rectangles(inner, outer);
+  if (inner.sides == 0) return std::hypot(inner.width_m, inner.depth_m) - across_corners;
+  if (outer.sides == 0) return across_flats - std::min(outer.width_m, outer.depth_m);
+  if (inner.sides >= kRound && outer.sides >= kRound) return inner.width_m - outer.width_m;
+  return across_flats - (inner.sides == outer.sides ? outer.width_m : across_corners);
 }
 
 void add_remarks(const MatingKind& kind, std::vector<std::string>& remarks) {

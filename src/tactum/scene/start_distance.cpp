@@ -61,14 +61,17 @@ bool closed(const TriangleMesh& mesh) {
 class DepthInside {
  public:
   explicit DepthInside(const TriangleMesh& mesh)
-      : surface_(mesh.triangles.size(), 0), crossings_(mesh, surface_), nearest_(mesh) {}
+      : surface_(mesh.triangles.size(), 0), crossings_(mesh, surface_), surface_points_(mesh) {}
 
-  double at(const Vec3& point) { return crossings_.windings(point).empty() ? 0.0 : nearest_.distance(point); }
+  double at(const Vec3& point) {
+    return crossings_.windings(point).empty() ? 0.0 : surface_points_.distance(point, nearest_);
+  }
 
  private:
   std::vector<int> surface_;  // all triangles are of one
   SurfaceCrossings crossings_;
-  NearestOnMesh nearest_;
+  NearestOnMesh surface_points_;
+  int nearest_ = 0;  ///< triangle of the last answer
 };
 
 /// Corners, middles of sides and centres of the triangles that are in the box of another mesh, in its frame;
