@@ -145,6 +145,9 @@ export const topics = {
     await pressDown(page, 0.8);
     const look = () => page.locator("#canvas").screenshot();
     check(Number((await state(page)).force) > 0.5 && !(await page.isVisible("#grip-legend")), "without friction there is no legend of it");
+    check((await page.textContent("#scale")).includes("arrows: 1 N"), "the arrows have their usual size");
+    for (let i = 0; i < 2; ++i) await page.keyboard.press("+"); // so that half a newton is seen well
+    await until("longer arrows were asked for", async () => (await page.textContent("#scale")).includes("arrows: 200 mN"));
     check(!(await page.isVisible("#raw-legend")), "no raw wrench before it is asked for");
     await page.keyboard.press("Space"); // from here on nothing is shown; the raw wrench stays
     await until("there is no force", async () => (await state(page)).force === "0");
