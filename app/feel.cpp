@@ -62,15 +62,35 @@ struct Watchers {
   TraceFile* trace = nullptr;
 };
 
+/// The times of a run's frames. Of a run that is repeated each frame's fastest is kept, of a single one only
+/// how often each duration came: it may last for days.
+class FrameTimes {
+ public:
+  FrameTimes(std::uint64_t frames, int runs) {
+    if (runs > 1) least_.emplace(frames);
+  }
+  void add(std::uint64_t frame, double time_s) {
+    const auto time_ns = static_cast<std::int64_t>(time_s * 1e9);
+    if (least_)
+      least_->add(frame, time_ns);
+    else
+      all_.add(time_ns);
+  }
+  Summary summary() const { return least_ ? least_->summary() : all_.summary(); }
+
+ private:
+  std::optional<MinimumOfReplays> least_;
+  DurationHistogram all_;
+};
+
 /// Times the frames of a virtual run, passes them to those who watch, keeps the status line alive, and passes
 /// Ctrl-C on.
 class VirtualWatch final : public LoopObserver {
  public:
-  VirtualWatch(Session& session, const Watchers& watchers, MinimumOfReplays& times)
+  VirtualWatch(Session& session, const Watchers& watchers, FrameTimes& times)
       : session_(session), watchers_(watchers), times_(times) {}
   bool after_frame(const FrameRecord& record) noexcept override {
-    times_.add(static_cast<std::size_t>(record.tick.index),
-               static_cast<std::int64_t>(record.frame_time_s * 1e9));
+    times_.add(record.tick.index, record.frame_time_s);
     if (watchers_.referee != nullptr) watchers_.referee->look(record.tick.index);
     if (watchers_.trace != nullptr) watchers_.trace->drain();
     if (record.tick.index % kFramesPerLook == 0) status_.show(session_, session_.poll());
@@ -81,7 +101,7 @@ class VirtualWatch final : public LoopObserver {
   static constexpr std::uint64_t kFramesPerLook = 1000;
   Session& session_;
   Watchers watchers_;
-  MinimumOfReplays& times_;
+  FrameTimes& times_;
   StatusLine status_;
 };
 
@@ -162,8 +182,7 @@ std::vector<SceneRemark> remark_on(std::FILE* out, const FeelOptions& options,
   return remarks;
 }
 
-void run_virtually(Session& session, std::uint64_t frames, const Watchers& watchers,
-                   MinimumOfReplays& times) {
+void run_virtually(Session& session, std::uint64_t frames, const Watchers& watchers, FrameTimes& times) {
   VirtualWatch watch(session, watchers, times);
   const Result<VirtualRun> run = session.run_virtual(frames, &watch);
   if (!run) fail(run.error());
@@ -172,7 +191,7 @@ void run_virtually(Session& session, std::uint64_t frames, const Watchers& watch
 /// Runs the session, and repeats it as many times as wanted.
 Summary feel_virtually(const FeelOptions& options, const SceneDescription& description, Session& session,
                        std::uint64_t frames, const Watchers& watchers) {
-  MinimumOfReplays times(frames);
+  FrameTimes times(frames, options.replays);
   run_virtually(session, frames, watchers, times);
   for (int replay = 1; replay < options.replays && !interrupted(); ++replay) {
     const std::unique_ptr<Session> again = open_session(options, scene_of(options, description));
