@@ -307,15 +307,18 @@ void feel_with_pages(const FeelOptions& options, const std::vector<SceneRemark>&
   Viewer& viewer = **opened;
   report_what_is_felt(out, viewer.session(), options.hand);
   open_page(out, viewer.server().address());
-  if (options.wait_s > 0.0)
-    fmt::print(out,
-               "it waits {:.0f} s for the page to be opened, and stays as long as one is open; Ctrl-C "
-               "ends it\n",
-               options.wait_s);
-  std::fflush(out);
   const std::uint64_t asked =
       options.updates > 0 ? options.updates
                           : static_cast<std::uint64_t>(options.duration_s * viewer.session().rate_Hz());
+  if (options.wait_s > 0.0 && asked == 0)
+    fail({"--wait is for a run with an end", "no end", "--duration or --updates", ""});
+  if (options.wait_s > 0.0)
+    fmt::print(
+        out,
+        "when its frames are over it waits {:.0f} s for the page to be opened, and stays as long as one "
+        "is open; Ctrl-C ends it\n",
+        options.wait_s);
+  std::fflush(out);
   const Summary times = options.virtual_clock
                             ? feel_viewed_virtually(viewer, frames_asked_for(options, viewer.session()))
                             : run_viewed(viewer, asked, options.wait_s);
@@ -389,12 +392,12 @@ void add_what_is_felt(CLI::App* command, FeelOptions* options) {
   command->add_option("--json", options->json, "Write the summary to this file (- for standard output)");
 }
 
-/// The options of the page.
-void add_page(CLI::App* command, FeelOptions* options, CLI::Option* view) {
+/// The options of the page; returns that of waiting for it.
+CLI::Option* add_page(CLI::App* command, FeelOptions* options, CLI::Option* view) {
   command->add_option("--port", options->port, "The port of the page; by default one that is free")
       ->check(whole_number_between(1, 65535, "a port"))
       ->needs(view);
-  command
+  return command
       ->add_option("--wait", options->wait_s,
                    "How long a run with an end waits for a page to be opened, once its frames are over [s]")
       ->check(number_between(0.0, 1e5, "seconds"))
@@ -443,7 +446,7 @@ void add_feel(CLI::App& app) {
   replays->excludes(view);
   referee->excludes(view);
   trace->excludes(view);
-  add_page(command, options.get(), view);
+  add_page(command, options.get(), view)->excludes(virtual_clock);
   command->callback([options] { feel(*options); });
 }
 

@@ -34,8 +34,8 @@ std::string lower_ending(const std::string& name) {
 
 /// The path of a file as a scene in `folder` names it.
 std::string named_from(const std::string& folder, const std::string& path) {
-  const fs::path whole = fs::absolute(path);
-  return (folder.empty() ? whole : whole.lexically_proximate(folder)).string();
+  const fs::path whole = fs::absolute(path).lexically_normal();
+  return (folder.empty() ? whole : whole.lexically_proximate(fs::path(folder).lexically_normal())).string();
 }
 
 SizedMesh sized_mesh(const std::string& path, std::vector<std::string>& sentences) {

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <csignal>
 #include <cstdlib>
+#include <optional>
 #include <thread>
 
 #include "commands.h"
@@ -69,17 +70,21 @@ Summary run_viewed(Viewer& viewer, std::uint64_t frames, double wait_s) {
     fmt::print(stderr, "{}\n", sentence);
   StatusLine status;
   auto last_line = std::chrono::steady_clock::now();
-  std::uint64_t earlier = 0, last = 0;  // frames of runs that a page has ended
+  std::uint64_t earlier = 0, last = 0;                        // frames of runs that a page has ended
+  std::optional<std::chrono::steady_clock::time_point> over;  // since then all frames are done
   while (!interrupted()) {
     viewer.poll(std::chrono::milliseconds(8));
     const LoopStatus loop = viewer.session().loop_status();
     if (!loop.running) break;
     if (loop.frames < last) earlier += last;
     last = loop.frames;
-    const bool page_was_here = viewer.server().status().pages_ever > 0;
-    if (frames > 0 && earlier + loop.frames >= frames &&
-        viewer.alone_s() > (page_was_here ? kReload_s : wait_s))
-      break;
+    if (frames > 0 && earlier + loop.frames >= frames) {
+      const auto now = std::chrono::steady_clock::now();
+      if (!over) over = now;
+      const double since_s = std::chrono::duration<double>(now - *over).count();
+      const bool page_was_here = viewer.server().status().pages_ever > 0;
+      if (page_was_here ? viewer.alone_s() > kReload_s : since_s >= wait_s) break;
+    }
     if (std::chrono::steady_clock::now() - last_line < std::chrono::milliseconds(100)) continue;
     last_line = std::chrono::steady_clock::now();
     status.show(viewer.session(), viewer.status());

@@ -178,6 +178,14 @@ TEST(CommandLine, MeshesAreFeltWithoutASceneFile) {
       run_tactum("feel " + (elsewhere / "saved.toml").string() + " --virtual-clock --json -");
   ASSERT_EQ(moved.exit_code, 0) << moved.err;
   EXPECT_EQ(Json::parse(moved.out)["frame_hash"], Json::parse(one.out)["frame_hash"]);
+  // A scene that is saved elsewhere, by a path that goes up, finds its mesh too.
+  const std::string beside = (elsewhere / "../other.toml").string();
+  const std::string mesh = (elsewhere / "a.stl").string();
+  const ProgramRun up = run_tactum("feel " + mesh + " --virtual-clock --json - --save-scene " + beside);
+  ASSERT_EQ(up.exit_code, 0) << up.err;
+  const ProgramRun read = run_tactum("feel " + beside + " --virtual-clock --json -");
+  ASSERT_EQ(read.exit_code, 0) << read.err;
+  EXPECT_EQ(Json::parse(read.out)["frame_hash"], Json::parse(one.out)["frame_hash"]);
   // A box of 60 mm below.
   const std::string box = folder / "box.obj";
   write(box,

@@ -171,6 +171,28 @@ std::vector<std::uint32_t> samples_until(RawPage& page, std::uint32_t last, bool
   return indices;
 }
 
+/// The owner may be busy for seconds, as while it builds a scene.
+TEST_F(ServerThread, AStopIsKnownBeforeTheOwnerTakesIt) {
+  auto page = open_page();
+  ASSERT_TRUE(comes_true([&] { return server->status().pages == 1; }));
+  EXPECT_FALSE(server->stop_asked());
+  page->say("{\"do\":\"stop\"}");
+  ASSERT_TRUE(comes_true([&] { return server->stop_asked().load(); }));
+  Request request;
+  ASSERT_TRUE(server->take(request));
+  EXPECT_TRUE(server->stop_asked());
+  page->say("{\"do\":\"resume\"}");
+  ASSERT_TRUE(comes_true([&] { return server->take(request); }));
+  EXPECT_FALSE(server->stop_asked());
+  // A stop behind a request to resume holds, though the owner takes the other first.
+  page->say("{\"do\":\"resume\"}");
+  page->say("{\"do\":\"stop\"}");
+  ASSERT_TRUE(comes_true([&] { return server->stop_asked().load(); }));
+  ASSERT_TRUE(server->take(request));
+  EXPECT_EQ(request.what, Request::What::kResume);
+  EXPECT_TRUE(server->stop_asked());
+}
+
 TEST_F(ServerThread, ASlowPageGetsTheNewestPictureAndEverySample) {
   server->begin_run(1, "{\"type\":\"run\"}", "geometry");
   auto page = open_page();

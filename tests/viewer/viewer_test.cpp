@@ -144,6 +144,66 @@ Json message_when(Viewer& viewer, RawPage& page, const std::string& type,
   return {};
 }
 
+/// Opens a page on a viewer that runs.
+RawPage page_of(const Viewer& viewer) {
+  const Server& server = viewer.server();
+  return RawPage(server.port(), server.token(), "http://127.0.0.1:" + std::to_string(server.port()));
+}
+
+TEST(ViewerThread, AStopReachesTheLoopThoughTheOwnerIsBusy) {
+  const std::unique_ptr<Viewer> viewer = open_viewer("block-on-plate");
+  ASSERT_TRUE(viewer->start());
+  RawPage page = page_of(*viewer);
+  ASSERT_TRUE(page.accepted());
+  page.say("{\"do\":\"stop\"}");
+  bool stopped = false;
+  for (int i = 0; i < 4000 && !stopped; ++i) {  // no request is taken meanwhile
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    stopped = (viewer->session().poll().safety & safety_flag::kStopped) != 0;
+  }
+  EXPECT_TRUE(stopped);
+  viewer->stop();
+}
+
+/// A coupling that the device chooses is that of the device that is in use, also when it is taken back.
+TEST(ViewerThread, SettingsGoBackToWhatTheSceneAndTheDeviceHave) {
+  const std::unique_ptr<Viewer> viewer =
+      open_viewer("gears-involute");  // it leaves the coupling to the device
+  ASSERT_TRUE(viewer->start());
+  RawPage page = page_of(*viewer);
+  ASSERT_TRUE(page.accepted());
+  const auto value_of = [](const Json& message, const std::string& key, const char* which) {
+    for (const Json& setting : message["settings"])
+      if (setting["section"] == "coupling" && setting["key"] == key) return setting[which].get<double>();
+    return 0.0;
+  };
+  const auto usual = [&](const Json& message) { return value_of(message, "stiffness_N_per_m", "usual"); };
+  const auto now = [&](const Json& message) { return value_of(message, "stiffness_N_per_m", "value"); };
+  const auto any = [](const Json&) { return true; };
+  const Json run = message_when(*viewer, page, "run", any);
+  ASSERT_TRUE(run.is_object());
+  EXPECT_EQ(run["coupling_by_device"], true);
+  EXPECT_EQ(run["toml"], "");
+  EXPECT_EQ(now(run), usual(run));
+  page.say("{\"do\":\"set\",\"key\":\"coupling.stiffness_N_per_m\",\"value\":432}");
+  const Json set =
+      message_when(*viewer, page, "settings", [&](const Json& json) { return now(json) == 432.0; });
+  ASSERT_TRUE(set.is_object());
+  EXPECT_EQ(set["coupling_by_device"], false);
+  EXPECT_NE(set["toml"].get<std::string>().find("coupling.damping_Ns_per_m"), std::string::npos)
+      << "all of it";
+  page.say("{\"do\":\"device\",\"name\":\"pointer:virtuose-6d\"}");
+  const Json other = message_when(*viewer, page, "run", [](const Json& json) { return json["run"] == 2; });
+  ASSERT_TRUE(other.is_object());
+  EXPECT_EQ(now(other), 432.0);
+  EXPECT_NE(usual(other), usual(run));
+  page.say("{\"do\":\"unset\",\"key\":\"coupling.stiffness_N_per_m\"}");
+  const Json back =
+      message_when(*viewer, page, "settings", [&](const Json& json) { return now(json) == usual(other); });
+  ASSERT_TRUE(back.is_object());
+  viewer->stop();
+}
+
 TEST(ViewerThread, StopsResumesSetsAndSwitchesAsAsked) {
   const std::unique_ptr<Viewer> viewer = open_viewer("block-on-plate");
   ASSERT_TRUE(viewer->start());

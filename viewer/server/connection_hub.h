@@ -2,6 +2,8 @@
 /// The state common to all connections of the viewer's server: the messages for every page, the open pages,
 /// the page that steers, and the requests of pages.
 
+#include <algorithm>
+#include <atomic>
 #include <boost/asio/io_context.hpp>
 #include <chrono>
 #include <condition_variable>
@@ -61,6 +63,7 @@ class RequestInbox {
   void ask(const Request& request) {
     constexpr std::size_t kCapacity = 4096;
     const std::lock_guard lock(guard_);
+    if (request.what == Request::What::kStop) stop_asked_.store(true, std::memory_order_relaxed);
     if (waiting_.size() < kCapacity) waiting_.push_back(request);
     arrived_.notify_one();
   }
@@ -75,8 +78,13 @@ class RequestInbox {
     if (waiting_.empty()) return false;
     request = std::move(waiting_.front());
     waiting_.pop_front();
+    const auto stops = [](const Request& one) { return one.what == Request::What::kStop; };
+    if (request.what == Request::What::kResume && std::none_of(waiting_.begin(), waiting_.end(), stops))
+      stop_asked_.store(false, std::memory_order_relaxed);
     return true;
   }
+  /// Whether a page has asked to stop, from that moment on until its owner takes a request to resume.
+  const std::atomic<bool>& stop_asked() const { return stop_asked_; }
   /// Waits for a request, at most so long.
   void wait(std::chrono::microseconds longest) {
     std::unique_lock lock(guard_);
@@ -91,6 +99,7 @@ class RequestInbox {
   mutable std::mutex guard_;
   std::condition_variable arrived_;
   std::deque<Request> waiting_;
+  std::atomic<bool> stop_asked_{false};
   ServerStatus status_;
 };
 

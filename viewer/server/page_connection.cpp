@@ -153,6 +153,9 @@ class PageConnection : public std::enable_shared_from_this<PageConnection> {
     }
     if (request.steers() && hub_.steering != number_) return hub_.inbox.refuse(Refusal::kNotSteering);
     hub_.inbox.ask(request);
+    if (request.what != Request::What::kStop) return;
+    ++hub_.program_status.version;  // tells every page that the stop has arrived
+    hub_.feed_pages();
   }
 
   std::string status_text() const {
@@ -164,6 +167,7 @@ class PageConnection : public std::enable_shared_from_this<PageConnection> {
                                            {"pages", hub_.pages.size()},
                                            {"steering", hub_.steering == number_},
                                            {"somebody_steers", hub_.steering != 0},
+                                           {"stop_asked", hub_.inbox.stop_asked().load()},
                                            {"samples_lost", lost_},
                                            {"refused", refused}};
     std::string text = status.dump();

@@ -79,6 +79,7 @@ void Server::begin_run(std::uint32_t run, std::string message, std::string geome
                geometry = shared_text(std::move(geometry))] {
     hub->run = {run, message, geometry};
     hub->history.cut();
+    hub->picture.replace(shared_text(""));  // that of the run before
     hub->feed_pages();
   });
 }
@@ -120,6 +121,8 @@ void Server::send_notice(const std::string& sentence) {
 bool Server::take(Request& request) { return impl_->hub.inbox.take(request); }
 
 void Server::wait(std::chrono::microseconds longest) { impl_->hub.inbox.wait(longest); }
+
+const std::atomic<bool>& Server::stop_asked() const { return impl_->hub.inbox.stop_asked(); }
 
 ServerStatus Server::status() const { return impl_->hub.inbox.status(); }
 

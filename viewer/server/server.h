@@ -10,6 +10,7 @@
 /// page gets the newest picture when it is ready, never a queue of old ones; the chart samples it missed
 /// meanwhile come with it (history.h). One page steers at a time; anyone may stop.
 
+#include <atomic>
 #include <chrono>
 #include <memory>
 #include <span>
@@ -63,6 +64,9 @@ class Server {
   /// Waits for one, at most so long.
   void wait(std::chrono::microseconds longest);
   ServerStatus status() const;
+  /// Whether a page has asked to stop: true from the moment its request arrives, however busy the owner is,
+  /// until the owner takes a request to resume. Lives as long as the server.
+  const std::atomic<bool>& stop_asked() const;
 
  private:
   struct Impl;

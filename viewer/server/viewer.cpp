@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tactum/devices/registry.h"
+#include "tactum/haptics/coupling_gains.h"
 #include "tactum/haptics/setting_table.h"
 #include "tactum/scene/build_scene.h"
 #include "tactum/scene/builtin_scenes.h"
@@ -38,7 +39,7 @@ bool same_coupling(const FrameSettings& a, const FrameSettings& b) {
 nlohmann::ordered_json goals_json(const Scene& scene, const SessionStatus& newest) {
   nlohmann::ordered_json goals = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < std::min(scene.goals.size(), newest.goals.size()); ++i) {
-    const double best = static_cast<double>(newest.goals[i]);
+    const double best = newest.goals[i];
     goals.push_back(
         {{"met", is_met(scene.goals[i], best)}, {"text", describe_goal(scene.world, scene.goals[i], best)}});
   }
@@ -73,6 +74,10 @@ Viewer::Viewer(Scene scene, SessionOptions options, std::unique_ptr<Server> serv
 void Viewer::remember_usual() {
   usual_ = {scene_.settings, scene_.safety};
   device_chooses_ = scene_.coupling_by_device;
+  if (const SettingsDescription* const before = scene_.before_changes.get()) {
+    usual_ = {before->frame, before->safety};
+    device_chooses_ = before->coupling_by_device;
+  }
 }
 
 ShownSettings Viewer::shown_settings() const {
@@ -91,14 +96,17 @@ Result<void> Viewer::begin_run() {
   (*session)->show_to(feed.get());
   (*session)->time_stages(stages.get());
   (*session)->hold_wrench_at_zero(stopped_);
+  (*session)->stop_while(&server_->stop_asked());
   session_ = std::move(*session);  // the old one first: it refers to the old feed
   scene_.settings.coupling = session_->scene().settings.coupling;  // it may have chosen
-  if (scene_.coupling_by_device) usual_.frame.coupling = scene_.settings.coupling;
+  if (device_chooses_)
+    usual_.frame.coupling = coupling_gains(session_->device(), session_->rate_Hz()).coupling;
   feed_ = std::move(feed);
   stages_ = std::move(stages);
   waiting_.clear();
   timings_.clear();
-  newest_ = {};
+  ready_.clear();
+  newest_ = session_->poll();
   ++run_;
   server_->begin_run(run_, message_of_run(), geometry_of(scene_.world));
   return {};

@@ -15,13 +15,12 @@
 #include <cstddef>
 #include <exception>
 #include <mutex>
-#include <system_error>
 #include <thread>
 #include <vector>
 
 namespace tactum::inline v0_1 {
 
-/// The cores that this process may use; at least one.
+/// The cores of the machine, or those that this process may use where the system says so; at least one.
 inline int all_cores() noexcept { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
 
 /// Calls body(first, last) for [0, block), [block, 2 block) ... of [0, count), on at most `threads` threads,
@@ -51,9 +50,10 @@ void for_ranges(int threads, std::size_t count, std::size_t block, Body&& body) 
   };
   std::vector<std::thread> helpers;
   const auto wanted = std::min<std::size_t>(static_cast<std::size_t>(std::max(threads, 1)), ranges);
+  helpers.reserve(wanted);
   try {
     for (std::size_t i = 1; i < wanted; ++i) helpers.emplace_back(work);
-  } catch (const std::system_error&) {  // no more threads
+  } catch (const std::exception&) {  // the system gives no more threads, or no memory for one
   }
   work();
   for (std::thread& helper : helpers) helper.join();

@@ -54,7 +54,7 @@ bool may_be_unlimited(const SettingInfo& setting);
 bool in_range(const SettingInfo& setting, double value) noexcept;
 
 /// Those that differ from `usual`, as the table [settings] with units and meanings as comments. Such a table
-/// counts more than the sections of a scene file, so it can be put behind any; reading it gives the same
+/// counts more than the sections of a scene file, so it can be put behind them; reading it gives the same
 /// settings. Empty when none differs. With `whole_coupling` all of the coupling is there, as it must be for a
 /// scene that leaves it to the device.
 std::string changed_settings_toml(const UserSettings& now, const UserSettings& usual, bool whole_coupling);

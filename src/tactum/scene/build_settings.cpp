@@ -74,6 +74,7 @@ void build_settings(SceneBuilder& builder, Scene& scene) {
   scene.settings = settings.frame;
   scene.safety = settings.safety;
   scene.coupling_by_device = settings.coupling_by_device;
+  scene.before_changes = settings.before_changes;
   set_pairs(builder, "friction", settings.friction, scene.world, scene.settings.friction);
   set_pairs(builder, "restitution", settings.restitution, scene.world, scene.settings.impacts.restitution);
 

@@ -15,6 +15,8 @@
 
 namespace tactum::inline v0_1 {
 
+struct SettingsDescription;
+
 struct Scene {
   std::string name;         ///< "gears"
   std::string description;  ///< one line
@@ -27,6 +29,8 @@ struct Scene {
   std::shared_ptr<const HandMotion>
       hand;  ///< motion of the simulated hand, from the handle's pose on; may be null
   std::vector<Goal> goals;
+  /// The settings without those that a table [settings] of its file has changed; null where there is none.
+  std::shared_ptr<const SettingsDescription> before_changes;
   std::vector<std::string> remarks;  ///< deviations from the description, as sentences
 };
 

@@ -11,6 +11,7 @@
 /// 0: "body[2].joint.axis"; numbers in them have the unit of that key.
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -53,6 +54,8 @@ struct SettingsDescription {
   bool coupling_by_device = true;  ///< a session chooses frame.coupling for its device and rate
   std::vector<MaterialPair> friction = {};
   std::vector<MaterialPair> restitution = {};
+  /// As the sections of the file have them, where a table [settings] has changed some; else null.
+  std::shared_ptr<const SettingsDescription> before_changes = {};
 };
 
 struct SceneDescription {

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <memory>
 #include <string_view>
 
 #include "tactum/scene/item_visitor.h"
@@ -87,6 +88,8 @@ void visit_changes(ItemVisitor& visitor, SettingsDescription& settings) {
     const char* key = *info.section == '\0' ? info.key : info.section;
     if (keys.empty() || std::string_view(keys.back()) != key) keys.push_back(key);
   }
+  if (visitor.present("settings", false) && settings.before_changes == nullptr)
+    settings.before_changes = std::make_shared<const SettingsDescription>(settings);
   visitor.table("settings", keys, [&](ItemVisitor& inside) {
     if (inside.present("coupling", false)) settings.coupling_by_device = false;
     visit_section(inside, "", settings);

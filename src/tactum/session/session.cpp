@@ -13,6 +13,11 @@ namespace {
 
 constexpr std::size_t kGlances = 4096;  // four seconds at 1 kHz between two polls
 
+void put_goals(const GoalRecord& goals, SessionStatus& status) noexcept {
+  for (std::size_t goal = 0; goal < std::min(goals.size(), status.goals.size()); ++goal)
+    status.goals[goal] = goals.best(goal);
+}
+
 bool is_simulated(const std::string& name) { return name == "simulated" || name.starts_with("simulated:"); }
 
 }  // namespace
@@ -70,6 +75,7 @@ Session::Session(Scene scene, std::unique_ptr<Device> device)
       goals_(scene_.world, scene_.goals),
       glances_(kGlances) {
   scene_.settings = settings_for(scene_, device_->info());
+  put_goals(goals_, newest_);
 }
 
 Result<VirtualRun> Session::run_virtual(std::uint64_t frames, LoopObserver* observer) {
@@ -124,7 +130,8 @@ Wrench Session::run(const DeviceSample& sample, const FrameTick& tick) noexcept 
   SessionCommand command;  // no more than fit in, however fast another thread sends
   for (std::size_t n = 0; n < kCommands && commands_.pop(command); ++n) obey(command);
   FrameTick felt = tick;
-  felt.stop = tick.stop || wrench_at_zero_.load(std::memory_order_relaxed);
+  felt.stop = tick.stop || wrench_at_zero_.load(std::memory_order_relaxed) ||
+              (stop_asked_ != nullptr && stop_asked_->load(std::memory_order_relaxed));
   if (stage_clock_ != nullptr) stage_clock_->frame_begins();
   const Wrench F_D = haptic_frame(scene_.world, scene_.settings, sample, felt, state_, report_);
   if (!tick.stop) record_.add(report_, state_.world);
@@ -138,8 +145,7 @@ Wrench Session::run(const DeviceSample& sample, const FrameTick& tick) noexcept 
                        (report_.X_WH_proxy.p - report_.X_WH.p).norm(),
                        report_.safety,
                        {}};
-  for (std::size_t goal = 0; goal < std::min(goals_.size(), glance.goals.size()); ++goal)
-    glance.goals[goal] = static_cast<float>(goals_.best(goal));
+  put_goals(goals_, glance);
   // A full ring means that nothing was polled for seconds: the newest glance is then lost, the frame is not.
   glances_.push(glance);
   return F_D;

@@ -42,8 +42,8 @@ struct SessionStatus {
   double stretch_m = 0.0;    ///< probe to proxy [m]
   std::uint32_t safety = 0;  ///< safety_flag
   /// The numbers that decide the scene's first goals (GoalRecord::best).
-  static constexpr std::size_t kGoals = 16;
-  std::array<float, kGoals> goals{};
+  static constexpr std::size_t kGoals = 32;
+  std::array<double, kGoals> goals{};
 };
 
 class Session final : private HapticFrame {
@@ -83,6 +83,9 @@ class Session final : private HapticFrame {
   /// The big stop: the wrench is led to zero within the stop ramp and stays there, while frames go on, until
   /// taken back; the force then returns by the start ramp.
   void hold_wrench_at_zero(bool on) noexcept { wrench_at_zero_.store(on, std::memory_order_relaxed); }
+  /// The same from any thread, while `asked` is true; set before the run, null for none. It must outlive the
+  /// session.
+  void stop_while(const std::atomic<bool>* asked) noexcept { stop_asked_ = asked; }
   /// Whether the hand can be led by SessionCommand::kAim.
   bool can_be_led() const noexcept { return pointer_ != nullptr; }
 
@@ -121,6 +124,7 @@ class Session final : private HapticFrame {
   PointerDevice* pointer_;  // the device, when it is one that can be led
   SpscRing<SessionCommand> commands_;
   std::atomic<bool> wrench_at_zero_{false};
+  const std::atomic<bool>* stop_asked_ = nullptr;
   FrameFeed* feed_ = nullptr;
   FrameTrace* trace_ = nullptr;
   FrameState state_;

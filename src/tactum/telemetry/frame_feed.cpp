@@ -39,7 +39,8 @@ ShownContact shown_contact(const FrameSource& frame, const ContactRow& row) noex
   const double rest = frame.settings.dt_s - frame.report.time_of_impact_s;  // the impulses acted so long
   contact.force_N = rest > 0.0 ? row.impulse / rest : 0.0;
   contact.patch = row.patch;
-  contact.rests = stands_still(frame, row.body_a) && stands_still(frame, row.body_b);
+  contact.rests =
+      contact.force_N == 0.0 && stands_still(frame, row.body_a) && stands_still(frame, row.body_b);
   if (row.friction_patch >= 0) {
     const FrictionUse& use = frame.state.response.friction_uses()[Index(row.friction_patch)];
     contact.grip = use.sticks ? Grip::kSticks : Grip::kSlips;

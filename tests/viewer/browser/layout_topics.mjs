@@ -29,6 +29,8 @@ async function faults(page) {
       const high = Math.min(boxA.bottom, boxB.bottom) - Math.max(boxA.top, boxB.top);
       if (wide > 1 && high > 1 && !a.contains(b) && !b.contains(a)) said.push(`${name(a)} and ${name(b)} cover each other`);
     }));
+    for (const cell of document.querySelectorAll("td, th, .key b"))
+      if (cell.scrollWidth > cell.clientWidth + 1 && getComputedStyle(cell).display !== "inline") said.push(`"${cell.textContent}" is wider than its column`);
     const stop = document.getElementById("stop").getBoundingClientRect();
     if (stop.right > innerWidth || stop.left < 0 || stop.width < 60) said.push("STOP is not whole");
     return said;

@@ -19,8 +19,10 @@ export const topics = {
       check(head.some((line) => line.includes(word)), `the head of the table has ${word}`);
     const rows = readCsv(Buffer.from(csv));
     const [first] = rows;
-    const inHead = (name) => head.some((line) => line.includes(`column ${name}`) || line.includes(`column ${name.split(".")[0]}.`) || line.includes("column BODY"));
-    for (const name of Object.keys(first).filter((one) => one !== "frame" && one !== "time [s]")) check(inHead(name.split(" ")[0]), `the head explains ${name}`);
+    const inHead = (name) => head.some((line) => line.includes(`column ${name}`) || line.includes(`column ${name.split(".")[0]}.`));
+    const posed = /\.(p[xyz]|q[wxyz])$/; // the head has one line for all bodies
+    check(head.some((line) => line.includes("column BODY.px")), "the head explains the poses of bodies");
+    for (const name of Object.keys(first).filter((one) => one !== "frame" && one !== "time [s]" && !posed.test(one.split(" [")[0]))) check(inHead(name.split(" ")[0]), `the head explains ${name}`);
     const length = (row, what) => Math.hypot(...["qw", "qx", "qy", "qz"].map((part) => row[`${what}_${part}`]));
     check(rows.every((row) => Math.abs(length(row, "hand") - 1) < 1e-5 && Math.abs(length(row, "proxy") - 1) < 1e-5), "poses of hand and proxy in every frame");
     const apart = (row) => Math.hypot(...["x", "y", "z"].map((axis) => row[`hand_p${axis}_m [m]`] - row[`proxy_p${axis}_m [m]`]));

@@ -16,6 +16,7 @@ const turningEnergy = "energy of turning";
 const energies = ["energy", turningEnergy]; // groups of channels
 const spans = [0.5, 1, 2, 5, 10, 20, 40]; // [s]
 const gapHeight = 26;
+const leastSpan: Record<string, number> = { N: 1e-3, "N m": 1e-5, m: 1e-7 }; // what nobody feels is drawn flat
 const [sheetWidth, sheetStrip, sheetMargin] = [1200, 240, 18]; // of the charts as a picture [px]
 
 /** A number of three digits whose unit stands at the axis. */
@@ -172,7 +173,7 @@ export class Charts {
       {
         ...size, legend: { show: false }, pxAlign: false,
         cursor: still ? { show: false } : { sync: { key: "strips" }, drag: { x: true, y: false }, points: { show: false } },
-        scales: { x: { time: false }, y: { range: (_plot, low, high) => this.range(low, high) } },
+        scales: { x: { time: false }, y: { range: (_plot, low, high) => this.range(low, high, strip.unit) } },
         axes: [
           { stroke: ink, grid: rule, ticks: rule, size: gapHeight, font: "11px system-ui", values: (_p, v) => v.map((s) => `${Number(s.toFixed(3))} s`) },
           { stroke: ink, grid: rule, ticks: rule, size: still ? 62 : 46, font: "11px system-ui", space: 26,
@@ -214,10 +215,10 @@ export class Charts {
   }
 
   /** Room above and below, and never so narrow that rounding is drawn as a signal. */
-  private range(low: number | null, high: number | null): [number, number] {
+  private range(low: number | null, high: number | null, unit: string): [number, number] {
     if (low === null || high === null || !Number.isFinite(low) || !Number.isFinite(high)) return [0, 1];
     if (low === 0 && high === 0) return [-0.05, 1];
-    const span = Math.max(high - low, 0.02 * Math.max(Math.abs(low), Math.abs(high)), 1e-9);
+    const span = Math.max(high - low, 0.02 * Math.max(Math.abs(low), Math.abs(high)), leastSpan[unit] ?? 1e-9);
     return [low - 0.08 * span, high + 0.08 * span];
   }
 
@@ -309,7 +310,7 @@ export class Charts {
     const [factor, unit] = axisUnit(largest, strip.unit);
     entry.factor = factor;
     plot.setData([times, ...data] as unknown as uPlot.AlignedData);
-    const tail = strip.tail ? ` p99.9 ${withUnit(quantile(data[0], 0.999), strip.unit)}` : "";
+    const tail = strip.tail ? ` computing p99.9 ${withUnit(quantile(data[0], 0.999), strip.unit)}` : "";
     const text = `${unit ? ` [${unit}]` : ""}${tail}`;
     if (note) note.textContent = text;
     return text;
@@ -328,13 +329,21 @@ export class Charts {
     }
   }
 
+  /** A window that was held for minutes loses what newer samples have taken the place of. */
+  private keepWhatIsThere() {
+    const oldest = this.samples?.oldest ?? 0;
+    if (this.from < oldest) this.window(oldest, Math.max(this.to, oldest + 4));
+  }
+
   /** The window as a table. */
   csv(facts: Facts): string {
+    this.keepWhatIsThere();
     return this.run && this.samples ? csvOf(this.run, this.samples, this.from, this.to, facts) : "";
   }
 
   /** All charts of the window on one sheet, with titles, units and names. */
   async png(facts: Facts): Promise<Blob> {
+    this.keepWhatIsThere();
     const samples = this.samples as Samples;
     const ratio = devicePixelRatio;
     const bench = make("div", { class: "spoken" }); // where plots are made that nobody sees

@@ -51,7 +51,10 @@ export class Connection {
     if (status === 0 || status === 403) this.listener.gone(status === 403 ? "other" : "nobody");
   }
 
-  send(message: Record<string, unknown>) {
-    if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
+  /** False when there is no line to send it by. */
+  send(message: Record<string, unknown>): boolean {
+    if (this.socket?.readyState !== WebSocket.OPEN) return false;
+    this.socket.send(JSON.stringify(message));
+    return true;
   }
 }

@@ -25,7 +25,8 @@ let status: Status | null = null;
 let shapes: Shape[] = [];
 let waitingFrames: Frames[] = []; // of a run whose geometry is on its way
 let stopped = false;
-let askedToStop = 0; // when the page last asked for what the program has not confirmed yet
+let asked: { stop: boolean; timer: number } | null = null; // what the program has not confirmed yet
+let begun = 0; // counts the runs that were begun: the geometry of an older one may come late
 let cutOff = false; // what is shown is the last that the program sent
 
 const connection = new Connection({ received, frames, linked, gone });
@@ -66,10 +67,13 @@ function received(message: ServerMessage) {
 }
 
 async function begin(next: Run) {
-  const response = await fetch("geometry");
-  if (!response.ok) return notice("The scene's geometry could not be loaded.");
-  shapes = readShapes(await response.arrayBuffer());
+  const number = ++begun;
+  const geometry = await fetch("geometry").then((answer) => (answer.ok ? answer.arrayBuffer() : null)).catch(() => null);
+  if (number !== begun) return; // another run has begun meanwhile, or the line was lost
+  if (!geometry) return notice("The scene's geometry could not be loaded. Load the page anew.");
+  shapes = readShapes(geometry);
   cutOff = false;
+  newest = null;
   showGone("");
   run = next;
   samples = new Samples(next);
@@ -119,7 +123,9 @@ function linked(up: boolean) {
   get("link").classList.toggle("bad", !up);
   if (!up) {
     cutOff = true;
+    ++begun;
     waitingFrames = [];
+    if (asked) unanswered();
     hand.lose();
   }
 }
@@ -145,8 +151,9 @@ function showStatus(message: Status) {
     hand.lose();
     notice("Another page has taken the hand.");
   }
-  const confirmed = message.program.stopped ?? false;
-  if (confirmed === stopped || performance.now() - askedToStop > answerWithin_ms) showStopped(confirmed);
+  const confirmed = message.stop_asked || (message.program.stopped ?? false);
+  if (asked && confirmed === asked.stop) answered();
+  if (!asked) showStopped(confirmed ? "stopped" : "");
   why.showGoals(message.program.goals ?? []);
   get("steer").hidden = message.steering || !message.somebody_steers;
   const link = get("link");
@@ -191,14 +198,19 @@ function showSummary(sample: number) {
   }
 }
 
+/** The sample whose numbers are shown: on a slow page the newest picture is older than the newest sample. */
+function momentShown(): number | null {
+  if (!samples || samples.count === 0) return null;
+  return charts.moment ?? (newest ? samples.find(newest.index) : samples.count - 1);
+}
+
 let lastTick = 0;
 function tick(time: number) {
   requestAnimationFrame(tick);
   if (!run || !samples || samples.count === 0) return;
   const past = charts.moment !== null;
   const picture = charts.moment !== null ? samples.picture(samples.frameOf(charts.moment)) : newest;
-  // Numbers and places of one moment: on a slow page the newest picture is older than the newest sample.
-  const sample = charts.moment ?? (picture ? samples.find(picture.index) : samples.count - 1);
+  const sample = momentShown() ?? 0;
   if (picture && (picture !== view.picture || past)) view.show(picture, !past);
   if (picture) {
     const raw = pressed("raw") ? run.stages.findIndex((stage) => stage.key === "coupling") : -1;
@@ -225,27 +237,39 @@ function toggle(id: string, to = !pressed(id)) {
   return to;
 }
 
-const answerWithin_ms = 1500; // a program that has not confirmed a stop by then has not stopped
+const answerWithin_ms = 1500;
 
-/** What the page shows of a stop: at once what was asked for, then what the program confirms. */
-function showStopped(on: boolean) {
-  if (on && !stopped) window.setTimeout(() => get("resume").focus({ preventScroll: true })); // Enter feels again
-  stopped = on;
-  get("stopped").hidden = !on;
-  (get("stopped").firstElementChild as HTMLElement).textContent = "Stopped: no force is shown.";
-  get("stop").setAttribute("aria-pressed", String(on));
+/** What the page shows of a stop: at once that it was asked for, and what the program confirms when it does. */
+function showStopped(how: "asked" | "stopped" | "") {
+  stopped = how !== "";
+  get("stopped").hidden = !stopped;
+  (get("stopped").firstElementChild as HTMLElement).textContent = how === "asked" ? "Stopping …" : "Stopped: no force is shown.";
+  get("stop").setAttribute("aria-pressed", String(stopped));
+}
+function askFor(stop: boolean): boolean {
+  if (!connection.send({ do: stop ? "stop" : "resume" })) return false;
+  if (asked) window.clearTimeout(asked.timer);
+  asked = { stop, timer: window.setTimeout(unanswered, answerWithin_ms) };
+  return true;
+}
+function answered() {
+  if (asked) window.clearTimeout(asked.timer);
+  asked = null;
+}
+function unanswered() {
+  const stop = asked?.stop;
+  answered();
+  if (!stop) return;
+  showStopped("");
+  notice("The program has not confirmed the stop: force may still be shown. Use the stop of the device, or Ctrl-C in the terminal.");
 }
 function stop() {
-  ask({ do: "stop" });
-  if (cutOff) return notice("The program cannot be reached, so it was not stopped from here.");
-  askedToStop = performance.now();
-  showStopped(true);
+  if (!askFor(true)) return notice("The program cannot be reached, so it was not stopped from here.");
+  showStopped("asked");
+  if (!isTyping(document.activeElement)) get("resume").focus({ preventScroll: true }); // Enter feels again
 }
 function resume() {
-  if (!maySteer()) return;
-  ask({ do: "resume" });
-  askedToStop = performance.now();
-  showStopped(false);
+  if (maySteer()) askFor(false);
 }
 function factsOf(): Facts {
   return {
@@ -255,7 +279,7 @@ function factsOf(): Facts {
 }
 function savePicture() {
   if (!run || !samples) return;
-  const sample = charts.moment ?? samples.count - 1;
+  const sample = momentShown() ?? 0;
   const [force, torque] = [0, 3].map((half) => samples?.length((run as Run).stages.length - 1, half as 0 | 3, sample) ?? 0);
   const title = `Tactum: ${run.scene}, ${samples.timeOf(sample).toFixed(3)} s, ${new Date().toISOString().slice(0, 16)}Z`;
   const felt = run.grasped < 0 ? "nothing is held" : `on the hand: ${withUnit(force, "N")}, ${withUnit(torque, "N m")}`;

@@ -39,6 +39,7 @@ class Scale {
 export class Panel {
   private toml = "";
   private settings: Setting[] = [];
+  private typing: HTMLInputElement | null = null; // the field in which somebody types: it is left alone until then
   private scene = "";
   private readonly form = make("form", { class: "settings", autocomplete: "off" });
   private readonly device = make("div", { class: "device" });
@@ -128,13 +129,20 @@ export class Panel {
     const range = `${setting.low} to ${setting.high} ${setting.unit}`;
     const slider = make("input", { type: "range", min: "0", max: "1", step: "0.002", id: `slide-${id}`, "aria-label": `${setting.name}, slider`, tabindex: "-1" });
     const number = make("input", { type: "number", step: "any", min: String(setting.low), max: String(setting.high), id: `set-${id}`,
-      "aria-describedby": `note-${id}`, placeholder: setting.unlimited ? "device's" : "" });
+      "aria-describedby": `note-${id}`, placeholder: setting.unlimited ? "own" : "" });
+    if (setting.unlimited) number.title = "Empty: the device's own limit. A limit above that has no effect.";
     slider.oninput = () => (number.value = String(scale.from(Number(slider.value))));
     slider.onchange = () => set(scale.from(Number(slider.value)));
+    number.oninput = () => (this.typing = number);
     number.onchange = () => {
+      this.typing = null;
       if (number.value !== "") set(Number(number.value));
       else if (setting.unlimited) set(null);
       else this.ask({ do: "unset", key: id });
+    };
+    number.onblur = () => {
+      this.typing = null;
+      this.fill(this.settings.find((one) => idOf(one) === id) ?? setting); // what is set, not what was typed
     };
     return make("div", { class: "setting", title: `${note} (${range})` },
       make("label", { for: number.id }, setting.name), number, make("span", { class: "unit" }, setting.unit), usual, slider,
@@ -147,7 +155,6 @@ export class Panel {
     const usual = get<HTMLButtonElement>(`usual-${id}`);
     usual.hidden = setting.value === setting.usual;
     usual.title = `Back to ${wordOf(setting, setting.usual)}, as the scene has it`;
-    if (document.activeElement === field && field.type === "number") return;
     if (setting.kind === "on-off") {
       field.checked = setting.value !== null && setting.value !== 0;
       return;
@@ -156,7 +163,7 @@ export class Panel {
       field.value = String(setting.value);
       return;
     }
-    field.value = setting.value === null ? "" : String(Number(setting.value.toPrecision(6)));
+    if (field !== this.typing) field.value = setting.value === null ? "" : String(Number(setting.value.toPrecision(6)));
     const slider = get<HTMLInputElement>(`slide-${id}`);
     slider.value = String(new Scale(setting).to(setting.value ?? setting.high));
   }

@@ -35,7 +35,7 @@ export interface Run extends Settings {
 }
 export interface Times { mean: number; p50: number; p99: number; p999: number; max: number }
 export interface Status {
-  type: "status"; pages: number; steering: boolean; somebody_steers: boolean; samples_lost: number;
+  type: "status"; pages: number; steering: boolean; somebody_steers: boolean; stop_asked: boolean; samples_lost: number;
   refused: Record<string, number>;
   program: {
     stopped?: boolean; stop_ramp_s?: number; running?: boolean; device_lost?: boolean; frames?: number;

@@ -100,7 +100,7 @@ export class View {
     this.cube = new ViewCube(cube);
     cube.addEventListener("click", (event) => {
       const side = this.cube.pick(event);
-      if (side) this.look_along(side.addScaledVector(new THREE.Vector3(0, -1, 0), Math.abs(side.z) > 0.5 ? 1e-3 : 0));
+      if (side) this.look_along(side.clone().addScaledVector(new THREE.Vector3(0, -1, 0), Math.abs(side.z) > 0.5 ? 1e-3 : 0));
     });
     canvas.addEventListener("dblclick", (event) => {
       const hit = this.bodies?.pick(this.rayAt(event.clientX, event.clientY));
@@ -328,8 +328,10 @@ export class View {
     this.label(this.torqueLabel, tips.torque, withUnit(torque, "N m"), tips.torque !== null, [x, y]);
     this.grips = pushes.filter((push) => push.grip !== "none" && Math.hypot(...push.force) > 0).map((push) => push.grip);
     const square = arrowSizes[this.arrowSize];
+    const longest = Math.max(force, ...pushes.map((push) => Math.hypot(...push.force)), Math.hypot(...(raw?.slice(0, 3) ?? [0])));
+    const cut = longest * scales.force > longestArrow ? ", the longest are cut off" : "";
     const note = this.run.grasped < 0 && !this.run.picks ? "" :
-      ` · arrows: ${withUnit(square, "N")} as long as a square, arcs: ${withUnit(square * torqueOfSize, "N m")} for half a turn`;
+      ` · arrows: ${withUnit(square, "N")} as long as a square, arcs: ${withUnit(square * torqueOfSize, "N m")} for half a turn${cut}`;
     this.scaleNote.textContent = `grid ${withUnit(this.spacing, "m")}${note}`;
   }
 

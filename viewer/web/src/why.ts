@@ -133,7 +133,7 @@ export class Why {
   /** Who takes the difference between what pushes the part and what the hand feels. */
   private shared(pushed: number, force: number): string {
     const { joint } = (this.run as Run).bodies[(this.run as Run).grasped];
-    return joint !== "free" && Math.abs(pushed - force) > 0.1 * pushed ? `, of which its ${joint} takes what the hand does not feel` : "";
+    return joint !== "free" && Math.abs(pushed - force) > 0.1 * pushed ? `, and its ${joint} carries what the hand does not feel` : "";
   }
 
   /** What force fields do to the held part; empty where there are none. */
