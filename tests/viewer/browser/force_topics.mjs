@@ -2,13 +2,11 @@
 import { mkdtempSync, readFileSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
-import { check, downloaded, drag, graspedAt, inkOf, keep, openPage, pause, Program, readCsv, root, shownForce, state, until } from "./support.mjs";
+import { check, downloaded, drag, graspedAt, inkOf, keep, openPage, pause, Program, readCsv, root, shownForce, state, takePart, until } from "./support.mjs";
 
 /** Drags the held part down until it presses with so much, and no deeper: a hand without force sinks to its aim. */
 async function pressDown(page, force_N) {
-  const [x, y] = await graspedAt(page);
-  await page.mouse.move(x, y);
-  await page.mouse.down();
+  const [x, y] = await takePart(page);
   await pause(0.5); // until the scripted hand has let go
   let down = 0;
   for (; down < 200 && Number((await state(page)).force) < force_N; down += 2) {

@@ -110,11 +110,22 @@ export async function graspedAt(page) {
   return (await state(page)).graspedAt.split(",").map(Number);
 }
 
+/** Presses on the held part until it is taken: the scripted hand may move it away meanwhile. The place where it was taken. */
+export async function takePart(page) {
+  for (let tries = 0; tries < 10; ++tries) {
+    const [x, y] = await graspedAt(page);
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    if (await page.evaluate(() => document.getElementById("canvas").classList.contains("holding"))) return [x, y];
+    await page.mouse.up();
+    await pause(0.3);
+  }
+  throw new Error("the held part could not be taken");
+}
+
 /** Takes the held part where it is now and drags it by so many pixels, slowly. */
 export async function drag(page, right, down, steps = 40, release = true) {
-  const [x, y] = await graspedAt(page);
-  await page.mouse.move(x, y);
-  await page.mouse.down();
+  const [x, y] = await takePart(page);
   for (let i = 1; i <= steps; ++i) {
     await page.mouse.move(x + (right * i) / steps, y + (down * i) / steps);
     await new Promise((resolve) => setTimeout(resolve, 25));
