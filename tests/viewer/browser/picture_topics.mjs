@@ -50,6 +50,7 @@ export const topics = {
       const png = await page.screenshot();
       check(png.length > 60000, `the picture of ${scene} shows something: ${png.length} bytes`);
       writeFileSync(join(folder, `${scene}.png`), png);
+      await page.close(); // a page draws on, also without its program
       await program.end();
       console.log(`${join(folder, `${scene}.png`)}: ${png.length} bytes`);
     };

@@ -208,6 +208,7 @@ let lastTick = 0;
 function tick(time: number) {
   requestAnimationFrame(tick);
   if (!run || !samples || samples.count === 0) return;
+  if (cutOff && time - lastTick < 250) return; // nothing moves any more but the view
   const past = charts.moment !== null;
   const picture = charts.moment !== null ? samples.picture(samples.frameOf(charts.moment)) : newest;
   const sample = momentShown() ?? 0;
