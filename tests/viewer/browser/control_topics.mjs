@@ -2,7 +2,7 @@
 import { mkdtempSync, readFileSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
-import { check, downloaded, graspedAt, openPage, pause, Program, readCsv, root, shownForce, state, until } from "./support.mjs";
+import { check, downloaded, graspedAt, openPage, pause, Program, readCsv, root, shownForce, state, until, whenStill } from "./support.mjs";
 
 export const topics = {
   async why(browser, tactum) {
@@ -153,15 +153,13 @@ export const topics = {
     const page = await openPage(browser, program);
     await page.focus("#canvas");
     await page.keyboard.press("ArrowRight"); // takes the hand; the demonstration ends
-    await pause(1.5);
-    const before = await graspedAt(page);
+    await until("the page leads the hand", async () => (await state(page)).steering === "true");
+    const before = await whenStill(page);
     for (let i = 0; i < 25; ++i) await page.keyboard.press("ArrowLeft");
-    await pause(1.5);
-    const after = await graspedAt(page);
-    check(after[0] < before[0] - 10, `arrows move the part: ${before} to ${after}`);
+    await until("arrows have moved the part", async () => (await graspedAt(page))[0] < before[0] - 10);
+    const after = await whenStill(page);
     await page.keyboard.press("4");
-    await pause(0.3);
-    check((await graspedAt(page)).join() !== after.join(), "digits choose the view");
+    await until("digits choose the view", async () => (await graspedAt(page)).join() !== after.join());
     await page.keyboard.press("g");
     check((await page.getAttribute("#grasp", "aria-pressed")) === "true", "G grasps");
     await page.keyboard.press("p");

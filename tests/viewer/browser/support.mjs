@@ -110,6 +110,18 @@ export async function graspedAt(page) {
   return (await state(page)).graspedAt.split(",").map(Number);
 }
 
+/** Where the held part is drawn once it has stopped moving, however slowly the page draws: several frames on end show it there. */
+export async function whenStill(page) {
+  let last = "";
+  let since = 0;
+  await until("the held part is still", async () => {
+    const { graspedAt: at, newest } = await state(page);
+    if (at !== last) [last, since] = [at, Number(newest)];
+    return Number(newest) - since > 700;
+  });
+  return last.split(",").map(Number);
+}
+
 /** Presses on the held part until it is taken: the scripted hand may move it away meanwhile. The place where it was taken. */
 export async function takePart(page) {
   for (let tries = 0; tries < 10; ++tries) {
