@@ -32,6 +32,7 @@ struct Inspection {
   ImportedMesh mesh;
   MeshReport report;
   UnitGuess unit;
+  double scale = 1.0;            ///< metres per unit that the report and the part were made with [m]
   int exact_boundary_edges = 0;  ///< when only equal coordinates are joined
   Result<Part> part = Error{};   ///< the part that a scene would make of it
   Deviation deviation;           ///< ... and how far that is from the file
@@ -49,10 +50,27 @@ Inspection inspected(const std::string& file, ImportedMesh mesh, double scale) {
   in_file_units.min /= scale;
   in_file_units.max /= scale;
   out.unit = unit_of(mesh.report, in_file_units);
+  out.scale = scale;
   out.part = part_from_mesh(mesh.mesh, {.name = std::filesystem::path(file).filename().string()});
   if (out.part) out.deviation = surface_deviation(mesh.mesh, *out.part);
   out.mesh = std::move(mesh);
   return out;
+}
+
+/// What the lines above it take the numbers of the file for, where the likelier unit is another one; else
+/// nothing.
+std::string in_the_likely_unit(const Inspection& of) {
+  const double factor = of.unit.metres_per_unit / of.scale;
+  if (of.mesh.report.in_metres || factor == 1.0) return {};
+  const Vec3 side = factor * (of.report.box.max - of.report.box.min);
+  return fmt::format(
+      "The lines above take the numbers of the file as {}; in {} it is {:.6g} x {:.6g} x {:.6g} m large{} "
+      "(--scale {:g}).\n",
+      of.scale == 1.0 ? "metres" : fmt::format("units of {:g} m", of.scale), of.unit.name, side.x(), side.y(),
+      side.z(),
+      of.report.balanced ? fmt::format(", its volume {:.6g} m^3", of.report.volume * factor * factor * factor)
+                         : "",
+      of.unit.metres_per_unit);
 }
 
 std::string as_text(const Inspection& of) {
@@ -69,6 +87,7 @@ std::string as_text(const Inspection& of) {
   }
   for (const std::string& remark : of.mesh.report.remarks) text += remark + "\n";
   text += fmt::format("unit: {}{} {}\n", of.unit.name, of.mesh.report.in_metres ? ":" : "?", of.unit.reason);
+  text += in_the_likely_unit(of);
   if (!of.part) return text + fmt::format("as a part: {}\n", of.part.error().message());
   return text +
          fmt::format("as a part: {}; deviation {:.2g} of the size ({} samples of the mesh, {} of the part)\n",

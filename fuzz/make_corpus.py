@@ -87,6 +87,14 @@ def prepare():
     yield bytes([13, 6]) + box + bytes(8 * c + 4 for p in CORNERS for c in p) + faces + bytes(i + 8 for i in faces)
 
 
+def scene():
+    body = '[[body]]\nname = "a"\npart = { box = { size_m = [0.1, 0.1, 0.1] } }\ndensity_kg_per_m3 = 1200\n'
+    yield "schema = 1\n" + body + '[tool]\nbody = "a"\n[settings]\nresponse = "penalty"\n'
+    yield 'schema = 1\n' + body + body + 'joint = { kind = "hinge", axis = [0, 0, nan] }\n'
+    yield "body:\n  - name: a\n"
+    yield b"\xef\xbb\xbfschema = 1e999\n[[friction]]\nbetween = [1, \"\\u00e9\"]\n"
+
+
 def write(folder, name, data, first=b""):
     (ROOT / folder).mkdir(parents=True, exist_ok=True)
     (ROOT / folder / (name + ".bin")).write_bytes(first + (data.encode() if isinstance(data, str) else data))
@@ -98,6 +106,8 @@ def main(arguments):
             write("mesh", "seed-%s-%d" % (ending, i), data, bytes([number]))
     for i, data in enumerate(prepare()):
         write("prepare", "seed-%d" % i, data)
+    for i, data in enumerate(scene()):
+        write("scene", "seed-%d" % i, data)
     if not arguments:
         return
     tetrahedron = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"

@@ -114,6 +114,20 @@ TEST(PrepareCommand, GltfIsInMetresUnlessAnotherUnitIsAskedFor) {
   EXPECT_NE(run_tactum(mixed).err.find("different units"), std::string::npos);
 }
 
+TEST(InspectCommand, SaysHowLargeTheMeshIsInItsLikelyUnit) {
+  const Workshop shop;
+  const std::string guessed = run_tactum("inspect " + shop.cube).out;
+  EXPECT_NE(
+      guessed.find("in millimetres it is 0.01 x 0.01 x 0.01 m large, its volume 1e-06 m^3 (--scale 0.001)"),
+      std::string::npos)
+      << guessed;
+  const std::string in_millimetres = run_tactum("inspect --scale 0.001 " + shop.cube).out;
+  EXPECT_EQ(in_millimetres.find("The lines above take"), std::string::npos) << in_millimetres;
+  const std::string in_inches = run_tactum("inspect --scale 0.0254 " + shop.cube).out;
+  EXPECT_NE(in_inches.find("as units of 0.0254 m; in millimetres it is 0.01 x"), std::string::npos)
+      << in_inches;
+}
+
 TEST(PrepareCommand, RefusesInOneLineOnStderr) {
   const ScratchFolder folder;
   std::string stl(1000, '\0');
