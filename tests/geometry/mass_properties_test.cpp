@@ -90,5 +90,42 @@ TEST(MassProperties, OpenTurnedAndFlatSurfacesAreTold) {
   EXPECT_TRUE(mass_properties_or_hull(box_mesh({1, 1, 1}), 1.0).approximation.empty());
 }
 
+TEST(MassProperties, SheetsBesideASolidHaveNoMass) {
+  for (const double size : {1e-3, 1.0, 100.0}) {
+    for (const bool inward : {false, true}) {
+      SCOPED_TRACE(size);
+      TriangleMesh mesh = box_mesh(Vec3(1, 2, 3) * size);
+      if (inward)
+        for (Triangle& t : mesh.triangles) std::swap(t[0], t[1]);
+      const int base = static_cast<int>(mesh.vertices.size());
+      // A fin of two triangles from an edge of the box, and a sheet that touches nothing.
+      const Triangle on = mesh.triangles[0];
+      const Vec3 out = mesh.vertices[on[0]] * 1.5;
+      mesh.vertices.push_back(out);
+      mesh.vertices.push_back(out * 1.1);
+      mesh.triangles.push_back({on[0], on[1], base});
+      mesh.triangles.push_back({on[1], base + 1, base});
+      for (const Vec3& corner : {Vec3(5, 0, 0), Vec3(6, 0, 0), Vec3(5, 1, 0)})
+        mesh.vertices.push_back(corner * size);
+      mesh.triangles.push_back({base + 2, base + 3, base + 4});
+      const MassProperties mass = mass_properties_or_hull(mesh, 2.0);
+      const double volume = 48.0 * size * size * size;
+      EXPECT_NEAR(mass.volume, volume, 1e-12 * volume);
+      EXPECT_LT(mass.center.norm(), 1e-12 * size);
+      EXPECT_NEAR(mass.inertia(0, 0), 2.0 * volume / 3.0 * 13.0 * size * size,
+                  1e-12 * volume * size * size * 10);
+      EXPECT_NE(mass.approximation.find("Of the 15 triangles 3 bound no solid"), std::string::npos)
+          << mass.approximation;
+    }
+  }
+  // A small solid in a large body that is open does not stand for it.
+  TriangleMesh mesh = box_mesh({1, 1, 1});
+  TriangleMesh bowl = box_mesh({10, 10, 10});
+  bowl.triangles.pop_back();
+  for (const Triangle& t : bowl.triangles) mesh.triangles.push_back({t[0] + 8, t[1] + 8, t[2] + 8});
+  mesh.vertices.insert(mesh.vertices.end(), bowl.vertices.begin(), bowl.vertices.end());
+  EXPECT_NE(mass_properties_or_hull(mesh, 1.0).approximation.find("convex hull"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace tactum::mass_properties_test

@@ -1,9 +1,13 @@
 #include "tactum/geometry/mass_properties.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <utility>
 
 #include "tactum/base/tolerances.h"
 #include "tactum/geometry/hull.h"
+#include "tactum/geometry/mesh_edges.h"
 #include "tactum/geometry/mesh_report.h"
 
 namespace tactum::inline v0_1 {
@@ -72,6 +76,62 @@ MassProperties of_box(const TriangleMesh& mesh, double density) {
   return out;
 }
 
+/// The mesh without its sheets: triangles with an edge of their own go, then those that this leaves with one.
+TriangleMesh without_sheets(const TriangleMesh& mesh) {
+  const std::vector<HalfEdge> sides = sorted_half_edges(mesh);
+  std::vector<int> edge_of(sides.size());  // of each side of each triangle: where its edge begins in `sides`
+  std::vector<int> left(sides.size(), 0);  // triangles at the edge
+  std::vector<int> waiting;                // edges of one triangle
+  for_each_edge(sides, [&](const HalfEdge* first, const HalfEdge* last) {
+    const int edge = static_cast<int>(first - sides.data());
+    for (const HalfEdge* side = first; side != last; ++side)
+      edge_of[3 * side->triangle + side->corner] = edge;
+    left[edge] = static_cast<int>(last - first);
+    if (left[edge] == 1) waiting.push_back(edge);
+  });
+  std::vector<bool> gone(mesh.triangles.size(), false);
+  while (!waiting.empty()) {
+    const HalfEdge* side = sides.data() + waiting.back();
+    waiting.pop_back();
+    const HalfEdge& edge = *side;
+    const HalfEdge* end = sides.data() + sides.size();
+    while (side != end && side->same_edge(edge) && gone[side->triangle]) ++side;
+    if (side == end || !side->same_edge(edge)) continue;  // its triangle went over another edge
+    gone[side->triangle] = true;
+    for (int corner = 0; corner < 3; ++corner)
+      if (const int at = edge_of[3 * side->triangle + corner]; --left[at] == 1) waiting.push_back(at);
+  }
+  TriangleMesh out;
+  out.vertices = mesh.vertices;
+  for (std::size_t t = 0; t < gone.size(); ++t)
+    if (!gone[t]) out.triangles.push_back(mesh.triangles[t]);
+  return out;
+}
+
+double area_of(const TriangleMesh& mesh) {
+  double twice = 0.0;
+  for (const Triangle& t : mesh.triangles) {
+    const Vec3& a = mesh.vertices[t[0]];
+    twice += (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a).norm();
+  }
+  return 0.5 * twice;
+}
+
+/// Of the solids of a mesh with sheets, where they are the larger part of its area: a small closed part says
+/// nothing of the mass of a body whose own surface is open.
+Result<MassProperties> of_solids_among_sheets(const TriangleMesh& mesh, double density) {
+  constexpr double kLeastShare = 0.5;
+  const TriangleMesh solids = without_sheets(mesh);
+  if (area_of(solids) < kLeastShare * area_of(mesh))
+    return Error{"sheets are the larger part of the mesh", "", "", ""};
+  Result<MassProperties> out = mass_properties(solids, density);
+  if (out) {
+    out->approximation = fmt::format("Of the {} triangles {} bound no solid and have no mass.",
+                                     mesh.triangles.size(), mesh.triangles.size() - solids.triangles.size());
+  }
+  return out;
+}
+
 }  // namespace
 
 Result<MassProperties> mass_properties(const TriangleMesh& mesh, double density_kg_per_m3) {
@@ -107,6 +167,9 @@ MassProperties mass_properties_or_hull(const TriangleMesh& mesh, double density_
     exact->approximation = "The normals point inward: the surface was turned round.";
     return *exact;
   }
+  for (const TriangleMesh* faces : {&mesh, &std::as_const(turned)})
+    if (Result<MassProperties> solids = of_solids_among_sheets(*faces, density_kg_per_m3); solids)
+      return *solids;
   const Result<Polytope> hull = convex_hull(mesh.vertices);
   if (!hull || hull->flat) return of_box(mesh, density_kg_per_m3);
   const TriangleMesh surface = surface_of(*hull);

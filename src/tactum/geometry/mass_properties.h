@@ -23,8 +23,9 @@ struct MassProperties {
 /// oriented, or solids that touch in edges or faces. Anything else is an error that states what is open.
 Result<MassProperties> mass_properties(const TriangleMesh& mesh, double density_kg_per_m3);
 
-/// Of any mesh: exact when the surface is closed (reversed when its normals point inward), otherwise of the
-/// convex hull, or of the bounding box when the points lie in a plane; `approximation` states which.
+/// Of any welded mesh: exact when the surface is closed (reversed when its normals point inward); of its
+/// solids when sheets beside them have the smaller area; otherwise of the convex hull, or of the bounding box
+/// when the points lie in a plane. `approximation` states which.
 MassProperties mass_properties_or_hull(const TriangleMesh& mesh, double density_kg_per_m3);
 
 }  // namespace tactum::inline v0_1

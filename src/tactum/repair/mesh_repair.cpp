@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <initializer_list>
+#include <iterator>
 #include <utility>
 
 #include "tactum/geometry/mesh_edges.h"
 #include "tactum/geometry/weld.h"
 #include "tactum/repair/cap_triangles.h"
 #include "tactum/repair/hole_filling.h"
+#include "tactum/repair/inner_walls.h"
 #include "tactum/repair/repeated_triangles.h"
 
 namespace tactum::inline v0_1 {
@@ -36,11 +39,10 @@ class Notes {
   std::vector<RepairNote>& notes_;
 };
 
-/// Drops what find_repeated_triangles() lists, with notes that name triangles of the mesh given.
-void drop_repeated(RepairedMesh& out, int threads, Notes& notes) {
-  RepeatedTriangles repeated = find_repeated_triangles(out.mesh, threads);
+/// Drops the triangles listed, whose numbers become those in the mesh given.
+void drop(RepairedMesh& out, std::initializer_list<std::vector<int>*> lists) {
   std::vector<bool> dropped(out.mesh.triangles.size(), false);
-  for (std::vector<int>* list : {&repeated.copies, &repeated.walls, &repeated.sheets}) {
+  for (std::vector<int>* list : lists) {
     for (int& triangle : *list) {
       dropped[triangle] = true;
       triangle = out.source[triangle];
@@ -54,9 +56,19 @@ void drop_repeated(RepairedMesh& out, int threads, Notes& notes) {
   }
   out.mesh.triangles.resize(kept);
   out.source.resize(kept);
+}
+
+/// Drops what stands twice and what lies inside a solid, with notes.
+void drop_repeated(RepairedMesh& out, int threads, Notes& notes) {
+  RepeatedTriangles repeated = find_repeated_triangles(out.mesh, threads);
+  drop(out, {&repeated.copies, &repeated.walls, &repeated.sheets});
+  std::vector<int> single_walls = find_inner_walls(out.mesh);
+  drop(out, {&single_walls});
   notes.add(true, "duplicate_triangles", "triangles stood twice and were dropped", repeated.copies);
   notes.add(true, "inner_walls", "triangles of walls between two solids were dropped", repeated.walls);
-  out.walls = std::move(repeated.walls);
+  notes.add(true, "single_walls", "triangles were walls inside a solid and were dropped", single_walls);
+  std::merge(repeated.walls.begin(), repeated.walls.end(), single_walls.begin(), single_walls.end(),
+             std::back_inserter(out.walls));
   notes.add(true, "two_sided_sheets", "triangles are the second side of a sheet, which has two sides anyway",
             repeated.sheets);
 }

@@ -4,6 +4,7 @@
 ///   weld           vertices in one place become one; triangles with two equal corners go       (weld.h)
 ///   duplicates     a triangle that stands twice once, the wall between two solids not at all
 ///                                                                                     (repeated_triangles.h)
+///   inner walls    that a solid has between its rooms go                                   (inner_walls.h)
 ///   caps           a triangle without area gives its middle corner to the neighbour:
 ///
 ///             c                      c            T = a b c has no height. Its neighbour N = b a d is cut
@@ -49,7 +50,7 @@ struct RepairedMesh {
   std::vector<int> source;                ///< number in the mesh given of each triangle; -1: closes a hole
   std::vector<MeshComponent> components;  ///< as they stand after repair
   std::vector<int> component;             ///< of each triangle
-  std::vector<int> walls;  ///< triangles of the mesh given that were walls between two solids, and went
+  std::vector<int> walls;         ///< triangles of the mesh given that were walls inside a solid, and went
   std::vector<RepairNote> notes;  ///< kinds that occurred, only
 };
 

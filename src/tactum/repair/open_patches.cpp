@@ -24,11 +24,12 @@ class OpenPatches {
         joined_(static_cast<int>(out.components.size())) {}
 
   void join() {
+    find_sheets();
     for_each_edge(sides_, [&](const HalfEdge* first, const HalfEdge* last) {
       if (last - first == 2) return;
       const HalfEdge* open = nullptr;
       for (const HalfEdge* side = first; side != last; ++side) {
-        if (out_.components[patch(*side)].closed) continue;
+        if (out_.components[patch(*side)].closed || sheet_[patch(*side)]) continue;
         if (open != nullptr) joined_.join(patch(*open), patch(*side));
         open = side;
       }
@@ -48,10 +49,45 @@ class OpenPatches {
   /// Of the patch, or -1 when it is no part of a set that closes.
   int set_of(int patch) { return closed_[joined_.find(patch)] ? joined_.find(patch) : -1; }
 
+  /// Patches with a rim that no other triangle meets bound nothing; nor do those that are left with such a
+  /// rim when these are gone.
+  void find_sheets() {
+    sheet_.assign(out_.components.size(), false);
+    std::vector<std::vector<int>> patches;   // at each edge of one triangle, or of more than two
+    std::vector<std::pair<int, int>> edges;  // patch, edge
+    for_each_edge(sides_, [&](const HalfEdge* first, const HalfEdge* last) {
+      if (last - first == 2) return;
+      std::vector<int>& at_edge = patches.emplace_back();
+      for (const HalfEdge* side = first; side != last; ++side) {
+        at_edge.push_back(patch(*side));
+        edges.emplace_back(patch(*side), static_cast<int>(patches.size()) - 1);
+      }
+    });
+    std::sort(edges.begin(), edges.end());
+    std::vector<int> waiting;  // edges at which one triangle is left
+    const auto look_at = [&](int edge) {
+      const std::vector<int>& at_edge = patches[edge];
+      if (std::count_if(at_edge.begin(), at_edge.end(), [&](int p) { return !sheet_[p]; }) == 1)
+        waiting.push_back(edge);
+    };
+    for (int edge = 0; edge < static_cast<int>(patches.size()); ++edge) look_at(edge);
+    while (!waiting.empty()) {
+      const std::vector<int>& at_edge = patches[waiting.back()];
+      waiting.pop_back();
+      const auto left = std::find_if(at_edge.begin(), at_edge.end(), [&](int p) { return !sheet_[p]; });
+      if (left == at_edge.end()) continue;  // it has gone over another edge
+      const int sheet = *left;
+      sheet_[sheet] = true;
+      for (auto it = std::lower_bound(edges.begin(), edges.end(), std::pair(sheet, 0));
+           it != edges.end() && it->first == sheet; ++it)
+        look_at(it->second);
+    }
+  }
+
   void find_closed() {
     closed_.assign(out_.components.size(), true);
     for (std::size_t c = 0; c < out_.components.size(); ++c)
-      if (out_.components[c].closed || out_.components[c].twisted_edges > 0)
+      if (out_.components[c].closed || sheet_[c] || out_.components[c].twisted_edges > 0)
         closed_[joined_.find(static_cast<int>(c))] = false;
     std::vector<int> at_edge;
     for_each_edge(sides_, [&](const HalfEdge* first, const HalfEdge* last) {
@@ -159,6 +195,7 @@ class OpenPatches {
   OrientedMesh& out_;
   int threads_;
   DisjointSets joined_;
+  std::vector<bool> sheet_;   ///< by patch: no part of a set that closes
   std::vector<bool> closed_;  ///< by set: it closes
 };
 
