@@ -9,9 +9,11 @@ void add_bench(CLI::App& app);
 void add_clearance(CLI::App& app);
 void add_devices(CLI::App& app);
 void add_distance(CLI::App& app);
+void add_export(CLI::App& app);
 void add_feel(CLI::App& app);
 void add_inspect(CLI::App& app);
 void add_prepare(CLI::App& app);
+void add_replay(CLI::App& app);
 void add_scenes(CLI::App& app);
 
 }  // namespace tactum

@@ -12,11 +12,13 @@
 #include <thread>
 
 #include "commands.h"
+#include "feel_options.h"
 #include "output.h"
 #include "referee_watch.h"
 #include "scene_of_meshes.h"
 #include "tactum/devices/simulated_device.h"
 #include "tactum/haptics/coupling_gains.h"
+#include "tactum/recording/recorder.h"
 #include "tactum/response/field_pull.h"
 #include "tactum/response/penalty_response.h"
 #include "tactum/response/workspace_scale.h"
@@ -26,6 +28,7 @@
 #include "tactum/scene/scene_remarks.h"
 #include "tactum/session/session.h"
 #include "tactum/telemetry/statistics.h"
+#include "tactum/version.h"
 #include "trace_file.h"
 #include "viewer/server/viewer.h"
 #include "watch.h"
@@ -33,34 +36,20 @@
 namespace tactum {
 namespace {
 
-struct FeelOptions {
-  std::vector<std::string> scenes{"gears"};  // one, or one or two meshes
-  std::string save_scene;
-  bool strict = false;
-  double duration_s = 0.0;
-  std::uint64_t updates = 0;
-  int replays = 1;
-  std::string device;
-  std::string hand;
-  std::string response;
-  std::string settings;
-  std::string json;
-  std::string trace;
-  bool trace_bodies = false;
-  bool virtual_clock = false;
-  bool referee = false;
-  bool view = false;
-  int port = 0;
-  double wait_s = 0.0;
-};
-
 constexpr int kGoalsNotMet = 2;  // the exit code
 
 /// What looks at every frame of a run, where it was asked for; null where not.
 struct Watchers {
   RefereeWatch* referee = nullptr;
   TraceFile* trace = nullptr;
+  Recorder* recorder = nullptr;
 };
+
+/// Says why nothing is recorded any more: once, while the run goes on.
+void report_trouble(Recorder& recorder) {
+  if (const std::optional<Error> trouble = recorder.trouble())
+    fmt::print(stderr, "the run goes on, and is not recorded any more: {}\n", trouble->message());
+}
 
 /// The times of a run's frames. Of a run that is repeated each frame's fastest is kept, of a single one only
 /// how often each duration came: it may last for days.
@@ -93,6 +82,7 @@ class VirtualWatch final : public LoopObserver {
     times_.add(record.tick.index, record.frame_time_s);
     if (watchers_.referee != nullptr) watchers_.referee->look(record.tick.index);
     if (watchers_.trace != nullptr) watchers_.trace->drain();
+    if (watchers_.recorder != nullptr) watchers_.recorder->wait_for_room();
     if (record.tick.index % kFramesPerLook == 0) status_.show(session_, session_.poll());
     return !interrupted();
   }
@@ -206,14 +196,15 @@ Summary feel_virtually(const FeelOptions& options, const SceneDescription& descr
 }
 
 /// Runs the loop's own thread until the frames are done, the device is gone or the user stops it.
-Summary feel_live(Session& session, std::uint64_t frames, TraceFile* trace) {
+Summary feel_live(Session& session, std::uint64_t frames, const Watchers& watchers) {
   if (const Result<void> started = session.start(frames); !started) fail(started.error());
   for (const std::string& sentence : session.privileges().sentences) fmt::print(stderr, "{}\n", sentence);
   StatusLine status;
   while (session.loop_status().running && !interrupted()) {
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
     status.show(session, session.poll());
-    if (trace != nullptr) trace->drain();
+    if (watchers.trace != nullptr) watchers.trace->drain();
+    if (watchers.recorder != nullptr) report_trouble(*watchers.recorder);
   }
   session.stop();
   session.poll();
@@ -279,6 +270,11 @@ void sum_up(std::FILE* out, const FeelOptions& options, const std::vector<SceneR
                watchers.trace->lost() == 0
                    ? ""
                    : fmt::format("; {} more are lost, since the disk was too slow", watchers.trace->lost()));
+  if (const Recorder* recorder = watchers.recorder)
+    fmt::print(out, "recording        {} frames in {}{}\n", recorder->frames(), options.record,
+               recorder->dropped() == 0
+                   ? ""
+                   : fmt::format("; {} more are lost, since the disk was too slow", recorder->dropped()));
   if (options.replays > 1 && !interrupted())
     fmt::print(out, "replays          {} runs, the same to the bit; each frame counts with its fastest\n",
                options.replays);
@@ -325,6 +321,20 @@ void feel_with_pages(const FeelOptions& options, const std::vector<SceneRemark>&
   sum_up(out, options, remarks, viewer.session(), times, viewer.stages(), {});
 }
 
+std::string version_text() {
+  return fmt::format("{}.{}.{}", TACTUM_VERSION_MAJOR, TACTUM_VERSION_MINOR, TACTUM_VERSION_PATCH);
+}
+
+/// Null where no recording was asked for.
+std::unique_ptr<Recorder> begin_recording(const FeelOptions& options, const SceneDescription& description,
+                                          Session& session) {
+  if (options.record.empty()) return nullptr;
+  Result<std::unique_ptr<Recorder>> recorder =
+      Recorder::open({options.record, options.hand, version_text()}, description, session);
+  if (!recorder) fail(recorder.error());
+  return std::move(*recorder);
+}
+
 void feel(const FeelOptions& options) {
   check_writable(options.json);
   // With --json - the standard output is for machines alone.
@@ -345,63 +355,17 @@ void feel(const FeelOptions& options) {
   if (options.referee) judges.emplace(session);
   std::optional<TraceFile> trace;
   if (!options.trace.empty()) trace.emplace(options.trace, session, frames, options.trace_bodies);
-  const Watchers watchers{judges ? &*judges : nullptr, trace ? &*trace : nullptr};
+  const std::unique_ptr<Recorder> recorder = begin_recording(options, description, session);
+  const Watchers watchers{judges ? &*judges : nullptr, trace ? &*trace : nullptr, recorder.get()};
   const Summary times = options.virtual_clock
                             ? feel_virtually(options, description, session, frames, watchers)
-                            : feel_live(session, frames, watchers.trace);
+                            : feel_live(session, frames, watchers);
   if (trace) trace->finish();
+  if (recorder) {
+    recorder->finish();
+    report_trouble(*recorder);
+  }
   sum_up(out, options, remarks, session, times, stages, watchers);
-}
-
-/// The options that say what is felt, and how long.
-void add_what_is_felt(CLI::App* command, FeelOptions* options) {
-  command->footer(
-      "Exit codes: 0 done, 1 an error (with --strict a remark on the scene as well), 2 a goal of the scene "
-      "was "
-      "not met, or the command line is wrong.");
-  command
-      ->add_option(
-          "SCENE", options->scenes,
-          "The name of a scene (tactum scenes lists them), a scene file, or one or two meshes: one is "
-          "felt against a plate, the second of two against the first")
-      ->expected(1, 2)
-      ->capture_default_str();
-  command->add_option("--save-scene", options->save_scene,
-                      "Write the scene that was made of the meshes to this file");
-  command->add_flag("--strict", options->strict, "Treat remarks on the scene as errors");
-  command
-      ->add_option("--duration", options->duration_s,
-                   "Run for so many seconds; by default as long as the hand's motion")
-      ->check(number_between(1e-3, 1e7, "seconds"));
-  command->add_option("--updates", options->updates, "Run so many frames, instead of a duration")
-      ->check(whole_number_between(1, 1e12, "a number of frames"))
-      ->excludes("--duration");
-  command->add_option("--device", options->device,
-                      "The device (tactum devices lists them; touch is short for simulated:touch); by "
-                      "default the simulated one "
-                      "of the scene");
-  command->add_option("--hand", options->hand, "The grip of the simulated hand: loose, medium or firm");
-  command
-      ->add_option("--response", options->response,
-                   "How contacts push: constraint (no interpenetration) or penalty (the published springs); "
-                   "by default as "
-                   "the scene says")
-      ->check(one_word_of({"constraint", "penalty"}));
-  command->add_option("--settings", options->settings,
-                      "Put the settings of this file over those of the scene; the page saves such files");
-  command->add_option("--json", options->json, "Write the summary to this file (- for standard output)");
-}
-
-/// The options of the page; returns that of waiting for it.
-CLI::Option* add_page(CLI::App* command, FeelOptions* options, CLI::Option* view) {
-  command->add_option("--port", options->port, "The port of the page; by default one that is free")
-      ->check(whole_number_between(1, 65535, "a port"))
-      ->needs(view);
-  return command
-      ->add_option("--wait", options->wait_s,
-                   "How long a run with an end waits for a page to be opened, once its frames are over [s]")
-      ->check(number_between(0.0, 1e5, "seconds"))
-      ->needs(view);
 }
 
 }  // namespace
@@ -426,19 +390,8 @@ void add_feel(CLI::App& app) {
                                         "Judge every frame by exact signs and topology: does any surface "
                                         "cross another, has anything got inside, or out of what it hangs in?")
                              ->needs(virtual_clock);
-  CLI::Option* trace = command
-                           ->add_option("--trace", options->trace,
-                                        "Write every frame to this CSV file, a column for each quantity "
-                                        "(docs/trace.md)")
-                           ->check([](const std::string& path) {
-                             return path.ends_with(".csv")
-                                        ? std::string()
-                                        : "expected a name that ends in .csv, found " + path;
-                           });
-  command
-      ->add_flag("--trace-bodies", options->trace_bodies,
-                 "Write the pose and twist of every body to the trace as well")
-      ->needs(trace);
+  CLI::Option* record = add_record(command, options.get());
+  CLI::Option* trace = add_trace(command, options.get());
   CLI::Option* view = command->add_flag(
       "--view", options->view,
       "Serve a page that shows the scene, and on which the mouse is the hand: until interrupted, or, where a "
@@ -446,6 +399,7 @@ void add_feel(CLI::App& app) {
   replays->excludes(view);
   referee->excludes(view);
   trace->excludes(view);
+  record->excludes(view);
   add_page(command, options.get(), view)->excludes(virtual_clock);
   command->callback([options] { feel(*options); });
 }

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Writes the seeds of the fuzzers' corpora:  fuzz/make_corpus.py [TACTUM]
 
-Small files of every format, sound and broken, made here. With the program given, the seeds of the part files too are
-made anew, by `tactum prepare`.
+Small files of every format, sound and broken, made here. With the program given, the seeds of part files and
+recordings too are made anew, by `tactum prepare` and `tactum feel --record`.
 """
 import pathlib
 import struct
@@ -95,6 +95,19 @@ def scene():
     yield b"\xef\xbb\xbfschema = 1e999\n[[friction]]\nbetween = [1, \"\\u00e9\"]\n"
 
 
+def recordings(whole):
+    """A recording, the same cut and with other bytes, and what stands behind its checksums: a head."""
+    yield whole
+    for part in (1, 3, 5, 7):
+        yield whole[:len(whole) * part // 8]
+    for place in (9, 40, len(whole) // 2, len(whole) - 20):
+        yield whole[:place] + bytes([whole[place] ^ 0x41]) + whole[place + 1:]
+    yield whole[:9] + b"\xff" * 8 + whole[17:]  # a length beyond all memory
+    yield whole + b"more"
+    yield b'{"format":1,"tactum":"0.1.0","compiler":"","date":"","scene":"a","scene_file":"","grip":"","dt_s":"inf"}'
+    yield b'{"format":2}'
+
+
 def write(folder, name, data, first=b""):
     (ROOT / folder).mkdir(parents=True, exist_ok=True)
     (ROOT / folder / (name + ".bin")).write_bytes(first + (data.encode() if isinstance(data, str) else data))
@@ -118,6 +131,11 @@ def main(arguments):
             part = ROOT / "part" / ("seed-" + name + ".bin")
             part.parent.mkdir(parents=True, exist_ok=True)
             subprocess.run([arguments[0], "prepare", source, "-o", part, "--no-cache"], check=True)
+        recording = pathlib.Path(folder) / "run.mcap"
+        subprocess.run([arguments[0], "feel", "block-on-plate", "--virtual-clock", "--updates", "3", "--record", recording],
+                       stdout=subprocess.DEVNULL)  # its goals are not met in three frames
+        for i, data in enumerate(recordings(recording.read_bytes())):
+            write("recording", "seed-%02d" % i, data)
 
 
 if __name__ == "__main__":

@@ -30,6 +30,7 @@ STANDS_ON = {
     "scene": ["haptics", "mesh", "parts"],
     "telemetry": ["haptics"],
     "session": ["scene", "telemetry"],
+    "recording": ["session"],
 }
 MOST_HEADERS = 25
 INCLUDE = re.compile(r'^\s*#\s*include\s*["<]([^">]+)[">]', re.MULTILINE)

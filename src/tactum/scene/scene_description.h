@@ -38,6 +38,8 @@ struct SceneSource {
   std::string file;                           ///< as errors call it; empty: it was made in code
   std::vector<std::string> folders;           ///< in which meshes and fields are searched, in this order
   std::map<std::string, SourcePlace> places;  ///< in the file, of items by their path
+  std::string text;                           ///< the file as it was read; empty: it was made in code
+  std::string changes;                        ///< the file of change_settings(), as it was read
 
   /// "FILE:LINE:COLUMN" of an item, or of the table it would belong to; without a file the path itself.
   std::string where(const std::string& path) const;

@@ -54,6 +54,7 @@ Result<SceneDescription> parse_description(std::string_view text, const std::str
   scene.name = name;
   scene.source.file = file;
   scene.source.folders = folders;
+  scene.source.text = text;
   FirstError errors;
   read_description(*document, scene, errors);
   if (errors) return errors.error();
@@ -70,12 +71,16 @@ Result<SceneDescription> read_description_file(const std::string& path) {
 
 Result<void> change_settings(const std::string& path, SceneDescription& scene) {
   const Result<std::string> text = text_of("settings", path);
-  if (!text) return text.error();
-  const Result<toml::table> document = parse_document(*text, path);
+  return text ? parse_changes(*text, path, scene) : text.error();
+}
+
+Result<void> parse_changes(std::string_view text, const std::string& file, SceneDescription& scene) {
+  const Result<toml::table> document = parse_document(text, file);
   if (!document) return document.error();
   FirstError errors;
-  read_changes(*document, path, scene.settings, errors);
+  read_changes(*document, file, scene.settings, errors);
   if (errors) return errors.error();
+  scene.source.changes = text;
   return {};
 }
 

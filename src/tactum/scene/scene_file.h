@@ -29,6 +29,9 @@ Result<SceneDescription> parse_description(std::string_view text, const std::str
 /// of a scene.
 Result<void> change_settings(const std::string& path, SceneDescription& scene);
 
+/// The same from text. Errors call it `file`.
+Result<void> parse_changes(std::string_view text, const std::string& file, SceneDescription& scene);
+
 /// The scene of a file: its description, built (build_scene.h).
 Result<Scene> read_scene_file(const std::string& path);
 

@@ -5,7 +5,9 @@
 #include <array>
 #include <cstdint>
 
+#include "tactum/loop/safety.h"
 #include "tactum/math/pose.h"
+#include "tactum/response/settings.h"
 
 namespace tactum::inline v0_1 {
 
@@ -28,5 +30,10 @@ struct SessionCommand {
     return {Quat(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix(), {p_WH[0], p_WH[1], p_WH[2]}};
   }
 };
+
+/// Carries out a kSet: on the settings of a run, and on the user's limits, which only tighten those of the
+/// device. A setting that is not live, or a value out of its range, changes nothing.
+void set_live(const SessionCommand& command, const SafetyLimits& device, FrameSettings& settings,
+              SafetySettings& safety) noexcept;
 
 }  // namespace tactum::inline v0_1

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "tactum/devices/registry.h"
-#include "tactum/haptics/setting_table.h"
 #include "tactum/haptics/simulation.h"
 #include "tactum/scene/build_scene.h"
 
@@ -115,12 +114,7 @@ void Session::obey(const SessionCommand& command) noexcept {
       if (pointer_ != nullptr && pointer_->aimed()) pointer_->rest();
       return;
     case SessionCommand::Kind::kSet: {
-      const std::span<const SettingInfo> table = setting_table();
-      if (command.setting < 0 || command.setting >= static_cast<int>(table.size())) return;
-      const SettingInfo& setting = table[static_cast<std::size_t>(command.setting)];
-      if (!setting.live || !in_range(setting, command.value)) return;
-      setting.set(scene_.settings, scene_.safety, command.value);
-      scene_.settings.safety = tightened(device_limits_, scene_.safety);
+      set_live(command, device_limits_, scene_.settings, scene_.safety);
       return;
     }
   }
@@ -128,7 +122,10 @@ void Session::obey(const SessionCommand& command) noexcept {
 
 Wrench Session::run(const DeviceSample& sample, const FrameTick& tick) noexcept {
   SessionCommand command;  // no more than fit in, however fast another thread sends
-  for (std::size_t n = 0; n < kCommands && commands_.pop(command); ++n) obey(command);
+  for (std::size_t n = 0; n < kCommands && commands_.pop(command); ++n) {
+    obey(command);
+    if (listener_ != nullptr) listener_->obeyed(tick.index, command);
+  }
   FrameTick felt = tick;
   felt.stop = tick.stop || wrench_at_zero_.load(std::memory_order_relaxed) ||
               (stop_asked_ != nullptr && stop_asked_->load(std::memory_order_relaxed));
@@ -138,6 +135,8 @@ Wrench Session::run(const DeviceSample& sample, const FrameTick& tick) noexcept 
   goals_.watch(scene_.world, state_.world, state_.hand.grasp.body, state_.response.rows());
   if (feed_ != nullptr) feed_->take({report_, state_, scene_.settings}, stage_clock_);
   if (trace_ != nullptr) trace_->take({report_, state_, scene_.settings}, stage_clock_);
+  if (listener_ != nullptr)
+    listener_->frame_over(sample, felt, {report_, state_, scene_.settings}, stage_clock_);
   SessionStatus glance{report_.index,
                        report_.shown.f.norm(),
                        report_.shown.t.norm(),

@@ -20,6 +20,7 @@
 #include "tactum/scene/scene.h"
 #include "tactum/scene/scene_description.h"
 #include "tactum/session/command.h"
+#include "tactum/session/run_listener.h"
 #include "tactum/telemetry/frame_feed.h"
 #include "tactum/telemetry/run_record.h"
 #include "tactum/telemetry/statistics.h"
@@ -103,6 +104,8 @@ class Session final : private HapticFrame {
   void show_to(FrameFeed* feed) noexcept { feed_ = feed; }
   /// Traces every frame; set before the run, null for none.
   void trace_to(FrameTrace* trace) noexcept { trace_ = trace; }
+  /// Reports everything to `listener`; set before the run, null for none.
+  void report_to(RunListener* listener) noexcept { listener_ = listener; }
   /// Puts a stage of the caller's before passivity and safety; set before the run, null for none.
   void set_force_stage(ForceStage* stage) noexcept { state_.force_stage = stage; }
   /// Takes the times of the stages of every frame; set before the run, null for none.
@@ -127,6 +130,7 @@ class Session final : private HapticFrame {
   const std::atomic<bool>* stop_asked_ = nullptr;
   FrameFeed* feed_ = nullptr;
   FrameTrace* trace_ = nullptr;
+  RunListener* listener_ = nullptr;
   FrameState state_;
   StageClock* stage_clock_ = nullptr;
   FrameReport report_;

@@ -106,33 +106,34 @@ void FrameFeed::draw(const FrameSource& frame, FramePicture& picture) noexcept {
   picture.X_WD = state.hand.X_WD;
   picture.grasped_body = state.hand.known ? state.hand.grasp.body : -1;
   std::copy(state.world.X_WB.begin(), state.world.X_WB.end(), picture.X_WB.begin());
-  draw_contacts(frame, picture);
+  picture.contacts_left_out = show_contacts(frame, kContacts, picture.contacts);
 }
 
-/// Where there are more contacts than room, those that push most are kept, on the grasped part first: at the
-/// top of a heap stands the one that is given up next.
-void FrameFeed::draw_contacts(const FrameSource& frame, FramePicture& picture) noexcept {
-  const auto pushes_more = [grasped = picture.grasped_body](const ShownContact& x, const ShownContact& y) {
+/// Where there are more contacts than room, those that push most are kept: at the top of a heap stands the
+/// one that is given up next.
+int show_contacts(const FrameSource& frame, std::size_t most, std::vector<ShownContact>& shown) noexcept {
+  const int grasped = frame.state.hand.known ? frame.state.hand.grasp.body : -1;
+  const auto pushes_more = [grasped](const ShownContact& x, const ShownContact& y) {
     const auto on_grasped = [grasped](const ShownContact& c) {
       return c.force_N > 0.0 && (c.body_a == grasped || c.body_b == grasped);
     };
     return on_grasped(x) != on_grasped(y) ? on_grasped(x) : x.force_N > y.force_N;
   };
-  std::vector<ShownContact>& shown = picture.contacts;
   shown.clear();
-  picture.contacts_left_out = 0;
+  int left_out = 0;
   for (const ContactRow& row : frame.state.response.rows()) {
     const ShownContact contact = shown_contact(frame, row);
-    if (shown.size() < kContacts) {
+    if (shown.size() < most) {
       shown.push_back(contact);
       continue;
     }
-    if (picture.contacts_left_out++ == 0) std::make_heap(shown.begin(), shown.end(), pushes_more);
+    if (left_out++ == 0) std::make_heap(shown.begin(), shown.end(), pushes_more);
     if (!pushes_more(contact, shown.front())) continue;
     std::pop_heap(shown.begin(), shown.end(), pushes_more);
     shown.back() = contact;
     std::push_heap(shown.begin(), shown.end(), pushes_more);
   }
+  return left_out;
 }
 
 }  // namespace tactum::inline v0_1

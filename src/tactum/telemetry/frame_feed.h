@@ -55,6 +55,10 @@ struct ShownContact {
   bool rests = false;        ///< neither body moves: no force is computed between bodies that sleep
 };
 
+/// The contacts of a frame, at most `most`: those that push most, on the grasped part first. `shown` has room
+/// for them already. Returns how many are left out. No allocation.
+int show_contacts(const FrameSource& frame, std::size_t most, std::vector<ShownContact>& shown) noexcept;
+
 /// The poses and contacts of one frame.
 struct FramePicture {
   std::uint64_t index = 0;
@@ -85,7 +89,6 @@ class FrameFeed {
 
  private:
   static void draw(const FrameSource& frame, FramePicture& picture) noexcept;
-  static void draw_contacts(const FrameSource& frame, FramePicture& picture) noexcept;
 
   SpscRing<FrameSample> samples_;
   Newest<FramePicture> pictures_;

@@ -177,7 +177,8 @@ std::string plain_name(const Body& body, std::size_t i) {
 
 }  // namespace
 
-FrameTrace::FrameTrace(const World& world, double dt_s, bool bodies) : dt_s_(dt_s), bodies_(bodies) {
+FrameTrace::FrameTrace(const World& world, double dt_s, bool bodies, std::size_t frames)
+    : frames_(frames), dt_s_(dt_s), bodies_(bodies) {
   Names names{columns_};
   visit_frame(names);
   for (TraceColumn& column : columns_) column.name = column_of(column.name);
@@ -186,7 +187,7 @@ FrameTrace::FrameTrace(const World& world, double dt_s, bool bodies) : dt_s_(dt_
     if (column(name + "_px_m") >= 0) name += "_" + std::to_string(i);
     visit_body(names, i, [&name](const char* end) { return name + end; });
   }
-  rows_.resize(kFrames * width());
+  rows_.resize(frames_ * width());
 }
 
 int FrameTrace::column(std::string_view name) const noexcept {
@@ -195,29 +196,44 @@ int FrameTrace::column(std::string_view name) const noexcept {
   return found == columns_.end() ? -1 : static_cast<int>(found - columns_.begin());
 }
 
-void FrameTrace::take(const FrameSource& frame, const StageClock* clock) noexcept {
-  const Pose& X_WH_proxy = frame.report.X_WH_proxy;
-  const bool grasped = frame.report.grasped_body >= 0;
-  Row row{frame, dt_s_, {}, clock};
-  if (grasped && proxy_known_) row.V_WH_proxy = twist_between(X_WH_proxy_before_, X_WH_proxy, dt_s_);
-  X_WH_proxy_before_ = X_WH_proxy;
+/// The velocity of the proxy over this frame.
+Twist FrameTrace::moved_proxy(const FrameReport& report) noexcept {
+  const bool grasped = report.grasped_body >= 0;
+  Twist V_WH_proxy;
+  if (grasped && proxy_known_) V_WH_proxy = twist_between(X_WH_proxy_before_, report.X_WH_proxy, dt_s_);
+  X_WH_proxy_before_ = report.X_WH_proxy;
   proxy_known_ = grasped;
-  const std::size_t head = head_.load(std::memory_order_relaxed);
-  if (head - tail_.load(std::memory_order_acquire) == kFrames) {
-    dropped_.fetch_add(1, std::memory_order_relaxed);
-    return;
-  }
-  Numbers numbers{row, rows_.data() + head % kFrames * width()};
+  return V_WH_proxy;
+}
+
+void FrameTrace::fill(const FrameSource& frame, const Twist& V_WH_proxy, const StageClock* clock,
+                      double* to) const noexcept {
+  const Row row{frame, dt_s_, V_WH_proxy, clock};
+  Numbers numbers{row, to};
   visit_frame(numbers);
   for (std::size_t i = 0; bodies_ && i < frame.state.world.X_WB.size(); ++i)
     visit_body(numbers, i, [](const char* end) { return end; });
+}
+
+void FrameTrace::write(const FrameSource& frame, const StageClock* clock, std::span<double> row) noexcept {
+  fill(frame, moved_proxy(frame.report), clock, row.data());
+}
+
+void FrameTrace::take(const FrameSource& frame, const StageClock* clock) noexcept {
+  const Twist V_WH_proxy = moved_proxy(frame.report);
+  const std::size_t head = head_.load(std::memory_order_relaxed);
+  if (head - tail_.load(std::memory_order_acquire) == frames_) {
+    dropped_.fetch_add(1, std::memory_order_relaxed);
+    return;
+  }
+  fill(frame, V_WH_proxy, clock, rows_.data() + head % frames_ * width());
   head_.store(head + 1, std::memory_order_release);
 }
 
 bool FrameTrace::pop(std::span<double> row) noexcept {
   const std::size_t tail = tail_.load(std::memory_order_relaxed);
   if (tail == head_.load(std::memory_order_acquire)) return false;
-  const auto from = rows_.begin() + static_cast<std::ptrdiff_t>(tail % kFrames * width());
+  const auto from = rows_.begin() + static_cast<std::ptrdiff_t>(tail % frames_ * width());
   std::copy(from, from + static_cast<std::ptrdiff_t>(width()), row.begin());
   tail_.store(tail + 1, std::memory_order_release);
   return true;

@@ -40,8 +40,9 @@ class FrameTrace {
  public:
   static constexpr std::size_t kFrames = 4096;  ///< four seconds at 1 kHz until they are popped
 
-  /// `bodies`: the pose and twist of every body as well. Allocates everything that it will ever need.
-  FrameTrace(const World& world, double dt_s, bool bodies);
+  /// `bodies`: the pose and twist of every body as well. Allocates everything that it will ever need: a ring
+  /// of `frames` rows, none where rows are only written.
+  FrameTrace(const World& world, double dt_s, bool bodies, std::size_t frames = kFrames);
 
   const std::vector<TraceColumn>& columns() const noexcept { return columns_; }
   std::size_t width() const noexcept { return columns_.size(); }
@@ -51,13 +52,21 @@ class FrameTrace {
   /// The loop's thread, after the frame. `clock` may be null: the times of stages are then zero. No
   /// allocation, no lock, no clock. When the ring is full the row is lost and counted.
   void take(const FrameSource& frame, const StageClock* clock) noexcept;
+  /// The row of this frame, past the ring: `width()` numbers. Frames come in their order, each to take() or
+  /// to this.
+  void write(const FrameSource& frame, const StageClock* clock, std::span<double> row) noexcept;
 
   /// One other thread: the oldest row that was not popped, `width()` numbers; false when there is none.
   bool pop(std::span<double> row) noexcept;
   std::uint64_t dropped() const noexcept { return dropped_.load(std::memory_order_relaxed); }
 
  private:
+  Twist moved_proxy(const FrameReport& report) noexcept;
+  void fill(const FrameSource& frame, const Twist& V_WH_proxy, const StageClock* clock,
+            double* row) const noexcept;
+
   std::vector<TraceColumn> columns_;
+  std::size_t frames_;
   double dt_s_;
   bool bodies_;
   Pose X_WH_proxy_before_;  // for the velocity of the proxy

@@ -1,0 +1,73 @@
+#pragma once
+/// What a frame hands to the writer's thread, and what it is in the file: the binary messages of a recording.
+/// Each is what ROS 1 makes of the schema beside it: numbers one behind the other, little-endian, a list with
+/// its length in 32 bits before it. docs/recording.md lists the fields.
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tactum/devices/device.h"
+#include "tactum/loop/loop.h"
+#include "tactum/session/command.h"
+#include "tactum/telemetry/frame_feed.h"
+#include "tactum/telemetry/trace.h"
+
+namespace tactum::inline v0_1 {
+
+/// Contacts that a frame of a recording has at most.
+inline constexpr std::size_t kRecordedContacts = 16;
+
+/// What came into a frame, exactly, and what it left.
+struct RecordedInput {
+  DeviceSample sample;
+  FrameTick tick;
+  std::uint64_t hash = 0;     ///< state_hash() after the frame
+  std::uint64_t dropped = 0;  ///< frames lost before this one, since the start
+};
+
+/// A command, and the frame before which it was carried out.
+struct RecordedCommand {
+  std::uint64_t index = 0;
+  SessionCommand command;
+};
+
+/// A frame on its way to the writer; its room is made once.
+struct FrameSlot {
+  RecordedInput input;
+  std::vector<double> report;  ///< put_report()
+  std::vector<double> row;     ///< FrameTrace::write()
+  std::vector<ShownContact> contacts;
+  int contacts_left_out = 0;
+};
+
+namespace recording {
+inline constexpr std::string_view kRun = "/tactum/run";
+inline constexpr std::string_view kInput = "/tactum/input";
+inline constexpr std::string_view kCommand = "/tactum/command";
+inline constexpr std::string_view kReport = "/tactum/report";
+inline constexpr std::string_view kFrame = "/tactum/frame";
+inline constexpr std::string_view kContacts = "/tactum/contacts";
+inline constexpr int kFormat = 1;  ///< of the messages; a reader takes no other
+
+/// The definitions, as text: a comment and a line for each field.
+std::string input_schema();
+std::string command_schema();
+std::string report_schema();
+std::string frame_schema(const std::vector<TraceColumn>& columns);
+std::string contacts_schema();
+
+/// The messages. Those of report and frame are the numbers alone.
+std::string input_message(const RecordedInput& input);
+std::string command_message(const RecordedCommand& command);
+std::string contacts_message(const FrameSlot& slot);
+std::string numbers_message(const std::vector<double>& numbers);
+
+/// Back again; false where the bytes are not such a message.
+bool read_input(std::string_view message, RecordedInput& input);
+bool read_command(std::string_view message, RecordedCommand& command);
+bool read_numbers(std::string_view message, std::vector<double>& numbers);
+}  // namespace recording
+
+}  // namespace tactum::inline v0_1

@@ -1,0 +1,140 @@
+#include "tactum/recording/recorded_scene.h"
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "tactum/haptics/setting_table.h"
+#include "tactum/mesh/mapped_file.h"
+#include "tactum/scene/build_scene.h"
+#include "tactum/scene/scene_file.h"
+#include "tactum/scene/scene_files.h"
+
+namespace tactum::inline v0_1 {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kFilesFolder = "files/";
+
+/// A folder for the recorded files, gone with the object.
+class UnpackedFiles {
+ public:
+  UnpackedFiles() = default;
+  ~UnpackedFiles() {
+    std::error_code ignored;
+    if (!folder_.empty()) fs::remove_all(folder_, ignored);
+  }
+  UnpackedFiles(const UnpackedFiles&) = delete;
+  UnpackedFiles& operator=(const UnpackedFiles&) = delete;
+
+  Result<void> unpack(const RunHead& head, const std::map<std::string, std::string>& files,
+                      const std::string& where) {
+    for (const RecordedFile& file : head.files) {
+      if (!file.attachment.starts_with(kFilesFolder)) continue;
+      const fs::path name = fs::path(file.attachment).lexically_normal();
+      // Nothing is written outside of the folder, whatever a file's name says.
+      if (name.is_absolute() || *name.begin() != "files")
+        return Error{"a file of the recording has a name that leaves its folder", file.attachment,
+                     "files/NUMBER/NAME", where};
+      if (Result<void> made = make_folder(); !made) return made;
+      const fs::path path = folder_ / name;
+      std::error_code failure;
+      fs::create_directories(path.parent_path(), failure);
+      if (failure)
+        return Error{"cannot unpack a recorded file", failure.message(), "room for it", path.string()};
+      if (Result<void> written = write_whole_file(path.string(), files.at(file.attachment)); !written)
+        return written;
+      if (!file.name.empty()) places_[file.name] = path.string();
+    }
+    return {};
+  }
+  std::string place_of(const std::string& name) const {
+    const auto found = places_.find(name);
+    return found == places_.end() ? name : found->second;
+  }
+
+ private:
+  Result<void> make_folder() {
+    if (!folder_.empty()) return {};
+    std::error_code failure;
+    std::string name = (fs::temp_directory_path(failure) / "tactum-replay-XXXXXX").string();
+    if (failure || mkdtemp(name.data()) == nullptr)
+      return Error{"cannot make a folder for the recorded files", name, "one that can be written to", ""};
+    folder_ = name;
+    return {};
+  }
+
+  fs::path folder_;
+  std::map<std::string, std::string> places_;
+};
+
+/// The description as the run had it, its files where they were unpacked.
+Result<SceneDescription> describe(const RunHead& head, const std::map<std::string, std::string>& files,
+                                  const ReplayOptions& options, const UnpackedFiles& unpacked) {
+  Result<SceneDescription> scene =
+      parse_description(files.at(kSceneAttachment), head.scene, head.scene_file, {});
+  if (!scene) return scene;
+  if (const auto changes = files.find(kChangesAttachment); changes != files.end())
+    if (Result<void> changed = parse_changes(changes->second, kChangesAttachment, *scene); !changed)
+      return changed.error();
+  if (!options.settings.empty())
+    if (Result<void> changed = change_settings(options.settings, *scene); !changed) return changed.error();
+  move_files(*scene, [&](const std::string& name) { return unpacked.place_of(name); });
+  return scene;
+}
+
+/// Settings that were others at the start than the scene says, as of a page that has begun the run anew.
+Result<void> restore_settings(const RunHead& head, const ReplayOptions& options, const std::string& where,
+                              FrameSettings& settings, RecordedScene& recorded) {
+  for (const auto& [key, value] : head.settings) {
+    const int place = setting_called(key);
+    if (place < 0) return Error{"a recorded setting is not known", key, "one of docs/settings.md", where};
+    const SettingInfo& setting = setting_table()[static_cast<std::size_t>(place)];
+    const double now = setting.get(settings, recorded.safety);
+    const bool other = !options.settings.empty() || (key == "response" && !options.response.empty());
+    if (other || now == value) continue;
+    if (!in_range(setting, value))
+      return Error{fmt::format("the recorded setting {} is out of its range", key), fmt::format("{}", value),
+                   fmt::format("{} to {}", setting.low, setting.high), where};
+    setting.set(settings, recorded.safety, value);
+    recorded.notes.push_back(fmt::format("{} is {} in the scene and was {} at the start", key, now, value));
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<RecordedScene> build_recorded(const RunHead& head, const std::map<std::string, std::string>& files,
+                                     const ReplayOptions& options, const std::string& where) {
+  if (!files.contains(kSceneAttachment))
+    return Error{"the recording has no scene", "", kSceneAttachment, where};
+  if (!(head.dt_s > 0.0) || !check_rate(1.0 / head.dt_s))
+    return Error{"the recorded step is none of a loop", fmt::format("{} s", head.dt_s), "0.00001 to 0.1 s",
+                 where};
+  UnpackedFiles unpacked;
+  if (Result<void> done = unpacked.unpack(head, files, where); !done) return done.error();
+  const Result<SceneDescription> description = describe(head, files, options, unpacked);
+  if (!description) return description.error();
+  Result<Scene> scene = build_scene(*description);
+  if (!scene) return scene.error();
+  if (!options.response.empty())
+    scene->settings.response =
+        options.response == "penalty" ? ResponseModel::kPenalty : ResponseModel::kConstraint;
+  scene->settings.dt_s = head.dt_s;
+
+  RecordedScene recorded;
+  recorded.safety = scene->safety;
+  recorded.device_limits = safety_limits(head.device);
+  FrameSettings settings = settings_for(*scene, head.device);
+  if (Result<void> restored = restore_settings(head, options, where, settings, recorded); !restored)
+    return restored.error();
+  settings.safety = tightened(recorded.device_limits, recorded.safety);
+  Result<std::unique_ptr<Simulation>> made = Simulation::make(std::move(scene->world), std::move(settings));
+  if (!made) return made.error();
+  recorded.simulation = std::move(*made);
+  return recorded;
+}
+
+}  // namespace tactum::inline v0_1

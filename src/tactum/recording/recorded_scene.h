@@ -1,0 +1,32 @@
+#pragma once
+/// The scene inside a recording, ready to be stepped.
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tactum/haptics/simulation.h"
+#include "tactum/recording/run_head.h"
+
+namespace tactum::inline v0_1 {
+
+/// Other settings than those of the recording, for comparison.
+struct ReplayOptions {
+  std::string response;  ///< "constraint" or "penalty"; empty: the recorded one
+  std::string settings;  ///< a file as of `tactum feel --settings`, put over the scene's; empty: none
+};
+
+struct RecordedScene {
+  std::unique_ptr<Simulation> simulation;
+  SafetySettings safety;           ///< the user's limits
+  SafetyLimits device_limits;      ///< which they tighten
+  std::vector<std::string> notes;  ///< ReplayResult::notes
+};
+
+/// Builds it from the files of the recording, by the names of their attachments. They are unpacked into a
+/// folder of its own under the system's for temporary files, which is gone when this returns.
+Result<RecordedScene> build_recorded(const RunHead& head, const std::map<std::string, std::string>& files,
+                                     const ReplayOptions& options, const std::string& where);
+
+}  // namespace tactum::inline v0_1

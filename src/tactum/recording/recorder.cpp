@@ -1,0 +1,234 @@
+#include "tactum/recording/recorder.h"
+
+#include <fmt/format.h>
+#include <pthread.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <filesystem>
+
+#include "tactum/base/hash.h"
+#include "tactum/mesh/mapped_file.h"
+#include "tactum/recording/frame_numbers.h"
+#include "tactum/recording/run_head.h"
+#include "tactum/scene/scene_files.h"
+
+namespace tactum::inline v0_1 {
+namespace {
+
+constexpr std::size_t kCommandsInRing = 4096;
+constexpr std::size_t kFullChunk = std::size_t{1} << 20;  // bytes; a chunk ends when it has so many
+
+std::uint64_t time_of(const FrameTick& tick) {
+  return tick.now_s > 0.0 && tick.now_s < 1e9 ? static_cast<std::uint64_t>(std::llround(tick.now_s * 1e9))
+                                              : 0;
+}
+
+std::uint64_t hash_of(std::string_view bytes) {
+  Hash hash;
+  hash.add_bytes(bytes.data(), bytes.size());
+  return hash.value();
+}
+
+/// Puts one file into the recording, and into the list of its head.
+void attach(McapWriter& writer, RunHead& head, const std::string& attachment, const std::string& name,
+            std::string_view data) {
+  const bool text = attachment.ends_with(".toml");
+  writer.add_attachment(
+      {attachment, text ? "application/toml" : "application/octet-stream", std::string(data)});
+  head.files.push_back({attachment, name, hash_of(data)});
+}
+
+Result<void> attach_files(McapWriter& writer, RunHead& head, const SceneDescription& scene) {
+  namespace fs = std::filesystem;
+  attach(writer, head, kSceneAttachment, "", scene.source.text);
+  if (!scene.source.changes.empty()) attach(writer, head, kChangesAttachment, "", scene.source.changes);
+  const Result<std::vector<SceneFile>> files = files_of(scene);
+  if (!files) return files.error();
+  for (std::size_t i = 0; i < files->size(); ++i) {
+    const SceneFile& file = (*files)[i];
+    const fs::path path(file.path);
+    const auto attach_one = [&](const fs::path& from, const std::string& as, const std::string& name) {
+      const Result<MappedFile> bytes = MappedFile::open(from.string());
+      if (!bytes) return Result<void>(bytes.error());
+      attach(writer, head, fmt::format("files/{}/{}", i, as), name, bytes->bytes());
+      return Result<void>();
+    };
+    if (Result<void> done = attach_one(path, path.filename().string(), file.name); !done) return done;
+    for (const std::string& beside : file.beside)
+      if (Result<void> done = attach_one(path.parent_path() / beside, beside, ""); !done) return done;
+  }
+  return {};
+}
+
+}  // namespace
+
+Recorder::Recorder(Session& session, std::unique_ptr<McapWriter> writer)
+    : session_(session),
+      writer_(std::move(writer)),
+      trace_(session.scene().world, session.scene().settings.dt_s, true, 0),
+      slots_(kSlots + 1),
+      free_(kSlots),
+      full_(kSlots),
+      commands_(kCommandsInRing) {
+  for (FrameSlot& slot : slots_) {
+    slot.report.resize(report_numbers().size());
+    slot.row.resize(trace_.width());
+    slot.contacts.reserve(kRecordedContacts);
+  }
+  for (std::uint32_t slot = 0; slot < kSlots; ++slot) free_.push(slot);
+}
+
+Result<std::unique_ptr<Recorder>> Recorder::open(const RecorderOptions& options,
+                                                 const SceneDescription& scene, Session& session) {
+  if (scene.source.text.empty())
+    return Error{"only a scene that was read from a text can be recorded", "one made in code",
+                 "a scene file, a built-in scene or a mesh", scene.name};
+  Result<std::unique_ptr<McapWriter>> writer =
+      McapWriter::open(options.path, "", "tactum " + options.version);
+  if (!writer) return writer.error();
+  std::unique_ptr<Recorder> recorder(new Recorder(session, std::move(*writer)));
+  RunHead head = head_of(session, scene.source.file, options, recorder->trace_.columns());
+  if (Result<void> attached = attach_files(*recorder->writer_, head, scene); !attached)
+    return attached.error();
+  recorder->begin(head);
+  if (recorder->writer_->trouble()) return *recorder->writer_->trouble();
+  recorder->thread_ = std::thread([&self = *recorder] { self.write_in_background(); });
+  session.report_to(recorder.get());
+  return recorder;
+}
+
+Recorder::~Recorder() { finish(); }
+
+void Recorder::begin(const RunHead& head) {
+  writer_->add_metadata("tactum", {{"version", head.version},
+                                   {"scene", head.scene},
+                                   {"compiler", head.compiler},
+                                   {"format", std::to_string(recording::kFormat)}});
+  add_channels();
+  writer_->add_message(run_, 0, head_text(head));
+  shown_->show_scene(session_.scene().world);
+  writer_->end_chunk();
+}
+
+void Recorder::add_channels() {
+  using namespace recording;
+  const auto add = [&](const char* schema, const std::string& text, std::string_view topic) {
+    const std::uint16_t id = writer_->add_schema({schema, "ros1msg", text});
+    return writer_->add_channel({id, std::string(topic), "ros1", {}});
+  };
+  const std::uint16_t run = writer_->add_schema({"tactum.Run", "jsonschema", R"({"type":"object"})"});
+  run_ = writer_->add_channel({run, std::string(kRun), "json", {}});
+  input_ = add("tactum/Input", input_schema(), kInput);
+  command_ = add("tactum/Command", command_schema(), kCommand);
+  report_ = add("tactum/Report", report_schema(), kReport);
+  frame_ = add("tactum/Frame", frame_schema(trace_.columns()), kFrame);
+  contacts_ = add("tactum/Contacts", contacts_schema(), kContacts);
+  shown_.emplace(*writer_, session_.scene().world, session_.scene().settings.dt_s, trace_.columns());
+}
+
+void Recorder::obeyed(std::uint64_t index, const SessionCommand& command) noexcept {
+  if (failed_.load(std::memory_order_relaxed)) return;
+  if (!commands_.push({index, command})) dropped_.fetch_add(1, std::memory_order_relaxed);
+}
+
+void Recorder::frame_over(const DeviceSample& sample, const FrameTick& tick, const FrameSource& frame,
+                          const StageClock* clock) noexcept {
+  if (failed_.load(std::memory_order_relaxed)) return;
+  std::uint32_t place = kSlots;
+  const bool room = free_.pop(place);
+  FrameSlot& slot = slots_[place];
+  trace_.write(frame, clock, slot.row);  // also of a frame that is lost: it knows the last one's proxy
+  if (!room) {
+    dropped_.fetch_add(1, std::memory_order_relaxed);
+    return;
+  }
+  slot.input = {sample, tick, state_hash(frame.report, frame.state), dropped()};
+  put_report(frame.report, slot.report.data());
+  slot.contacts_left_out = show_contacts(frame, kRecordedContacts, slot.contacts);
+  ++taken_;
+  full_.push(place);
+}
+
+void Recorder::write_in_background() {
+  // A file that may grow no more is told by the write, not by a signal that ends the program.
+  sigset_t signals;
+  sigfillset(&signals);
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  auto last = std::chrono::steady_clock::now();
+  while (true) {
+    const bool ends = ends_.load(std::memory_order_acquire);  // before the last look at the ring
+    const bool any = drain();
+    const auto now = std::chrono::steady_clock::now();
+    if (std::chrono::duration<double>(now - last).count() >= kChunk_s) {
+      writer_->end_chunk();
+      last = now;
+    }
+    if (ends) writer_->close();
+    if (writer_->trouble() && !failed_.exchange(true)) {
+      const std::lock_guard lock(mutex_);
+      trouble_ = writer_->trouble();
+    }
+    if (ends) return;
+    if (!any) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+}
+
+bool Recorder::drain() {
+  std::uint32_t place = 0;
+  bool any = false;
+  while (full_.pop(place)) {
+    any = true;
+    if (!failed_.load(std::memory_order_relaxed)) write(slots_[place]);
+    passed_.fetch_add(1, std::memory_order_release);
+    free_.push(place);
+    if (writer_->gathered() >= kFullChunk) writer_->end_chunk();
+    if (writer_->trouble()) break;
+  }
+  return any;
+}
+
+void Recorder::write(const FrameSlot& slot) {
+  using namespace recording;
+  write_commands(slot.input.tick.index);
+  const std::uint64_t time_ns = time_of(slot.input.tick);
+  writer_->add_message(input_, time_ns, input_message(slot.input));
+  writer_->add_message(report_, time_ns, numbers_message(slot.report));
+  writer_->add_message(frame_, time_ns, numbers_message(slot.row));
+  if (!slot.contacts.empty()) writer_->add_message(contacts_, time_ns, contacts_message(slot));
+  shown_->show(slot, time_ns);
+  written_.fetch_add(1, std::memory_order_relaxed);
+}
+
+/// The commands carried out before the frame. A later one waits for its own.
+void Recorder::write_commands(std::uint64_t index) {
+  while (command_waits_ || commands_.pop(waiting_)) {
+    command_waits_ = waiting_.index > index;
+    if (command_waits_) return;
+    const double dt_s = session_.rate_Hz() > 0.0 ? 1.0 / session_.rate_Hz() : 0.0;
+    const auto time_ns = static_cast<std::uint64_t>(static_cast<double>(waiting_.index) * dt_s * 1e9);
+    writer_->add_message(command_, time_ns, recording::command_message(waiting_));
+  }
+}
+
+void Recorder::wait_for_room() const {
+  while (taken_ - passed_.load(std::memory_order_acquire) + 2 > kSlots)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+}
+
+std::optional<Error> Recorder::trouble() {
+  if (!failed_.load(std::memory_order_relaxed)) return {};
+  const std::lock_guard lock(mutex_);
+  return std::exchange(trouble_, std::nullopt);
+}
+
+void Recorder::finish() {
+  if (!thread_.joinable()) return;
+  session_.report_to(nullptr);
+  ends_.store(true, std::memory_order_release);
+  thread_.join();
+}
+
+}  // namespace tactum::inline v0_1

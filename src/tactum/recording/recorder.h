@@ -1,0 +1,82 @@
+#pragma once
+/// Records a session into a file, frame by frame.
+///
+///   loop thread    obeyed, frame_over --- numbers of free slots, of full ones ---> writer thread ---> file
+///
+/// The loop never waits: where no slot is free, since the disk is too slow, the frame is not recorded and is
+/// counted. The memory is set aside at the start (about 20 MB). When the file cannot be written any more the
+/// run goes on, nothing more is recorded, and trouble() says so once.
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "tactum/base/spsc_ring.h"
+#include "tactum/recording/frame_slot.h"
+#include "tactum/recording/mcap_writer.h"
+#include "tactum/recording/run_head.h"
+#include "tactum/recording/shown_run.h"
+#include "tactum/scene/scene_description.h"
+#include "tactum/session/session.h"
+
+namespace tactum::inline v0_1 {
+
+class Recorder final : public RunListener {
+ public:
+  static constexpr std::size_t kSlots = 4096;  ///< four seconds at 1 kHz until they are written
+  static constexpr double kChunk_s = 0.25;     ///< of a run that is killed no more is lost
+
+  /// Begins the file with the scene and every file it needs. The session has not begun, and was opened with
+  /// `scene`, which was read from a text; it must outlive the recorder.
+  static Result<std::unique_ptr<Recorder>> open(const RecorderOptions& options, const SceneDescription& scene,
+                                                Session& session);
+  ~Recorder() override;
+  Recorder(const Recorder&) = delete;
+  Recorder& operator=(const Recorder&) = delete;
+
+  void obeyed(std::uint64_t index, const SessionCommand& command) noexcept override;
+  void frame_over(const DeviceSample& sample, const FrameTick& tick, const FrameSource& frame,
+                  const StageClock* clock) noexcept override;
+
+  /// For a run on the virtual clock, between two frames: nothing is lost, however slow the disk.
+  void wait_for_room() const;
+  /// Why nothing is recorded any more: once, then nothing.
+  std::optional<Error> trouble();
+  /// Writes what is left and ends the file; the run is over. Safe to call twice.
+  void finish();
+
+  std::uint64_t frames() const noexcept { return written_.load(std::memory_order_relaxed); }
+  std::uint64_t dropped() const noexcept { return dropped_.load(std::memory_order_relaxed); }
+
+ private:
+  Recorder(Session& session, std::unique_ptr<McapWriter> writer);
+  void add_channels();
+  void begin(const RunHead& head);
+  void write_in_background();
+  bool drain();
+  void write(const FrameSlot& slot);
+  void write_commands(std::uint64_t index);
+
+  Session& session_;
+  std::unique_ptr<McapWriter> writer_;
+  FrameTrace trace_;
+  std::optional<ShownRun> shown_;
+  std::vector<FrameSlot> slots_;  // and one that is filled when none is free
+  SpscRing<std::uint32_t> free_, full_;
+  SpscRing<RecordedCommand> commands_;
+  RecordedCommand waiting_;  // of the writer's thread: taken from the ring, of a later frame
+  bool command_waits_ = false;
+  std::uint64_t taken_ = 0;  // by the loop's thread
+  std::atomic<std::uint64_t> written_{0}, dropped_{0}, passed_{0};
+  std::atomic<bool> failed_{false}, ends_{false};
+  std::mutex mutex_;  // of trouble_, between the writer's thread and the one that asks
+  std::optional<Error> trouble_;
+  std::uint16_t run_ = 0, input_ = 0, command_ = 0, report_ = 0, frame_ = 0, contacts_ = 0;
+  std::thread thread_;
+};
+
+}  // namespace tactum::inline v0_1

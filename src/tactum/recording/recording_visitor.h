@@ -1,0 +1,54 @@
+#pragma once
+/// Reads the messages of a recording: what is in an MCAP file becomes a head, files, commands and frames.
+/// Everything is checked before it is passed on, and an error names the byte of its chunk, the channel and
+/// what is wrong.
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tactum/recording/frame_slot.h"
+#include "tactum/recording/mcap_reader.h"
+#include "tactum/recording/run_head.h"
+
+namespace tactum::inline v0_1 {
+
+class RecordingVisitor : public McapVisitor {
+ public:
+  /// `name` is the file's, for errors.
+  explicit RecordingVisitor(std::string name) : name_(std::move(name)) {}
+
+  Result<void> attachment(mcap::Attachment attachment, std::uint64_t offset) final;
+  Result<void> message(const McapMessage& message) final;
+
+  /// Whether the head has been read.
+  bool begun() const noexcept { return head_.has_value(); }
+  const RunHead& head() const { return *head_; }
+  const std::string& name() const noexcept { return name_; }
+
+ protected:
+  using Files = std::map<std::string, std::string>;  ///< content by name of the attachment
+
+  /// The head and the files, whose content is the recorded one. Called once, first.
+  virtual Result<void> begin(Files files) = 0;
+  virtual Result<void> command(const RecordedCommand&) { return {}; }
+  /// The messages of a frame come in this order, each once; `columns` as in RunHead.
+  virtual Result<void> input(const RecordedInput&) { return {}; }
+  virtual Result<void> report(const std::vector<double>&) { return {}; }
+  virtual Result<void> row(const std::vector<double>&) { return {}; }
+
+ private:
+  Result<void> check_files();
+
+  std::string name_;
+  Files files_;
+  std::map<std::string, std::uint64_t> places_;  // of the files, for errors
+  std::optional<RunHead> head_;
+  std::vector<double> numbers_;
+};
+
+/// Reads a whole recording: read_mcap(), and an error of its own where the file has no head.
+McapEnd read_recording(const McapSource& source, RecordingVisitor& visitor);
+
+}  // namespace tactum::inline v0_1

@@ -1,0 +1,39 @@
+#pragma once
+/// What other programs draw of a recording: poses, wrenches and the scene at a screen's rate, in the schemas
+/// that Foxglove and ROS have for them.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "tactum/recording/frame_slot.h"
+#include "tactum/recording/mcap_writer.h"
+
+namespace tactum::inline v0_1 {
+
+class ShownRun {
+ public:
+  static constexpr double kRate_Hz = 60.0;              ///< messages a second, at most
+  static constexpr std::size_t kMostTriangles = 20000;  ///< of a scene; beyond it boxes are drawn
+
+  /// Adds the channels. `columns` are those of FrameSlot::row, with the bodies behind.
+  ShownRun(McapWriter& writer, const World& world, double dt_s, const std::vector<TraceColumn>& columns);
+
+  /// The bodies' shapes, once.
+  void show_scene(const World& world);
+  /// Every so many frames, what moves.
+  void show(const FrameSlot& slot, std::uint64_t time_ns);
+
+ private:
+  void show_transform(const char* name, const double* pose, std::uint64_t time_ns);
+  void show_wrench(std::uint16_t channel, const double* wrench, std::uint64_t time_ns);
+
+  McapWriter& writer_;
+  std::vector<std::string> bodies_;  // the names of their frames
+  std::uint64_t frames_a_message_;
+  std::size_t hand_, proxy_, sent_, computed_, first_body_;  // places in a row
+  std::uint32_t sequence_ = 0;
+  std::uint16_t transforms_, scene_, sent_channel_, computed_channel_;
+};
+
+}  // namespace tactum::inline v0_1

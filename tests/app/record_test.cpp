@@ -1,0 +1,171 @@
+/// tactum feel --record, replay and export, as their users call them: also with a program that is killed and
+/// a disk that is full.
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <random>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "app/program.h"
+
+namespace tactum::record_test {
+namespace {
+
+using testing::content;
+using testing::ended;
+using testing::ProgramRun;
+using testing::run_tactum;
+using testing::ScratchFolder;
+
+std::string program() {
+  const auto folder = std::filesystem::read_symlink("/proc/self/exe").parent_path().parent_path();
+  return "'" + (folder / "tactum").string() + "'";
+}
+
+std::string hash_of(const ProgramRun& run) {
+  const std::size_t at = run.out.find("frames' hash");
+  return at == std::string::npos ? "" : run.out.substr(at, run.out.find('\n', at) - at);
+}
+
+int occurrences(const std::string& text, const std::string& part) {
+  int count = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+  return count;
+}
+
+/// The lines of a table without its head.
+std::vector<std::string> rows_of(const std::string& path) {
+  std::istringstream text(content(path));
+  std::vector<std::string> rows;
+  for (std::string line; std::getline(text, line);)
+    if (!line.starts_with("#")) rows.push_back(line);
+  return rows;
+}
+
+TEST(Record, ReplaysToTheBitAndChangesNothing) {
+  const ScratchFolder folder;
+  const std::string path = folder / "run.mcap";
+  const ProgramRun run = run_tactum("feel gears --virtual-clock --updates 1500 --record " + path);
+  ASSERT_TRUE(ended(run)) << run.err;
+  EXPECT_NE(run.out.find("1500 frames in " + path), std::string::npos) << run.out;
+  EXPECT_EQ(hash_of(run), hash_of(run_tactum("feel gears --virtual-clock --updates 1500")));
+  const ProgramRun replayed = run_tactum("replay " + path + " --verify");
+  EXPECT_EQ(replayed.exit_code, 0) << replayed.err;
+  EXPECT_NE(replayed.out.find("all 1500 frames are the same to the bit"), std::string::npos) << replayed.out;
+  const ProgramRun other = run_tactum("replay " + path + " --verify --response penalty");
+  EXPECT_EQ(other.exit_code, 2) << other.err;
+  EXPECT_NE(other.out.find("is the first that differs: stage"), std::string::npos) << other.out;
+}
+
+TEST(Record, InRealTimeAsWell) {
+  const ScratchFolder folder;
+  const std::string path = folder / "run.mcap";
+  const ProgramRun run = run_tactum("feel block-on-plate --updates 300 --record " + path);
+  ASSERT_TRUE(ended(run)) << run.err;
+  const ProgramRun replayed = run_tactum("replay " + path + " --verify");
+  EXPECT_EQ(replayed.exit_code, 0) << replayed.err << replayed.out;
+}
+
+TEST(Record, TheTableIsThatOfTheTrace) {
+  const ScratchFolder folder;
+  const std::string path = folder / "run.mcap", trace = folder / "trace.csv", table = folder / "table.csv";
+  const ProgramRun run = run_tactum("feel block-on-plate --virtual-clock --updates 900 --record " + path +
+                                    " --trace-bodies --trace " + trace);
+  ASSERT_TRUE(ended(run)) << run.err;
+  const ProgramRun exported = run_tactum("export " + path + " --csv " + table);
+  ASSERT_EQ(exported.exit_code, 0) << exported.err;
+  const std::vector<std::string> rows = rows_of(table);
+  EXPECT_EQ(rows.size(), 901u);
+  EXPECT_EQ(rows, rows_of(trace));
+  const std::string text = content(table);
+  for (const char* part :
+       {"# scene: block-on-plate\n", "# rate_Hz: 1000\n", "# setting response = constraint\n",
+        "# column sent_fx_N: after safety: what the device was sent\n"})
+    EXPECT_NE(text.find(part), std::string::npos) << part;
+}
+
+TEST(Record, AKilledProgramLeavesWhatItHadWritten) {
+  const ScratchFolder folder;
+  const std::string path = folder / "run.mcap";
+  const int times = std::getenv("TACTUM_FULL") == nullptr ? 10 : 200;
+  std::mt19937 random(7);
+  int with_frames = 0;
+  for (int i = 0; i < times; ++i) {
+    std::filesystem::remove(path);
+    const double after_s = std::uniform_real_distribution(0.05, 1.5)(random);
+    std::ostringstream command;
+    command << "timeout -s KILL " << after_s << " " << program()
+            << " feel block-on-plate --virtual-clock --updates 1000000 --record " << path
+            << " >/dev/null 2>/dev/null";
+    ASSERT_NE(std::system(command.str().c_str()), 0);  // it does not come to its end
+    if (!std::filesystem::exists(path)) continue;      // it had not begun
+    const ProgramRun replayed = run_tactum("replay " + path + " --verify");
+    if (replayed.exit_code == 1) {  // the head was not yet whole
+      EXPECT_NE(replayed.err.find("the file was cut"), std::string::npos) << replayed.err;
+      continue;
+    }
+    EXPECT_EQ(replayed.exit_code, 0) << replayed.out << replayed.err;
+    EXPECT_EQ(replayed.out.find("is the first that differs"), std::string::npos) << replayed.out;
+    EXPECT_NE(replayed.err.find("The recording has no end"), std::string::npos) << replayed.err;
+    if (replayed.out.find("all 0 frames") == std::string::npos) ++with_frames;
+  }
+  EXPECT_GT(with_frames, 0);
+}
+
+TEST(Record, AFullDiskIsToldOnceAndTheRunGoesOn) {
+  const ScratchFolder folder;
+  const std::string path = folder / "run.mcap";
+  const std::string feel = " feel block-on-plate --virtual-clock --updates 6000";
+  // The largest file that the program may write has 400 blocks of 512 bytes.
+  const std::string command = "sh -c \"ulimit -f 400; exec " + program() + feel + " --record " + path + " >" +
+                              (folder / "out") + " 2>" + (folder / "err") + "\"";
+  const int status = std::system(command.c_str());
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_TRUE(WEXITSTATUS(status) == 0 || WEXITSTATUS(status) == 2) << content(folder / "err");
+  const ProgramRun run{0, content(folder / "out"), content(folder / "err")};
+  EXPECT_EQ(occurrences(run.err, "the run goes on, and is not recorded any more"), 1) << run.err;
+  EXPECT_EQ(hash_of(run), hash_of(run_tactum(feel)));
+  const ProgramRun replayed = run_tactum("replay " + path + " --verify");
+  EXPECT_EQ(replayed.exit_code, 0) << replayed.err << replayed.out;
+  EXPECT_EQ(replayed.out.find("all 0 frames"), std::string::npos) << replayed.out;
+}
+
+TEST(Record, APlaceThatCannotBeWrittenIsToldBeforeTheRun) {
+  const ProgramRun nowhere = run_tactum("feel gears --virtual-clock --updates 5 --record /nowhere/run.mcap");
+  EXPECT_EQ(nowhere.exit_code, 1);
+  EXPECT_NE(nowhere.err.find("/nowhere/run.mcap: cannot write the recording"), std::string::npos)
+      << nowhere.err;
+  const ProgramRun name = run_tactum("feel gears --virtual-clock --updates 5 --record run.csv");
+  EXPECT_NE(name.err.find("expected a name that ends in .mcap"), std::string::npos) << name.err;
+}
+
+TEST(Record, AFileThatIsNoRecordingIsASentence) {
+  const ScratchFolder folder;
+  testing::write(folder / "a.mcap", "no recording");
+  for (const std::string& command :
+       {"replay " + (folder / "a.mcap"), "export " + (folder / "a.mcap") + " --csv -",
+        "replay " + (folder / "none.mcap")}) {
+    const ProgramRun run = run_tactum(command);
+    EXPECT_EQ(run.exit_code, 1);
+    EXPECT_NE(run.err.find(".mcap"), std::string::npos) << run.err;
+  }
+}
+
+/// Small runs that were recorded once: every compiler and build type must compute the same frames.
+TEST(Record, OldRecordingsAreTheSameFramesToday) {
+  int recordings = 0;
+  for (const auto& entry : std::filesystem::directory_iterator("tests/recordings")) {
+    if (entry.path().extension() != ".mcap") continue;
+    const ProgramRun replayed = run_tactum("replay " + entry.path().string() + " --verify");
+    EXPECT_EQ(replayed.exit_code, 0) << entry.path() << replayed.out << replayed.err;
+    EXPECT_NE(replayed.out.find("frames are the same to the bit"), std::string::npos) << replayed.out;
+    ++recordings;
+  }
+  EXPECT_GE(recordings, 3);
+}
+
+}  // namespace
+}  // namespace tactum::record_test

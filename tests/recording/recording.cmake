@@ -1,0 +1,7 @@
+# Recordings as other programs read them. Without the reader's package, which comes with those of the page, it is skipped.
+if(TARGET tactum AND NOT TACTUM_SANITIZE)
+  find_program(NODE NAMES node nodejs)
+  add_test(NAME recording.mcap_core
+    COMMAND ${NODE} ${CMAKE_CURRENT_SOURCE_DIR}/recording/mcap_core.mjs $<TARGET_FILE:tactum>)
+  set_tests_properties(recording.mcap_core PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 240)
+endif()
