@@ -4,7 +4,7 @@
 #include <fmt/ranges.h>
 
 #include "commands.h"
-#include "tactum/devices/registry.h"
+#include "tactum/drivers/registry.h"
 #include "tactum/haptics/coupling_gains.h"
 #include "tactum/scene/builtin_scenes.h"
 
