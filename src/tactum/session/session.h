@@ -91,6 +91,8 @@ class Session final : private HapticFrame {
 
   const Scene& scene() const noexcept { return scene_; }
   const DeviceInfo& device() const noexcept { return device_->info(); }
+  /// What the device says is wrong with it, with the cure; empty for nothing. While no run is going on.
+  std::string device_trouble() const { return device_->trouble(); }
   double rate_Hz() const noexcept { return 1.0 / scene_.settings.dt_s; }
   /// Durations of the frames of a threaded run, as far as polled.
   const DurationHistogram& frame_times() const noexcept { return frame_times_; }
