@@ -95,14 +95,22 @@ class VirtualWatch final : public LoopObserver {
   StatusLine status_;
 };
 
+/// Zero, for a run without end, only where a person holds a real device, and nothing else was asked for.
 std::uint64_t frames_asked_for(const FeelOptions& options, const Session& session) {
   if (options.updates > 0) return options.updates;
+  if (session.device().is_hardware && options.duration_s <= 0.0) return 0;
   const double duration = options.duration_s > 0.0 ? options.duration_s : session.scene().hand->duration_s();
   const auto frames = static_cast<std::uint64_t>(duration * session.rate_Hz());
   if (frames == 0)
     fail({"there is nothing to run", "a hand that does not move", "--duration, --updates or --view",
           session.scene().name});
   return frames;
+}
+
+void refuse_virtual_clock(const FeelOptions& options, const Session& session) {
+  if (!options.virtual_clock || !session.device().is_hardware) return;
+  fail({"a real device runs in real time: a hand has no virtual clock", session.device().name,
+        "no --virtual-clock", ""});
 }
 
 std::unique_ptr<Session> open_session(const FeelOptions& options, Scene scene) {
@@ -236,9 +244,10 @@ Summary feel_viewed_virtually(Viewer& viewer, std::uint64_t frames) {
 void report_what_is_felt(std::FILE* out, const Session& session, const std::string& grip) {
   const Scene& scene = session.scene();
   const bool replayed = session.device().name.starts_with("replay");  // of a hand that yields to nothing
+  const bool no_grip = replayed || session.device().is_hardware;      // no simulated hand holds it
   fmt::print(out, "{}: {}\n{} at {:.0f} Hz, {}response {}\n", scene.name, scene.description,
              session.device().name, session.rate_Hz(),
-             replayed ? "" : fmt::format("hand {}, ", grip.empty() ? scene.grip : grip),
+             no_grip ? "" : fmt::format("hand {}, ", grip.empty() ? scene.grip : grip),
              scene.settings.response == ResponseModel::kPenalty ? "penalty" : "constraint");
   const Coupling& coupling = scene.settings.coupling;
   const double scale = scene.settings.workspace.scale;
@@ -289,7 +298,7 @@ void sum_up(std::FILE* out, const FeelOptions& options, const std::vector<SceneR
     write_json(options.json, summary);
   }
   if (session.loop_status().device_lost)
-    fail({"the device refused every wrench for a while, so the loop has ended", "",
+    fail({"the device refused every wrench for a while, so the loop has ended", session.device_trouble(),
           "a device that is plugged in and powered", session.device().name});
   if (!session.goals().all_met()) end_with(kGoalsNotMet);
 }
@@ -301,6 +310,7 @@ void feel_with_pages(const FeelOptions& options, const std::vector<SceneRemark>&
                    options.port, remarks);
   if (!opened) fail(opened.error());
   Viewer& viewer = **opened;
+  refuse_virtual_clock(options, viewer.session());
   report_what_is_felt(out, viewer.session(), options.hand);
   open_page(out, viewer.server().address());
   const std::uint64_t asked =
@@ -347,6 +357,7 @@ void feel(const FeelOptions& options) {
   const std::unique_ptr<Session> opened = open_session(options, std::move(scene));
   Session& session = *opened;
 
+  refuse_virtual_clock(options, session);
   StageClock stages;
   session.time_stages(&stages);
   report_what_is_felt(out, session, options.hand);

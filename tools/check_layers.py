@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Holds the layers of src/tactum apart:  tools/check_layers.py [ROOT]
 
-A file includes only its own layer and those to the left of it; the device branch (devices, loop) and the geometry
+A file includes only its own layer and those to the left of it; the device branch (devices, drivers, loop) and the geometry
 branch meet first in response. Inside a layer, where x.h and x.cpp are one unit, includes have no cycle.
 A folder holds at most 25 headers. Nothing inside includes the umbrella tactum.h. The folder of every layer has a
 README.md with a caption for each header (`pose.h`, or `pose` for header and source).
@@ -15,6 +15,7 @@ STANDS_ON = {
     "base": [],
     "math": ["base"],
     "devices": ["math"],
+    "drivers": ["devices"],
     "loop": ["devices"],
     "geometry": ["math"],
     "repair": ["geometry"],
@@ -29,7 +30,7 @@ STANDS_ON = {
     "haptics": ["response"],
     "scene": ["haptics", "mesh", "parts"],
     "telemetry": ["haptics"],
-    "session": ["scene", "telemetry"],
+    "session": ["scene", "telemetry", "drivers"],
     "recording": ["session"],
 }
 MOST_HEADERS = 25

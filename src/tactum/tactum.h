@@ -19,8 +19,8 @@
 
 // Devices, by name or of the caller's own.
 #include "tactum/devices/device.h"
-#include "tactum/devices/registry.h"
 #include "tactum/devices/simulated_device.h"
+#include "tactum/drivers/registry.h"
 
 // Frames: a world stepped by the caller or by a loop.
 #include "tactum/haptics/force_stage.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "tactum/devices/registry.h"
+#include "tactum/drivers/registry.h"
 #include "tactum/math/screw.h"
 
 namespace tactum {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "tactum/base/assert.h"
-#include "tactum/devices/registry.h"
+#include "tactum/drivers/registry.h"
 #include "tactum/loop/loop_thread.h"
 #include "tactum/loop/safety.h"
 

@@ -6,7 +6,7 @@
 
 #include "session/scenes_in_code.h"
 #include "support/effort.h"
-#include "tactum/devices/registry.h"
+#include "tactum/drivers/registry.h"
 #include "tactum/scene/builtin_scenes.h"
 #include "tactum/session/session.h"
 

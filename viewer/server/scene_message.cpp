@@ -5,7 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "tactum/devices/registry.h"
+#include "tactum/drivers/registry.h"
 #include "tactum/haptics/coupling_gains.h"
 #include "tactum/loop/safety.h"
 #include "tactum/scene/builtin_scenes.h"

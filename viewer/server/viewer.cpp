@@ -7,7 +7,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "tactum/devices/registry.h"
+#include "tactum/drivers/registry.h"
 #include "tactum/haptics/coupling_gains.h"
 #include "tactum/haptics/setting_table.h"
 #include "tactum/scene/build_scene.h"

@@ -28,6 +28,9 @@ struct DeviceSample {
   bool motors_on = true;  ///< false: the device reports that it does not push: dead-man switch, brakes, no
                           ///< power, its own watchdog
   bool valid = false;     ///< false: the read failed, everything else is the last known
+  double grip_rad = 0.0;  ///< opening of the gripper, 0 closed; 0 on a device without one [rad]
+  Wrench F_D_delivered;   ///< the wrench that the device says it exerts, axes of D [N, N m]
+  bool has_delivered = false;  ///< whether the device says so; it may be older than the sample
 };
 
 /// No device's workspace is larger than this; a handle reported beyond it is a driver's mistake.
@@ -61,6 +64,8 @@ struct HandleDynamics {
 /// The abilities of a device; queried, never guessed from its name.
 struct DeviceInfo {
   std::string name;                       ///< "simulated premium-1.5-6dof"
+  std::string serial{};                   ///< tells two of a kind apart; empty: the device has none
+  bool is_hardware = false;               ///< a real device: its time is that of the hand, no virtual clock
   bool senses_rotation = false;           ///< orientation of the handle is measured
   bool actuates_force = false;            ///< can push
   bool actuates_torque = false;           ///< can turn the handle
@@ -94,6 +99,10 @@ class Device {
 
   /// Sets the wrench on the hand until the next write; false when the device did not take it.
   virtual bool write(const Wrench& F_D) noexcept = 0;
+
+  /// What is wrong with the device, in a sentence with its cure; empty when it knows of nothing. For the
+  /// owner, while no loop runs. May allocate.
+  virtual std::string trouble() const { return {}; }
 };
 
 }  // namespace tactum::inline v0_1

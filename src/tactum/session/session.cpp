@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tactum/devices/registry.h"
+#include "tactum/drivers/registry.h"
 #include "tactum/haptics/simulation.h"
 #include "tactum/scene/build_scene.h"
 

@@ -29,7 +29,7 @@
 namespace tactum::inline v0_1 {
 
 struct SessionOptions {
-  std::string device;    ///< as in devices/registry.h; empty: the scene's simulated preset
+  std::string device;    ///< as in drivers/registry.h; empty: the scene's simulated preset
   std::string grip;      ///< of the simulated hand; empty: the scene's
   double rate_Hz = 0.0;  ///< 0: the scene's [Hz]
 };
@@ -92,6 +92,8 @@ class Session final : private HapticFrame {
 
   const Scene& scene() const noexcept { return scene_; }
   const DeviceInfo& device() const noexcept { return device_->info(); }
+  /// What the device says is wrong with it, with the cure; empty for nothing. While no run is going on.
+  std::string device_trouble() const { return device_->trouble(); }
   double rate_Hz() const noexcept { return 1.0 / scene_.settings.dt_s; }
   /// Durations of the frames of a threaded run, as far as polled.
   const DurationHistogram& frame_times() const noexcept { return frame_times_; }

@@ -5,6 +5,12 @@
 ///   simulated:PRESET     a preset of simulated_device.h; PRESET alone is the same
 ///   pointer:PRESET       the same in a hand that is led from outside (pointer_device.h)
 ///   replay:FILE          a motion file (motion_file.h)
+///   force-dimension      an omega, delta, sigma, lambda or Falcon (force_dimension.h); or :SERIAL
+///   3d-systems           a Touch, Touch X or PHANToM (touch.h); :NAME as in the maker's set-up program
+///   spacemouse           a SpaceMouse through spacenavd (spacemouse.h); :SOCKET names the daemon's socket
+///
+/// Simulated devices are made at once. Real ones are connected when they are made, with no motor on, since
+/// what they can is asked of them; Device::open switches the motors on.
 
 #include <memory>
 #include <string>
@@ -12,6 +18,7 @@
 
 #include "tactum/devices/device.h"
 #include "tactum/devices/hand_motion.h"
+#include "tactum/drivers/survey.h"
 
 namespace tactum::inline v0_1 {
 
@@ -24,8 +31,9 @@ struct DeviceOptions {
 };
 
 struct DeviceListing {
-  std::string name;         ///< for make_device
-  std::string description;  ///< one line
+  std::string name;          ///< for make_device
+  std::string description;   ///< one line
+  bool is_hardware = false;  ///< to be found in the survey, if it is connected
 };
 
 /// The name as it is listed: "simulated:touch" of "touch"; other names as they are.
@@ -35,5 +43,8 @@ std::string listed_device_name(const std::string& name);
 Result<std::unique_ptr<Device>> make_device(const std::string& name, const DeviceOptions& options);
 
 std::vector<DeviceListing> list_devices();
+
+/// Asks every driver of real devices what is connected. Slow: loads libraries and opens devices, motors off.
+std::vector<DriverSurvey> survey_drivers();
 
 }  // namespace tactum::inline v0_1

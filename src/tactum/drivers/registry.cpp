@@ -1,6 +1,5 @@
-#include "tactum/devices/registry.h"
+#include "tactum/drivers/registry.h"
 
-#include <array>
 #include <cstdio>
 
 #include "tactum/base/nearest_word.h"
@@ -8,6 +7,9 @@
 #include "tactum/devices/pointer_device.h"
 #include "tactum/devices/replay_device.h"
 #include "tactum/devices/simulated_device.h"
+#include "tactum/drivers/force_dimension.h"
+#include "tactum/drivers/spacemouse.h"
+#include "tactum/drivers/touch.h"
 
 namespace tactum::inline v0_1 {
 namespace {
@@ -61,18 +63,47 @@ std::vector<DeviceListing> list_replay() {
   return {{"replay:FILE", "plays a recorded hand from a motion file; nothing is felt"}};
 }
 
+MadeDevice make_force_dimension(const std::string& serial, const DeviceOptions&) {
+  return ForceDimensionDevice::connect({.serial = serial});
+}
+
+std::vector<DeviceListing> list_force_dimension() {
+  return {{"force-dimension:SERIAL",
+           "an omega, delta, sigma, lambda or Falcon; SERIAL tells two of them apart", true}};
+}
+
+MadeDevice make_3d_systems(const std::string& name, const DeviceOptions&) {
+  return TouchDevice::connect({.name = name});
+}
+
+std::vector<DeviceListing> list_3d_systems() {
+  return {{"3d-systems:NAME", "a Touch, Touch X or PHANToM; NAME as in the maker's set-up program", true}};
+}
+
+MadeDevice make_spacemouse(const std::string& socket, const DeviceOptions&) {
+  return SpaceMouse::connect(socket);
+}
+
+std::vector<DeviceListing> list_spacemouse() {
+  return {{"spacemouse", "a SpaceMouse through spacenavd: it leads the hand, and nothing is felt", true}};
+}
+
 /// One line per kind of device. NAME or NAME:ARGUMENT makes it.
 struct Kind {
   const char* name;
   MadeDevice (*make)(const std::string& argument, const DeviceOptions& options);
   std::vector<DeviceListing> (*list)();
+  DriverSurvey (*survey)();  // of a real device, else null
 };
 
-constexpr std::array<Kind, 3> kKinds = {{
-    {"simulated", make_handled<SimulatedDevice>, list_simulated},
-    {"pointer", make_handled<PointerDevice>, list_pointer},
-    {"replay", make_replay, list_replay},
-}};
+constexpr Kind kKinds[] = {
+    {"simulated", make_handled<SimulatedDevice>, list_simulated, nullptr},
+    {"pointer", make_handled<PointerDevice>, list_pointer, nullptr},
+    {"replay", make_replay, list_replay, nullptr},
+    {"force-dimension", make_force_dimension, list_force_dimension, ForceDimensionDevice::survey},
+    {"3d-systems", make_3d_systems, list_3d_systems, TouchDevice::survey},
+    {"spacemouse", make_spacemouse, list_spacemouse, SpaceMouse::survey},
+};
 
 }  // namespace
 
@@ -90,7 +121,7 @@ Result<std::unique_ptr<Device>> make_device(const std::string& name, const Devic
   for (const Kind& kind : kKinds) {
     if (kind_name == kind.name) return kind.make(argument, options);
   }
-  std::vector<std::string> known{kKinds.front().name};
+  std::vector<std::string> known{kKinds[0].name};
   std::string names = known.front();
   for (const DeviceListing& listing : list_devices()) {
     known.push_back(listing.name);
@@ -109,6 +140,13 @@ std::vector<DeviceListing> list_devices() {
     for (DeviceListing& listing : kind.list()) listings.push_back(std::move(listing));
   }
   return listings;
+}
+
+std::vector<DriverSurvey> survey_drivers() {
+  std::vector<DriverSurvey> surveys;
+  for (const Kind& kind : kKinds)
+    if (kind.survey != nullptr) surveys.push_back(kind.survey());
+  return surveys;
 }
 
 }  // namespace tactum::inline v0_1

@@ -1,4 +1,4 @@
-#include "tactum/devices/registry.h"
+#include "tactum/drivers/registry.h"
 
 #include <gtest/gtest.h>
 

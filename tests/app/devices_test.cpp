@@ -1,0 +1,100 @@
+// tactum devices, and tactum feel on a device, as programs; the makers' libraries are stand-ins.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "program.h"
+#include "support/standin_files.h"
+
+namespace tactum::devices_test {
+
+using testing::ended;
+using testing::ProgramRun;
+using testing::run_tactum;
+
+bool holds(const std::string& text, const std::string& words) {
+  return text.find(words) != std::string::npos;
+}
+
+/// No maker's library and no daemon, whatever the machine has.
+struct NothingThere {
+  SetVariable dhd{"TACTUM_FORCE_DIMENSION_LIBRARY", "/nowhere/libdhd.so"};
+  SetVariable hd{"TACTUM_OPENHAPTICS_LIBRARY", "/nowhere/libHD.so"};
+  SetVariable spacenav{"SPNAV_SOCKET", "/nowhere/spnav.sock"};
+};
+
+TEST(Devices, OfADriverThatFindsNothingItIsSaidWhyAndWhatHelps) {
+  const NothingThere nothing;
+  const ProgramRun run = run_tactum("devices");
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  for (const char* words : {"force-dimension", "install the Force Dimension SDK", "3d-systems",
+                            "install OpenHaptics", "spacemouse", "apt install spacenavd", "simulated:touch"})
+    EXPECT_TRUE(holds(run.out, words)) << words << "\n" << run.out;
+}
+
+TEST(Devices, AConnectedOneIsListedWithSerialAndLimits) {
+  const NothingThere nothing;
+  const SetVariable dhd("TACTUM_FORCE_DIMENSION_LIBRARY", standin_file("standin_dhd"));
+  const ProgramRun run = run_tactum("devices");
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  for (const char* words :
+       {"force-dimension:10042", "sigma.7, serial 10042", "12 N, 0.2 N m", "senses rotation"})
+    EXPECT_TRUE(holds(run.out, words)) << words << "\n" << run.out;
+}
+
+TEST(Devices, TheRulesForUdevArePrinted) {
+  const ProgramRun run = run_tactum("devices --print-udev");
+  EXPECT_EQ(run.exit_code, 0);
+  EXPECT_TRUE(holds(run.out, "/etc/udev/rules.d/71-")) << run.out;
+  EXPECT_TRUE(holds(run.out, "ATTR{idVendor}==\"1451\", MODE=\"0660\""));
+  EXPECT_FALSE(holds(run.out, "0666")) << "nobody else may open them";
+}
+
+TEST(Devices, GearsAreFeltOnADevice) {
+  const testing::ScratchFolder folder;
+  const SetVariable dhd("TACTUM_FORCE_DIMENSION_LIBRARY", standin_file("standin_dhd"));
+  const SetVariable sweep("TACTUM_STANDIN_SWEEP", "1");
+  const SetVariable record("TACTUM_STANDIN_RECORD", folder / "record");
+  const ProgramRun run = run_tactum("feel gears --device force-dimension --duration 1");
+  EXPECT_TRUE(ended(run)) << run.err;
+  EXPECT_TRUE(holds(run.out, "force-dimension sigma.7")) << run.out;
+  EXPECT_FALSE(holds(run.out, "hand medium")) << "no simulated hand holds it";
+  std::istringstream lines(testing::content(folder / "record"));
+  int frames = 0;
+  double last_N = -1.0, strongest_N = 0.0, strongest_Nm = 0.0;
+  std::string line, end;
+  while (std::getline(lines, line)) {
+    std::istringstream numbers(line);
+    double x = 0.0, y = 0.0, z = 0.0;
+    if (!(numbers >> x >> y >> z)) {
+      end = line;
+      continue;
+    }
+    double tx = 0.0, ty = 0.0, tz = 0.0;
+    numbers >> tx >> ty >> tz;
+    strongest_Nm = std::max(strongest_Nm, std::sqrt(tx * tx + ty * ty + tz * tz));
+    last_N = std::sqrt(x * x + y * y + z * z);
+    strongest_N = std::max(strongest_N, last_N);
+    if (frames++ == 0) {
+      EXPECT_EQ(last_N, 0.0) << "the first wrench";
+    }
+  }
+  EXPECT_GT(frames, 10);
+  EXPECT_GT(strongest_Nm, 0.0);
+  EXPECT_LE(strongest_Nm, 0.2000001);
+  EXPECT_LE(strongest_N, 12.000001);
+  EXPECT_EQ(last_N, 0.0) << "the last wrench";
+  EXPECT_EQ(end, "forces off at the end, 0 rules broken");
+}
+
+TEST(Devices, ARealOneHasNoVirtualClock) {
+  const SetVariable dhd("TACTUM_FORCE_DIMENSION_LIBRARY", standin_file("standin_dhd"));
+  const ProgramRun run = run_tactum("feel gears --device force-dimension --virtual-clock --updates 10");
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_TRUE(holds(run.err, "real time")) << run.err;
+}
+
+}  // namespace tactum::devices_test
