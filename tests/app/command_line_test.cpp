@@ -45,7 +45,7 @@ TEST(CommandLine, VersionAndHelp) {
 }
 
 TEST(CommandLine, TheNearestCommandAndOption) {
-  expect_error("foo", 2, "tactum has no such command: found \"foo\", expected one of feel, scenes");
+  expect_error("foo", 2, "tactum has no such command: found \"foo\", expected one of feel, replay");
   expect_error("feal gears", 2, "expected \"feel\"");
   expect_error("prepair a.stl", 2, "expected \"prepare\"");
   expect_error("bench tabel1", 2, "tactum bench has no such command: found \"tabel1\", expected \"table1\"");

@@ -101,9 +101,10 @@ Result<VendorLibrary> VendorLibrary::load(const LibrarySearch& search) {
   }
   const std::string cure = search.cure + ", or name the library in " + search.variable;
   if (!complaints.empty())
-    return Error{"the library of " + search.maker + " does not load", complaints, cure, ""};
+    return Error{"the library of " + search.maker + " does not load", complaints, "one that does: " + cure,
+                 ""};
   return Error{"the library of " + search.maker + " is not there",
-               "no " + joined_names(search.names, " or ") + " in " + offers.places, cure, ""};
+               "no " + joined_names(search.names, " or ") + " in " + offers.places, "one: " + cure, ""};
 }
 
 void VendorLibrary::unload() noexcept {
