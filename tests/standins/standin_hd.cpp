@@ -15,7 +15,7 @@ constexpr unsigned kHandle = 7, kInvalidHandle = 0xffffffff, kDone = 0;
 constexpr unsigned kInvalidOperation = 0x102, kBadHandle = 0x104, kWarmMotors = 0x200,
                    kExceededMaxForce = 0x201, kDeviceFault = 0x300, kCommunicationError = 0x302,
                    kIllegalBegin = 0x400, kIllegalEnd = 0x401, kFrameError = 0x402;
-constexpr unsigned kForceOutput = 0x4000, kCalibrated = 0x5000;
+constexpr unsigned kForceOutput = 0x4000;
 
 struct Scheduler {
   unsigned (*callback)(void*) = nullptr;
@@ -190,6 +190,7 @@ void hdUpdateCalibration(unsigned style) {
   ++device->calibration_updates;
   device->last_style = style;
   if (style == 1 && device->refuses_encoder_reset) return device.fail(kInvalidOperation);
+  constexpr unsigned kCalibrated = 0x5000;
   device->calibration = kCalibrated;
 }
 
