@@ -117,10 +117,11 @@ void run(const ClearanceOptions& options) {
   if (options.csv.empty() && options.json.empty()) fmt::print("{}", as_csv(rows));
   const auto inside = std::count_if(rows.begin(), rows.end(), [](const Row& row) { return row.inside; });
   if (inside > 0)
-    fmt::print(stderr, "In {} rows one mesh lies inside a solid of the other, which counts as touching.\n",
-               inside);
-  fmt::print(stderr, "{} rows, {} touching; least distance {:.9g} m in frame {}; {:.3g} us a row\n",
-             rows.size(), touching(rows), nearest(rows).distance_m, nearest(rows).frame, mean_us(rows));
+    fmt::print(stderr, "In {} row{} one mesh lies inside a solid of the other, which counts as touching.\n",
+               inside, inside == 1 ? "" : "s");
+  fmt::print(stderr, "{} row{}, {} touching; least distance {:.9g} m in frame {}; {:.3g} us a row\n",
+             rows.size(), rows.size() == 1 ? "" : "s", touching(rows), nearest(rows).distance_m,
+             nearest(rows).frame, mean_us(rows));
 }
 
 }  // namespace

@@ -24,6 +24,11 @@ double number(const Json& value) { return value.is_number() ? value.get<double>(
 long count(const Json& value) { return value.is_number() ? value.get<long>() : 0; }
 std::string text(const Json& value) { return value.is_string() ? value.get<std::string>() : std::string(); }
 
+/// "1 triangle", "2 triangles".
+std::string counted(const Json& value, const char* one, const char* many) {
+  return fmt::format("{} {}", count(value), count(value) == 1 ? one : many);
+}
+
 std::string sentences(const Json& notes, const char* label) {
   std::string out;
   if (!notes.is_array()) return out;
@@ -41,10 +46,10 @@ std::string pieces_line(const Json& pieces) {
                        count(member(pieces, "count")), number(member(pieces, "vertices_mean")),
                        count(member(pieces, "vertices_most")), reason);
   }
-  return fmt::format(
-      "pieces      surface of {} triangles in {} flat patches, thinnest {:.2g} of its side: {}\n",
-      count(member(pieces, "count")), count(member(pieces, "patches")),
-      number(member(pieces, "thinnest_height_over_side")), reason);
+  return fmt::format("pieces      surface of {} in {}, thinnest {:.2g} of its side: {}\n",
+                     counted(member(pieces, "count"), "triangle", "triangles"),
+                     counted(member(pieces, "patches"), "flat patch", "flat patches"),
+                     number(member(pieces, "thinnest_height_over_side")), reason);
 }
 
 }  // namespace
@@ -71,13 +76,12 @@ std::string describe_part(const std::string& path, const PartFile& file) {
   out += fmt::format("unit        {}: {}\n", text(member(report, "unit", "name")),
                      text(member(report, "unit", "reason")));
   const Json mesh = member(report, "mesh");
-  out += fmt::format(
-      "mesh        {} triangles, {} components, {} closed; edges: {} open, {} non-manifold, {} convex, {} "
-      "reflex\n",
-      count(member(mesh, "triangles")), count(member(mesh, "components")),
-      count(member(mesh, "closed_components")), count(member(mesh, "boundary_edges")),
-      count(member(mesh, "non_manifold_edges")), count(member(mesh, "convex_edges")),
-      count(member(mesh, "reflex_edges")));
+  out += fmt::format("mesh        {}, {}, {} closed; edges: {} open, {} non-manifold, {} convex, {} reflex\n",
+                     counted(member(mesh, "triangles"), "triangle", "triangles"),
+                     counted(member(mesh, "components"), "component", "components"),
+                     count(member(mesh, "closed_components")), count(member(mesh, "boundary_edges")),
+                     count(member(mesh, "non_manifold_edges")), count(member(mesh, "convex_edges")),
+                     count(member(mesh, "reflex_edges")));
   out += sentences(member(report, "repaired"), "repaired");
   out += sentences(member(report, "left"), "left");
   out += pieces_line(member(report, "pieces"));

@@ -103,7 +103,7 @@ TEST(Part, InwardSurfacesAreTurnedAndTold) {
   ASSERT_TRUE(part);
   EXPECT_EQ(part->pieces.size(), 1u);
   ASSERT_EQ(part->notes.remarks.size(), 2u);
-  EXPECT_NE(part->notes.remarks[1].find("1 components faced the wrong way"), std::string::npos);
+  EXPECT_NE(part->notes.remarks[1].find("1 component faced the wrong way"), std::string::npos);
   EXPECT_NEAR(part->mass.volume, 8.0, 1e-12);
 }
 

@@ -147,7 +147,7 @@ TEST(PreparePart, NestedSolidsAreASolidWithACavity) {
       as_imported({box_mesh({0.2, 0.2, 0.2}), box_mesh({0.1, 0.1, 0.1})}), {.pieces = "surface"});
   ASSERT_TRUE(file) << file.error().message();
   EXPECT_NEAR(file->part.mass.volume, 0.064 - 0.008, 1e-12);
-  EXPECT_NE(file->report.find("taken for cavities"), std::string::npos);
+  EXPECT_NE(file->report.find("taken for a cavity"), std::string::npos);
 }
 
 /// The volume and the triangles of a mesh prepared, or zero and the refusal.
@@ -229,7 +229,7 @@ TEST(PreparePart, WhatIsLeftIsToldOnceWithItsPlaceInTheFile) {
   ASSERT_TRUE(file) << file.error().message();
   std::vector<std::string> holes;
   for (const std::string& remark : file->part.notes.remarks)
-    if (remark.find("edges are open") != std::string::npos) holes.push_back(remark);
+    if (remark.find("edges is open") != std::string::npos) holes.push_back(remark);
   ASSERT_EQ(holes.size(), 1u);
   EXPECT_NE(holes[0].find("triangle"), std::string::npos);
 }

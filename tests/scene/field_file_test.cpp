@@ -125,7 +125,7 @@ TEST(FieldFile, SaysWhatIsWrong) {
   expect("data = \"field.raw\"", "data = \"other.raw\"", "other.raw: the file cannot be opened");
   expect("data = \"field.raw\"", "data = \"\"", "this is not a file");
   expect("data = \"field.raw\"", "data = 3", "field.toml:2:8: wrong type of \"data\"");
-  expect("data =", "dat =", "unknown key in the scene: found \"dat\", expected \"data\"");
+  expect("data =", "dat =", "unknown key in the file: found \"dat\", expected \"data\"");
   expect("nodes = [3, 4, 2]", "", "missing key \"nodes\"");
   expect("[3, 4, 2]", "[3, 4]", "expected 3 numbers");
   expect("[3, 4, 2]", "[3, 4.5, 2]", "expected a whole number");
@@ -138,10 +138,10 @@ TEST(FieldFile, SaysWhatIsWrong) {
   expect("[0.01, 0.02, 0.03]", "[0.01, 0, 0.03]", "spacing is no length");
   expect("[0.01, 0.02, 0.03]", "[0.01, nan, 0.03]", "a finite number");
   expect("[-0.01, 0.5, 0.25]", "[inf, 0.5, 0.25]", "a finite number");
-  expect("\"float64\"", "\"int16\"", "\"type\" in the scene is not known");
+  expect("\"float64\"", "\"int16\"", "\"type\" in the file is not known");
   expect("\"float64\"", "\"float32\"", "found 576 bytes, expected 288");
   expect("\"little\"", "\"middle\"", "\"byte_order\"");
-  expect("components = 3", "components = 1", "\"components\" in the scene is out of range");
+  expect("components = 3", "components = 1", "\"components\" in the file is out of range");
   expect("components = 3", "", "missing key \"components\"");
   expect("unit_N = 1", "unit_N = nan", "\"unit_N\"");
   expect("unit_N = 1", "unit_N = inf", "\"unit_N\"");

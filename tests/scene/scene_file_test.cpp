@@ -200,7 +200,7 @@ TEST(SceneErrors, UnknownKeysNameTheNearest) {
   expect_error(15, "stifness_N_per_m = 700", "test.toml:15:1", "expected \"stiffness_N_per_m\"");
   expect_error(15, "stiffness = 700", "test.toml:15:1", "expected \"stiffness_N_per_m\"");
   expect_error(2, "descripton = \"x\"", "test.toml:2:1",
-               "unknown key in the scene: found \"descripton\", expected \"description\"");
+               "unknown key in the file: found \"descripton\", expected \"description\"");
   expect_error(14, "[cuopling]", "test.toml:14:2", "expected \"coupling\"");
   expect_error(10, "part = { box = { size_m = [1, 1, 1], colour = 3 } }", "test.toml:10:38",
                "unknown key in [body 2.part.box]");

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <deque>
 #include <optional>
+#include <string_view>
 
 #include "tactum/base/tolerances.h"
 #include "tactum/geometry/hull.h"
@@ -149,12 +150,17 @@ Result<std::vector<Solid>> cut_once(std::vector<Vec3>& corners, const Body& body
   return std::vector<Solid>{};
 }
 
+/// "1 open edge", "2 open edges".
+std::string edge_count(int count, std::string_view kind = "") {
+  return fmt::format("{} {}edge{}", count, kind, count == 1 ? "" : "s");
+}
+
 Error too_many(int most_pieces, std::string found) {
   return {"the solid does not fall into few convex pieces", std::move(found),
           fmt::format("at most {} pieces: use surface pieces", most_pieces), ""};
 }
 Error too_many(int reflex_edges, int most_pieces) {
-  return too_many(most_pieces, fmt::format("{} reflex edges", reflex_edges));
+  return too_many(most_pieces, edge_count(reflex_edges, "reflex "));
 }
 
 Error no_solid(std::string found, const TriangleMesh& mesh, int triangle) {
@@ -168,13 +174,13 @@ Error no_solid(std::string found, const TriangleMesh& mesh, int triangle) {
 Result<void> check_usable(const TriangleMesh& mesh, int most_pieces) {
   const MeshReport report = report_mesh(mesh, 0.0);
   if (report.non_manifold_edges > 0)
-    return no_solid(fmt::format("{} edges of more than two triangles", report.non_manifold_edges), mesh,
+    return no_solid(fmt::format("{} of more than two triangles", edge_count(report.non_manifold_edges)), mesh,
                     report.first_non_manifold);
   if (!report.closed)
-    return no_solid(fmt::format("{} open edges", report.boundary_edges), mesh, report.first_boundary);
+    return no_solid(edge_count(report.boundary_edges, "open "), mesh, report.first_boundary);
   if (!report.oriented)
-    return no_solid(fmt::format("{} edges where triangles face opposite ways", report.misoriented_edges),
-                    mesh, -1);
+    return no_solid(
+        fmt::format("{} where triangles face opposite ways", edge_count(report.misoriented_edges)), mesh, -1);
   if (!(report.volume > 0.0)) return no_solid("normals that point inward", mesh, -1);
   if (report.components > kPiecesBeforeJoining * most_pieces)
     return too_many(most_pieces, fmt::format("{} components", report.components));

@@ -115,7 +115,9 @@ Result<void> make_pieces(const Attempt& attempt, PartFile& file, PrepareReport& 
       return {};
     }
     if (options.pieces != "auto" || &method == &all_piece_methods().back()) return done;
-    tried += fmt::format("not {}, since {}; ", method.name, done.error().message());
+    const Error& fault = done.error();
+    tried += fmt::format("not {}, since {}{}; ", method.name, fault.found.empty() ? "" : "it has ",
+                         fault.found.empty() ? fault.what : fault.found);
   }
   std::string known = "auto";
   for (const PieceMethod& method : all_piece_methods()) known += std::string(", ") + method.name;

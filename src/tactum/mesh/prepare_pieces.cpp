@@ -67,8 +67,8 @@ std::string solid_suits(const PiecesInput& input) {
   if (input.report.convex) return "the mesh is convex as it is";
   const Result<SolidPieces> solid = solid_pieces(input.repaired.mesh, kFewSolidPieces);
   if (!solid) return {};
-  return fmt::format("the solid falls into {} convex pieces along {} reflex edges", solid->pieces.size(),
-                     solid->reflex_edges);
+  return fmt::format("the solid falls into {} convex pieces along {} reflex edge{}", solid->pieces.size(),
+                     solid->reflex_edges, solid->reflex_edges == 1 ? "" : "s");
 }
 
 std::string surface_suits(const PiecesInput& input) {

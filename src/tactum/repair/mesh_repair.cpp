@@ -17,21 +17,26 @@
 namespace tactum::inline v0_1 {
 namespace {
 
+/// What stands behind the count of a finding: behind "1", and behind more.
+struct Clause {
+  std::string of_one, of_many;
+};
+
 /// Collects findings with the place of the first triangle of each.
 class Notes {
  public:
   Notes(const TriangleMesh& given, std::vector<RepairNote>& notes) : given_(given), notes_(notes) {}
 
-  void add(bool mended, const char* kind, const std::string& text, int count, int triangle = -1) {
+  void add(bool mended, const char* kind, const Clause& clause, int count, int triangle = -1) {
     if (count == 0) return;
-    RepairNote note{kind, text, count, triangle, Vec3::Zero(), mended};
+    RepairNote note{kind, count == 1 ? clause.of_one : clause.of_many, count, triangle, Vec3::Zero(), mended};
     if (triangle >= 0) {
       for (int corner : given_.triangles[triangle]) note.place += given_.vertices[corner] / 3.0;
     }
     notes_.push_back(std::move(note));
   }
-  void add(bool mended, const char* kind, const std::string& text, const std::vector<int>& triangles) {
-    add(mended, kind, text, static_cast<int>(triangles.size()), triangles.empty() ? -1 : triangles.front());
+  void add(bool mended, const char* kind, const Clause& clause, const std::vector<int>& triangles) {
+    add(mended, kind, clause, static_cast<int>(triangles.size()), triangles.empty() ? -1 : triangles.front());
   }
 
  private:
@@ -64,12 +69,22 @@ void drop_repeated(RepairedMesh& out, int threads, Notes& notes) {
   drop(out, {&repeated.copies, &repeated.walls, &repeated.sheets});
   std::vector<int> single_walls = find_inner_walls(out.mesh);
   drop(out, {&single_walls});
-  notes.add(true, "duplicate_triangles", "triangles stood twice and were dropped", repeated.copies);
-  notes.add(true, "inner_walls", "triangles of walls between two solids were dropped", repeated.walls);
-  notes.add(true, "single_walls", "triangles were walls inside a solid and were dropped", single_walls);
+  notes.add(true, "duplicate_triangles",
+            {"triangle stood twice and was dropped", "triangles stood twice and were dropped"},
+            repeated.copies);
+  notes.add(true, "inner_walls",
+            {"triangle of a wall between two solids was dropped",
+             "triangles of walls between two solids were dropped"},
+            repeated.walls);
+  notes.add(true, "single_walls",
+            {"triangle was a wall inside a solid and was dropped",
+             "triangles were walls inside a solid and were dropped"},
+            single_walls);
   std::merge(repeated.walls.begin(), repeated.walls.end(), single_walls.begin(), single_walls.end(),
              std::back_inserter(out.walls));
-  notes.add(true, "two_sided_sheets", "triangles are the second side of a sheet, which has two sides anyway",
+  notes.add(true, "two_sided_sheets",
+            {"triangle is the second side of a sheet, which has two sides anyway",
+             "triangles are the second side of a sheet, which has two sides anyway"},
             repeated.sheets);
 }
 
@@ -123,8 +138,11 @@ struct Filled {
 
 /// Notes holes, and faults at edges and vertices.
 void note_topology(const RepairedMesh& out, const Filled& filled, Notes& notes) {
-  notes.add(true, "closed_cracks", "cracks between corners and edges that meet were closed", filled.cracks);
-  notes.add(true, "closed_holes", "holes were closed", filled.holes);
+  notes.add(true, "closed_cracks",
+            {"crack between corners and edges that meet was closed",
+             "cracks between corners and edges that meet were closed"},
+            filled.cracks);
+  notes.add(true, "closed_holes", {"hole was closed", "holes were closed"}, filled.holes);
   std::vector<int> open;
   std::size_t shortest = out.mesh.triangles.size() * 3;
   std::size_t longest = 0;
@@ -134,41 +152,51 @@ void note_topology(const RepairedMesh& out, const Filled& filled, Notes& notes) 
     longest = std::max(longest, rim.vertices.size());
   }
   notes.add(false, "holes",
-            fmt::format("rims of {} to {} edges are open: of holes, or of sheets", shortest, longest), open);
+            {fmt::format("rim of {} edges is open: of a hole, or of a sheet", longest),
+             fmt::format("rims of {} to {} edges are open: of holes, or of sheets", shortest, longest)},
+            open);
   std::vector<int> crowded;  // edges of more than two triangles
   const std::vector<HalfEdge> sides = sorted_half_edges(out.mesh);
   for_each_edge(sides, [&](const HalfEdge* first, const HalfEdge* last) {
     if (last - first > 2) crowded.push_back(out.source[first->triangle]);
   });
-  notes.add(false, "non_manifold_edges", "edges have more than two triangles", crowded);
+  notes.add(false, "non_manifold_edges",
+            {"edge has more than two triangles", "edges have more than two triangles"}, crowded);
   std::vector<int> pinched = pinched_at(out.mesh, sides);
   for (int& triangle : pinched) triangle = out.source[triangle];
-  notes.add(false, "pinched_vertices", "vertices join fans of triangles that share no edge", pinched);
+  notes.add(false, "pinched_vertices",
+            {"vertex joins fans of triangles that share no edge",
+             "vertices join fans of triangles that share no edge"},
+            pinched);
 }
 
 void note_components(const RepairedMesh& out, Notes& notes) {
   struct Kind {
     const char* kind;
-    const char* text;
+    const char *of_one, *of_many;
     bool mended;
     bool (*holds)(const MeshComponent&);
   };
   constexpr Kind kKinds[] = {
-      {"turned_components", "components faced the wrong way and were turned round", true,
+      {"turned_components", "component faced the wrong way and was turned round",
+       "components faced the wrong way and were turned round", true,
        [](const MeshComponent& c) { return c.turned; }},
-      {"cavities", "components lie inside another and are taken for cavities, facing inward", true,
+      {"cavities", "component lies inside another and is taken for a cavity, facing inward",
+       "components lie inside another and are taken for cavities, facing inward", true,
        [](const MeshComponent& c) { return c.depth % 2 != 0; }},
-      {"cutting_components", "components lie partly inside another: where they overlap counts twice", false,
+      {"cutting_components", "component lies partly inside another: where they overlap counts twice",
+       "components lie partly inside another: where they overlap counts twice", false,
        [](const MeshComponent& c) { return c.cuts_other; }},
-      {"empty_components", "closed components enclose no volume", false,
-       [](const MeshComponent& c) { return c.empty_inside(); }},
-      {"twisted_components", "components have one side only (a Moebius band) and cannot face outward", false,
+      {"empty_components", "closed component encloses no volume", "closed components enclose no volume",
+       false, [](const MeshComponent& c) { return c.empty_inside(); }},
+      {"twisted_components", "component has one side only (a Moebius band) and cannot face outward",
+       "components have one side only (a Moebius band) and cannot face outward", false,
        [](const MeshComponent& c) { return c.twisted_edges > 0; }}};
   for (const Kind& kind : kKinds) {
     std::vector<int> first;
     for (const MeshComponent& component : out.components)
       if (kind.holds(component)) first.push_back(out.source[component.first_triangle]);
-    notes.add(kind.mended, kind.kind, kind.text, first);
+    notes.add(kind.mended, kind.kind, {kind.of_one, kind.of_many}, first);
   }
 }
 
@@ -208,10 +236,14 @@ RepairedMesh repair_mesh(const TriangleMesh& mesh, const RepairOptions& options)
   WeldedMesh welded = weld(with_used_vertices(mesh));  // others would stretch the box that tolerances go by
   out.mesh = std::move(welded.mesh);
   out.source = std::move(welded.source);
-  notes.add(true, "joined_vertices", "vertices stood at the place of another and were joined",
+  notes.add(true, "joined_vertices",
+            {"vertex stood at the place of another and was joined",
+             "vertices stood at the place of another and were joined"},
             welded.report.vertices_joined);
-  notes.add(true, "degenerate_triangles", "triangles had two equal corners and were dropped",
-            welded.report.index_degenerate);
+  notes.add(
+      true, "degenerate_triangles",
+      {"triangle had two equal corners and was dropped", "triangles had two equal corners and were dropped"},
+      welded.report.index_degenerate);
   drop_repeated(out, options.threads, notes);
 
   std::vector<bool> turned(mesh.triangles.size(), false);  // of the triangles given
@@ -223,15 +255,22 @@ RepairedMesh repair_mesh(const TriangleMesh& mesh, const RepairOptions& options)
   CapReport caps = mend_caps(out.mesh, out.source);
   const std::size_t given_to_neighbours = caps.mended.size();
   std::erase_if(caps.mended, [](int triangle) { return triangle < 0; });  // within a hole just closed
-  notes.add(true, "zero_area_mended", "triangles without area were given to their neighbours", caps.mended);
-  notes.add(false, "zero_area_left", "triangles without area are left", caps.left);
+  notes.add(true, "zero_area_mended",
+            {"triangle without area was given to its neighbours",
+             "triangles without area were given to their neighbours"},
+            caps.mended);
+  notes.add(false, "zero_area_left", {"triangle without area is left", "triangles without area are left"},
+            caps.left);
   // What is oriented stays so where no triangle came or went.
   if (!(filled.cracks.empty() && filled.holes.empty() && given_to_neighbours == 0))
     orient(out, options.threads, turned);
   std::vector<int> flipped;
   for (std::size_t t = 0; t < turned.size(); ++t)
     if (turned[t]) flipped.push_back(static_cast<int>(t));
-  notes.add(true, "flipped_triangles", "triangles faced the wrong way and were turned round", flipped);
+  notes.add(true, "flipped_triangles",
+            {"triangle faced the wrong way and was turned round",
+             "triangles faced the wrong way and were turned round"},
+            flipped);
   drop_unused_vertices(out.mesh);
   note_topology(out, filled, notes);
   note_components(out, notes);

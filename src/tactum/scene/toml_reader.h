@@ -37,8 +37,8 @@ class TomlReader {
       : TomlReader(table, file, std::move(path), std::span(keys.begin(), keys.size()), errors) {}
 
   bool has(const char* key) const { return table_.contains(key); }
-  /// "[body 2.joint]", or "the scene" for the whole file.
-  std::string section() const { return path_.empty() ? "the scene" : file_section(path_); }
+  /// "[body 2.joint]", or "the file" for the whole.
+  std::string section() const { return path_.empty() ? "the file" : file_section(path_); }
   FirstError& errors() const { return errors_; }
 
   // With a fallback a key may be absent; without one it must be there.
