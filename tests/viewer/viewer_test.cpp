@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <thread>
 
 #include "support/allocation_guard.h"
@@ -165,6 +166,43 @@ TEST(ViewerThread, AStopReachesTheLoopThoughTheOwnerIsBusy) {
   viewer->stop();
 }
 
+/// Contacts and poses beside the numbers of another frame would explain a force by what did not cause it. The
+/// owner is busy for so long that the numbers of many frames are lost.
+TEST(ViewerThread, EveryPictureComesWithTheNumbersOfItsFrame) {
+  Result<Scene> scene = open_scene("block-on-plate");
+  ASSERT_TRUE(scene);
+  Result<std::unique_ptr<Viewer>> opened =
+      Viewer::open(std::move(*scene), {.device = "", .grip = "", .rate_Hz = 10000.0}, 0);
+  ASSERT_TRUE(opened) << opened.error().message();
+  Viewer& viewer = **opened;
+  RawPage page = page_of(viewer);
+  ASSERT_TRUE(page.accepted());
+  ASSERT_TRUE(viewer.start());
+  while (viewer.session().poll().frame < FrameFeed::kSamples + 2000)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  std::set<std::uint32_t> frames;
+  int pictures = 0;
+  std::uint32_t newest = 0;
+  const auto look = [&](const RawPage::Message& message) {
+    const std::uint32_t rows = word_at(message.payload, 3), numbers = word_at(message.payload, 4);
+    const std::size_t picture = word_at(message.payload, 6);
+    for (std::uint32_t row = 0; row < rows; ++row)
+      frames.insert(word_at(message.payload, 8 + picture / 4 + row * (numbers + 1)));
+    page.say("{\"do\":\"ack\",\"seq\":" + std::to_string(word_at(message.payload, 1)) + "}");
+    if (picture == 0) return;
+    newest = word_at(message.payload, 8);
+    EXPECT_TRUE(frames.contains(newest)) << newest;
+    ++pictures;
+  };
+  for (int i = 0; i < 4000 && (pictures < 40 || newest < FrameFeed::kSamples + 2000); ++i) {
+    viewer.poll(std::chrono::milliseconds(1));
+    if (const RawPage::Message message = page.next(1); message.kind == 2) look(message);
+  }
+  EXPECT_GE(pictures, 40);
+  EXPECT_GE(newest, FrameFeed::kSamples + 2000);  // pictures go on when there is room again
+  viewer.stop();
+}
+
 /// A coupling that the device chooses is that of the device that is in use, also when it is taken back.
 TEST(ViewerThread, SettingsGoBackToWhatTheSceneAndTheDeviceHave) {
   const std::unique_ptr<Viewer> viewer =
@@ -263,6 +301,7 @@ TEST(FrameFeed, TakingAFrameAllocatesNothingAndLosesTheNewestWhenFull) {
   }
   EXPECT_EQ(expected, FrameFeed::kSamples);
   ASSERT_TRUE(feed.look());
+  EXPECT_LT(feed.picture().index, FrameFeed::kSamples);  // none of a frame whose numbers were lost
   EXPECT_EQ(feed.picture().X_WB.size(), 2u);
   EXPECT_LE(sample_size(), FrameSample::kRoom);
 }

@@ -18,7 +18,7 @@ History::Rows History::write_rows(std::uint64_t& place, std::uint64_t& dropped, 
     dropped += oldest() - place;
     place = oldest();
   }
-  const std::size_t count = std::min<std::uint64_t>(end_ - place, kAtOnce);
+  const std::size_t count = end_ - place;
   const int numbers = sample_size();
   // One message has rows of one run, whose bodies are the same in all.
   const int posed = count > 0 ? samples_[place % kRoom].frame.posed : 0;

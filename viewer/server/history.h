@@ -1,5 +1,5 @@
 #pragma once
-/// The samples of the last half minute, kept once for all pages. A page has a place in it; a page that was
+/// The samples of the last seconds (kRoom), kept once for all pages. A page has a place in it; a page that was
 /// slow gets everything since then, in order, with the number of those it is too late for.
 
 #include <cstdint>
@@ -21,8 +21,7 @@ int chart_sample_size(int posed = 0) noexcept;
 
 class History {
  public:
-  static constexpr std::size_t kRoom = 30'000;        ///< half a minute at 1 kHz
-  static constexpr std::size_t kAtOnce = 4096;        ///< samples in one message
+  static constexpr std::size_t kRoom = 1u << 14;      ///< sixteen seconds at 1 kHz
   static constexpr std::size_t kForNewcomers = 8000;  ///< samples a new page is given
 
   History() : samples_(kRoom) {}
@@ -38,8 +37,9 @@ class History {
   struct Rows {
     std::uint32_t count = 0, numbers = 0;  ///< rows, and numbers in each
   };
-  /// Appends the samples from `place` on, at most kAtOnce, as rows: frame index (u32), then the numbers
-  /// (f32). Moves `place` behind them and adds to `dropped` the number it was too late for.
+  /// Appends the samples from `place` to the newest as rows: frame index (u32), then the numbers (f32). Moves
+  /// `place` behind them and adds to `dropped` the number it was too late for. All of them, however many: a
+  /// page that gets the newest picture needs the numbers of its frame beside it.
   Rows write_rows(std::uint64_t& place, std::uint64_t& dropped, std::string& out) const;
 
  private:

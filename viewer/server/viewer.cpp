@@ -169,8 +169,13 @@ void Viewer::show() {
   last_shown_ = now;
   const ServerStatus pages = server_->status();
   if (pages.pages > 0) last_page_ = now;
+  if (!ready_.empty()) frames_ready_ = ready_.back().frame.index + 1;
+  picture_waits_ = picture_waits_ || feed_->look();
   std::string picture;
-  if (feed_->look()) write_picture(feed_->picture(), picture);
+  if (picture_waits_ && feed_->picture().index < frames_ready_) {
+    write_picture(feed_->picture(), picture);
+    picture_waits_ = false;
+  }
   if (!ready_.empty() || !picture.empty()) server_->show(ready_, std::move(picture));
   ready_.clear();
   if (now - last_status_ < kStatusEvery) return;

@@ -75,6 +75,8 @@ class Viewer {
   std::deque<FrameSample> waiting_;   // for their times
   std::vector<FrameTiming> timings_;  // for their samples
   std::vector<ChartSample> ready_;
+  std::uint64_t frames_ready_ = 0;  // the pages have, or are about to have, the numbers of all before it
+  bool picture_waits_ = false;      // the feed's picture, for the numbers of its frame
   std::uint64_t virtual_frames_ = 0;
   Clock::time_point last_shown_, last_status_;
   Clock::time_point last_page_ = Clock::now();

@@ -91,8 +91,10 @@ void FrameFeed::take(const FrameSource& frame, const StageClock* clock) noexcept
   sample.posed = static_cast<int>(posed_.size());
   float* pose = sample.poses.data();
   for (const int body : posed_) pose = put(frame.state.world.X_WB[Index(body)], pose);
-  if (!samples_.push(sample))
+  if (!samples_.push(sample)) {  // a picture without its numbers would be shown beside those of another frame
     dropped_.store(dropped_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+    return;
+  }
   if (frame.report.index % frames_a_picture_ != 0) return;
   draw(frame, pictures_.writable());
   pictures_.publish();

@@ -5,7 +5,7 @@
 ///                              --- at kPictures_Hz ---> newest FramePicture ---> the newest only
 ///
 /// The loop writes plain records whether or not anyone reads: its work does not depend on readers. It never
-/// waits; when the ring is full the newest sample is lost and counted.
+/// waits; when the ring is full the newest sample is lost and counted, and no picture is made of its frame.
 
 #include <atomic>
 #include <cstdint>
