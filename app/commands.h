@@ -9,6 +9,7 @@ void add_bench(CLI::App& app);
 void add_clearance(CLI::App& app);
 void add_devices(CLI::App& app);
 void add_distance(CLI::App& app);
+void add_doctor(CLI::App& app);
 void add_export(CLI::App& app);
 void add_feel(CLI::App& app);
 void add_inspect(CLI::App& app);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "program.h"
@@ -51,6 +52,33 @@ TEST(Devices, TheRulesForUdevArePrinted) {
   EXPECT_TRUE(holds(run.out, "/etc/udev/rules.d/71-")) << run.out;
   EXPECT_TRUE(holds(run.out, "ATTR{idVendor}==\"1451\", MODE=\"0660\""));
   EXPECT_FALSE(holds(run.out, "0666")) << "nobody else may open them";
+}
+
+TEST(Doctor, EveryFindingStandsInALineAndADeviceThatIsNotThereHasItsCure) {
+  const NothingThere nothing;
+  const ProgramRun good = run_tactum("doctor --duration 0.1 --device touch");
+  for (const char* words : {"real-time scheduling", "memory lock", "cores", "clock", "power saving",
+                            "share of real-time threads", "wake-ups", "simulated touch"})
+    EXPECT_TRUE(holds(good.out, words)) << words << "\n" << good.out;
+  const ProgramRun bad = run_tactum("doctor --duration 0.1 --device force-dimension");
+  EXPECT_EQ(bad.exit_code, 2) << bad.err;
+  EXPECT_TRUE(holds(bad.out, "wake-ups")) << bad.out;
+  EXPECT_TRUE(holds(bad.out, "install the Force Dimension SDK")) << bad.out;
+}
+
+TEST(Doctor, MeasuresADevicesLink) {
+  const SetVariable dhd("TACTUM_FORCE_DIMENSION_LIBRARY", standin_file("standin_dhd"));
+  const ProgramRun run = run_tactum("doctor --duration 0.1 --device force-dimension --json -");
+  const auto findings = nlohmann::json::parse(run.out);
+  EXPECT_TRUE(holds(findings.back()["found"], "read and write take")) << run.out;
+  EXPECT_TRUE(holds(findings.back()["found"], "0 of 1")) << run.out;
+}
+
+TEST(Doctor, TheLimitsArePrinted) {
+  const ProgramRun run = run_tactum("doctor --print-limits");
+  EXPECT_EQ(run.exit_code, 0);
+  EXPECT_TRUE(holds(run.out, "/etc/security/limits.d/71-")) << run.out;
+  EXPECT_TRUE(holds(run.out, "@plugdev - rtprio 90"));
 }
 
 TEST(Devices, GearsAreFeltOnADevice) {

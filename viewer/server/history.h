@@ -1,6 +1,6 @@
 #pragma once
-/// The samples of the last seconds (kRoom), kept once for all pages. A page has a place in it; a page that was
-/// slow gets everything since then, in order, with the number of those it is too late for.
+/// The samples of the last seconds (kRoom), kept once for all pages. A page has a place in it; a page that
+/// was slow gets everything since then, in order, with the number of those it is too late for.
 
 #include <cstdint>
 #include <vector>

@@ -28,12 +28,11 @@ void ask_realtime(int priority, LoopPrivileges& got) {
   parameter.sched_priority = priority;
   const int error = pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameter);
   got.realtime = error == 0;
-  got.sentences.push_back(
-      got.realtime
-          ? "real-time scheduling: SCHED_FIFO, priority " + std::to_string(priority)
-          : "no real-time scheduling (" + std::string(std::strerror(error)) +
-                "): other programs can delay frames; allow it with 'ulimit -r 99' or an rtprio line in "
-                "/etc/security/limits.conf");
+  got.sentences.push_back(got.realtime
+                              ? "real-time scheduling: SCHED_FIFO, priority " + std::to_string(priority)
+                              : "no real-time scheduling (" + std::string(std::strerror(error)) +
+                                    "): other programs can delay frames; allow it with 'sudo tactum doctor "
+                                    "--install-limits'");
 }
 
 void ask_locked_memory(LoopPrivileges& got) {
@@ -50,7 +49,7 @@ void ask_locked_memory(LoopPrivileges& got) {
                               ? "memory locked: no frame waits for a page from disk"
                               : "memory not locked (" + std::string(std::strerror(error)) +
                                     "): frames can wait for the disk when memory is short; allow it with "
-                                    "'ulimit -l unlimited'");
+                                    "'sudo tactum doctor --install-limits'");
 }
 
 }  // namespace
