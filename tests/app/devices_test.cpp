@@ -1,11 +1,13 @@
 // tactum devices, and tactum feel on a device, as programs; the makers' libraries are stand-ins.
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <thread>
 
 #include "program.h"
 #include "support/standin_files.h"
@@ -116,6 +118,20 @@ TEST(Devices, GearsAreFeltOnADevice) {
   EXPECT_LE(strongest_N, 12.000001);
   EXPECT_EQ(last_N, 0.0) << "the last wrench";
   EXPECT_EQ(end, "forces off at the end, 0 rules broken");
+}
+
+/// The example in C, as a process of its own.
+TEST(Devices, GearsAreFeltOnADeviceInAnotherProcess) {
+  const std::string port = std::to_string(40000 + getpid() % 20000);
+  ProgramRun device;
+  std::thread process(
+      [&] { device = testing::run_program("examples/example_network_device", "30 " + port); });
+  const ProgramRun run = run_tactum("feel gears --duration 1 --device network:" + port);
+  process.join();
+  EXPECT_TRUE(ended(run)) << run.err;
+  EXPECT_TRUE(holds(run.out, "network example")) << run.out;
+  EXPECT_EQ(device.exit_code, 0) << device.err;
+  EXPECT_TRUE(holds(device.out, "largest force ")) << "it was told that the run has ended";
 }
 
 TEST(Devices, ARealOneHasNoVirtualClock) {

@@ -60,7 +60,7 @@ class DriverSafetyLoop : public ::testing::TestWithParam<RigMaker> {
     ASSERT_FALSE(commands.empty());
     const SafetyLimits limits = safety_limits(device->info());
     const double step_N = 0.5 * limits.max_force_N * kPeriod_s / limits.start_ramp_s;
-    double last_N = 0.0;
+    double last_N = 0.0, largest_N = 0.0;
     for (const Wrench& F : commands) {
       ASSERT_TRUE(F.finite());
       const double force_N = F.f.norm();
@@ -68,7 +68,9 @@ class DriverSafetyLoop : public ::testing::TestWithParam<RigMaker> {
       EXPECT_LE(force_N, last_N + step_N * rig->most_frames_between_commands() * (1 + 1e-9))
           << "of " << limits.max_force_N;
       last_N = force_N;
+      largest_N = std::max(largest_N, force_N);
     }
+    EXPECT_GT(largest_N, 0.0) << "it has pushed";
     EXPECT_TRUE(commands.back().f.isZero(0.0)) << "the last is zero";
   }
 
@@ -113,6 +115,7 @@ TEST_P(DriverSafetyLoop, AStalledLoopLeavesNoWrenchAndBeginsAnew) {
   ASSERT_TRUE(comes_true([&frame] { return frame.frames > 200; }));
   loop.stop();
   EXPECT_TRUE(rested) << "while the loop stood still";
+  EXPECT_TRUE(rests());
   expect_gentle(rig->commands_in_D());
 }
 

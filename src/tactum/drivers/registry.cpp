@@ -8,6 +8,7 @@
 #include "tactum/devices/replay_device.h"
 #include "tactum/devices/simulated_device.h"
 #include "tactum/drivers/force_dimension.h"
+#include "tactum/drivers/network_device.h"
 #include "tactum/drivers/spacemouse.h"
 #include "tactum/drivers/touch.h"
 
@@ -88,6 +89,17 @@ std::vector<DeviceListing> list_spacemouse() {
   return {{"spacemouse", "a SpaceMouse through spacenavd: it leads the hand, and nothing is felt", true}};
 }
 
+MadeDevice make_network(const std::string& argument, const DeviceOptions&) {
+  const Result<NetworkDeviceOptions> options = network_device_options(argument);
+  if (!options) return options.error();
+  return NetworkDevice::connect(*options);
+}
+
+std::vector<DeviceListing> list_network() {
+  return {
+      {"network:PORT", "a device or simulator in another process, by the protocol of tactum_device.h", true}};
+}
+
 /// One line per kind of device. NAME or NAME:ARGUMENT makes it.
 struct Kind {
   const char* name;
@@ -103,6 +115,7 @@ constexpr Kind kKinds[] = {
     {"force-dimension", make_force_dimension, list_force_dimension, ForceDimensionDevice::survey},
     {"3d-systems", make_3d_systems, list_3d_systems, TouchDevice::survey},
     {"spacemouse", make_spacemouse, list_spacemouse, SpaceMouse::survey},
+    {"network", make_network, list_network, NetworkDevice::survey},
 };
 
 }  // namespace

@@ -1,0 +1,41 @@
+#pragma once
+/// A UDP socket that listens at one address and answers one peer.
+
+#include <netinet/in.h>
+
+#include <cstddef>
+#include <string>
+
+#include "tactum/base/result.h"
+
+namespace tactum::inline v0_1 {
+
+class DatagramSocket {
+ public:
+  DatagramSocket() = default;
+  ~DatagramSocket() { close(); }
+  DatagramSocket(const DatagramSocket&) = delete;
+  DatagramSocket& operator=(const DatagramSocket&) = delete;
+
+  /// Listens at an IPv4 address of this machine. The error says when another program has the port.
+  Result<void> listen(const std::string& address, int port);
+  void close() noexcept;
+  bool is_listening() const noexcept { return socket_ >= 0; }
+
+  /// Takes one datagram, without waiting, of the peer or, while there is none, of anybody; its size, which
+  /// may be more than there was room for, or -1 when none is there. Others' are passed over.
+  long receive(void* bytes, std::size_t room) noexcept;
+  /// Waits for a datagram; false when none came.
+  bool wait(int timeout_ms) const noexcept;
+  /// Makes whoever sent the last datagram the peer.
+  void answer_last() noexcept;
+  /// Sends to the peer, without waiting; what cannot be sent now is lost. From any thread.
+  void send(const void* bytes, std::size_t size) const noexcept;
+
+ private:
+  int socket_ = -1;
+  bool has_peer_ = false;
+  sockaddr_in peer_{}, last_{};
+};
+
+}  // namespace tactum::inline v0_1
