@@ -55,15 +55,15 @@ class BoundedSeries {
 };
 
 /// Some of many points: the first, and from then on as many as there is room for, at equal distances.
-template <std::size_t kMost>
+template <std::size_t Most>
 class SampledPoints {
  public:
   using Point = std::array<double, 3>;  ///< x, y and a weight
   void add(const Point& point) {
     if (seen_++ % stride_ != 0) return;
-    if (points_.size() == kMost) {
-      for (std::size_t i = 0; 2 * i < kMost; ++i) points_[i] = points_[2 * i];
-      points_.resize((kMost + 1) / 2);
+    if (points_.size() == Most) {
+      for (std::size_t i = 0; 2 * i < Most; ++i) points_[i] = points_[2 * i];
+      points_.resize((Most + 1) / 2);
       stride_ *= 2;
       if ((seen_ - 1) % stride_ != 0) return;
     }

@@ -14,7 +14,7 @@ namespace tactum {
 namespace {
 
 constexpr std::uint64_t kMostMaps = 40;
-constexpr double kMapWidth = 320.0, kMapHeight = 240.0, kMapLeft = 74.0, kMapTop = 8.0, kMapBottom = 44.0;
+constexpr double kMapWidth = 320.0, kMapHeight = 240.0, kMapLeft = 92.0, kMapTop = 8.0, kMapBottom = 44.0;
 
 struct MapMetric {
   const char* name;

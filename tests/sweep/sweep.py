@@ -7,8 +7,10 @@ values of the axes reach the scene, which `tactum feel` shows; what is wrong is 
 """
 import fcntl
 import json
+import math
 import os
 import pathlib
+import re
 import signal
 import subprocess
 import sys
@@ -115,7 +117,7 @@ def killed(plan, out, runs, before=(), options=()):
 
 def check_equal(folder, plan, runs):
     one = folder / "one.h5"
-    tactum("sweep", plan, "-o", one, "--threads", 1)
+    tactum("sweep", plan, "-o", one, "--threads", 1, "--page", folder / "one.html")
     whole = one.read_bytes()
     tactum("sweep", plan, "-o", folder / "two.h5", "--threads", 2)
     demand((folder / "two.h5").read_bytes() == whole, "two threads give another table")
@@ -132,7 +134,8 @@ def check_equal(folder, plan, runs):
     if not has_mpi():
         print("without MPI: tactum-sweep-mpi or mpirun is not there")
         return
-    tactum("sweep", plan, "-o", folder / "mpi.h5", before=MPI)
+    tactum("sweep", plan, "-o", folder / "mpi.h5", "--page", folder / "mpi.html", before=MPI)
+    demand((folder / "mpi.html").read_bytes() == (folder / "one.html").read_bytes(), "the maps over MPI are others")
     demand((folder / "mpi.h5").read_bytes() == whole, "two ranks of MPI give another table")
     cut = folder / "cut-mpi.h5"
     killed(plan, cut, runs // 4, before=MPI)
@@ -155,6 +158,15 @@ def check_table(folder, plan):
     demand(numpy.array_equal(numpy.isnan(runs["success_time_s"]), runs["success"] == 0), "times without success")
     demand(numpy.array_equal(runs["longest_jam_s"] > 0, ~numpy.isnan(runs["jam_pz_m"])), "jams without a place")
     demand(runs["jam_s"].max() > 0.1 and (runs["computed"] == 1).all() and (runs["penetrating_frames"] == 0).all(), "no jam")
+    # The maps hold the table: a cell for each run and number, and its value in the title.
+    page = (folder / "one.html").read_text(encoding="utf-8")
+    demand(not re.search(r"https?://|<link|<img|\bsrc=|@import|url\(", page), "the page of maps asks for something of the network")
+    peaks = page.split("<h2>Peak force sent [N]</h2>")[1].split("<h2>")[0]
+    cells = re.findall(r"<title>clearance_m = (\S+), tilt_deg = (\S+), friction = (\S+): (\S+)</title>", peaks)
+    shown = {tuple(map(float, cell[:3])): cell[3] for cell in cells}
+    demand(len(cells) == len(shown) == numpy.prod(shape), f"a map has {len(cells)} cells")
+    for place, peak in zip(zip(*(runs[axis] for axis in axes)), runs["peak_force_N"]):
+        demand(math.isclose(float(shown[place]), peak, rel_tol=1e-5, abs_tol=1e-12), f"the cell of {place} shows {shown[place]}, not {peak}")
     # One run by hand: the values are put into the scene's text, and felt.
     at = numpy.ravel_multi_index((1, 1, 1), shape)
     scene = (SHIPPED / "peg.toml").read_text(encoding="utf-8")
