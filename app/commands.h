@@ -15,6 +15,8 @@ void add_feel(CLI::App& app);
 void add_inspect(CLI::App& app);
 void add_prepare(CLI::App& app);
 void add_replay(CLI::App& app);
+void add_report(CLI::App& app);
 void add_scenes(CLI::App& app);
+void add_sweep(CLI::App& app);
 
 }  // namespace tactum

@@ -1,17 +1,13 @@
 /// tactum replay FILE: the frames of a recording again, and whether they are the same.
-/// tactum export FILE: a recording for other programs.
 
 #include "tactum/recording/replay.h"
 
 #include <fmt/format.h>
 
-#include <cerrno>
 #include <cstdio>
-#include <cstring>
 #include <memory>
 
 #include "commands.h"
-#include "tactum/recording/export_csv.h"
 
 namespace tactum {
 namespace {
@@ -76,28 +72,6 @@ void replay_file(const ReplayCommand& command) {
   if (command.verify && (run.difference || run.gap)) end_with(kDiffers);
 }
 
-struct ExportCommand {
-  std::string file;
-  std::string csv;
-};
-
-void export_file(const ExportCommand& command) {
-  const McapFile file = open_recording(command.file);
-  const bool to_output = command.csv == "-";
-  struct Close {
-    void operator()(std::FILE* out) const {
-      if (out != stdout) std::fclose(out);
-    }
-  };
-  const std::unique_ptr<std::FILE, Close> out(to_output ? stdout : std::fopen(command.csv.c_str(), "w"));
-  if (!out) fail({"cannot write the table", std::strerror(errno), "a file that can be written", command.csv});
-  const Result<CsvExport> exported = export_csv(file, command.file, out.get());
-  if (!exported) fail(exported.error());
-  fmt::print(stderr, "{} frames in {}\n", exported->rows, to_output ? "the table" : command.csv);
-  report_end(exported->end);
-  if (!exported->end.complete && !exported->end.cut) end_with(1);
-}
-
 }  // namespace
 
 void add_replay(CLI::App& app) {
@@ -117,17 +91,6 @@ void add_replay(CLI::App& app) {
   command->add_option("--settings", options->replay.settings,
                       "Put the settings of this file over those of the scene, for comparison");
   command->callback([options] { replay_file(*options); });
-}
-
-void add_export(CLI::App& app) {
-  auto options = std::make_shared<ExportCommand>();
-  CLI::App* command = app.add_subcommand("export", "Write a recording for other programs");
-  command->add_option("FILE", options->file, "A recording of tactum feel --record")->required();
-  command
-      ->add_option("--csv", options->csv,
-                   "Write every frame to this CSV file (- for standard output), a column for each quantity")
-      ->required();
-  command->callback([options] { export_file(*options); });
 }
 
 }  // namespace tactum

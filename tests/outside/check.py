@@ -17,7 +17,7 @@ import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 NOT_NEEDED = ("Boost", "CLI11", "GTest")
-NOT_LOOKED_FOR = ("NODE", "CLI11_DIR", "GTest_DIR", "OCCT_INCLUDE_DIR", "VTK_INCLUDE_DIR")
+NOT_LOOKED_FOR = ("NODE", "CLI11_DIR", "GTest_DIR", "OCCT_INCLUDE_DIR", "VTK_INCLUDE_DIR", "TACTUM_HDF5_FOUND", "MPI_C_COMPILER")
 
 
 def run(*command):

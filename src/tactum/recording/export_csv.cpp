@@ -7,21 +7,10 @@
 #include <cstring>
 #include <iterator>
 
-#include "tactum/haptics/setting_table.h"
 #include "tactum/recording/recording_visitor.h"
 
 namespace tactum::inline v0_1 {
 namespace {
-
-/// A setting's value as a scene file has it.
-std::string value_of(const std::string& key, double value) {
-  const int place = setting_called(key);
-  if (place < 0) return fmt::format("{}", value);
-  const SettingInfo& setting = setting_table()[static_cast<std::size_t>(place)];
-  const bool is_word = setting.kind == SettingKind::kChoice && value >= 0.0 &&
-                       value < static_cast<double>(setting.choices.size());
-  return is_word ? std::string(setting.choices[static_cast<std::size_t>(value)]) : fmt::format("{}", value);
-}
 
 /// One line, whatever is in it.
 std::string in_a_line(std::string text) {
@@ -39,7 +28,7 @@ std::string csv_head(const RunHead& head) {
       in_a_line(head.version), in_a_line(head.scene), in_a_line(head.device.name), 1.0 / head.dt_s,
       in_a_line(head.date));
   for (const auto& [key, value] : head.settings)
-    text += fmt::format("# setting {} = {}\n", in_a_line(key), value_of(key, value));
+    text += fmt::format("# setting {} = {}\n", in_a_line(key), setting_text(key, value));
   for (const TraceColumn& column : head.columns)
     text += fmt::format("# column {}: {}\n", in_a_line(column.name), in_a_line(column.meaning));
   for (std::size_t i = 0; i < head.columns.size(); ++i)

@@ -126,6 +126,7 @@ Result<RecordedScene> build_recorded(const RunHead& head, const std::map<std::st
 
   RecordedScene recorded;
   recorded.safety = scene->safety;
+  recorded.goals = scene->goals;
   recorded.device_limits = safety_limits(head.device);
   FrameSettings settings = settings_for(*scene, head.device);
   if (Result<void> restored = restore_settings(head, options, where, settings, recorded); !restored)

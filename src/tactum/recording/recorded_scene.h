@@ -8,6 +8,7 @@
 
 #include "tactum/haptics/simulation.h"
 #include "tactum/recording/run_head.h"
+#include "tactum/scene/goal.h"
 
 namespace tactum::inline v0_1 {
 
@@ -21,6 +22,7 @@ struct RecordedScene {
   std::unique_ptr<Simulation> simulation;
   SafetySettings safety;           ///< the user's limits
   SafetyLimits device_limits;      ///< which they tighten
+  std::vector<Goal> goals;         ///< of the scene
   std::vector<std::string> notes;  ///< ReplayResult::notes
 };
 

@@ -58,6 +58,9 @@ Result<void> RecordingVisitor::message(const McapMessage& message) {
     RecordedCommand read;
     return recording::read_command(message.data, read) ? command(read) : broken("a tactum/Command");
   }
+  if (topic == recording::kContacts)
+    return recording::read_contacts(message.data, contacts_) ? contacts(contacts_)
+                                                             : broken("a tactum/Contacts");
   const bool is_report = topic == recording::kReport;
   if (!is_report && topic != recording::kFrame) return {};
   numbers_.resize(is_report ? report_numbers().size() : head_->columns.size());

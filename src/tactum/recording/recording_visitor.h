@@ -10,6 +10,7 @@
 
 #include "tactum/recording/frame_slot.h"
 #include "tactum/recording/mcap_reader.h"
+#include "tactum/recording/recorded_contacts.h"
 #include "tactum/recording/run_head.h"
 
 namespace tactum::inline v0_1 {
@@ -37,6 +38,8 @@ class RecordingVisitor : public McapVisitor {
   virtual Result<void> input(const RecordedInput&) { return {}; }
   virtual Result<void> report(const std::vector<double>&) { return {}; }
   virtual Result<void> row(const std::vector<double>&) { return {}; }
+  /// Last of a frame, and only of one that has some.
+  virtual Result<void> contacts(const RecordedContacts&) { return {}; }
 
  private:
   Result<void> check_files();
@@ -46,6 +49,7 @@ class RecordingVisitor : public McapVisitor {
   std::map<std::string, std::uint64_t> places_;  // of the files, for errors
   std::optional<RunHead> head_;
   std::vector<double> numbers_;
+  RecordedContacts contacts_;
 };
 
 /// Reads a whole recording: read_mcap(), and an error of its own where the file has no head.

@@ -132,6 +132,15 @@ RunHead head_of(const Session& session, const std::string& scene_file, const Rec
   return head;
 }
 
+std::string setting_text(const std::string& key, double value) {
+  const int place = setting_called(key);
+  if (place < 0) return fmt::format("{}", value);
+  const SettingInfo& setting = setting_table()[static_cast<std::size_t>(place)];
+  const bool is_word = setting.kind == SettingKind::kChoice && value >= 0.0 &&
+                       value < static_cast<double>(setting.choices.size());
+  return is_word ? std::string(setting.choices[static_cast<std::size_t>(value)]) : fmt::format("{}", value);
+}
+
 std::string head_text(const RunHead& head) {
   Json json{{"format", recording::kFormat},
             {"tactum", head.version},

@@ -55,6 +55,9 @@ RunHead head_of(const Session& session, const std::string& scene_file, const Rec
 std::vector<std::pair<std::string, double>> settings_in_force(const FrameSettings& settings,
                                                               const SafetySettings& safety);
 
+/// A setting's value as a scene file has it: a word where the setting has words.
+std::string setting_text(const std::string& key, double value);
+
 std::string head_text(const RunHead& head);
 /// An error names the field that is missing or of another kind; `where` is the file.
 Result<RunHead> read_head(std::string_view text, const std::string& where);
