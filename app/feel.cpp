@@ -113,9 +113,16 @@ void refuse_virtual_clock(const FeelOptions& options, const Session& session) {
         "no --virtual-clock", ""});
 }
 
+SessionOptions session_options(const FeelOptions& options) {
+  SessionOptions asked{.device = "", .other_devices = {}, .grip = options.hand, .rate_Hz = 0.0};
+  if (options.devices.empty()) return asked;
+  asked.device = options.devices.front();
+  asked.other_devices.assign(options.devices.begin() + 1, options.devices.end());
+  return asked;
+}
+
 std::unique_ptr<Session> open_session(const FeelOptions& options, Scene scene) {
-  Result<std::unique_ptr<Session>> opened =
-      Session::open(std::move(scene), {.device = options.device, .grip = options.hand, .rate_Hz = 0.0});
+  Result<std::unique_ptr<Session>> opened = Session::open(std::move(scene), session_options(options));
   if (!opened) fail(opened.error());
   return std::move(*opened);
 }
@@ -157,7 +164,8 @@ Scene scene_of(const FeelOptions& options, const SceneDescription& description) 
     scene->settings.response =
         options.response == "penalty" ? ResponseModel::kPenalty : ResponseModel::kConstraint;
   // The remarks are about the device that is in use.
-  if (const auto device = simulated_device_preset(options.device)) scene->device = device->name;
+  if (!options.devices.empty())
+    if (const auto device = simulated_device_preset(options.devices.front())) scene->device = device->name;
   return std::move(*scene);
 }
 
@@ -254,6 +262,9 @@ void report_what_is_felt(std::FILE* out, const Session& session, const std::stri
   if (session.device().actuates_force && !replayed)
     fmt::print(out, "{}{}\n", margin_sentence(coupling, session.device(), session.rate_Hz()),
                scene.coupling_by_device ? " It was chosen for this device and rate." : "");
+  for (std::size_t h = 1; h < session.hands(); ++h)
+    fmt::print(out, "hand {} on {}: {}\n", h + 1, session.device_of(h).name,
+               margin_sentence(scene.settings.hand(h).coupling, session.device_of(h), session.rate_Hz()));
   for (const std::string& sentence :
        {scale_sentence(coupling, scale), field_sentence(scene.world, in_scene(coupling, scale)),
         penalty_sentence(scene.settings)})
@@ -306,8 +317,7 @@ void sum_up(std::FILE* out, const FeelOptions& options, const std::vector<SceneR
 void feel_with_pages(const FeelOptions& options, const std::vector<SceneRemark>& remarks, Scene scene,
                      std::FILE* out) {
   Result<std::unique_ptr<Viewer>> opened =
-      Viewer::open(std::move(scene), {.device = options.device, .grip = options.hand, .rate_Hz = 0.0},
-                   options.port, remarks);
+      Viewer::open(std::move(scene), session_options(options), options.port, remarks);
   if (!opened) fail(opened.error());
   Viewer& viewer = **opened;
   refuse_virtual_clock(options, viewer.session());

@@ -26,10 +26,12 @@ void add_what_is_felt(CLI::App* command, FeelOptions* options) {
   command->add_option("--updates", options->updates, "Run so many frames, instead of a duration")
       ->check(whole_number_between(1, 1e12, "a number of frames"))
       ->excludes("--duration");
-  command->add_option("--device", options->device,
-                      "The device (tactum devices lists them; touch is short for simulated:touch); by "
-                      "default the simulated one "
-                      "of the scene");
+  command
+      ->add_option("--device", options->devices,
+                   "The device (tactum devices lists them; touch is short for simulated:touch); by "
+                   "default the simulated one "
+                   "of the scene. In a scene with several tools once for each, in their order")
+      ->allow_extra_args(false);
   command->add_option("--hand", options->hand, "The grip of the simulated hand: loose, medium or firm");
   command
       ->add_option("--response", options->response,

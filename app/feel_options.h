@@ -15,7 +15,7 @@ struct FeelOptions {
   double duration_s = 0.0;
   std::uint64_t updates = 0;
   int replays = 1;
-  std::string device;
+  std::vector<std::string> devices;  // of the first hand, of the second ...; missing ones are the scene's
   std::string hand;
   std::string response;
   std::string settings;

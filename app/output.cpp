@@ -49,9 +49,9 @@ std::vector<std::string> frame_notes(const Session& session) {
 }
 
 /// The faults for which the last stage before the device has sent no wrench, by name.
-std::vector<std::string> safety_events(const RunRecord& record) {
+std::vector<std::string> safety_events(std::uint32_t flags) {
   std::vector<std::string> events;
-  const std::uint32_t faults = record.safety & safety_flag::kFaults;
+  const std::uint32_t faults = flags & safety_flag::kFaults;
   for (int bit = 0; bit < 32; ++bit)
     if (const std::uint32_t flag = 1u << bit; (faults & flag) != 0) events.push_back(safety_flag_names(flag));
   return events;
@@ -92,6 +92,12 @@ void print_summary(std::FILE* out, const Session& session, const Summary& times,
   fmt::print(out, "torque           mean {:8.3f} mN m  max {:8.3f} mN m  largest step {:.3f} mN m\n",
              mean(record.sum_torque_Nm, record.frames) * 1e3, record.max_torque_Nm * 1e3,
              record.max_torque_step_Nm * 1e3);
+  for (std::size_t i = 0; i < record.other_hands.size(); ++i) {
+    const HandRun& hand = record.other_hands[i];
+    fmt::print(out, "hand {}           max {:8.3f} N  {:8.3f} mN m  largest step {:.3f} N, on {}\n", i + 2,
+               hand.max_force_N, hand.max_torque_Nm * 1e3, hand.max_force_step_N,
+               session.device_of(i + 1).name);
+  }
   fmt::print(out, "contact          {} of {} frames; penetrating {} frames, at most {:.4f} mm\n",
              record.colliding_frames, record.frames, record.penetrating_frames,
              record.max_penetration_m * 1e3);
@@ -127,7 +133,7 @@ void print_summary(std::FILE* out, const Session& session, const Summary& times,
   if (record.non_finite_frames > 0)
     fmt::print(out, "WRONG            {} frames computed a wrench that is not finite\n",
                record.non_finite_frames);
-  if (const std::vector<std::string> events = safety_events(record); !events.empty())
+  if (const std::vector<std::string> events = safety_events(record.safety); !events.empty())
     fmt::print(out, "safety           the wrench was zero for a while: {}; see docs/safety.md\n",
                fmt::join(events, ", "));
   for (const std::string& note : frame_notes(session)) fmt::print(out, "note             {}\n", note);
@@ -167,12 +173,21 @@ nlohmann::ordered_json summary_json(const Session& session, const Summary& times
                                  {"missed_deadlines", loop.missed_deadlines},
                                  {"frame_us", summary_us(times)},
                                  {"stages_us", stages_us},
-                                 {"safety_events", safety_events(record)},
+                                 {"safety_events", safety_events(record.safety)},
                                  {"notes", frame_notes(session)},
                                  {"goals", goals},
                                  {"goal_met", session.goals().all_met()},
                                  {"frame_hash", hash_text(record.hash())}};
   add_fields(record, json);
+  for (std::size_t i = 0; i < record.other_hands.size(); ++i) {
+    const HandRun& hand = record.other_hands[i];
+    json["other_hands"].push_back({{"device", session.device_of(i + 1).name},
+                                   {"grasped_contact_frames", hand.grasped_contact_frames},
+                                   {"max_force_N", hand.max_force_N},
+                                   {"max_force_step_N", hand.max_force_step_N},
+                                   {"max_torque_Nm", hand.max_torque_Nm},
+                                   {"safety_events", safety_events(hand.safety)}});
+  }
   return json;
 }
 

@@ -248,7 +248,7 @@ TEST(BodyLoad, TheWorkOfLoadsIsTheEnergyOfTheBody) {
     Alone body(c, load, {}, {Vec3(-0.5, 0.2, 0), Vec3(0, 0, -4)});
     const double at_start = 0.5 * c.mass_kg * 0.29 + 0.5 * c.inertia(2) * 16.0;
     body.run(1.0);
-    const double energy = bodies_energy(body.world(), body.state().world.X_WB, body.state().world, -1);
+    const double energy = bodies_energy(body.world(), body.state().world.X_WB, body.state().world, {});
     // To half a frame of the power, and the first order of the step.
     const double most = at_start + energy;
     EXPECT_NEAR(energy - at_start, body.state().load_work_J, most * 4.0 * fading * c.dt_s);

@@ -92,7 +92,7 @@ class Linkage {
     return static_cast<std::size_t>(number_[static_cast<std::size_t>(piece)]);
   }
 
-  double energy() const { return bodies_energy(world(), state().X_WB, state(), -1); }
+  double energy() const { return bodies_energy(world(), state().X_WB, state(), {}); }
   Vec3 momentum() const {
     Vec3 sum = Vec3::Zero();
     for (std::size_t i = 0; i < world().bodies.size(); ++i)

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "support/add_body.h"
 #include "support/solid_box.h"
 #include "tactum/haptics/contact_stage.h"
@@ -32,6 +34,13 @@ World two_boxes(double gap) {
 }
 
 /// The first sample pulls nothing; afterwards the hand goes `scale` times as far, and turns as the handle.
+/// A hand that holds a body.
+std::array<HandInput, 1> holding(int body) {
+  std::array<HandInput, 1> hands;
+  hands[0].grasped.body = body;
+  return hands;
+}
+
 TEST(HandStage, TheFirstSampleIsTheGraspAndMotionIsScaled) {
   for (const double scale : {0.1, 1.0, 3.0, 20.0}) {
     const World world = two_boxes(0.001);
@@ -43,7 +52,8 @@ TEST(HandStage, TheFirstSampleIsTheGraspAndMotionIsScaled) {
     const WorldState bodies = initial_state(world);
     HandStage hand = begin_hand(settings);
     const Pose first{exp_rotation({0.2, -0.1, 0.4}), {0.03, -0.01, 0.02}};
-    GraspedPart grasped = track_hand(world, settings, sample_at(first, 0.0), bodies.X_WB, hand);
+    GraspedPart grasped =
+        track_hand(world, settings, settings.dt_s, sample_at(first, 0.0), bodies.X_WB, hand);
     ASSERT_TRUE(grasped.hand_known);
     EXPECT_EQ(grasped.body, 0);
     const Pose at_grasp = bodies.X_WB[0] * grasped.X_BH;
@@ -52,7 +62,7 @@ TEST(HandStage, TheFirstSampleIsTheGraspAndMotionIsScaled) {
     const Vec3 step(0.001, 0.0004, -0.0002);
     const Pose second{first.R * exp_rotation({0.01, 0, 0}), first.p + step};
     const Pose before = grasped.X_WH;
-    grasped = track_hand(world, settings, sample_at(second, 0.001), bodies.X_WB, hand);
+    grasped = track_hand(world, settings, settings.dt_s, sample_at(second, 0.001), bodies.X_WB, hand);
     const Vec3 expected = settings.workspace.X_WD.R * (scale * step);
     EXPECT_LT((grasped.X_WH.p - before.p - expected).norm(), 1e-12 * scale);
     EXPECT_LT((grasped.V_WH.v - expected / 0.001).norm(), 1e-9 * scale);
@@ -68,12 +78,12 @@ TEST(HandStage, NothingIsKnownBeforeAValidSampleAndABadOneIsIgnored) {
   HandStage hand = begin_hand(settings);
   DeviceSample bad = sample_at({Mat3::Identity(), {0.01, 0, 0}}, 0.0);
   bad.valid = false;
-  EXPECT_FALSE(track_hand(world, settings, bad, bodies.X_WB, hand).hand_known);
-  const GraspedPart good =
-      track_hand(world, settings, sample_at({Mat3::Identity(), {0.01, 0, 0}}, 0.001), bodies.X_WB, hand);
+  EXPECT_FALSE(track_hand(world, settings, settings.dt_s, bad, bodies.X_WB, hand).hand_known);
+  const GraspedPart good = track_hand(world, settings, settings.dt_s,
+                                      sample_at({Mat3::Identity(), {0.01, 0, 0}}, 0.001), bodies.X_WB, hand);
   EXPECT_TRUE(good.hand_known);
   DeviceSample nan = sample_at({Mat3::Identity(), {std::nan(""), 0, 0}}, 0.002);
-  const GraspedPart kept = track_hand(world, settings, nan, bodies.X_WB, hand);
+  const GraspedPart kept = track_hand(world, settings, settings.dt_s, nan, bodies.X_WB, hand);
   EXPECT_EQ(kept.X_WH.p, good.X_WH.p);
   EXPECT_EQ(kept.V_WH.v.norm(), 0.0);
 }
@@ -90,7 +100,8 @@ TEST(HandStage, ASampleReadAgainKeepsTheVelocity) {
       const double time_s = 0.001 * repeats * i;
       const Pose X{exp_rotation({0.2 * time_s, 0, 0}), {0.1 * time_s, 0, 0}};
       for (int k = 0; k < repeats; ++k) {
-        const GraspedPart grasped = track_hand(world, settings, sample_at(X, time_s), bodies.X_WB, hand);
+        const GraspedPart grasped =
+            track_hand(world, settings, settings.dt_s, sample_at(X, time_s), bodies.X_WB, hand);
         if (i == 0) continue;
         EXPECT_NEAR(grasped.V_WH.v.x(), 0.1, 1e-12) << repeats << " " << i << " " << k;
         EXPECT_NEAR(grasped.V_WH.w.x(), 0.2, 1e-9);
@@ -109,7 +120,7 @@ TEST(HandStage, NothingIsGraspedBeforeTheHandIsKnown) {
   HandStage hand = begin_hand(settings);
   DeviceSample sample = sample_at({Mat3::Identity(), {std::nan(""), 0, 0}}, 0.0);
   sample.buttons = 1;
-  EXPECT_EQ(track_hand(world, settings, sample, bodies.X_WB, hand).body, -1);
+  EXPECT_EQ(track_hand(world, settings, settings.dt_s, sample, bodies.X_WB, hand).body, -1);
   EXPECT_FALSE(hand.known);
 }
 
@@ -122,7 +133,7 @@ TEST(ContactStage, FindsTheGapWithinTheMotionBound) {
     ContactStage stage(world, settings, bodies.X_WB);
     FrameReport report;
     const std::array<double, 2> bound{0.001, 0.0};
-    find_near_pairs(settings, bodies.X_WB, bound, 0, stage);
+    find_near_pairs(settings, bodies.X_WB, bound, holding(0), stage);
     const auto patches = find_patches(world, settings, bodies.X_WB, PatchPoints::kQuadrature, stage, report);
     ASSERT_EQ(patches.size(), gap < 0.001 ? 1u : 0u) << gap;
     EXPECT_EQ(report.penetrating, gap < 0.0);
@@ -145,13 +156,13 @@ TEST(ContactStage, GivesPrioritiesByTheLastPatches) {
   ContactStage stage(world, settings, bodies.X_WB);
   const std::array<double, 2> bound{0.001, 0.0};
   FrameReport report;
-  find_near_pairs(settings, bodies.X_WB, bound, 0, stage);
+  find_near_pairs(settings, bodies.X_WB, bound, holding(0), stage);
   EXPECT_EQ(stage.priority[0], priority::kGrasped);
   EXPECT_EQ(stage.priority[1], priority::kOther);
   find_patches(world, settings, bodies.X_WB, PatchPoints::kClosest, stage, report);
-  find_near_pairs(settings, bodies.X_WB, bound, 0, stage);
+  find_near_pairs(settings, bodies.X_WB, bound, holding(0), stage);
   EXPECT_EQ(stage.priority[1], priority::kTouchesGrasped);
-  find_near_pairs(settings, bodies.X_WB, bound, -1, stage);
+  find_near_pairs(settings, bodies.X_WB, bound, holding(-1), stage);
   EXPECT_EQ(stage.priority[0], priority::kOther);
   EXPECT_EQ(stage.priority[1], priority::kOther);
 }

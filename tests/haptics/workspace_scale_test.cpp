@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "support/add_body.h"
@@ -158,11 +159,14 @@ TEST(WorkspaceScale, ThePortAndTheScenePassTheSameEnergy) {
     grasped.X_WH = {exp_rotation({0, 0, 0.03}), {0, 0, -0.002 * scale}};  // 2 mm at the device
     settings.safety.max_force_N = 5.0;
     settings.safety.max_torque_Nm = 1.0;
+    std::array<HandInput, 1> hands;
+    hands[0].grasped = grasped;
     const auto store = [&] {
       return stored_energy({.world = world,
                             .settings = settings,
                             .X_WB_start = bodies.X_WB,
                             .bodies = bodies,
+                            .hands = hands,
                             .grasped = 0,
                             .to_hand = handle_at(grasped, bodies.X_WB[0]).to_hand,
                             .V_WH = {},

@@ -18,6 +18,7 @@ double spring_energy(bool actuates_torque, const Wrench& felt, const Wrench& smo
                         .settings = settings,
                         .X_WB_start = {},
                         .bodies = bodies,
+                        .hands = {},
                         .grasped = 0,
                         .to_hand = {{0, 0, 0.002}, {0.03, 0, 0}},
                         .V_WH = {},

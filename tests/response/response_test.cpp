@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "support/add_body.h"
 #include "support/effort.h"
 #include "support/solid_box.h"
@@ -150,7 +152,8 @@ struct Hand {
                                 .turned_W = {},
                                 .in_field = false,
                                 .field = {}};
-      const MotionInput motion = motion_input(world, settings, grasped, radius, 1.0);
+      const std::array<HandInput, 1> hands{hand_input(settings, settings, grasped, radius, 1.0)};
+      const MotionInput motion = motion_input(world, settings, hands, radius);
       const std::span<const double> bound = response.bound_motion(motion, bodies);
       const double margin = std::max(bound[0] + bound[1], settings.penalty.min_tolerance_m);
       margin_m = margin;
@@ -291,7 +294,8 @@ TEST(Response, NothingIsFeltOfAPartThatIsNotHeld) {
                               .turned_W = {},
                               .in_field = false,
                               .field = {}};
-    const MotionInput motion = motion_input(hand.world, hand.settings, nothing, radius, 1.0);
+    const std::array<HandInput, 1> hands{hand_input(hand.settings, hand.settings, nothing, radius, 1.0)};
+    const MotionInput motion = motion_input(hand.world, hand.settings, hands, radius);
     response.bound_motion(motion, hand.bodies);
     const std::vector<Pose> start = hand.bodies.X_WB;
     const ContactWork work;

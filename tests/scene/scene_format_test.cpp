@@ -40,6 +40,7 @@ class EveryKey final : public ItemVisitor {
     keys.insert(key);
     visit(*this);
   }
+  bool several(const char*, bool) override { return false; }
   std::size_t size(const char* key, std::size_t) override {
     keys.insert(key);
     return 1;

@@ -275,6 +275,7 @@ void Viewer::change_scene(const std::string& name) {
   remember_usual();
   if (follows_scene) options_.device = "pointer:" + scene_.device;
   options_.grip = scene_.grip;
+  options_.other_devices.clear();  // they were named for the tools of another scene
   restart();
 }
 

@@ -26,15 +26,19 @@ std::vector<CollisionBody> collision_bodies(const World& world, const Shading& s
   return bodies;
 }
 
-void find_priorities(int grasped, ContactStage& stage) {
+void find_priorities(std::span<const HandInput> hands, ContactStage& stage) {
   std::vector<std::uint8_t>& priority = stage.priority;
   std::fill(priority.begin(), priority.end(), priority::kOther);
-  if (grasped < 0) return;
-  for (const ContactPatch& patch : stage.finder.patches()) {
-    if (patch.body_a == grasped) priority[Index(patch.body_b)] = priority::kTouchesGrasped;
-    if (patch.body_b == grasped) priority[Index(patch.body_a)] = priority::kTouchesGrasped;
+  for (const HandInput& hand : hands) {
+    const int grasped = hand.grasped.body;
+    if (grasped < 0) continue;
+    for (const ContactPatch& patch : stage.finder.patches()) {
+      if (patch.body_a == grasped) priority[Index(patch.body_b)] = priority::kTouchesGrasped;
+      if (patch.body_b == grasped) priority[Index(patch.body_a)] = priority::kTouchesGrasped;
+    }
   }
-  priority[Index(grasped)] = priority::kGrasped;
+  for (const HandInput& hand : hands)
+    if (hand.grasped.body >= 0) priority[Index(hand.grasped.body)] = priority::kGrasped;
 }
 
 /// Reports the distances that the frame found, before anything moved.
@@ -59,7 +63,7 @@ std::uint32_t flags_of(const ContactWork& work) {
 
 ContactStage::ContactStage(const World& world, const FrameSettings& settings, std::span<const Pose> X_WB)
     : finder(collision_bodies(world, settings.shading), X_WB, settings.budget.capacity, settings.dt_s,
-             settings.workspace.scale),
+             settings.smallest_scale()),
       priority(world.bodies.size(), priority::kOther) {
   if (!settings.shading.on) return;
   bool some_bend = false;
@@ -69,10 +73,11 @@ ContactStage::ContactStage(const World& world, const FrameSettings& settings, st
 }
 
 void find_near_pairs(const FrameSettings& settings, std::span<const Pose> X_WB,
-                     std::span<const double> motion_bound, int grasped, ContactStage& stage) noexcept {
-  find_priorities(grasped, stage);
+                     std::span<const double> motion_bound, std::span<const HandInput> hands,
+                     ContactStage& stage) noexcept {
+  find_priorities(hands, stage);
   stage.finder.find_near_pairs(X_WB, motion_bound,
-                               settings.penalty.min_tolerance_m * settings.workspace.scale);
+                               settings.penalty.min_tolerance_m * settings.smallest_scale());
 }
 
 std::span<const ContactPatch> find_patches(const World& world, const FrameSettings& settings,

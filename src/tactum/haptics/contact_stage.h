@@ -17,10 +17,11 @@ struct ContactStage {
   std::vector<ShadingNormals> shading;  ///< one per body; empty when shading is off, or bends no normal
 };
 
-/// Finds which pairs could touch, when no point of body i moves farther than `motion_bound[i]` [m]. The
-/// grasped part, and bodies that touched it in the last frame, go first: fills stage.priority.
+/// Finds which pairs could touch, when no point of body i moves farther than `motion_bound[i]` [m]. Grasped
+/// parts, and bodies that touched one in the last frame, go first: fills stage.priority.
 void find_near_pairs(const FrameSettings& settings, std::span<const Pose> X_WB,
-                     std::span<const double> motion_bound, int grasped, ContactStage& stage) noexcept;
+                     std::span<const double> motion_bound, std::span<const HandInput> hands,
+                     ContactStage& stage) noexcept;
 
 /// Finds where the near pairs touch. Adds the work, the smallest distance and the flags to the report.
 std::span<const ContactPatch> find_patches(const World& world, const FrameSettings& settings,

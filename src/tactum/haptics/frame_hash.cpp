@@ -50,7 +50,9 @@ consteval std::size_t named_members_of(const report_detail::FieldList<Fields...>
   return named.count;
 }
 
-static_assert(named_members_of<FrameReport>(report_detail::kFields) == members_of<FrameReport>());
+// The report begins with that of the first hand, which counts as one member.
+static_assert(named_members_of<FrameReport>(report_detail::kFields) + 1 == members_of<FrameReport>());
+static_assert(named_members_of<HandReport>(report_detail::kFields) == members_of<HandReport>());
 static_assert(named_members_of<FrictionReport>(report_detail::kFields) == members_of<FrictionReport>());
 static_assert(named_members_of<PortReport>(report_detail::kFields) == members_of<PortReport>());
 static_assert(named_members_of<EnergyTotals>(report_detail::kFields) == members_of<EnergyTotals>());
@@ -80,6 +82,14 @@ void add(FrameHash& hash, const Pose& X) {
 
 void add_to(FrameHash& hash, const FrameReport& report) noexcept {
   for_each_report_field([&](auto field) { add(hash, decltype(field)::of(report)); });
+}
+
+void add_to(FrameHash& hash, std::span<const HandReport> others) noexcept {
+  for (const HandReport& other : others) {
+    FrameReport as_first;
+    static_cast<HandReport&>(as_first) = other;
+    add_to(hash, as_first);
+  }
 }
 
 void add_to(FrameHash& hash, const WorldState& state) noexcept {

@@ -7,6 +7,8 @@
 #include "tactum/haptics/contact_stage.h"
 #include "tactum/haptics/force_stage.h"
 #include "tactum/haptics/hand_stage.h"
+#include "tactum/loop/loop.h"
+#include "tactum/loop/passivity.h"
 #include "tactum/loop/safety.h"
 #include "tactum/loop/smoothing.h"
 #include "tactum/response/response.h"
@@ -26,24 +28,52 @@ class StageObserver {
   virtual void stage_ended(Stage stage) noexcept = 0;
 };
 
-struct FrameState {
+/// What each hand keeps of its own from frame to frame.
+struct HandFrameState {
+  HandStage hand;
+  SmoothingState smoothing;
+  PortState port;
+  SafetyState safety;
+  double coupling_work_J = 0.0;  ///< that its coupling has done on the part since the start, if not alone [J]
+
+  // Scratch of one frame.
+  HandleMotion handle_moved;  ///< the motion of the device's handle
+  PlacedHandle handle;        ///< on the grasped part, where the step has left it
+};
+
+/// The inherited members are those of the first hand.
+struct FrameState : HandFrameState {
   FrameState(const World& world, const FrameSettings& settings, StageObserver* observer = nullptr);
 
   WorldState world;              ///< poses and twists of the bodies, an entry for each body of the World
   std::vector<Pose> X_WB_start;  ///< poses at the start of the frame [m]
   double load_work_J = 0.0;      ///< work of the bodies' loads since the start [J]
-  HandStage hand;
   ContactStage contacts;
   Response response;
-  SmoothingState smoothing;
-  PortState port;
-  SafetyState safety;
-  StageObserver* observer;            ///< may be null
-  ForceStage* force_stage = nullptr;  ///< of the caller's own; may be null
+  std::vector<HandInput> hand_inputs;       ///< of all hands, in this frame
+  std::vector<HandFrameState> other_hands;  ///< of the second hand and all after it
+  std::vector<HandReport> other_reports;    ///< of the same, of the last frame
+  StageObserver* observer;                  ///< may be null
+  ForceStage* force_stage = nullptr;        ///< of the caller's own, for the first hand; may be null
 
+  /// The state of a hand, counted from 0.
+  HandFrameState& of_hand(std::size_t number) noexcept {
+    return number == 0 ? *this : other_hands[number - 1];
+  }
+  const HandFrameState& of_hand(std::size_t number) const noexcept {
+    return number == 0 ? *this : other_hands[number - 1];
+  }
   void ended(Stage stage) noexcept {
     if (observer) observer->stage_ended(stage);
   }
 };
+
+/// The first stage of a frame: tracks every hand (hand_stage.h), in the order of the settings, and fills
+/// state.hand_inputs. A hand that is not known yet holds its part where that started.
+std::span<const HandInput> track_hands(const World& world, const FrameSettings& settings,
+                                       std::span<const HandSample> samples, FrameState& state) noexcept;
+
+/// Whether some hand is known, so that the scene may move.
+bool some_known(std::span<const HandInput> hands) noexcept;
 
 }  // namespace tactum::inline v0_1

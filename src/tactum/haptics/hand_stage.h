@@ -15,12 +15,17 @@ struct HandStage : HandTracking {
 };
 
 /// The stage before the first frame.
-HandStage begin_hand(const FrameSettings& settings);
+HandStage begin_hand(const HandSettings& settings);
 
 /// Takes a sample in. The first time the probe is known, the device is mapped so that the handle is at the
 /// tool's grasp point and the part is grasped in the orientation it has: nothing is pulled. The button counts
 /// in every valid sample, also in one whose pose is implausible and leaves the probe where it was.
-GraspedPart track_hand(const World& world, const FrameSettings& settings, const DeviceSample& sample,
-                       std::span<const Pose> X_WB, HandStage& hand) noexcept;
+///
+/// `earlier` are the hands that were tracked before in this frame, of which the first that holds the part
+/// bears its load. `shared`: another hand holds the same part, and will go on; a hand that releases it then
+/// leaves it slowly (Grasp::left).
+GraspedPart track_hand(const World& world, const HandSettings& settings, double dt_s,
+                       const DeviceSample& sample, std::span<const Pose> X_WB, HandStage& hand,
+                       std::span<const HandInput> earlier = {}, bool shared = false) noexcept;
 
 }  // namespace tactum::inline v0_1

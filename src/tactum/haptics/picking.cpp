@@ -48,6 +48,7 @@ void take(const Body& body, const Pose& X_WB, double centre_fraction, const Pose
   grasp.X_BH = relative_pose(X_WB, X_WH);
   grasp.hold = Hold::kFirm;
   grasp.beside_W.setZero();
+  grasp.left = 1.0;
   if (body.joint.kind != JointKind::kHinge) return;
   const Vec3 beside = beside_axis(body.joint, X_WH.p);
   const bool near_axis = beside.norm() <= centre_fraction * radius_about_axis(body);

@@ -32,7 +32,13 @@ struct Grasp {
   Hold hold = Hold::kFirm;
   Vec3 beside_W = Vec3::Zero();  ///< from the handle to where the hand took it, for Hold::kCentre [m]
   bool pressed = false;          ///< the primary button was pressed in the last frame
+  /// Of a hand that lets go of a part that another hand holds on to: how much of its coupling is left. It
+  /// goes to nothing within kHandOver_s, so that the other hand takes the weight over without a step [-].
+  double left = 1.0;
 };
+
+/// How long a hand takes to leave a part to another hand [s].
+inline constexpr double kHandOver_s = 0.25;
 
 /// Takes hold of the body where the hand is: sets where it is held, and how. Cost: linear in the part's
 /// vertices.

@@ -29,9 +29,13 @@ Result<void> check_world(const World& world, const FrameSettings& settings) {
     if (!body.X_WB.finite()) return Error{"a body's pose is not finite", "", "numbers", body.name};
   }
   const int bodies = static_cast<int>(world.bodies.size());
-  if (settings.tool.body >= bodies)
-    return Error{"the tool holds a body that is not there", std::to_string(settings.tool.body),
-                 "less than " + std::to_string(bodies), ""};
+  for (std::size_t h = 0; h < settings.hands(); ++h)
+    if (const int tool = settings.hand(h).tool.body; tool >= bodies)
+      return Error{"the tool holds a body that is not there", std::to_string(tool),
+                   "less than " + std::to_string(bodies), ""};
+  if (settings.response == ResponseModel::kPenalty && settings.hands() > 1)
+    return Error{"the penalty response knows one hand only", std::to_string(settings.hands()) + " tools",
+                 "response = \"constraint\", or one tool", ""};
   for (const PairCoefficients* table : {&settings.friction, &settings.impacts.restitution})
     if (!table->coefficients.empty() &&
         (table->bodies != bodies || table->coefficients.size() != world.bodies.size() * world.bodies.size()))
@@ -79,6 +83,15 @@ Wrench Simulation::step(const Pose& X_DH) noexcept {
   sample.valid = true;
   sample.X_DH = X_DH;
   return step(sample);
+}
+
+void Simulation::step(std::span<const HandSample> samples, std::span<Wrench> wrenches) noexcept {
+  FrameTick tick;
+  tick.index = next_index_;
+  tick.now_s = time_s();
+  tick.period_s = settings_.dt_s;
+  ++next_index_;
+  haptic_frame(world_, settings_, samples, tick, state_, report_, wrenches);
 }
 
 Wrench Simulation::run(const DeviceSample& sample, const FrameTick& tick) noexcept {

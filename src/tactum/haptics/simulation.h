@@ -4,6 +4,7 @@
 ///   World world;                                                 bodies, by World::add
 ///   FrameSettings settings = settings_for(device.info(), 1000.0);
 ///   settings.tool.body = 0;                                      which body the hand holds
+///   settings.other_hands.push_back(...);                         a second hand, where there is one
 ///   auto simulation = Simulation::make(std::move(world), settings);
 ///   (*simulation)->step(sample)  ->  wrench                      in a loop of the caller's, or
 ///   LoopThread().start(device, **simulation, ...)                in the loop of this library
@@ -38,6 +39,8 @@ class Simulation final : public HapticFrame {
   Wrench step(const DeviceSample& sample) noexcept;
   /// The same when only the pose of the handle is known.
   Wrench step(const Pose& X_DH) noexcept;
+  /// The same with several hands: a sample and a wrench for each hand of the settings.
+  void step(std::span<const HandSample> samples, std::span<Wrench> wrenches) noexcept;
   /// The same with the loop's own index and time; the sample's time is then on the loop's clock.
   Wrench run(const DeviceSample& sample, const FrameTick& tick) noexcept override;
 

@@ -23,6 +23,11 @@ struct FrameTick {
   bool stop = false;        ///< lead the wrench to zero; the loop ends when it is
 };
 
+/// The input of a frame from the device of one hand.
+struct HandSample : DeviceSample {
+  bool refused = false;  ///< the device did not take the last frame's wrench; FrameTick::refused of this hand
+};
+
 /// The work of one frame, as the loop sees it.
 class HapticFrame {
  public:

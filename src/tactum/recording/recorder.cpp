@@ -86,6 +86,9 @@ Result<std::unique_ptr<Recorder>> Recorder::open(const RecorderOptions& options,
   if (scene.source.text.empty())
     return Error{"only a scene that was read from a text can be recorded", "one made in code",
                  "a scene file, a built-in scene or a mesh", scene.name};
+  if (session.hands() > 1)
+    return Error{"a recording holds one hand only", std::to_string(session.hands()) + " tools in the scene",
+                 "a scene with one tool", scene.name};
   Result<std::unique_ptr<McapWriter>> writer =
       McapWriter::open(options.path, "", "tactum " + options.version);
   if (!writer) return writer.error();

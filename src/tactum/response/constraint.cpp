@@ -30,20 +30,22 @@ constexpr double kStands_s = 0.002;
 /// hand's size: their minima at its end then show a crossing.
 constexpr double kUnprovenStep_m = 3e-5;
 
-/// Adds the bodies of the island and their targets: the grasped part's leads to the hand, the others' on
-/// along their motion; `at_rest` all targets are where the bodies are. The grasped part comes first, which
-/// keep_forces() and report_rows() rely on.
+/// Adds the bodies of the island and their targets: that of a grasped part leads to its hand, the others' on
+/// along their motion; `at_rest` all targets are where the bodies are.
 void add_bodies(bool at_rest, ConstraintStep& step) {
   ContactProblem& problem = step.own.constraint.problem;
   problem.clear();
-  const int grasped = step.grasped.body;
-  if (grasped >= 0) {
-    step.own.constraint.wanted = at_rest ? Vec6(Vec6::Zero()) : wanted_by_hand(step);
-    add_grasped(at_rest ? Vec6(Vec6::Zero()) : with_load(step, step.own.constraint.wanted), step, problem);
+  if (!at_rest) find_wanted(step);
+  for (const HandInput& hand : step.hands) {
+    if (hand.grasped.body < 0 || !hand.bears_load) continue;  // added once
+    if (at_rest)
+      add_grasped_at_rest(hand.grasped.body, step, problem);
+    else
+      add_grasped(hand.grasped.body, 1.0, step, problem);
   }
   for (Index i = 0; i < step.world.bodies.size(); ++i) {
     const int b = static_cast<int>(i);
-    if (b == grasped || !step.own.free.near_grasped[i]) continue;
+    if (!step.own.free.near_grasped[i] || is_grasped(step, i)) continue;
     const Body& body = step.world.bodies[i];
     const Pose& X_WB = step.bodies.X_WB[i];
     const Vec6 on =
@@ -94,7 +96,7 @@ bool solve_frictionless(Index first_row, ContactProblem& problem, ConstraintStep
   return solved(solve_once(step.settings.budget.solver_iterations, problem), step.report);
 }
 
-/// Keeps the forces of the answer: impulses, the rows that push, the wrench at the handle. They are those of
+/// Keeps the forces of the answer: impulses, the rows that push, the wrenches at handles. They are those of
 /// the whole step, however much of it is then taken.
 void keep_forces(ConstraintStep& step) {
   ConstraintState& c = step.own.constraint;
@@ -106,7 +108,7 @@ void keep_forces(ConstraintStep& step) {
     if (contacts_of(step).row(active.row) != nullptr)
       own_rows(step)[Index(active.row) - c.rows.first].impulse = active.multiplier * step.dt_s;
   step.report.active_constraints = static_cast<int>(pushing.size());
-  feel(displacement_of_handle(c.problem, step), step);
+  feel_answer(c.problem, step);
 }
 
 /// How far a body goes in the answer's step.
@@ -125,27 +127,32 @@ Extent extent_of(const ConstraintStep& step, const ProblemBody& problem_body) {
 }
 
 /// The fraction of the answer's step that is trusted: with it no body of the island goes beyond its motion
-/// bound less kBoundMargin skins, and the grasped part turns no farther than it may. Zero where nothing of a
+/// bound less kBoundMargin skins, and a grasped part turns no farther than it may. Zero where nothing of a
 /// bound is left, as of a body at rest, without gravity, that the part has just met.
 double trusted_share(const ConstraintStep& step) {
   double share = 1.0;
   for (const ProblemBody& problem_body : step.own.constraint.step_problem().bodies()) {
     const Extent extent = extent_of(step, problem_body);
     if (extent.travel_m * share > extent.trusted_m) share = extent.trusted_m / extent.travel_m;
-    if (problem_body.body == step.grasped.body && extent.turn_rad * share > step.limits.turn_rad)
+    if (extent.turn_rad * share > step.limits.turn_rad && is_grasped(step, Index(problem_body.body)))
       share = step.limits.turn_rad / extent.turn_rad;
   }
   return share;
 }
 
-/// Flag of the limit that cuts the answer's step of the grasped part, where that limit will not grow.
+/// Flags of the limits that cut the answer's step of grasped parts, where those limits will not grow.
 std::uint32_t limit_of_step(const ConstraintStep& step) {
   const ConstraintState& c = step.own.constraint;
-  const Extent extent = extent_of(step, c.step_problem().bodies().front());
-  const double turns = extent.turn_rad / step.limits.turn_rad;
-  const double travels = extent.travel_m / extent.trusted_m;
-  if (!(std::max(turns, travels) > 1.0)) return 0;
-  return turns > travels ? frame_flag::kTurnLimited : c.trust.limit;
+  std::uint32_t flags = 0;
+  for (const ProblemBody& problem_body : c.step_problem().bodies()) {
+    if (!is_grasped(step, Index(problem_body.body))) continue;
+    const Extent extent = extent_of(step, problem_body);
+    const double turns = extent.turn_rad / step.limits.turn_rad;
+    const double travels = extent.travel_m / extent.trusted_m;
+    if (!(std::max(turns, travels) > 1.0)) continue;
+    flags |= turns > travels ? frame_flag::kTurnLimited : c.trust.limit;
+  }
+  return flags;
 }
 
 /// Moves everything by the fraction `share` of the answer's step, on trial. False where some pose is no pose.
@@ -200,7 +207,7 @@ void restore(ConstraintStep& step) {
   bool tight = false;
   for (Index p = 0; p < c.trial.gap_now.size(); ++p)
     tight |= step.own.free.patch_asked[p] && c.trial.gap_now[p] < 0.5 * c.skin_of(step.patches[p]);
-  if (!tight || step.gaps.blocked(step.grasped.body)) return;
+  if (!tight || grasped_blocked(step)) return;
   add_bodies(true, step);
   c.rows.first = add_contact_rows(true, c.problem, step);
   if (!solve_frictionless(c.rows.first, c.problem, step)) return;
@@ -267,7 +274,7 @@ bool close_joints(ConstraintStep& step) {
 /// fraction of the answer that may be taken, whose pose is then the trial. Zero: none was found.
 double advance(ConstraintStep& step) {
   if (!find_forces(step) || !close_joints(step)) return 0.0;
-  if (step.gaps.blocked(step.grasped.body)) return 0.0;
+  if (grasped_blocked(step)) return 0.0;
   double share = 0.0;
   Trial trial;
   for (int round = 0; round <= kFeedbacks && !trial.open; ++round) {
@@ -306,7 +313,7 @@ double move_grasped_island(ConstraintStep& step) {
   c.trust.consecutive_rejections = share > 0.0 ? 0 : c.trust.consecutive_rejections + 1;
   if (share > 0.0 && share < 1.0) step.report.flags |= limit_of_step(step);
   if (share > 0.0) take_trial(step);
-  if (c.trust.consecutive_rejections >= frames_in(kStands_s, step.dt_s)) feel(Vec6::Zero(), step);
+  if (c.trust.consecutive_rejections >= frames_in(kStands_s, step.dt_s)) feel_standing(step);
   const std::vector<Pose>& before = share > 0.0 ? c.trial.X_WB : step.bodies.X_WB;  // take_trial swaps them
   for (Index i = 0; i < step.world.bodies.size(); ++i) {
     if (!step.own.free.near_grasped[i]) continue;
@@ -336,9 +343,8 @@ void update_trust_length(ConstraintStep& step) {
         return patch.of_surfaces && (near(patch.body_a) || near(patch.body_b));
       });
   StepTrust& trust = step.own.constraint.trust;
-  const double most = trust.unproven
-                          ? std::min(step.limits.step_m, kUnprovenStep_m * step.settings.workspace.scale)
-                          : step.limits.step_m;
+  const double most =
+      trust.unproven ? std::min(step.limits.step_m, kUnprovenStep_m * step.scale) : step.limits.step_m;
   trust.unproven = false;
   const double least = step.limits.least_step_m * (on_surfaces ? Constraint::kLeastOnSurfaces : 1.0);
   trust.length_m = std::clamp(kTrustGrowth * travel, std::min(least, most), most);
@@ -363,40 +369,47 @@ int pushing_points(std::span<const ContactRow> corners, int body, const Constrai
   return points;
 }
 
-/// Appends friction forces as contact rows; returns their torques about normals on `body`.
-Vec3 report_friction(int body, ConstraintStep& step) {
-  const ConstraintState& c = step.own.constraint;
+/// Appends friction forces as contact rows, and adds their torques about normals on the grasped parts up.
+void report_friction(ConstraintStep& step) {
+  ConstraintState& c = step.own.constraint;
   std::vector<ContactRow>& rows = step.own.contact_rows.rows;
-  Vec3 torque = Vec3::Zero();
+  for (CoupledHand& hand : c.hands) hand.torque.setZero();
   c.friction.for_each_force(c.problem, [&](Index number, const Push& push, double multiplier) {
     const FrictionPatch& patch = c.friction.patches()[number];
-    if (patch.surfaces.body_a == body) torque += multiplier * push.torque;
-    if (patch.surfaces.body_b == body) torque -= multiplier * push.torque;
+    add_friction_torque(patch.surfaces, multiplier * push.torque, step);
     append_friction(patch, static_cast<int>(number), multiplier * push.force, step.dt_s, rows);
   });
-  return torque;
+}
+
+/// Reports the contact forces on the part that a hand holds.
+void report_grasped(const HandInput& hand, const CoupledHand& coupled, const ConstraintStep& step,
+                    HandReport& report) {
+  const int grasped = hand.grasped.body;
+  const ContactRows& all = step.own.contact_rows;
+  report.grasped_contact_points =
+      pushing_points({all.rows.data(), step.own.constraint.rows.count}, grasped, step.own.constraint);
+  if (grasped < 0) return;
+  Vec3 origin = step.X_WB_start[Index(grasped)].p;
+  if (step.own.free.grasped_island >= 0)
+    for (const ProblemBody& body : step.own.constraint.problem.bodies())
+      if (body.body == grasped) origin = body.origin;
+  report.restoring = contact_wrench(all.rows, grasped, origin, step.dt_s);
+  if (step.own.free.grasped_island >= 0 || step.own.free.grasped_here) report.restoring.t += coupled.torque;
 }
 
 /// Reports the contact forces: normal forces of corners, and friction.
 void report_rows(ConstraintStep& step) {
-  const int grasped = step.grasped.body;
   ConstraintState& c = step.own.constraint;
   if (c.rows.shades) exchange_normals(step);
   step.report.contact_points = static_cast<int>(c.rows.count);
   c.friction_uses.clear();
-  Vec3 torque = step.own.free.grasped_here ? step.own.free.grasped_torque : Vec3(Vec3::Zero());
-  Vec3 origin = grasped < 0 ? Vec3(Vec3::Zero()) : step.X_WB_start[Index(grasped)].p;
   if (step.own.free.grasped_island >= 0) {
     use_of_friction(c.friction, c.problem, c.rows.first, own_rows(step), c.friction_uses);
-    origin = c.problem.bodies().front().origin;
-    torque = report_friction(grasped, step);
+    report_friction(step);
   }
   step.report.friction = sum_of(c.friction_uses);
-  step.report.grasped_contact_points =
-      pushing_points({step.own.contact_rows.rows.data(), c.rows.count}, grasped, c);
-  if (grasped < 0) return;
-  step.report.restoring = contact_wrench(step.own.contact_rows.rows, grasped, origin, step.dt_s);
-  step.report.restoring.t += torque;
+  for (Index h = 0; h < step.hands.size(); ++h)
+    report_grasped(step.hands[h], c.hands[h], step, step.report_of(h));
 }
 
 }  // namespace
@@ -409,7 +422,7 @@ void bound_constrained_motion(const MotionInput& input, const WorldState& bodies
     own.motion_bound[i] = kBoundMargin * c.skin_m[i];
     if (!input.world.bodies[i].moves()) continue;
     const Twist& V = bodies.V_WB[i];
-    const bool grasped = static_cast<int>(i) == input.grasped.body;
+    const bool grasped = is_grasped(input.hands, i);
     if (!grasped) {
       const Body& body = input.world.bodies[i];
       const Twist spring = most_by_spring(body, bodies.X_WB[i], bodies.joints[i], input.dt_s);

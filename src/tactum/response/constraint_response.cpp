@@ -19,20 +19,24 @@ std::span<const double> ConstraintResponse::bound_motion(const MotionInput& inpu
 }
 
 void ConstraintResponse::step(const StepInput& input, GapOracle& gaps, WorldState& bodies,
-                              FrameReport& report) noexcept {
-  if (input.grasped.body != grasped_last_) {
-    memory_.constraint.felt = {};
-    memory_.impulses = {};
+                              FrameReport& report, std::span<HandReport> others) noexcept {
+  for (std::size_t h = 0; h < input.hands.size(); ++h) {
+    CoupledHand& hand = memory_.constraint.hands[h];
+    if (input.hands[h].grasped.body == hand.body) continue;
+    hand.felt = {};
+    hand.impulses = {};
+    hand.body = input.hands[h].grasped.body;
     memory_.constraint.trust.consecutive_rejections = 0;
   }
-  grasped_last_ = input.grasped.body;
-  ConstraintStep step{input, false, gaps, bodies, memory_, report};
+  ConstraintStep step{input, false, gaps, bodies, memory_, report, others};
   respond_constrained(step);
 }
 
-Wrench ConstraintResponse::felt(const StepInput& input, const PlacedHandle& /*handle*/) noexcept {
-  const Wrench pulses = memory_.impulses.next();
-  return input.grasped.body < 0 ? Wrench{} : memory_.constraint.felt + pulses;
+Wrench ConstraintResponse::felt(const StepInput& input, const PlacedHandle& /*handle*/,
+                                std::size_t hand) noexcept {
+  CoupledHand& coupled = memory_.constraint.hands[hand];
+  const Wrench pulses = coupled.impulses.next();
+  return input.hands[hand].grasped.body < 0 ? Wrench{} : coupled.felt + pulses;
 }
 
 }  // namespace tactum::inline v0_1

@@ -17,18 +17,24 @@ class ConstraintResponse {
   /// impulse.
   std::span<const double> bound_motion(const MotionInput& input, WorldState& bodies) noexcept;
   /// Moves everything that moves, the grasped part's island last. Fills the report's response fields.
-  void step(const StepInput& input, GapOracle& gaps, WorldState& bodies, FrameReport& report) noexcept;
-  /// The sum of the contact forces on the grasped part, its weight, the load of force fields and the pulses
-  /// of its impacts, at the handle, world axes [N, N m]. Once a frame.
-  Wrench felt(const StepInput& input, const PlacedHandle& handle) noexcept;
+  /// `others` are the reports of the second hand and all after it.
+  void step(const StepInput& input, GapOracle& gaps, WorldState& bodies, FrameReport& report,
+            std::span<HandReport> others) noexcept;
+  /// For a hand: the sum of the contact forces on the grasped part, its weight, the load of force fields and
+  /// the pulses of its impacts, at the handle, world axes [N, N m]. Once a frame.
+  Wrench felt(const StepInput& input, const PlacedHandle& handle, std::size_t hand) noexcept;
+  /// The same without the pulses: what the coupling exerts on the hand, and its opposite on the part.
+  Wrench coupled(std::size_t hand) const noexcept { return memory_.constraint.hands[hand].felt; }
 
   /// The contacts of the last step, and the friction at those that have it.
   std::span<const ContactRow> rows() const noexcept { return memory_.contact_rows.rows; }
   std::span<const FrictionUse> friction_uses() const noexcept {
     return {memory_.constraint.friction_uses.begin(), memory_.constraint.friction_uses.end()};
   }
-  /// Energy of impacts that is still to be felt [J].
-  double stored_J() const noexcept { return memory_.impulses.pending_J(); }
+  /// Energy of impacts that a hand is still to feel [J].
+  double stored_J(std::size_t hand) const noexcept {
+    return memory_.constraint.hands[hand].impulses.pending_J();
+  }
   /// Whether rows were dropped for want of room.
   bool rows_full() const noexcept { return memory_.contact_rows.full; }
   /// Its memory, for tests and displays that look inside.
@@ -36,7 +42,6 @@ class ConstraintResponse {
 
  private:
   ConstraintMemory memory_;
-  int grasped_last_ = -1;  // the body that was grasped in the last frame
 };
 
 }  // namespace tactum::inline v0_1

@@ -77,9 +77,9 @@ struct RowMaker {
       return;  // only watched
     ConstraintState& c = step.own.constraint;
     ContactRows& out = step.own.contact_rows;
-    const int other = patch.body_a == step.grasped.body   ? patch.body_b
-                      : patch.body_b == step.grasped.body ? patch.body_a
-                                                          : -1;
+    const bool a_grasped = is_grasped(step, Index(patch.body_a));
+    const bool b_grasped = is_grasped(step, Index(patch.body_b));
+    const int other = a_grasped ? patch.body_b : b_grasped ? patch.body_a : -1;
     const Pose& X_WA = step.bodies.X_WB[Index(patch.body_a)];
     const Pose X_AB = relative_pose(X_WA, step.bodies.X_WB[Index(patch.body_b)]);
     PatchCorners corners;
@@ -88,11 +88,12 @@ struct RowMaker {
     SurfacePair surfaces = surfaces_of(step.world, patch);
     surfaces.fixed_a = !step.world.bodies[Index(patch.body_a)].moves();
     surfaces.fixed_b = !step.world.bodies[Index(patch.body_b)].moves();
-    // The grasped part has no impacts with bodies that are fixed or jointed: there its coupling is what
-    // bounces.
+    // A grasped part has no impacts with bodies that are fixed, jointed or grasped too: there its coupling is
+    // what bounces.
     const Islands& islands = step.own.free.islands;
     const bool struck = !patch.implied && (islands.moves(patch.body_a) || islands.moves(patch.body_b)) &&
-                        (other < 0 || step.world.bodies[Index(other)].joint.kind == JointKind::kFree);
+                        (other < 0 || (step.world.bodies[Index(other)].joint.kind == JointKind::kFree &&
+                                       !(a_grasped && b_grasped)));
     ContactRow row;  // what all corners have alike; the rest is set below
     static_cast<SurfacePair&>(row) = surfaces;
     row.patch = number;

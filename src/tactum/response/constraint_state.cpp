@@ -15,7 +15,8 @@ ConstraintState::ConstraintState(const World& world, const FrameSettings& settin
       anchors(Index(settings.budget.max_contact_points)),
       planes(world.bodies.size(), Index(settings.budget.max_contact_points)),
       opening_share(tactum::opening_share(settings.dt_s)),
-      trust{.length_m = settings.constraint.least_step_m * settings.workspace.scale},
+      trust{.length_m = settings.constraint.least_step_m * settings.smallest_scale()},
+      hands(settings.hands()),
       corner_memory(settings.budget.capacity.patches / 4 + 1),
       rows(Index(settings.budget.max_contact_points)) {
   for (const Body& body : world.bodies)

@@ -77,9 +77,21 @@ struct StepTrust {
   int consecutive_rejections = 0;  ///< frames in a row in which no step could be taken [-]
 };
 
-/// Of the grasped part's island (constraint.h). The free islands, which are solved before it in every frame,
-/// use its `problem`, `friction` and `trial` as scratch, and its anchors, row memory and lengths as their
-/// own.
+/// Of a hand and its coupling to the part that it holds.
+struct CoupledHand {
+  Vec6 wanted = Vec6::Zero();  ///< displacement of the handle that the coupling asks for, world axes [m, rad]
+  Wrench felt;  ///< of contacts, weight and fields on the grasped part, at the handle, world axes [N, N m]
+  ImpulseDisplay impulses;  ///< impacts on the grasped part that are being felt
+  /// Of friction about normals on the grasped part, where its island is moved as a free one [N m].
+  Vec3 torque = Vec3::Zero();
+  Wrench hit;           ///< the impulse of this frame's impacts, at the handle, world axes [N s, N m s]
+  bool is_hit = false;  ///< there was one
+  int body = -1;        ///< that was grasped in the last frame
+};
+
+/// Of the island of the grasped parts (constraint.h). The free islands, which are solved before it in every
+/// frame, use its `problem`, `friction` and `trial` as scratch, and its anchors, row memory and lengths as
+/// their own.
 struct ConstraintState {
   ConstraintState(const World& world, const FrameSettings& settings);
 
@@ -92,8 +104,7 @@ struct ConstraintState {
   std::vector<double> skin_m;  ///< of each body that moves, by its size; see skin_of() [m]
   double opening_share;        ///< fraction of the depth below the skin that is opened in a step [-]
   StepTrust trust;
-  Vec6 wanted;  ///< displacement of the handle that the coupling asked for, world axes [m, rad]
-  Wrench felt;  ///< of contacts, weight and fields on the grasped part, at the handle, world axes [N, N m]
+  std::vector<CoupledHand> hands;  ///< in the order of MotionInput::hands
   WarmStart warm_start;
   CornerMemory corner_memory;
   CornerRows rows;
@@ -139,9 +150,8 @@ struct FreeBodies {
   Momentum momentum;
   int grasped_island = -1;    ///< the island that constraint.h, or the penalty response, moves; -1: none
   bool grasped_here = false;  ///< the grasped part's island is too large for constraint.h
-  Vec3 grasped_torque = Vec3::Zero();  ///< of friction about normals on the grasped part, found here [N m]
-  bool others = false;                 ///< some body moves by itself
-  bool alone = true;                   ///< nothing but the grasped part's island moves
+  bool others = false;        ///< some body moves by itself
+  bool alone = true;          ///< nothing but the grasped part's island moves
   /// Of each body, whether it is in the grasped part's island, the grasped part included: that of the last
   /// frame until find_islands(), of this frame from then on.
   std::vector<char> near_grasped;
@@ -225,7 +235,6 @@ struct ConstraintMemory {
   Waiting waiting;             ///< waiting.h
   Sleep sleep;                 ///< sleep.h
   ContactRows contact_rows;
-  ImpulseDisplay impulses;  ///< impacts on the grasped part that are being felt
   ImpactScratch impact_scratch;
   std::vector<double> motion_bound;  ///< by body: how far it may move [m]
 };
@@ -239,6 +248,31 @@ struct ConstraintStep : StepInput {
   WorldState& bodies;     ///< the poses and velocities of all bodies
   ConstraintMemory& own;  ///< the memory of the response
   FrameReport& report;
+  std::span<HandReport> other_reports = {};  ///< of the second hand and all after it
+
+  /// What is reported of a hand.
+  HandReport& report_of(std::size_t hand) const noexcept {
+    return hand == 0 ? report : other_reports[hand - 1];
+  }
 };
+
+/// Whether some hand holds a body.
+inline bool is_grasped(const ConstraintStep& step, std::size_t body) noexcept {
+  return is_grasped(step.hands, body);
+}
+
+/// The body that the first hand that holds one holds; -1: none.
+inline int first_grasped(std::span<const HandInput> hands) noexcept {
+  for (const HandInput& hand : hands)
+    if (hand.grasped.body >= 0) return hand.grasped.body;
+  return -1;
+}
+
+/// Whether the contact finder has left a pair of a grasped part unproven: then that must not move.
+inline bool grasped_blocked(const ConstraintStep& step) noexcept {
+  for (const HandInput& hand : step.hands)
+    if (hand.grasped.body >= 0 && step.gaps.blocked(hand.grasped.body)) return true;
+  return false;
+}
 
 }  // namespace tactum::inline v0_1

@@ -51,6 +51,26 @@ GraspedBody grasped_body_of(const BodyLoad& load, const GraspedPart& grasped, co
   return as_body;
 }
 
+GraspedBody grasped_by_both(const GraspedBody& one, const GraspedBody& other) noexcept {
+  GraspedBody both;
+  const double linear = one.metric.linear + other.metric.linear;
+  both.metric.linear = linear;
+  both.centre_W = (one.metric.linear * one.centre_W + other.metric.linear * other.centre_W) / linear;
+  Vec3 force = Vec3::Zero();
+  Vec3 torque = Vec3::Zero();
+  for (const GraspedBody* each : {&one, &other}) {
+    const double k = each->metric.linear;
+    const Vec3 arm = each->centre_W - both.centre_W;
+    both.metric.angular +=
+        each->metric.angular + k * (arm.squaredNorm() * Mat3::Identity() - arm * arm.transpose());
+    const Vec3 pull = k * each->target.head<3>();
+    force += pull;
+    torque += each->metric.angular * each->target.tail<3>() + arm.cross(pull);
+  }
+  both.target << force / linear, both.metric.angular.inverse() * torque;
+  return both;
+}
+
 Vec6 balanced_step(const Coupling& coupling, double dt_s, const Twist& to_hand, const Twist& V_WH) noexcept {
   // k (x - d) + b (x / dt - v) = 0, with d the displacement to the hand.
   const GraspMetric metric = grasp_metric(coupling, dt_s);

@@ -42,6 +42,11 @@ struct GraspedBody {
 GraspedBody grasped_body_of(const BodyLoad& load, const GraspedPart& grasped, const Pose& X_WB,
                             const GraspMetric& metric, const Vec6& target, double dt_s) noexcept;
 
+/// The part when two hands hold it, each by a coupling that alone makes it one of these: the metrics add up,
+/// and so do the forces that lead to the targets. It is stated where the sum resists displacements and turns
+/// apart from each other.
+GraspedBody grasped_by_both(const GraspedBody& one, const GraspedBody& other) noexcept;
+
 /// The displacement of the handle, (m, rad), at which the coupling's spring and damper are in balance, when
 /// the hand is the displacement `to_hand` away.
 Vec6 balanced_step(const Coupling& coupling, double dt_s, const Twist& to_hand, const Twist& V_WH) noexcept;

@@ -32,21 +32,21 @@ Spring felt_spring(double stiffness, double stretch, double supported, double li
 }  // namespace
 
 double bodies_energy(const World& world, std::span<const Pose> X_WB_start, const WorldState& bodies,
-                     int grasped) noexcept {
+                     std::span<const HandInput> hands) noexcept {
   double energy_J = 0.0;
   for (Index i = 0; i < world.bodies.size(); ++i) {
     const Body& body = world.bodies[i];
     if (!body.moves()) continue;
     const Pose& X_WB = bodies.X_WB[i];
-    const bool is_grasped = static_cast<int>(i) == grasped;
+    const bool grasped = is_grasped(hands, i);
     const Joint& joint = world.joint_of(static_cast<int>(i));
     if (joint.stiffness > 0.0) {
       const JointPosition& at = bodies.joints[i];
-      energy_J += spring_energy(joint, is_grasped ? at.now : 0.5 * (at.now + at.before));
+      energy_J += spring_energy(joint, grasped ? at.now : 0.5 * (at.now + at.before));
     }
-    const Vec3 p_W = is_grasped ? X_WB.p : Vec3(0.5 * (X_WB.p + X_WB_start[i].p));
+    const Vec3 p_W = grasped ? X_WB.p : Vec3(0.5 * (X_WB.p + X_WB_start[i].p));
     energy_J -= body.mass_kg * world.gravity_W.dot(p_W);
-    if (is_grasped) continue;
+    if (grasped) continue;
     const Twist& V_WB = bodies.V_WB[i];
     const Vec3 w_B = X_WB.R.transpose() * V_WB.w;
     energy_J += 0.5 * body.mass_kg * V_WB.v.squaredNorm() + 0.5 * w_B.dot(body.inertia_B * w_B);
@@ -55,12 +55,12 @@ double bodies_energy(const World& world, std::span<const Pose> X_WB_start, const
 }
 
 StoredEnergy stored_energy(const EnergySource& source) noexcept {
-  const FrameSettings& settings = source.settings;
+  const HandSettings& settings = source.settings;
   const double scale = settings.workspace.scale;
   StoredEnergy stored;
   stored.stiffness_N_per_m = settings.coupling.stiffness_N_per_m;
   stored.stiffness_Nm_per_rad = settings.coupling.stiffness_Nm_per_rad;
-  stored.total_J = (bodies_energy(source.world, source.X_WB_start, source.bodies, source.grasped) -
+  stored.total_J = (bodies_energy(source.world, source.X_WB_start, source.bodies, source.hands) -
                     source.outside_work_J + source.response_J) /
                    scale;
   if (source.grasped < 0) return stored;

@@ -16,28 +16,42 @@ using Index = std::size_t;
 /// as resting contact, without restitution.
 constexpr int kImpactsAPoint = 8;
 constexpr int kMostImpacts = 128;
-/// The sums of all impacts; those on the grasped part are given at the handle.
+/// The sums of all impacts; those on grasped parts are given at the handles. Hands that hold a part together
+/// feel equal shares of what it is hit by.
 class ImpactsOnGrasped final : public ImpactObserver {
  public:
-  ImpactsOnGrasped(int grasped, const Vec3& p_WH, Momentum& momentum)
-      : grasped_(grasped), p_WH_(p_WH), momentum_(momentum) {}
+  explicit ImpactsOnGrasped(ConstraintStep& step) : step_(step) {
+    for (CoupledHand& hand : step.own.constraint.hands) {
+      hand.hit = {};
+      hand.is_hit = false;
+    }
+  }
   void hit(int body_a, int body_b, const Vec3& impulse, const Vec3& turning,
            const Vec3& p_W) noexcept override {
-    momentum_.give(body_a, body_b, impulse);
-    if (body_a != grasped_ && body_b != grasped_) return;
-    const double sign = body_a == grasped_ ? 1.0 : -1.0;
-    sum_ = sum_ + Wrench{impulse, turning + (p_W - p_WH_).cross(impulse)} * sign;
-    any_ = true;
+    step_.own.free.momentum.give(body_a, body_b, impulse);
+    for (Index h = 0; h < step_.hands.size(); ++h) {
+      const GraspedPart& grasped = step_.hands[h].grasped;
+      if (grasped.body < 0 || (body_a != grasped.body && body_b != grasped.body)) continue;
+      const Vec3 p_WH = step_.bodies.X_WB[Index(grasped.body)] * grasped.X_BH.p;
+      const double sign = (body_a == grasped.body ? 1.0 : -1.0) / holders_of(step_.hands, grasped.body);
+      CoupledHand& hand = step_.own.constraint.hands[h];
+      hand.hit = hand.hit + Wrench{impulse, turning + (p_W - p_WH).cross(impulse)} * sign;
+      hand.is_hit = true;
+    }
   }
-  const Wrench* sum() const { return any_ ? &sum_ : nullptr; }
 
  private:
-  int grasped_;
-  Vec3 p_WH_;
-  Momentum& momentum_;
-  Wrench sum_;
-  bool any_ = false;
+  ConstraintStep& step_;
 };
+
+/// Lets the hands feel the impulses on their parts; the energy that the bodies have lost is that of all
+/// impulses in equal shares.
+void show_impacts(double lost_J, ConstraintStep& step) {
+  int hit = 0;
+  for (const CoupledHand& hand : step.own.constraint.hands) hit += hand.is_hit ? 1 : 0;
+  for (CoupledHand& hand : step.own.constraint.hands)
+    if (hand.is_hit) hand.impulses.add(step.settings.impacts, step.dt_s, hand.hit, lost_J / hit);
+}
 
 ImpactBodies impact_bodies(ConstraintStep& step) {
   FreeBodies& f = step.own.free;
@@ -52,7 +66,7 @@ void begin_impacts(ConstraintStep& step) {
     const Body& body = step.world.bodies[i];
     if (!body.moves()) continue;
     f.A_free[i] = {};
-    // The hand decides where the grasped part goes: an impact does not move it, it is felt.
+    // The hand decides where its part goes: an impact does not move it, it is felt.
     f.struck[i] = !is_grasped(step, i) && f.islands.moves(static_cast<int>(i)) ? 1 : 0;
     if (!f.struck[i]) {
       f.detour[i] = {};
@@ -164,16 +178,16 @@ double opening(const ContactRow& row, const Twist& of_a, const Twist& of_b,
 
 void apply_impacts(ConstraintStep& step) noexcept {
   if (!step.own.free.others) return;
-  const std::vector<Pose>& X_WB = step.bodies.X_WB;
-  const int grasped = step.grasped.body;
   begin_impacts(step);
   show_resting(step);
   clear_blocked_rests(step);
   leave_out_passed(step);
-  const double energy_J =
-      grasped < 0 ? 0.0 : bodies_energy(step.world, step.bodies.X_WB, step.bodies, grasped);
-  ImpactsOnGrasped impacts(grasped, grasped < 0 ? Vec3::Zero() : X_WB[Index(grasped)] * step.grasped.X_BH.p,
-                           step.own.free.momentum);
+  const bool some_grasped = first_grasped(step.hands) >= 0;
+  const auto energy_J = [&step] {
+    return bodies_energy(step.world, step.bodies.X_WB, step.bodies, step.hands);
+  };
+  const double before_J = some_grasped ? energy_J() : 0.0;
+  ImpactsOnGrasped impacts(step);
   const std::vector<Twist>& detour = step.own.free.detour;
   std::vector<Twist>& detour_before = step.own.free.V_free;
   detour_before = detour;  // same size: nothing is allocated
@@ -184,10 +198,9 @@ void apply_impacts(ConstraintStep& step) noexcept {
   hide_resting(detour_before, step);
   step.report.impacts = result.hits;
   if (!result.converged) step.report.flags |= frame_flag::kSolverBounded;
-  if (impacts.sum())
-    step.own.impulses.add(
-        step.settings.impacts, step.dt_s, *impacts.sum(),
-        std::max(0.0, energy_J - bodies_energy(step.world, step.bodies.X_WB, step.bodies, grasped)));
+  const std::vector<CoupledHand>& hands = step.own.constraint.hands;
+  if (std::any_of(hands.begin(), hands.end(), [](const CoupledHand& hand) { return hand.is_hit; }))
+    show_impacts(std::max(0.0, before_J - energy_J()), step);
 }
 
 }  // namespace tactum::inline v0_1

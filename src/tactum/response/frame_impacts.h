@@ -9,14 +9,10 @@
 
 namespace tactum::inline v0_1 {
 
-/// Applies the impacts to the velocities and detours of all bodies but the grasped one, which feels them.
+/// Applies the impacts to the velocities and detours of all bodies but the grasped ones, which feel them.
 void apply_impacts(ConstraintStep& step) noexcept;
 
 // The motion of bodies that nothing touches, and how a motion opens a contact.
-
-inline bool is_grasped(const ConstraintStep& step, std::size_t body) noexcept {
-  return static_cast<int>(body) == step.grasped.body;
-}
 
 /// Drives the velocity by weight and load for `h` seconds, as far as the joint lets them act.
 void drive(const Body& body, const Vec3& gravity_W, double h, const Pose& X_WB, Twist& V_WB) noexcept;

@@ -39,9 +39,8 @@ struct FrictionReport {
   double cone_used = 0.0;  ///< largest fraction of a friction cone in use; 1: at its edge [-]
 };
 
-struct FrameReport {
-  std::uint64_t index = 0;   ///< frames since the start
-  std::uint32_t flags = 0;   ///< frame_flag
+/// What one hand has of it.
+struct HandReport {
   std::uint32_t safety = 0;  ///< safety_flag
   int grasped_body = -1;     ///< the body that is grasped; -1: none
   int hold = 0;              ///< how the hand holds it: a Hold (step_input.h)
@@ -58,6 +57,15 @@ struct FrameReport {
   PortReport port;  ///< energy that passed between hand and scene, and the stiffness that it leaves
   Wrench passive;   ///< with the caller's own stage, before safety, at the handle, device axes [N, N m]
   Wrench shown;     ///< after safety, at the handle, device axes: the wrench that was sent [N, N m]
+  /// In the constraint response, how many contact points push the grasped part; in the penalty response, how
+  /// many are at the grasped part, also without force.
+  int grasped_contact_points = 0;
+};
+
+/// All of it; the inherited members are those of the first hand.
+struct FrameReport : HandReport {
+  std::uint64_t index = 0;      ///< frames since the start
+  std::uint32_t flags = 0;      ///< frame_flag
   double tolerance_m = 0.0;     ///< largest delta of a pair in contact; 0 without contact [m]
   double min_distance_m = 0.0;  ///< smallest signed distance of the pairs in contact; 0 without contact [m]
   bool penetrating = false;     ///< some pair overlaps by more than kPenetrating of both parts' sizes
@@ -65,9 +73,6 @@ struct FrameReport {
   /// zero in the constraint response, whose forces act over the whole step.
   double time_of_impact_s = 0.0;  ///< [s]
   int contact_points = 0;         ///< rows of the contact problem, whether they push or not
-  /// In the constraint response, how many of these push the grasped part; in the penalty response, how many
-  /// are at the grasped part, also without force.
-  int grasped_contact_points = 0;
   int impacts = 0;  ///< pairs of bodies that hit each other, each impact counted (constraint response)
   int solver_iterations = 0;
   int solvers = 0;             ///< which solvers were at work: bits of ContactSolver (solver_choice.h)

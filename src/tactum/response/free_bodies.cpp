@@ -38,14 +38,17 @@ void limit_shares(ConstraintStep& step) {
     const double travel = (V.v.norm() + V.w.norm() * step.radius_m[i]) * step.dt_s;
     double& share = f.share[Index(f.islands.of(static_cast<int>(i)))];
     if (travel * share > step.own.motion_bound[i]) share = step.own.motion_bound[i] / travel;
-    if (static_cast<int>(i) == step.grasped.body && travel > step.own.motion_bound[i])
+    if (travel > step.own.motion_bound[i] && is_grasped(step, i))
       step.report.flags |= step.own.constraint.trust.limit;
     step.own.waiting.travel[i] = travel;
   }
   // An island's number is its first body.
   for (Index i = 0; i < f.share.size(); ++i)
     if (moves_here(step, i)) f.share[i] = f.share[Index(f.islands.of(static_cast<int>(i)))];
-  if (f.grasped_here && step.gaps.blocked(step.grasped.body)) f.share[Index(step.grasped.body)] = 0.0;
+  if (!f.grasped_here) return;
+  for (const HandInput& hand : step.hands)
+    if (hand.grasped.body >= 0 && step.gaps.blocked(hand.grasped.body))
+      f.share[Index(hand.grasped.body)] = 0.0;
 }
 
 /// Puts the bodies of unsettled islands, on trial, where their steps lead.
@@ -222,12 +225,16 @@ void find_islands(ConstraintStep& step) {
   f.grasped_island = -1;
   f.grasped_here = false;
   const auto yields = [&](const ContactPatch& patch) {
-    return step.grasped_yields && (patch.body_a == step.grasped.body || patch.body_b == step.grasped.body);
+    return step.grasped_yields &&
+           (is_grasped(step, Index(patch.body_a)) || is_grasped(step, Index(patch.body_b)));
   };
   for (const ContactPatch& patch : step.patches)
     if (!yields(patch)) f.islands.join(patch.body_a, patch.body_b);
   for (const PairJoint& pair : step.world.pair_joints) f.islands.join(pair.body, pair.parent);
-  const int grasped = step.grasped.body;
+  // All grasped parts are of one island, whether they touch or not: one problem, one step.
+  const int grasped = first_grasped(step.hands);
+  for (const HandInput& hand : step.hands)
+    if (hand.grasped.body >= 0 && hand.grasped.body != grasped) f.islands.join(grasped, hand.grasped.body);
   const int island = grasped < 0 ? -1 : f.islands.of(grasped);
   Index unknowns = 0;
   f.alone = true;
@@ -294,15 +301,15 @@ void pull_free_bodies(const MotionInput& input, WorldState& bodies) noexcept {
   const World& world = input.world;
   for (Index i = 0; i < world.bodies.size(); ++i) {
     const Body& body = world.bodies[i];
-    if (!body.moves() || static_cast<int>(i) == input.grasped.body) continue;
+    if (!body.moves() || is_grasped(input.hands, i)) continue;
     bodies.V_WB[i] = carried_velocity(body.joint, bodies.X_WB[i], bodies.V_WB[i]);
     drive(body, world.gravity_W, 0.5 * input.dt_s, bodies.X_WB[i], bodies.V_WB[i]);
   }
 }
 
-bool others_move(const World& world, int grasped) noexcept {
+bool others_move(const World& world, std::span<const HandInput> hands) noexcept {
   for (Index i = 0; i < world.bodies.size(); ++i)
-    if (world.bodies[i].moves() && static_cast<int>(i) != grasped) return true;
+    if (world.bodies[i].moves() && !is_grasped(hands, i)) return true;
   return false;
 }
 
@@ -369,7 +376,7 @@ void begin_step(ConstraintStep& step) noexcept {
   trial.gap_least.resize(trial.gap_now.size());
   trial.gap_answer.resize(trial.gap_now.size());
 
-  step.own.free.others = others_move(step.world, step.grasped.body);
+  step.own.free.others = others_move(step.world, step.hands);
   defer_bodies(step);
   find_islands(step);
   begin_balance(step);

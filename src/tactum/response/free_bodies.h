@@ -25,8 +25,8 @@ void begin_midway(const World& world, double dt_s, WorldState& state) noexcept;
 /// Adds the effect of weight and load up to the beginning of the frame.
 void pull_free_bodies(const MotionInput& input, WorldState& bodies) noexcept;
 
-/// Whether any body but the grasped one moves.
-bool others_move(const World& world, int grasped) noexcept;
+/// Whether any body but the grasped ones moves.
+bool others_move(const World& world, std::span<const HandInput> hands) noexcept;
 
 /// Begins the step of all bodies: which are deferred, the islands, the contact rows, impacts, and the other
 /// half of weight and load. Afterwards every body that is not grasped has the velocity that it keeps when no

@@ -22,12 +22,12 @@ struct IslandProblem {
   ContactProblem& problem;
   std::span<ContactRow> contacts = {};  ///< copies of the rows
   RowsInProblem in_problem = {};
-  double share_of_wanted = 1.0;  ///< how much of the hand's displacement the grasped part is asked for
+  double share_of_wanted = 1.0;  ///< how much of the hands' displacements grasped parts are asked for
 };
 
 /// Whether nothing acts on the island: one free body that touches nothing.
 bool is_idle(const IslandProblem& p) {
-  return p.rows.empty() && p.bodies.size() == 1 && p.bodies[0] != p.step.grasped.body &&
+  return p.rows.empty() && p.bodies.size() == 1 && !is_grasped(p.step, Index(p.bodies[0])) &&
          p.step.world.bodies[Index(p.bodies[0])].joint.kind == JointKind::kFree;
 }
 
@@ -38,8 +38,8 @@ void assemble(bool exact, bool opening, IslandProblem& p) {
   p.problem.clear();
   for (const int body : p.bodies) {
     const Index i = Index(body);
-    if (body == step.grasped.body) {
-      add_grasped(with_load(step, step.own.constraint.wanted * p.share_of_wanted), step, p.problem);
+    if (is_grasped(step, i)) {
+      add_grasped(body, p.share_of_wanted, step, p.problem);
       continue;
     }
     const Body& what = step.world.bodies[i];
@@ -67,19 +67,19 @@ void give(const SurfacePair& bodies, const Vec3& force_W, const IslandProblem& p
 void forget_friction(const IslandProblem& p) {
   FreeBodies& f = p.step.own.free;
   f.given_Ns[p.island].setZero();
-  if (!f.grasped_here || f.islands.of(p.step.grasped.body) != static_cast<int>(p.island)) return;
+  if (!f.grasped_here || f.islands.of(first_grasped(p.step.hands)) != static_cast<int>(p.island)) return;
   p.step.own.contact_rows.rows.resize(p.step.own.constraint.rows.count);
-  f.grasped_torque.setZero();
+  for (CoupledHand& hand : p.step.own.constraint.hands) hand.torque.setZero();
 }
 
-/// Reports the friction force on the grasped part as a row of its own, and its torque beside it.
+/// Reports the friction force on grasped parts as a row of its own, and its torque beside it.
 void report_friction(const FrictionPatch& patch, const Vec3& force_W, const Vec3& torque_W,
                      const IslandProblem& p) {
   give(patch.surfaces, force_W, p);
-  const int grasped = p.step.grasped.body;
-  if (patch.surfaces.body_a != grasped && patch.surfaces.body_b != grasped) return;
+  if (!is_grasped(p.step, Index(patch.surfaces.body_a)) && !is_grasped(p.step, Index(patch.surfaces.body_b)))
+    return;
   append_friction(patch, -1, force_W, p.step.dt_s, p.step.own.contact_rows.rows);
-  p.step.own.free.grasped_torque += patch.surfaces.body_a == grasped ? torque_W : Vec3(-torque_W);
+  add_friction_torque(patch.surfaces, torque_W, p.step);
 }
 
 /// The smallest skin of the island's contacts, or of its bodies where nothing touches [m].
@@ -193,17 +193,23 @@ void solve_many(IslandProblem& p) {
     report_friction(forces.patches()[i], forces.friction_force(i), forces.friction_torque(i), p);
 }
 
-/// Where the answer has the grasped part beyond its motion bound, as a hand does that is far ahead, what it
+/// Where the answer has a grasped part beyond its motion bound, as a hand does that is far ahead, what it
 /// meets would be pushed to the speed of a step that it does not make. The island is then solved again, with
-/// as much of the hand's displacement as leaves the part within the bound. What is felt is that of the first
-/// answer.
+/// as much of the hands' displacements as leaves the parts within the bounds. What is felt is that of the
+/// first answer.
 void follow_slower(IslandProblem& p) {
   const ConstraintStep& step = p.step;
-  const Index grasped = Index(step.grasped.body);
-  const Twist displacement = to_twist(p.problem.displacement(step.grasped.body));
-  const double travel = displacement.v.norm() + displacement.w.norm() * step.radius_m[grasped];
-  if (!(travel > step.own.motion_bound[grasped])) return;
-  p.share_of_wanted = step.own.motion_bound[grasped] / travel;
+  double share = 1.0;
+  for (const HandInput& hand : step.hands) {
+    if (hand.grasped.body < 0) continue;
+    const Index grasped = Index(hand.grasped.body);
+    const Twist displacement = to_twist(p.problem.displacement(hand.grasped.body));
+    const double travel = displacement.v.norm() + displacement.w.norm() * step.radius_m[grasped];
+    if (travel > step.own.motion_bound[grasped])
+      share = std::min(share, step.own.motion_bound[grasped] / travel);
+  }
+  if (share == 1.0) return;
+  p.share_of_wanted = share;
   step.report.flags |= step.own.constraint.trust.limit;
   forget_friction(p);
   solve_many(p);
@@ -221,14 +227,14 @@ void solve_island(IslandProblem& p) {
   for (const int body : p.bodies) {
     const Body& what = step.world.bodies[Index(body)];
     unknowns += exact_unknowns_of(step.world, what);
-    coupled_to_hand |= body == step.grasped.body;
+    coupled_to_hand |= is_grasped(step, Index(body));
     jointed |= what.pair_joint >= 0;
   }
   const bool exact =
       choose_solver(unknowns, coupled_to_hand || jointed) == ContactSolver::kExact && solve_exact(p);
   if (!exact) solve_many(p);
   if (coupled_to_hand) {
-    feel(displacement_of_handle(p.problem, step), p.step);
+    feel_answer(p.problem, p.step);
     follow_slower(p);
   }
   for (const ContactRow& row : p.contacts) give(row, row.impulse / step.dt_s * row.n_BA_W, p);
@@ -265,7 +271,7 @@ void begin_islands(ConstraintStep& step) noexcept {
   });
   std::fill(f.unconverged.begin(), f.unconverged.end(), 0);
   f.V_free = step.bodies.V_WB;  // same size: nothing is allocated
-  if (f.grasped_here) step.own.constraint.wanted = wanted_by_hand(step);
+  if (f.grasped_here) find_wanted(step);
 }
 
 void solve_islands(ConstraintStep& step) noexcept {

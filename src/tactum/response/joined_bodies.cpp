@@ -76,7 +76,7 @@ void begin_joined(const World& world, double dt_s, WorldState& state) {
 
 Vec3 change_of_axis(const ConstraintStep& step, std::size_t body) noexcept {
   const Body& what = step.world.bodies[body];
-  if (what.joint.kind != JointKind::kFree || static_cast<int>(body) == step.grasped.body) return Vec3::Zero();
+  if (what.joint.kind != JointKind::kFree || is_grasped(step, body)) return Vec3::Zero();
   const FreeBodies& f = step.own.free;
   const Vec3 pushed = step.bodies.V_WB[body].w - f.w_free[body];
   const Mat3& R_WB = step.X_WB_start[body].R;
@@ -131,10 +131,13 @@ void wait_together(ConstraintStep& step) noexcept {
     const char both = waits[body] != 0 || waits[parent] != 0 ? 1 : 0;
     waits[body] = waits[parent] = both;
   });
-  if (step.grasped.body < 0 || step.world.pair_joints.empty()) return;
-  const Index root = root_of(step.world, Index(step.grasped.body));
-  for (Index i = 0; i < waits.size(); ++i)
-    if (step.own.free.joined[i] && root_of(step.world, i) == root) waits[i] = 0;
+  if (step.world.pair_joints.empty()) return;
+  for (const HandInput& hand : step.hands) {
+    if (hand.grasped.body < 0) continue;
+    const Index root = root_of(step.world, Index(hand.grasped.body));
+    for (Index i = 0; i < waits.size(); ++i)
+      if (step.own.free.joined[i] && root_of(step.world, i) == root) waits[i] = 0;
+  }
 }
 
 }  // namespace tactum::inline v0_1

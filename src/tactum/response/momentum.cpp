@@ -31,7 +31,7 @@ void begin_balance(ConstraintStep& step) noexcept {
     const Body& body = step.world.bodies[i];
     const int number = static_cast<int>(i);
     const bool counts = body.moves() && body.joint.kind == JointKind::kFree && !body.load.damps() &&
-                        !step.own.free.joined[i] && number != step.grasped.body &&
+                        !step.own.free.joined[i] && !is_grasped(step, i) &&
                         step.own.free.islands.moves(number);
     momentum.counts[i] = counts ? 1 : 0;
     if (counts)

@@ -27,10 +27,10 @@ GraspMetric coupling_stiffness(const Coupling& coupling) {
 
 /// Keeps the grasped part's step below the threshold distance. True where the step was longer.
 bool limit_grasped(const MotionInput& input, WorldState& bodies) {
-  if (input.grasped.body < 0) return false;
-  Twist& V_WB = bodies.V_WB[Index(input.grasped.body)];
+  if (input.grasped().body < 0) return false;
+  Twist& V_WB = bodies.V_WB[Index(input.grasped().body)];
   const double step =
-      (V_WB.v.norm() + V_WB.w.norm() * input.radius_m[Index(input.grasped.body)]) * input.dt_s;
+      (V_WB.v.norm() + V_WB.w.norm() * input.radius_m[Index(input.grasped().body)]) * input.dt_s;
   if (!(step > input.limits.step_m)) return false;
   V_WB = V_WB * (input.limits.step_m / step);
   return true;
@@ -42,7 +42,7 @@ bool limit_grasped(const MotionInput& input, WorldState& bodies) {
 /// not taken.
 void limit_rest(const MotionInput& input, const Twist& V_first, double impact_s, double rest_s,
                 Twist& V_rest) {
-  const double radius_m = input.radius_m[Index(input.grasped.body)];
+  const double radius_m = input.radius_m[Index(input.grasped().body)];
   const Twist first = V_first * impact_s;
   const Twist rest = V_rest * rest_s;
   const auto step_of = [&](double share) {
@@ -139,12 +139,12 @@ PenaltyResponse::PenaltyResponse(const World& world, const FrameSettings& settin
 /// The grasped part's target, from where it is: the whole displacement to where its coupling carries its
 /// weight and load, however short the step. It has no inertia, so nothing but its coupling holds it back.
 void PenaltyResponse::aim_grasped(const MotionInput& input, const WorldState& bodies) noexcept {
-  if (input.grasped.body < 0) return;
-  const Body& body = input.world.bodies[Index(input.grasped.body)];
+  if (input.grasped().body < 0) return;
+  const Body& body = input.world.bodies[Index(input.grasped().body)];
   Wrench load = body.load.constant;
   load.f += body.mass_kg * input.world.gravity_W;
   target_ = to_vector(
-      equilibrium_step(input.coupling, input.grasped, load, bodies.X_WB[Index(input.grasped.body)]));
+      equilibrium_step(input.coupling(), input.grasped(), load, bodies.X_WB[Index(input.grasped().body)]));
 }
 
 /// Adds a body with its target over a step of `h_s` seconds.
@@ -152,9 +152,9 @@ void PenaltyResponse::add_body(const MotionInput& input, int body, double h_s,
                                const WorldState& bodies) noexcept {
   const Body& what = input.world.bodies[Index(body)];
   const Pose& X_WB = bodies.X_WB[Index(body)];
-  if (body == input.grasped.body) {
-    const GraspedBody as_body = grasped_body_of(what.load, input.grasped, X_WB,
-                                                coupling_stiffness(input.coupling), target_, input.dt_s);
+  if (body == input.grasped().body) {
+    const GraspedBody as_body = grasped_body_of(what.load, input.grasped(), X_WB,
+                                                coupling_stiffness(input.coupling()), target_, input.dt_s);
     problem_.add_body(placed(input.world, bodies, body), as_body.centre_W, as_body.metric, as_body.target,
                       h_s);
     return;
@@ -166,7 +166,7 @@ void PenaltyResponse::add_body(const MotionInput& input, int body, double h_s,
 
 std::span<const double> PenaltyResponse::bound_motion(const MotionInput& input, WorldState& bodies) noexcept {
   const World& world = input.world;
-  by_impulses_ = others_meet(world, input.grasped.body);
+  by_impulses_ = others_meet(world, input.grasped().body);
   aim_grasped(input, bodies);
   memory_.waiting.V_kept = bodies.V_WB;  // same size: nothing is allocated
   if (by_impulses_) {
@@ -177,14 +177,14 @@ std::span<const double> PenaltyResponse::bound_motion(const MotionInput& input, 
   for (Index i = 0; i < world.bodies.size(); ++i) {
     const Body& body = world.bodies[i];
     const int number = static_cast<int>(i);
-    if (!body.moves() || (by_impulses_ && number != input.grasped.body)) continue;
+    if (!body.moves() || (by_impulses_ && number != input.grasped().body)) continue;
     Twist& V_WB = bodies.V_WB[i];
-    if (number != input.grasped.body) {
+    if (number != input.grasped().body) {
       V_WB = carried_velocity(body.joint, bodies.X_WB[i], V_WB);
       V_WB = driven_velocity(body, world.gravity_W, bodies.X_WB[i], V_WB, input.dt_s);
     }
     V_before_joints_[i] = V_WB;
-    if (number != input.grasped.body && body.joint.kind == JointKind::kFree) continue;
+    if (number != input.grasped().body && body.joint.kind == JointKind::kFree) continue;
     // First the motion that the joint allows, and where the hand and the joint's forces lead without contact.
     problem_.clear();
     add_body(input, number, input.dt_s, bodies);
@@ -201,10 +201,10 @@ std::span<const double> PenaltyResponse::bound_motion(const MotionInput& input, 
   // Beside its own motion, a body goes as far as the grasped part may push it.
   bound_constrained_motion(input, bodies, memory_);
   for (Index i = 0; i < delta_.size(); ++i) {
-    if (static_cast<int>(i) == input.grasped.body) {
+    if (static_cast<int>(i) == input.grasped().body) {
       memory_.motion_bound[i] = delta_[i];
-    } else if (pushed_[i] && input.grasped.body >= 0) {
-      memory_.motion_bound[i] += delta_[Index(input.grasped.body)];
+    } else if (pushed_[i] && input.grasped().body >= 0) {
+      memory_.motion_bound[i] += delta_[Index(input.grasped().body)];
     }
   }
   return memory_.motion_bound;
@@ -268,7 +268,7 @@ void PenaltyResponse::solve(const StepInput& input, double rest_s, WorldState& b
   for (Index r = 0; r < rows.size(); ++r)  // many rows in turn are of the same two bodies
     if (r == 0 || rows[r].body_a != rows[r - 1].body_a || rows[r].body_b != rows[r - 1].body_b)
       islands_.join(rows[r].body_a, rows[r].body_b);
-  const int of_grasped = by_impulses_ ? islands_.of(input.grasped.body) : -1;
+  const int of_grasped = by_impulses_ ? islands_.of(input.grasped().body) : -1;
   bodies_.set(world.bodies.size(), world.bodies.size(), [&](Index i) {
     const int island = islands_.moves(static_cast<int>(i)) ? islands_.of(static_cast<int>(i)) : -1;
     return by_impulses_ && island != of_grasped ? -1 : island;
@@ -282,7 +282,7 @@ void PenaltyResponse::solve(const StepInput& input, double rest_s, WorldState& b
 
 /// Makes the rows of the springs.
 void PenaltyResponse::find_rows(const StepInput& input, GapOracle& gaps, const WorldState& bodies) noexcept {
-  const int grasped = input.grasped.body;
+  const int grasped = input.grasped().body;
   std::fill(pushed_.begin(), pushed_.end(), 0);
   contacts_.rows.clear();
   if (by_impulses_ && grasped < 0) return;
@@ -303,8 +303,8 @@ void PenaltyResponse::find_rows(const StepInput& input, GapOracle& gaps, const W
 void PenaltyResponse::advance(const StepInput& input, double t_s, WorldState& bodies) const noexcept {
   if (!by_impulses_) {
     advance_bodies(input.world, bodies.V_WB, t_s, bodies.X_WB);
-  } else if (input.grasped.body >= 0) {
-    const Index grasped = Index(input.grasped.body);
+  } else if (input.grasped().body >= 0) {
+    const Index grasped = Index(input.grasped().body);
     bodies.X_WB[grasped] = advanced(bodies.X_WB[grasped], bodies.V_WB[grasped], t_s);
   }
 }
@@ -317,7 +317,7 @@ void PenaltyResponse::move_by_springs(const StepInput& input, GapOracle& gaps, W
   find_rows(input, gaps, bodies);
   const double impact_s = first_impact(input, rows, gaps, bodies.V_WB);
   const double rest_s = input.dt_s - impact_s;
-  const int grasped = input.grasped.body;
+  const int grasped = input.grasped().body;
   stored_J_ = 0.0;
   if (impact_s > 0.0) {
     advance_distances(rows, bodies.X_WB, bodies.V_WB, impact_s);
@@ -344,8 +344,8 @@ void PenaltyResponse::move_by_springs(const StepInput& input, GapOracle& gaps, W
   report.time_of_impact_s = impact_s;
 }
 
-void PenaltyResponse::step(const StepInput& input, GapOracle& gaps, WorldState& bodies,
-                           FrameReport& report) noexcept {
+void PenaltyResponse::step(const StepInput& input, GapOracle& gaps, WorldState& bodies, FrameReport& report,
+                           std::span<HandReport> /*others*/) noexcept {
   const int tests_before = gaps.tests_left();
   if (!by_impulses_) {
     move_by_springs(input, gaps, bodies, report);
@@ -364,8 +364,9 @@ void PenaltyResponse::step(const StepInput& input, GapOracle& gaps, WorldState& 
   report.validation_tests = tests_before - gaps.tests_left();
 }
 
-Wrench PenaltyResponse::felt(const StepInput& input, const PlacedHandle& handle) noexcept {
-  const GraspedPart& grasped = input.grasped;
+Wrench PenaltyResponse::felt(const StepInput& input, const PlacedHandle& handle,
+                             std::size_t /*hand*/) noexcept {
+  const GraspedPart& grasped = input.grasped();
   if (grasped.body != rate_of_) rate_ = {};
   rate_of_ = grasped.body;
   if (grasped.body < 0) return {};
@@ -374,7 +375,7 @@ Wrench PenaltyResponse::felt(const StepInput& input, const PlacedHandle& handle)
   const Twist V_WH_proxy = twist_between(X_WH_before, handle.X_WH_proxy, input.dt_s);
   constexpr double kFilter_s = 0.005;  // half of what devices take for a velocity
   rate_ = rate_ + (V_WH_proxy - grasped.V_WH - rate_) * (input.dt_s / (kFilter_s + input.dt_s));
-  return coupling_wrench(input.coupling, grasped, handle.to_hand, rate_);
+  return coupling_wrench(input.coupling(), grasped, handle.to_hand, rate_);
 }
 
 }  // namespace tactum::inline v0_1

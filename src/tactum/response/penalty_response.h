@@ -41,17 +41,18 @@ class PenaltyResponse {
   /// gravity; all as their joints allow. Sets the bodies' velocities.
   std::span<const double> bound_motion(const MotionInput& input, WorldState& bodies) noexcept;
   /// Moves everything that moves, and puts every pose back on its joint. Fills the report's response fields.
-  void step(const StepInput& input, GapOracle& gaps, WorldState& bodies, FrameReport& report) noexcept;
+  void step(const StepInput& input, GapOracle& gaps, WorldState& bodies, FrameReport& report,
+            std::span<HandReport> others) noexcept;
   /// The wrench of the coupling from the hand to the grasped part, at the handle, world axes [N, N m]. Its
   /// damper sees the rate at which the two move apart, filtered: the velocity of the hand is one over some
   /// milliseconds, that of the part is one over the frame, in which a step of an encoder is a leap. Once a
   /// frame.
-  Wrench felt(const StepInput& input, const PlacedHandle& handle) noexcept;
+  Wrench felt(const StepInput& input, const PlacedHandle& handle, std::size_t hand) noexcept;
 
   /// The contacts of the last step.
   std::span<const ContactRow> rows() const noexcept { return contacts_.rows; }
   /// Energy of the contacts' springs, at the end of the last step [J].
-  double stored_J() const noexcept { return stored_J_; }
+  double stored_J(std::size_t /*hand*/) const noexcept { return stored_J_; }
   /// Whether rows were dropped for want of room.
   bool rows_full() const noexcept { return contacts_.full || memory_.contact_rows.full; }
 

@@ -36,11 +36,11 @@ std::span<const double> Response::bound_motion(const MotionInput& input, WorldSt
   return std::visit([&](auto& model) { return model.bound_motion(input, bodies); }, model_);
 }
 
-void Response::step(const StepInput& input, GapOracle& gaps, WorldState& bodies,
-                    FrameReport& report) noexcept {
+void Response::step(const StepInput& input, GapOracle& gaps, WorldState& bodies, FrameReport& report,
+                    std::span<HandReport> others) noexcept {
   std::visit(
       [&](auto& model) {
-        model.step(input, gaps, bodies, report);
+        model.step(input, gaps, bodies, report, others);
         if (model.rows_full()) report.flags |= frame_flag::kPointsFull;
         if (gaps.capacity_reached()) report.flags |= frame_flag::kCapacityReached;
       },
@@ -49,8 +49,13 @@ void Response::step(const StepInput& input, GapOracle& gaps, WorldState& bodies,
   follow_joints(input.world, bodies);
 }
 
-Wrench Response::felt(const StepInput& input, const PlacedHandle& handle) noexcept {
-  return std::visit([&](auto& model) { return model.felt(input, handle); }, model_);
+Wrench Response::felt(const StepInput& input, const PlacedHandle& handle, std::size_t hand) noexcept {
+  return std::visit([&](auto& model) { return model.felt(input, handle, hand); }, model_);
+}
+
+Wrench Response::coupled(std::size_t hand) const noexcept {
+  const ConstraintResponse* const model = constraint();
+  return model != nullptr ? model->coupled(hand) : Wrench{};
 }
 
 std::span<const ContactRow> Response::rows() const noexcept {
@@ -62,8 +67,8 @@ std::span<const FrictionUse> Response::friction_uses() const noexcept {
   return model != nullptr ? model->friction_uses() : std::span<const FrictionUse>{};
 }
 
-double Response::stored_J() const noexcept {
-  return std::visit([](const auto& model) { return model.stored_J(); }, model_);
+double Response::stored_J(std::size_t hand) const noexcept {
+  return std::visit([hand](const auto& model) { return model.stored_J(hand); }, model_);
 }
 
 }  // namespace tactum::inline v0_1

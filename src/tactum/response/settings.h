@@ -3,6 +3,7 @@
 /// the paper's value. Constant during a frame; settings that setting_table.h calls live may change between
 /// two frames. [Gregory 2000]: "Six Degree-of-Freedom Haptic Display of Polygonal Models".
 
+#include <algorithm>
 #include <vector>
 
 #include "tactum/contact/contact_work.h"
@@ -113,22 +114,40 @@ struct WorkBudget {
   bool sleep = true;  ///< bodies at rest are not tested, where nothing could show (sleep.h)
 };
 
-/// All of it.
-struct FrameSettings {
-  double dt_s = 0.001;  ///< time from frame to frame [s]
+/// What each hand has of its own: the place of its device, its grasp, and the chain from the coupling to the
+/// device.
+struct HandSettings {
   Workspace workspace;
   Tool tool;
   Coupling coupling;
+  SmoothingSettings smoothing;
+  PortSettings port;
+  SafetyLimits safety;
+};
+
+/// All of it; the inherited members are those of the first hand.
+struct FrameSettings : HandSettings {
+  double dt_s = 0.001;                    ///< time from frame to frame [s]
+  std::vector<HandSettings> other_hands;  ///< of the second hand and all after it; constant in a simulation
   ResponseModel response = ResponseModel::kConstraint;
   Penalty penalty;
   Constraint constraint;
   PairCoefficients friction;  ///< Coulomb's, in the constraint response
   Impacts impacts;
   Shading shading;
-  SmoothingSettings smoothing;
-  PortSettings port;
-  SafetyLimits safety;
   WorkBudget budget;
+
+  std::size_t hands() const noexcept { return 1 + other_hands.size(); }
+  /// The settings of a hand, counted from 0.
+  const HandSettings& hand(std::size_t number) const noexcept {
+    return number == 0 ? *this : other_hands[number - 1];
+  }
+  /// The smallest workspace scale of all hands: lengths of the scene that belong to no hand go by it [-].
+  double smallest_scale() const noexcept {
+    double smallest = workspace.scale;
+    for (const HandSettings& other : other_hands) smallest = std::min(smallest, other.workspace.scale);
+    return smallest;
+  }
 };
 
 }  // namespace tactum::inline v0_1

@@ -45,7 +45,7 @@ bool is_balanced(const ConstraintStep& step, Index body) {
 /// Whether the body is where it was, with as many contacts, or, without any, in balance.
 bool is_still(const ConstraintStep& step, Index body) {
   const Sleep& s = step.own.sleep;
-  if (s.touches[body] != s.touched[body] || static_cast<int>(body) == step.grasped.body) return false;
+  if (s.touches[body] != s.touched[body] || is_grasped(step, body)) return false;
   if (step.own.free.unconverged[body] != 0) return false;
   if (s.touches[body] == 0 && !is_balanced(step, body)) return false;
   const double most = kStillShare * step.own.constraint.skin_m[body];

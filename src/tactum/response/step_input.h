@@ -60,29 +60,53 @@ inline PlacedHandle handle_at(const GraspedPart& grasped, const Pose& X_WB) {
                                                                  : followed_turn(turn, grasped.turned_W)}};
 }
 
+/// What a response knows of a hand.
+struct HandInput {
+  GraspedPart grasped;
+  Coupling coupling;  ///< in the scene
+  StepLimits limits;  ///< of the grasped part
+  double left = 1.0;  ///< of the coupling, while the part is left to another hand (Grasp::left) [-]
+  /// It is the first hand that holds the part: weight, load and damping of a part that several hold are
+  /// counted once.
+  bool bears_load = true;
+};
+
+/// Whether some hand holds a body.
+inline bool is_grasped(std::span<const HandInput> hands, std::size_t body) noexcept {
+  for (const HandInput& hand : hands)
+    if (hand.grasped.body == static_cast<int>(body)) return true;
+  return false;
+}
+
+/// How many hands hold a body.
+inline int holders_of(std::span<const HandInput> hands, int body) noexcept {
+  int holders = 0;
+  for (const HandInput& hand : hands) holders += hand.grasped.body == body ? 1 : 0;
+  return holders;
+}
+
+/// What a response knows of a hand that has found `grasped`. `share`: of the coupling's stiffness that the
+/// port's energy balance leaves (loop/passivity.h); `left`: HandInput::left.
+HandInput hand_input(const FrameSettings& settings, const HandSettings& hand, const GraspedPart& grasped,
+                     std::span<const double> radius_m, double share, double left = 1.0) noexcept;
+
 /// The input of a motion bound: everything that is known before contacts are looked for.
 struct MotionInput {
   const World& world;
   const FrameSettings& settings;
-  const GraspedPart& grasped;
+  std::span<const HandInput> hands;  ///< at least one
   std::span<const double> radius_m;  ///< of each body: farthest point from its origin [m]
   double dt_s;                       ///< time from frame to frame [s]
-  Coupling coupling;                 ///< in the scene
-  StepLimits limits;                 ///< of the grasped part
+  StepLimits limits;                 ///< of all grasped parts: the smallest of each
+  double scale;                      ///< FrameSettings::smallest_scale() [-]
+
+  /// Of the first hand, the only one that the penalty response knows.
+  const GraspedPart& grasped() const noexcept { return hands.front().grasped; }
+  const Coupling& coupling() const noexcept { return hands.front().coupling; }
 };
 
-/// `share`: of the coupling's stiffness that the port's energy balance leaves (loop/passivity.h).
-inline MotionInput motion_input(const World& world, const FrameSettings& settings, const GraspedPart& grasped,
-                                std::span<const double> radius_m, double share) noexcept {
-  const double radius = grasped.body < 0 ? 0.0 : radius_m[static_cast<std::size_t>(grasped.body)];
-  return {world,
-          settings,
-          grasped,
-          radius_m,
-          settings.dt_s,
-          in_scene(softened(settings.coupling, share), settings.workspace.scale),
-          step_limits(settings, radius)};
-}
+MotionInput motion_input(const World& world, const FrameSettings& settings, std::span<const HandInput> hands,
+                         std::span<const double> radius_m) noexcept;
 
 struct StepInput : MotionInput {
   std::span<const ContactPatch> patches;       ///< found with the bodies at X_WB_start

@@ -93,7 +93,7 @@ void admit_bodies(ConstraintStep& step) {
   w.order.clear();
   for (Index i = 0; i < step.world.bodies.size(); ++i)
     if (step.world.bodies[i].moves() && !asleep(w, i) &&
-        (!step.gaps.blocked(static_cast<int>(i)) || static_cast<int>(i) == step.grasped.body))
+        (!step.gaps.blocked(static_cast<int>(i)) || is_grasped(step, i)))
       w.order.push_back(static_cast<int>(i));
   std::sort(w.order.begin(), w.order.end(), [&](int a, int b) {
     const Index i = Index(a);
@@ -107,7 +107,7 @@ void admit_bodies(ConstraintStep& step) {
     const auto end = w.patch_of.begin() + w.first_patch[Index(body) + 1];
     const auto tests =
         static_cast<int>(std::count_if(begin, end, [&](int p) { return w.counted[Index(p)] == 0; }));
-    if (tests > left && body != step.grasped.body) continue;
+    if (tests > left && !is_grasped(step, Index(body))) continue;
     left = std::max(0, left - tests);
     std::for_each(begin, end, [&](int p) { w.counted[Index(p)] = 1; });
     w.waits[Index(body)] = 0;

@@ -20,10 +20,9 @@ Coupling in_scene(const Coupling& at_device, double scale) noexcept {
 
 Wrench at_device(const Wrench& in_scene, double scale) noexcept { return {in_scene.f, in_scene.t / scale}; }
 
-StepLimits step_limits(const FrameSettings& settings, double radius_m) noexcept {
+StepLimits step_limits(const FrameSettings& settings, double scale, double radius_m) noexcept {
   const Constraint& c = settings.constraint;
   const bool penalty = settings.response == ResponseModel::kPenalty;
-  const double scale = settings.workspace.scale;
   // The published threshold keeps a step below what springs can stop, whatever the part's size.
   const double larger = penalty ? scale : std::max(scale, radius_m / kHandRadius_m);
   const double steps = settings.dt_s / kReferenceStep_s;

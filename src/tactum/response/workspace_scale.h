@@ -40,9 +40,14 @@ struct StepLimits {
   double turn_rad = 0.0;      ///< most that it turns; constraint response [rad]
 };
 
-/// The limits for a part whose farthest point is `radius_m` from its origin, 0 when nothing is grasped. The
+/// The limits at a workspace scale for a part whose farthest point is `radius_m` from its origin, 0 when
+/// nothing is grasped. The
 /// settings hold for a part of a hand's size. In the constraint response a larger one may go farther, as its
 /// points do when it turns.
-StepLimits step_limits(const FrameSettings& settings, double radius_m) noexcept;
+StepLimits step_limits(const FrameSettings& settings, double scale, double radius_m) noexcept;
+/// The same at the scale of the first hand.
+inline StepLimits step_limits(const FrameSettings& settings, double radius_m) noexcept {
+  return step_limits(settings, settings.workspace.scale, radius_m);
+}
 
 }  // namespace tactum::inline v0_1

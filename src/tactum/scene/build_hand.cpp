@@ -24,21 +24,21 @@ class DeviceMap {
 };
 
 /// The body that is grasped at the start; null when none is.
-const Body* grasped_body(const Scene& scene) {
-  const int body = scene.settings.tool.body;
+const Body* grasped_body(const Scene& scene, const HandSettings& hand) {
+  const int body = hand.tool.body;
   return body < 0 ? nullptr : &scene.world.bodies[static_cast<std::size_t>(body)];
 }
 
-Pose handle_at_start(const Scene& scene) {
-  const Body* body = grasped_body(scene);
-  return body ? body->X_WB * scene.settings.tool.X_BH : scene.settings.workspace.X_WD;
+Pose handle_at_start(const Scene& scene, const HandSettings& hand) {
+  const Body* body = grasped_body(scene, hand);
+  return body ? body->X_WB * hand.tool.X_BH : hand.workspace.X_WD;
 }
 
 /// Appends steps to a motion.
 class StepPlayer {
  public:
-  StepPlayer(SceneBuilder& builder, const Scene& scene, ScriptedMotion& motion)
-      : builder_(builder), scene_(scene), map_(scene.settings.workspace), motion_(motion) {}
+  StepPlayer(SceneBuilder& builder, const Scene& scene, const HandSettings& hand, ScriptedMotion& motion)
+      : builder_(builder), scene_(scene), hand_(hand), map_(hand.workspace), motion_(motion) {}
 
   void play(const HandStep& step, const std::string& path) {
     std::visit([&](const auto& kind) { append(kind, path); }, step);
@@ -50,7 +50,7 @@ class StepPlayer {
   /// About a line of the world; where it is absent, the grasped body's hinge.
   void append(const TurnStep& step, const std::string& path) {
     std::optional<Vec3> axis = step.axis, anchor = step.anchor_m;
-    if (const Body* body = grasped_body(scene_); body && body->joint.kind == JointKind::kHinge) {
+    if (const Body* body = grasped_body(scene_, hand_); body && body->joint.kind == JointKind::kHinge) {
       if (!axis) axis = body->joint.axis_W;
       if (!anchor) anchor = body->joint.anchor_W;
     }
@@ -64,7 +64,7 @@ class StepPlayer {
   }
 
   void append(const MoveStep& step, const std::string&) {
-    const Pose X_WH_start = handle_at_start(scene_);
+    const Pose X_WH_start = handle_at_start(scene_, hand_);
     Pose X_WH = map_.to_world(motion_.end_pose());
     if (step.offset_m) X_WH.p = X_WH_start.p + *step.offset_m;
     if (step.rotation_W) X_WH.R = *step.rotation_W * X_WH_start.R;
@@ -73,44 +73,63 @@ class StepPlayer {
 
   SceneBuilder& builder_;
   const Scene& scene_;
+  const HandSettings& hand_;
   DeviceMap map_;
   ScriptedMotion& motion_;
 };
 
 /// Checks that the hand is not sent out of the device's workspace.
-void check_workspace(SceneBuilder& builder, const HandMotion& motion, const SimulatedDeviceModel& device) {
+void check_workspace(SceneBuilder& builder, const std::string& path, const HandMotion& motion,
+                     const SimulatedDeviceModel& device) {
   constexpr double kLook_s = 0.01;
   double farthest = 0.0;
   for (double t = 0.0; t <= motion.duration_s(); t += kLook_s)
     farthest = std::max(farthest, motion.at(t).X_DH.p.norm());
   if (farthest <= device.workspace_radius_m) return;
-  builder.fail("hand", fmt::format("the motion leaves the workspace of the {}", device.name),
+  builder.fail(path, fmt::format("the motion leaves the workspace of the {}", device.name),
                fmt::format("{:.4f} m from its middle", farthest),
                fmt::format("at most {:.4f} m; see [workspace] scale and pos_m", device.workspace_radius_m));
+}
+
+/// Makes the motion of a hand that is described at `path`, and whose device at `device_path`.
+SceneHand made_hand(SceneBuilder& builder, const HandDescription& hand, const std::string& path,
+                    const std::string& device_path, const Scene& scene, const HandSettings& settings) {
+  SceneHand made;
+  const Result<SimulatedDeviceModel> device = simulated_device_preset(hand.device);
+  if (!device) {
+    builder.fail(device_path, device.error());
+    return made;
+  }
+  made.device = device->name;
+  made.grip = hand.grip;
+  if (const Result<HandModel> grip = hand_model(made.grip); !grip) builder.fail(path + ".grip", grip.error());
+
+  ScriptedMotion motion(DeviceMap(settings.workspace).to_device(handle_at_start(scene, settings)));
+  StepPlayer player(builder, scene, settings, motion);
+  for (int round = 0; round < hand.repeat && !builder.errors(); ++round)
+    for (std::size_t i = 0; i < hand.steps.size(); ++i)
+      player.play(hand.steps[i], item_path(path, "step", i));
+  if (builder.errors()) return made;
+  made.hand = std::make_shared<ScriptedMotion>(std::move(motion));
+  if (const auto& tremor = hand.tremor)
+    made.hand = std::make_shared<TremorMotion>(
+        made.hand, physiological_tremor(tremor->translation_m, tremor->rotation_rad,
+                                        static_cast<std::uint64_t>(tremor->seed)));
+  check_workspace(builder, path, *made.hand, *device);
+  return made;
 }
 
 }  // namespace
 
 void build_hand(SceneBuilder& builder, Scene& scene) {
-  const HandDescription& hand = builder.description().hand;
-  const Result<SimulatedDeviceModel> device = simulated_device_preset(hand.device);
-  if (!device) return builder.fail("device", device.error());
-  scene.device = device->name;
-  scene.grip = hand.grip;
-  if (const Result<HandModel> grip = hand_model(scene.grip); !grip) builder.fail("hand.grip", grip.error());
-
-  ScriptedMotion motion(DeviceMap(scene.settings.workspace).to_device(handle_at_start(scene)));
-  StepPlayer player(builder, scene, motion);
-  for (int round = 0; round < hand.repeat && !builder.errors(); ++round)
-    for (std::size_t i = 0; i < hand.steps.size(); ++i)
-      player.play(hand.steps[i], item_path("hand", "step", i));
-  if (builder.errors()) return;
-  scene.hand = std::make_shared<ScriptedMotion>(std::move(motion));
-  if (const auto& tremor = hand.tremor)
-    scene.hand = std::make_shared<TremorMotion>(
-        scene.hand, physiological_tremor(tremor->translation_m, tremor->rotation_rad,
-                                         static_cast<std::uint64_t>(tremor->seed)));
-  check_workspace(builder, *scene.hand, *device);
+  const SceneDescription& description = builder.description();
+  static_cast<SceneHand&>(scene) =
+      made_hand(builder, description.hand, "hand", "device", scene, scene.settings);
+  for (std::size_t i = 0; i < description.other_hands.size() && !builder.errors(); ++i) {
+    const std::string path = item_path("", "tool", i + 1);
+    scene.other_hands.push_back(made_hand(builder, description.other_hands[i].hand, path + ".hand",
+                                          path + ".device", scene, scene.settings.other_hands[i]));
+  }
 }
 
 }  // namespace tactum::inline v0_1

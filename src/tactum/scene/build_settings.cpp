@@ -37,33 +37,58 @@ Vec3 rim_of(const HingeLine& hinge, const RimGrasp& grasp) {
   return middle_of(hinge) + grasp.radius_m * (std::cos(angle) * x + std::sin(angle) * hinge.axis_B.cross(x));
 }
 
+/// A hand as it is described, its tool at `path`.
+struct DescribedHand {
+  std::string path;
+  const ToolDescription* tool;  ///< null: nothing is grasped
+  const WorkspaceDescription& workspace;
+};
+
 /// The place of the handle in the grasped body.
-Vec3 handle_in(SceneBuilder& builder, const BodyTool& tool, const Body& body) {
+Vec3 handle_in(SceneBuilder& builder, const std::string& path, const BodyTool& tool, const Body& body) {
   const bool hinged = body.joint.kind == JointKind::kHinge;
   if (const auto* point = std::get_if<PointGrasp>(&tool.grasp)) return p_BP_of(body) + point->pos_m;
   const auto* rim = std::get_if<RimGrasp>(&tool.grasp);
   if (rim == nullptr) return hinged ? middle_of(hinge_of(body)) : Vec3::Zero();
   if (hinged) return rim_of(hinge_of(body), *rim);
-  builder.fail("tool.grasp", "only a hinged body has a rim to hold", fmt::format("\"{}\"", body.name),
+  builder.fail(path + ".grasp", "only a hinged body has a rim to hold", fmt::format("\"{}\"", body.name),
                "a body whose joint is a hinge");
   return Vec3::Zero();
 }
 
 /// Grasps the body; its handle starts with the device's axes, whatever the body's. The handle's place.
-Vec3 grasp_body(SceneBuilder& builder, const BodyTool& grasp, Scene& scene) {
-  const int index = builder.find_body("tool.body", grasp.body, scene.world);
+Vec3 grasp_body(SceneBuilder& builder, const std::string& path, const BodyTool& grasp, const Scene& scene,
+                HandSettings& hand) {
+  const int index = builder.find_body(path + ".body", grasp.body, scene.world);
   if (index < 0) return Vec3::Zero();
   const Body& body = scene.world.bodies[static_cast<std::size_t>(index)];
   if (!body.moves()) {
-    builder.fail("tool.body", "a fixed body cannot be held", fmt::format("\"{}\"", body.name),
+    builder.fail(path + ".body", "a fixed body cannot be held", fmt::format("\"{}\"", body.name),
                  "a free or hinged body");
     return Vec3::Zero();
   }
-  Tool& tool = scene.settings.tool;
-  tool.body = index;
-  tool.X_BH.p = handle_in(builder, grasp, body);
-  tool.X_BH.R = body.X_WB.R.transpose() * scene.settings.workspace.X_WD.R;
-  return body.X_WB * tool.X_BH.p;
+  hand.tool.body = index;
+  hand.tool.X_BH.p = handle_in(builder, path, grasp, body);
+  hand.tool.X_BH.R = body.X_WB.R.transpose() * hand.workspace.X_WD.R;
+  return body.X_WB * hand.tool.X_BH.p;
+}
+
+/// Sets the grasp of a hand and the place of its device. By default the device's middle is where the handle
+/// starts, and its axes are the world's.
+void set_hand(SceneBuilder& builder, const DescribedHand& described, const Scene& scene, HandSettings& hand) {
+  Pose& X_WD = hand.workspace.X_WD;
+  X_WD.R = described.workspace.R_WD;
+  Vec3 handle_W = Vec3::Zero();
+  if (described.tool != nullptr) {
+    if (const auto* picking = std::get_if<PickingTool>(described.tool)) {
+      hand.tool.picks = true;
+      hand.tool.pick_distance_m = picking->pick_distance_m;
+      hand.tool.centre_fraction = picking->centre_fraction;
+    } else {
+      handle_W = grasp_body(builder, described.path, std::get<BodyTool>(*described.tool), scene, hand);
+    }
+  }
+  X_WD.p = described.workspace.pos_m.value_or(handle_W);
 }
 
 }  // namespace
@@ -78,20 +103,19 @@ void build_settings(SceneBuilder& builder, Scene& scene) {
   set_pairs(builder, "friction", settings.friction, scene.world, scene.settings.friction);
   set_pairs(builder, "restitution", settings.restitution, scene.world, scene.settings.impacts.restitution);
 
-  // By default the device's middle is where the handle starts, and its axes are the world's.
-  Pose& X_WD = scene.settings.workspace.X_WD;
-  X_WD.R = description.workspace.R_WD;
-  Vec3 handle_W = Vec3::Zero();
-  if (description.tool) {
-    if (const auto* picking = std::get_if<PickingTool>(&*description.tool)) {
-      scene.settings.tool.picks = true;
-      scene.settings.tool.pick_distance_m = picking->pick_distance_m;
-      scene.settings.tool.centre_fraction = picking->centre_fraction;
-    } else {
-      handle_W = grasp_body(builder, std::get<BodyTool>(*description.tool), scene);
-    }
+  const std::vector<OtherHandDescription>& others = description.other_hands;
+  if (!others.empty() && scene.settings.response == ResponseModel::kPenalty)
+    builder.fail("tool[1]", "the penalty response knows one hand only",
+                 fmt::format("{} tools", 1 + others.size()), "response = \"constraint\", or one [tool]");
+  const HandSettings usual = scene.settings;
+  set_hand(builder,
+           {others.empty() ? "tool" : "tool[0]", description.tool ? &*description.tool : nullptr,
+            description.workspace},
+           scene, scene.settings);
+  for (std::size_t i = 0; i < others.size(); ++i) {
+    HandSettings& hand = scene.settings.other_hands.emplace_back(usual);
+    set_hand(builder, {item_path("", "tool", i + 1), &others[i].tool, others[i].workspace}, scene, hand);
   }
-  X_WD.p = description.workspace.pos_m.value_or(handle_W);
 }
 
 }  // namespace tactum::inline v0_1

@@ -54,6 +54,7 @@ class CheckVisitor final : public ItemVisitor {
     CheckVisitor inside(item_path(path_, key), source_, errors_);
     visit(inside);
   }
+  bool several(const char*, bool in_memory) override { return in_memory; }
   std::size_t size(const char*, std::size_t in_memory) override { return in_memory; }
   void element(const char* key, std::size_t index, const KeyList&, const Visit& visit) override {
     CheckVisitor inside(item_path(path_, key, index), source_, errors_);

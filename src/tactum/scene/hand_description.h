@@ -91,4 +91,12 @@ struct HandDescription {
   std::vector<HandStep> steps = {};
 };
 
+/// A hand beside the first: its tool, the place of its device, and its motion. Scale, clutch, coupling and
+/// all other settings are those of the first, but for a coupling that the device chooses.
+struct OtherHandDescription {
+  ToolDescription tool = {};
+  WorkspaceDescription workspace = {};
+  HandDescription hand = {};
+};
+
 }  // namespace tactum::inline v0_1

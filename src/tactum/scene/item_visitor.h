@@ -65,6 +65,8 @@ class ItemVisitor {
   virtual bool present(const char* key, bool in_memory) = 0;
   /// The table under `key`, with its keys; an absent one is visited as an empty one.
   virtual void table(const char* key, const KeyList& keys, const Visit& visit) = 0;
+  /// Whether an item is an array of tables, where it may be a table: `in_memory` elsewhere than in a file.
+  virtual bool several(const char* key, bool in_memory) = 0;
   /// How many tables an array has.
   virtual std::size_t size(const char* key, std::size_t in_memory) = 0;
   virtual void element(const char* key, std::size_t index, const KeyList& keys, const Visit& visit) = 0;
@@ -145,6 +147,7 @@ class KeyVisitor final : public ItemVisitor {
   int word(const char* key, int index, const WordList&, Need) override;
   bool present(const char*, bool) override { return true; }
   void table(const char* key, const KeyList&, const Visit&) override { add(key); }
+  bool several(const char*, bool) override { return false; }
   std::size_t size(const char* key, std::size_t) override;
   void element(const char*, std::size_t, const KeyList&, const Visit&) override {}
   int marked(const std::vector<KeyList>&, const WordList&, int index, const Error&) override { return index; }
@@ -228,6 +231,9 @@ void visit_items(ItemVisitor& visitor, HandStep& step);
 void visit_items(ItemVisitor& visitor, TremorDescription& tremor);
 /// [hand]; the file's key `device` stands outside it.
 void visit_items(ItemVisitor& visitor, HandDescription& hand);
+
+/// A [[tool]] behind the first, with what belongs to its hand.
+void visit_items(ItemVisitor& visitor, OtherHandDescription& other);
 
 // The whole: visit_scene.cpp.
 void visit_items(ItemVisitor& visitor, SceneDescription& scene);

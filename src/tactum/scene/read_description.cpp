@@ -69,6 +69,7 @@ class TomlVisitor final : public ItemVisitor {
     TomlVisitor inside(reader_.table(key, keys), source_);
     visit(inside);
   }
+  bool several(const char* key, bool) override { return reader_.is_array(key); }
   std::size_t size(const char* key, std::size_t) override { return reader_.size(noted(key)); }
   void element(const char* key, std::size_t index, const KeyList& keys, const Visit& visit) override {
     TomlVisitor inside(reader_.element(key, index, keys), source_);

@@ -3,6 +3,7 @@
 /// description (build_scene.h) or a scene file (scene_file.h); constant while frames run.
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -17,17 +18,22 @@ namespace tactum::inline v0_1 {
 
 struct SettingsDescription;
 
-struct Scene {
+/// The simulated device and the motion of a hand.
+struct SceneHand {
+  std::string device;                      ///< preset of the simulated device the motion was made for
+  std::string grip;                        ///< hand model of the simulated hand
+  std::shared_ptr<const HandMotion> hand;  ///< from the handle's pose on; may be null
+};
+
+/// The inherited members are those of the first hand.
+struct Scene : SceneHand {
   std::string name;         ///< "gears"
   std::string description;  ///< one line
   World world;
   FrameSettings settings;           ///< its safety limits are the device's, see `safety`
   bool coupling_by_device = false;  ///< a session chooses the coupling for its device and rate
   SafetySettings safety;  ///< limits that the scene tightens; the session applies them to the device's limits
-  std::string device;     ///< preset of the simulated device the hand motion was made for
-  std::string grip;       ///< hand model of the simulated hand
-  std::shared_ptr<const HandMotion>
-      hand;  ///< motion of the simulated hand, from the handle's pose on; may be null
+  std::vector<SceneHand> other_hands;  ///< as in FrameSettings::other_hands
   std::vector<Goal> goals;
   /// The settings without those that a table [settings] of its file has changed; null where there is none.
   std::shared_ptr<const SettingsDescription> before_changes;
@@ -50,5 +56,7 @@ inline long frames_of_motion(const Scene& scene) {
 /// the device's properties for the passivity stage, and the coupling where the scene leaves that to the
 /// device. A session does this by itself; a Simulation of the scene's world takes these.
 FrameSettings settings_for(const Scene& scene, const DeviceInfo& info);
+/// The same of a scene with several hands: the device of each.
+FrameSettings settings_for(const Scene& scene, std::span<const DeviceInfo> infos);
 
 }  // namespace tactum::inline v0_1

@@ -70,6 +70,7 @@ struct SceneDescription {
   WorkspaceDescription workspace = {};
   std::optional<ToolDescription> tool = {};  ///< absent: nothing is grasped
   HandDescription hand = {};
+  std::vector<OtherHandDescription> other_hands = {};  ///< of the second hand and all after it
   std::vector<GoalDescription> goals = {};
   SceneSource source = {};
 };

@@ -56,7 +56,8 @@ class Remarks {
   std::vector<SceneRemark> all() {
     const int grasped = scene_.settings.tool.body;
     size_of_scene();
-    if (grasped >= 0) size_of_grasped(world_.bodies[static_cast<std::size_t>(grasped)]);
+    for (const Body& body : world_.bodies)
+      if (is_grasped(body)) size_of_grasped(body);
     for (const std::string& remark : scene_.remarks) note(remark);
     meshes_without_scale();
     for (const Body& body : world_.bodies) body_alone(body);
@@ -74,9 +75,11 @@ class Remarks {
  private:
   void note(std::string text) { remarks_.push_back({false, std::move(text)}); }
   void warn(std::string text) { remarks_.push_back({true, std::move(text)}); }
+  int number_of(const Body& body) const { return static_cast<int>(&body - world_.bodies.data()); }
   bool is_grasped(const Body& body) const {
-    const int grasped = scene_.settings.tool.body;
-    return grasped >= 0 && &body == &world_.bodies[static_cast<std::size_t>(grasped)];
+    for (std::size_t h = 0; h < scene_.settings.hands(); ++h)
+      if (number_of(body) == scene_.settings.hand(h).tool.body) return true;
+    return false;
   }
   /// "the held part "peg"", "the body "block"".
   std::string called(const Body& body) const {
@@ -177,7 +180,7 @@ void Remarks::mass(const Body& body) {
                             mass_text(body.mass_kg), density));
   if (!is_grasped(body) || !(device_.max_force_N > 0.0)) return;
   const double weight = body.mass_kg * world_.gravity_W.norm();
-  const bool carried = world_.joint_of(scene_.settings.tool.body).kind != JointKind::kFree;
+  const bool carried = world_.joint_of(number_of(body)).kind != JointKind::kFree;
   if (!carried && weight > device_.max_force_N)
     warn(fmt::format("the weight of {} is {:.3g} N; the device {} exerts {:.3g} N at most", called(body),
                      weight, device_.name, device_.max_force_N));
@@ -187,7 +190,7 @@ void Remarks::mass(const Body& body) {
 }
 
 void Remarks::spring(const Body& body) {
-  const Joint& joint = world_.joint_of(static_cast<int>(&body - world_.bodies.data()));
+  const Joint& joint = world_.joint_of(number_of(body));
   const bool slides = joint.kind == JointKind::kSlider;
   if (joint.stiffness > (slides ? kStiffestSlider : kStiffestHinge))
     warn(fmt::format(

@@ -37,6 +37,10 @@ class TomlReader {
       : TomlReader(table, file, std::move(path), std::span(keys.begin(), keys.size()), errors) {}
 
   bool has(const char* key) const { return table_.contains(key); }
+  bool is_array(const char* key) const {
+    const toml::node* value = table_.get(key);
+    return value != nullptr && value->is_array();
+  }
   /// "[body 2.joint]", or "the file" for the whole.
   std::string section() const { return path_.empty() ? "the file" : file_section(path_); }
   FirstError& errors() const { return errors_; }

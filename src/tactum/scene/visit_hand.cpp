@@ -94,4 +94,11 @@ void visit_items(ItemVisitor& visitor, HandDescription& hand) {
   visitor.tables("step", hand.steps);
 }
 
+void visit_items(ItemVisitor& visitor, OtherHandDescription& other) {
+  visit_items(visitor, other.tool);
+  visitor.text("device", other.hand.device);
+  visitor.table("workspace", other.workspace);
+  visitor.table("hand", other.hand);
+}
+
 }  // namespace tactum::inline v0_1

@@ -62,7 +62,7 @@ void check_settings(ItemVisitor& visitor, const SettingsDescription& settings) {
   if (settings.coupling_by_device && !same)
     visitor.fail("coupling", "the coupling is set, and chosen by the device", "settings.frame.coupling",
                  "coupling_by_device = false with it");
-  if (frame.tool.body >= 0 || frame.tool.picks)
+  if (frame.tool.body >= 0 || frame.tool.picks || !frame.other_hands.empty())
     visitor.fail("tool", "the grasp is set by a body's index", "settings.frame.tool",
                  "SceneDescription::tool");
   if (!frame.friction.coefficients.empty() || !frame.impacts.restitution.coefficients.empty())
@@ -78,6 +78,25 @@ void visit_settings(ItemVisitor& visitor, SettingsDescription& settings, Workspa
   visit_pairs(visitor, "friction", settings.friction, kNotNegative);
   visit_pairs(visitor, "restitution", settings.restitution, {0.0, 1.0});
   check_settings(visitor, settings);
+}
+
+/// [tool], or several [[tool]]: the first is the hand of the tables [workspace] and [hand] and of the key
+/// `device`, each after it has its own.
+void visit_tools(ItemVisitor& visitor, SceneDescription& scene) {
+  if (!visitor.several("tool", !scene.other_hands.empty()))
+    return visitor.optional("tool", scene.tool, [&](ToolDescription& tool) { visitor.table("tool", tool); });
+  const std::size_t tools = visitor.size("tool", 1 + scene.other_hands.size());
+  if (!scene.tool && !scene.other_hands.empty())
+    visitor.fail("tool", "the scene has a second hand, and no first", "SceneDescription::other_hands alone",
+                 "SceneDescription::tool with them");
+  if (tools == 0) return;
+  ToolDescription& first = scene.tool ? *scene.tool : scene.tool.emplace();
+  visitor.element("tool", 0, known_keys<ToolDescription>(),
+                  [&](ItemVisitor& inside) { visit_items(inside, first); });
+  scene.other_hands.resize(tools - 1);
+  for (std::size_t i = 1; i < tools; ++i)
+    visitor.element("tool", i, known_keys<OtherHandDescription>(),
+                    [&](ItemVisitor& inside) { visit_items(inside, scene.other_hands[i - 1]); });
 }
 
 }  // namespace
@@ -106,7 +125,7 @@ void visit_items(ItemVisitor& visitor, SceneDescription& scene) {
   if (scene.bodies.empty()) visitor.fail(nullptr, "the scene has no [[body]]", "none", "at least one");
   visitor.tables("field", scene.fields);
   visit_settings(visitor, scene.settings, scene.workspace);
-  visitor.optional("tool", scene.tool, [&](ToolDescription& tool) { visitor.table("tool", tool); });
+  visit_tools(visitor, scene);
   visitor.text("device", scene.hand.device);
   visitor.table("hand", scene.hand);
   visitor.tables("goal", scene.goals);

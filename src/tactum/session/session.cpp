@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "tactum/drivers/registry.h"
 #include "tactum/haptics/simulation.h"
@@ -17,27 +18,65 @@ void put_goals(const GoalRecord& goals, SessionStatus& status) noexcept {
     status.goals[goal] = goals.best(goal);
 }
 
+/// The devices of a session that has one for each hand.
+std::unique_ptr<Device> joined(std::vector<std::unique_ptr<Device>> devices) {
+  if (devices.size() == 1) return std::move(devices.front());
+  return std::make_unique<HandDevices>(std::move(devices));
+}
+
+/// The settings of the scene on its devices.
+FrameSettings settings_on(const Scene& scene, const Device& device, const HandDevices* several) {
+  if (several == nullptr) return settings_for(scene, device.info());
+  std::vector<DeviceInfo> infos;
+  for (std::size_t h = 0; h < several->hands(); ++h) infos.push_back(several->device(h).info());
+  return settings_for(scene, infos);
+}
+
 bool is_simulated(const std::string& name) { return name == "simulated" || name.starts_with("simulated:"); }
 
 }  // namespace
 
 Result<std::unique_ptr<Session>> Session::open(Scene scene, const SessionOptions& options) {
-  DeviceOptions device_options;
-  device_options.hand_motion = scene.hand;
-  device_options.grip = options.grip.empty() ? scene.grip : options.grip;
-  const std::string name =
-      listed_device_name(options.device.empty() ? "simulated:" + scene.device : options.device);
-  if (is_simulated(name) && !scene.hand)
-    return Error{"the scene has no hand motion for a simulated device", "none", "one, if only a hold",
-                 scene.name};
-  Result<std::unique_ptr<Device>> device = make_device(name, device_options);
-  if (!device) return device.error();
-  return open_with(std::move(scene), std::move(*device), options.rate_Hz);
+  if (options.other_devices.size() > scene.other_hands.size())
+    return Error{"more devices than the scene has hands", std::to_string(1 + options.other_devices.size()),
+                 "at most " + std::to_string(1 + scene.other_hands.size()), scene.name};
+  std::vector<std::unique_ptr<Device>> devices;
+  const auto add = [&](const std::string& asked, const SceneHand& hand) -> Result<void> {
+    DeviceOptions device_options;
+    device_options.hand_motion = hand.hand;
+    device_options.grip = options.grip.empty() ? hand.grip : options.grip;
+    const std::string name = listed_device_name(asked.empty() ? "simulated:" + hand.device : asked);
+    if (is_simulated(name) && !hand.hand)
+      return Error{"the scene has no hand motion for a simulated device", "none", "one, if only a hold",
+                   scene.name};
+    Result<std::unique_ptr<Device>> device = make_device(name, device_options);
+    if (!device) return device.error();
+    devices.push_back(std::move(*device));
+    return {};
+  };
+  if (Result<void> added = add(options.device, scene); !added) return added.error();
+  for (std::size_t i = 0; i < scene.other_hands.size(); ++i) {
+    const std::string asked = i < options.other_devices.size() ? options.other_devices[i] : "";
+    if (Result<void> added = add(asked, scene.other_hands[i]); !added) return added.error();
+  }
+  return open_with(std::move(scene), std::move(devices), options.rate_Hz);
 }
 
 Result<std::unique_ptr<Session>> Session::open_with(Scene scene, std::unique_ptr<Device> device,
                                                     double rate_Hz) {
-  if (!device) return Error{"the session has no device", "null", "a device", scene.name};
+  std::vector<std::unique_ptr<Device>> devices;
+  devices.push_back(std::move(device));
+  return open_with(std::move(scene), std::move(devices), rate_Hz);
+}
+
+Result<std::unique_ptr<Session>> Session::open_with(Scene scene, std::vector<std::unique_ptr<Device>> devices,
+                                                    double rate_Hz) {
+  for (const std::unique_ptr<Device>& device : devices)
+    if (!device) return Error{"the session has no device", "null", "a device", scene.name};
+  if (devices.size() != scene.settings.hands())
+    return Error{"the scene has another number of hands than there are devices",
+                 std::to_string(devices.size()) + " devices", std::to_string(scene.settings.hands()),
+                 scene.name};
   if (rate_Hz != 0.0) {
     if (Result<void> rate = check_rate(rate_Hz); !rate) return rate.error();
     scene.settings.dt_s = 1.0 / rate_Hz;
@@ -48,7 +87,7 @@ Result<std::unique_ptr<Session>> Session::open_with(Scene scene, std::unique_ptr
     if (error.where.empty()) error.where = scene.name;
     return error;
   }
-  return std::unique_ptr<Session>(new Session(std::move(scene), std::move(device)));
+  return std::unique_ptr<Session>(new Session(std::move(scene), joined(std::move(devices))));
 }
 
 Result<std::unique_ptr<Session>> Session::open(const SceneDescription& scene, const SessionOptions& options) {
@@ -68,12 +107,15 @@ Session::Session(Scene scene, std::unique_ptr<Device> device)
     : scene_(std::move(scene)),
       device_limits_(safety_limits(device->info())),
       device_(std::move(device)),
-      pointer_(dynamic_cast<PointerDevice*>(device_.get())),
+      several_(dynamic_cast<HandDevices*>(device_.get())),
+      pointer_(dynamic_cast<PointerDevice*>(several_ != nullptr ? &several_->device(0) : device_.get())),
       commands_(kCommands),
       state_(scene_.world, scene_.settings),
+      record_(scene_.settings.hands()),
       goals_(scene_.world, scene_.goals),
       glances_(kGlances) {
-  scene_.settings = settings_for(scene_, device_->info());
+  scene_.settings = settings_on(scene_, *device_, several_);
+  for (std::size_t h = 1; h < hands(); ++h) other_device_limits_.push_back(safety_limits(device_of(h)));
   put_goals(goals_, newest_);
 }
 
@@ -115,9 +157,29 @@ void Session::obey(const SessionCommand& command) noexcept {
       return;
     case SessionCommand::Kind::kSet: {
       set_live(command, device_limits_, scene_.settings, scene_.safety);
+      // A setting is that of all hands: the others take the first one's place for it.
+      for (std::size_t i = 0; i < other_device_limits_.size(); ++i) {
+        HandSettings& first = scene_.settings;
+        std::swap(first, scene_.settings.other_hands[i]);
+        set_live(command, other_device_limits_[i], scene_.settings, scene_.safety);
+        std::swap(first, scene_.settings.other_hands[i]);
+      }
       return;
     }
   }
+}
+
+/// Every hand may touch and pick what the goals name.
+void Session::watch_goals() noexcept {
+  for (std::size_t h = 0; h < hands(); ++h)
+    goals_.watch(scene_.world, state_.world, state_.of_hand(h).hand.grasp.body, state_.response.rows());
+}
+
+Wrench Session::run_frame(const DeviceSample& sample, const FrameTick& tick) noexcept {
+  if (several_ == nullptr) return haptic_frame(scene_.world, scene_.settings, sample, tick, state_, report_);
+  haptic_frame(scene_.world, scene_.settings, several_->samples(), tick, state_, report_,
+               several_->wrenches());
+  return several_->largest();
 }
 
 Wrench Session::run(const DeviceSample& sample, const FrameTick& tick) noexcept {
@@ -130,9 +192,9 @@ Wrench Session::run(const DeviceSample& sample, const FrameTick& tick) noexcept 
   felt.stop = tick.stop || wrench_at_zero_.load(std::memory_order_relaxed) ||
               (stop_asked_ != nullptr && stop_asked_->load(std::memory_order_relaxed));
   if (stage_clock_ != nullptr) stage_clock_->frame_begins();
-  const Wrench F_D = haptic_frame(scene_.world, scene_.settings, sample, felt, state_, report_);
-  if (!tick.stop) record_.add(report_, state_.world);
-  goals_.watch(scene_.world, state_.world, state_.hand.grasp.body, state_.response.rows());
+  const Wrench F_D = run_frame(sample, felt);
+  if (!tick.stop) record_.add(report_, state_.world, state_.other_reports);
+  watch_goals();
   if (feed_ != nullptr) feed_->take({report_, state_, scene_.settings}, stage_clock_);
   if (trace_ != nullptr) trace_->take({report_, state_, scene_.settings}, stage_clock_);
   if (listener_ != nullptr)

@@ -20,6 +20,7 @@
 #include "tactum/scene/scene.h"
 #include "tactum/scene/scene_description.h"
 #include "tactum/session/command.h"
+#include "tactum/session/hand_devices.h"
 #include "tactum/session/run_listener.h"
 #include "tactum/telemetry/frame_feed.h"
 #include "tactum/telemetry/run_record.h"
@@ -29,7 +30,9 @@
 namespace tactum::inline v0_1 {
 
 struct SessionOptions {
-  std::string device;    ///< as in drivers/registry.h; empty: the scene's simulated preset
+  std::string device;  ///< as in drivers/registry.h; empty: the scene's simulated preset
+  /// The same of the second hand and all after it; those that are missing count as empty.
+  std::vector<std::string> other_devices = {};
   std::string grip;      ///< of the simulated hand; empty: the scene's
   double rate_Hz = 0.0;  ///< 0: the scene's [Hz]
 };
@@ -55,6 +58,9 @@ class Session final : private HapticFrame {
   /// The same with a device of the caller's (not yet open); the scene needs no hand motion. `rate_Hz` 0: the
   /// scene's [Hz].
   static Result<std::unique_ptr<Session>> open_with(Scene scene, std::unique_ptr<Device> device,
+                                                    double rate_Hz = 0.0);
+  /// The same of a scene with several hands: the device of each.
+  static Result<std::unique_ptr<Session>> open_with(Scene scene, std::vector<std::unique_ptr<Device>> devices,
                                                     double rate_Hz = 0.0);
   /// The same of a description, which is built first (build_scene.h).
   static Result<std::unique_ptr<Session>> open(const SceneDescription& scene, const SessionOptions& options);
@@ -91,7 +97,13 @@ class Session final : private HapticFrame {
   bool can_be_led() const noexcept { return pointer_ != nullptr; }
 
   const Scene& scene() const noexcept { return scene_; }
+  /// Of the first hand's device.
   const DeviceInfo& device() const noexcept { return device_->info(); }
+  std::size_t hands() const noexcept { return scene_.settings.hands(); }
+  /// Of a hand's device, counted from 0.
+  const DeviceInfo& device_of(std::size_t hand) const noexcept {
+    return several_ == nullptr ? device_->info() : several_->device(hand).info();
+  }
   /// What the device says is wrong with it, with the cure; empty for nothing. While no run is going on.
   std::string device_trouble() const { return device_->trouble(); }
   double rate_Hz() const noexcept { return 1.0 / scene_.settings.dt_s; }
@@ -119,13 +131,17 @@ class Session final : private HapticFrame {
  private:
   Session(Scene scene, std::unique_ptr<Device> device);
   Wrench run(const DeviceSample& sample, const FrameTick& tick) noexcept override;
+  Wrench run_frame(const DeviceSample& sample, const FrameTick& tick) noexcept;
+  void watch_goals() noexcept;
   void obey(const SessionCommand& command) noexcept;
 
   static constexpr std::size_t kCommands = 256;
 
   Scene scene_;
-  SafetyLimits device_limits_;  // scene_.safety tightens them
+  SafetyLimits device_limits_;                     // scene_.safety tightens them
+  std::vector<SafetyLimits> other_device_limits_;  // of the second hand and all after it
   std::unique_ptr<Device> device_;
+  HandDevices* several_;    // the device, when it is those of several hands
   PointerDevice* pointer_;  // the device, when it is one that can be led
   SpscRing<SessionCommand> commands_;
   std::atomic<bool> wrench_at_zero_{false};

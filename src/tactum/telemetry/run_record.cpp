@@ -5,7 +5,8 @@
 
 namespace tactum::inline v0_1 {
 
-void RunRecord::add(const FrameReport& report, const WorldState& world) noexcept {
+void RunRecord::add(const FrameReport& report, const WorldState& world,
+                    std::span<const HandReport> others) noexcept {
   ++frames;
   if (report.in_contact()) ++colliding_frames;
   if (report.grasped_contact_points > 0) ++grasped_contact_frames;
@@ -29,6 +30,18 @@ void RunRecord::add(const FrameReport& report, const WorldState& world) noexcept
   max_torque_step_Nm = std::max(max_torque_step_Nm, (report.shown.t - last_shown_.t).norm());
   last_shown_ = report.shown;
 
+  for (std::size_t h = 0; h < std::min(others.size(), other_hands.size()); ++h) {
+    HandRun& hand = other_hands[h];
+    const Wrench& shown = others[h].shown;
+    if (others[h].grasped_contact_points > 0) ++hand.grasped_contact_frames;
+    if (!others[h].coupling.finite() || !others[h].smoothed.finite()) ++non_finite_frames;
+    hand.max_force_N = std::max(hand.max_force_N, shown.f.norm());
+    hand.max_torque_Nm = std::max(hand.max_torque_Nm, shown.t.norm());
+    hand.max_force_step_N = std::max(hand.max_force_step_N, (shown.f - hand.last_shown.f).norm());
+    hand.safety |= others[h].safety;
+    hand.last_shown = shown;
+  }
+
   flags |= report.flags;
   if (report.flags & frame_flag::kLags) ++lagging_frames;
   safety |= report.safety;
@@ -43,6 +56,7 @@ void RunRecord::add(const FrameReport& report, const WorldState& world) noexcept
     }
   });
   add_to(hash_, report);
+  add_to(hash_, others);
   add_to(hash_, world);
 }
 

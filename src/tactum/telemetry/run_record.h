@@ -5,6 +5,7 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "tactum/base/hash.h"
@@ -15,9 +16,24 @@
 
 namespace tactum::inline v0_1 {
 
+/// What is summed up of each hand after the first.
+struct HandRun {
+  std::uint64_t grasped_contact_frames = 0;  ///< frames in which something pushed its part
+  double max_force_N = 0.0;                  ///< largest shown force [N]
+  double max_torque_Nm = 0.0;                ///< largest shown torque [N m]
+  double max_force_step_N = 0.0;             ///< largest change of the shown force from frame to frame [N]
+  std::uint32_t safety = 0;                  ///< union of all frames' safety_flag
+  Wrench last_shown;                         ///< of the last frame [N, N m]
+};
+
 class RunRecord {
  public:
-  void add(const FrameReport& report, const WorldState& world) noexcept;
+  /// Of a run with so many hands.
+  explicit RunRecord(std::size_t hands = 1) : other_hands(hands - 1) {}
+
+  /// `others` are the reports of the second hand and all after it.
+  void add(const FrameReport& report, const WorldState& world,
+           std::span<const HandReport> others = {}) noexcept;
 
   std::uint64_t frames = 0;
   std::uint64_t colliding_frames = 0;        ///< frames with any patch
@@ -36,6 +52,7 @@ class RunRecord {
   std::uint64_t non_finite_frames = 0;       ///< frames whose computed wrench was not finite (zero was sent)
   std::uint32_t flags = 0;                   ///< union of all frames' frame_flag
   std::uint32_t safety = 0;                  ///< union of all frames' safety_flag
+  std::vector<HandRun> other_hands;          ///< of the second hand and all after it
   int max_tests = 0;  ///< exact tests in one frame with those of trial poses, which the budget bounds
 
   /// Of a field that runs sum up (haptics/report_fields.h), by name: sum("work.exact_tests").
