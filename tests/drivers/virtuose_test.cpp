@@ -77,6 +77,11 @@ TEST_F(VirtuoseLoop, TheLimitsAreSetAndTheOrderIsKept) {
   EXPECT_EQ(standin()->max_torque_Nm, 0.7f);
   EXPECT_TRUE(device->write({{-1e3, 1e3, 1e3}, {1e3, -1e3, 1e3}}));
   EXPECT_TRUE(comes_true([this] { return standin()->motors[0] < 0.0f; }));
+  // A direction in which a force of 10 N grows when it is rounded to float.
+  EXPECT_TRUE(device->write({{1e3, 4e3, 8e3}, {0, 0, 0}}));
+  EXPECT_TRUE(comes_true([this] { return standin()->motors[0] > 0.0f; }));
+  const std::array<float, 6> motors = standin()->motors;
+  EXPECT_LE(Vec3(motors[0], motors[1], motors[2]).norm(), 10.0);
   device->close();
   EXPECT_TRUE(standin()->broken_rules.empty()) << standin()->broken_rules.front();
 }
