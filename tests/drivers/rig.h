@@ -59,12 +59,14 @@ struct RigMaker {
 
 std::unique_ptr<DriverRig> make_force_dimension_rig();
 std::unique_ptr<DriverRig> make_3d_systems_rig();
+std::unique_ptr<DriverRig> make_virtuose_rig();
 std::unique_ptr<DriverRig> make_spacemouse_rig();
 std::unique_ptr<DriverRig> make_network_rig();
 
 inline std::vector<RigMaker> every_rig() {
   return {{"force-dimension", make_force_dimension_rig},
           {"3d-systems", make_3d_systems_rig},
+          {"virtuose", make_virtuose_rig},
           {"spacemouse", make_spacemouse_rig},
           {"network", make_network_rig}};
 }

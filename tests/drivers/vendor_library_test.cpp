@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "support/standin_files.h"
+
 namespace tactum::vendor_library_test {
 
 constexpr const char* kVariable = "TACTUM_TEST_LIBRARY";
@@ -53,6 +55,19 @@ TEST(VendorLibrary, NamesAllFunctionsThatAreLacking) {
   EXPECT_TRUE(says(checked.error(), "a newer version: install the Acme kit"));
   EXPECT_TRUE(says(checked.error(), "libm.so.6")) << "which file it was";
   EXPECT_FALSE(says(checked.error(), "acmeBlink"));
+}
+
+TEST(VendorLibrary, ACompanionGivesWhatALibraryDoesNotSayThatItNeeds) {
+  LibrarySearch search = search_for({standin_file("standin_needy")});
+  const Result<VendorLibrary> alone = VendorLibrary::load(search);
+  ASSERT_FALSE(alone);
+  EXPECT_TRUE(says(alone.error(), "standin_companion_answer")) << alone.error().message();
+  search.companions = {"libnowhere.so.9", standin_file("standin_companion")};
+  const Result<VendorLibrary> library = VendorLibrary::load(search);
+  ASSERT_TRUE(library) << library.error().message();
+  int (*ask)() = nullptr;
+  ASSERT_TRUE(library->find("standin_needy_ask", ask));
+  EXPECT_EQ(ask(), 42);
 }
 
 TEST(VendorLibrary, TellsWhereAMissingOneWasLookedFor) {

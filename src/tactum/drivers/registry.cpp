@@ -11,6 +11,7 @@
 #include "tactum/drivers/network_device.h"
 #include "tactum/drivers/spacemouse.h"
 #include "tactum/drivers/touch.h"
+#include "tactum/drivers/virtuose.h"
 
 namespace tactum::inline v0_1 {
 namespace {
@@ -100,6 +101,14 @@ std::vector<DeviceListing> list_network() {
       {"network:PORT", "a device or simulator in another process, by the protocol of tactum_device.h", true}};
 }
 
+MadeDevice make_virtuose(const std::string& host, const DeviceOptions&) {
+  return VirtuoseDevice::connect({.host = host});
+}
+
+std::vector<DeviceListing> list_virtuose() {
+  return {{"virtuose:HOST#PORT", "a Virtuose of Haption; 127.0.0.1#53210 when no host is named", true}};
+}
+
 /// One line per kind of device. NAME or NAME:ARGUMENT makes it.
 struct Kind {
   const char* name;
@@ -114,6 +123,7 @@ constexpr Kind kKinds[] = {
     {"replay", make_replay, list_replay, nullptr},
     {"force-dimension", make_force_dimension, list_force_dimension, ForceDimensionDevice::survey},
     {"3d-systems", make_3d_systems, list_3d_systems, TouchDevice::survey},
+    {"virtuose", make_virtuose, list_virtuose, VirtuoseDevice::survey},
     {"spacemouse", make_spacemouse, list_spacemouse, SpaceMouse::survey},
     {"network", make_network, list_network, NetworkDevice::survey},
 };

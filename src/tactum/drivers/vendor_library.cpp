@@ -78,6 +78,7 @@ std::string environment(const char* name) {
 VendorLibrary& VendorLibrary::operator=(VendorLibrary&& other) noexcept {
   unload();
   std::swap(handle_, other.handle_);
+  std::swap(companions_, other.companions_);
   path_ = std::move(other.path_);
   cure_ = std::move(other.cure_);
   missing_ = std::move(other.missing_);
@@ -87,9 +88,12 @@ VendorLibrary& VendorLibrary::operator=(VendorLibrary&& other) noexcept {
 Result<VendorLibrary> VendorLibrary::load(const LibrarySearch& search) {
   const Offers offers = offers_of(search);
   std::string complaints;
+  VendorLibrary library;
+  for (const std::string& companion : search.companions)
+    if (void* handle = dlopen(companion.c_str(), RTLD_NOW | RTLD_GLOBAL); handle != nullptr)
+      library.companions_.push_back(handle);
   for (const std::string& file : offers.files) {
     if (void* handle = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL); handle != nullptr) {
-      VendorLibrary library;
       library.handle_ = handle;
       library.path_ = file;
       library.cure_ = search.cure;
@@ -110,6 +114,8 @@ Result<VendorLibrary> VendorLibrary::load(const LibrarySearch& search) {
 void VendorLibrary::unload() noexcept {
   if (handle_ != nullptr) dlclose(handle_);
   handle_ = nullptr;
+  for (void* companion : companions_) dlclose(companion);
+  companions_.clear();
 }
 
 void* VendorLibrary::address(const char* name) const noexcept {

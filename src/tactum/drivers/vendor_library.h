@@ -20,6 +20,9 @@ struct LibrarySearch {
   std::vector<std::string> names;    ///< "libdrd.so", the best first; versions behind a dot are tried, too
   std::vector<std::string> folders;  ///< the best first; empty names are passed over
   std::string cure;                  ///< "install the Force Dimension SDK"
+  /// Libraries of the system that it uses and does not name as needed: they are loaded before it, for all to
+  /// see. One that is absent is passed over; the loader then says which function is missing.
+  std::vector<std::string> companions{};
 };
 
 class VendorLibrary {
@@ -53,6 +56,7 @@ class VendorLibrary {
   void* address(const char* name) const noexcept;
 
   void* handle_ = nullptr;
+  std::vector<void*> companions_;
   std::string path_;
   std::string cure_;
   std::vector<std::string> missing_;
