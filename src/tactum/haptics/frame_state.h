@@ -44,6 +44,13 @@ struct FrameState {
   void ended(Stage stage) noexcept {
     if (observer) observer->stage_ended(stage);
   }
+
+  /// What is carried from frame to frame (carried_state.h).
+  template <class Self, class Visit>
+  static void carried(Self& self, Visit& visit) noexcept {
+    visit(self.world, self.X_WB_start, self.load_work_J, self.hand, self.contacts, self.response,
+          self.smoothing, self.port, self.safety);
+  }
 };
 
 }  // namespace tactum::inline v0_1

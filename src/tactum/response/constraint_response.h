@@ -34,6 +34,12 @@ class ConstraintResponse {
   /// Its memory, for tests and displays that look inside.
   const ConstraintMemory& memory() const noexcept { return memory_; }
 
+  /// What is carried from frame to frame (carried_state.h).
+  template <class Self, class Visit>
+  static void carried(Self& self, Visit& visit) noexcept {
+    visit(self.memory_, self.grasped_last_);
+  }
+
  private:
   ConstraintMemory memory_;
   int grasped_last_ = -1;  // the body that was grasped in the last frame
