@@ -279,6 +279,11 @@ nlohmann::ordered_json remarks_json(const std::vector<SceneRemark>& remarks) {
   return json;
 }
 
+void report_recording(std::FILE* out, const std::string& path, std::uint64_t frames, std::uint64_t dropped) {
+  fmt::print(out, "recording        {} frames in {}{}\n", frames, path,
+             dropped == 0 ? "" : fmt::format("; {} more are lost, since the disk was too slow", dropped));
+}
+
 void sum_up(std::FILE* out, const FeelOptions& options, const std::vector<SceneRemark>& remarks,
             const Session& session, const Summary& times, const StageClock& stages,
             const Watchers& watchers) {
@@ -290,11 +295,13 @@ void sum_up(std::FILE* out, const FeelOptions& options, const std::vector<SceneR
                watchers.trace->lost() == 0
                    ? ""
                    : fmt::format("; {} more are lost, since the disk was too slow", watchers.trace->lost()));
-  if (const Recorder* recorder = watchers.recorder)
-    fmt::print(out, "recording        {} frames in {}{}\n", recorder->frames(), options.record,
-               recorder->dropped() == 0
-                   ? ""
-                   : fmt::format("; {} more are lost, since the disk was too slow", recorder->dropped()));
+  if (const Recorder* recorder = watchers.recorder) {
+    report_recording(out, options.record, recorder->frames(), recorder->dropped());
+    if (recorder->without_snapshots())
+      fmt::print(out,
+                 "                 its state is too large to be recorded on the way: a replay begins at the "
+                 "start\n");
+  }
   if (options.replays > 1 && !interrupted())
     fmt::print(out, "replays          {} runs, the same to the bit; each frame counts with its fastest\n",
                options.replays);
@@ -314,13 +321,22 @@ void sum_up(std::FILE* out, const FeelOptions& options, const std::vector<SceneR
   if (!session.goals().all_met()) end_with(kGoalsNotMet);
 }
 
-void feel_with_pages(const FeelOptions& options, const std::vector<SceneRemark>& remarks, Scene scene,
-                     std::FILE* out) {
+/// Ends what a page or the command line has begun to record.
+void end_recording(std::FILE* out, Viewer& viewer) {
+  const std::vector<RecordingFile> files = viewer.end_recording();
+  report_trouble(viewer);
+  for (const RecordingFile& file : files) report_recording(out, file.path, file.frames, file.dropped);
+}
+
+void feel_with_pages(const FeelOptions& options, const SceneDescription& description,
+                     const std::vector<SceneRemark>& remarks, Scene scene, std::FILE* out) {
   Result<std::unique_ptr<Viewer>> opened =
-      Viewer::open(std::move(scene), session_options(options), options.port, remarks);
+      Viewer::open(std::move(scene), session_options(options), options.port, remarks, description);
   if (!opened) fail(opened.error());
   Viewer& viewer = **opened;
   refuse_virtual_clock(options, viewer.session());
+  if (!options.record.empty())
+    if (const Result<void> begun = viewer.record(options.record); !begun) fail(begun.error());
   report_what_is_felt(out, viewer.session(), options.hand);
   open_page(out, viewer.server().address());
   const std::uint64_t asked =
@@ -338,6 +354,7 @@ void feel_with_pages(const FeelOptions& options, const std::vector<SceneRemark>&
   const Summary times = options.virtual_clock
                             ? feel_viewed_virtually(viewer, frames_asked_for(options, viewer.session()))
                             : run_viewed(viewer, asked, options.wait_s);
+  end_recording(out, viewer);
   sum_up(out, options, remarks, viewer.session(), times, viewer.stages(), {});
 }
 
@@ -363,7 +380,7 @@ void feel(const FeelOptions& options) {
   Scene scene = scene_of(options, description);
   const std::vector<SceneRemark> remarks = remark_on(out, options, description, scene);
   watch_for_interrupts();
-  if (options.view) return feel_with_pages(options, remarks, std::move(scene), out);
+  if (options.view) return feel_with_pages(options, description, remarks, std::move(scene), out);
   const std::unique_ptr<Session> opened = open_session(options, std::move(scene));
   Session& session = *opened;
 
@@ -411,7 +428,7 @@ void add_feel(CLI::App& app) {
                                         "Judge every frame by exact signs and topology: does any surface "
                                         "cross another, has anything got inside, or out of what it hangs in?")
                              ->needs(virtual_clock);
-  CLI::Option* record = add_record(command, options.get());
+  add_record(command, options.get());
   CLI::Option* trace = add_trace(command, options.get());
   CLI::Option* view = command->add_flag(
       "--view", options->view,
@@ -420,7 +437,6 @@ void add_feel(CLI::App& app) {
   replays->excludes(view);
   referee->excludes(view);
   trace->excludes(view);
-  record->excludes(view);
   add_page(command, options.get(), view)->excludes(virtual_clock);
   command->callback([options] { feel(*options); });
 }

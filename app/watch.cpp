@@ -53,6 +53,11 @@ double StatusLine::rate(std::uint64_t frame) {
   return seconds > 0.0 ? frames / seconds : 0.0;
 }
 
+void report_trouble(Viewer& viewer) {
+  if (const std::string trouble = viewer.take_recording_trouble(); !trouble.empty())
+    fmt::print(stderr, "{}\n", trouble);
+}
+
 void open_page(std::FILE* out, const std::string& address) {
   fmt::print(out, "see and feel it at {}\n", address);
   std::fflush(out);
@@ -74,6 +79,7 @@ Summary run_viewed(Viewer& viewer, std::uint64_t frames, double wait_s) {
   std::optional<std::chrono::steady_clock::time_point> over;  // since then all frames are done
   while (!interrupted()) {
     viewer.poll(std::chrono::milliseconds(8));
+    report_trouble(viewer);
     const LoopStatus loop = viewer.session().loop_status();
     if (!loop.running) break;
     if (loop.frames < last) earlier += last;

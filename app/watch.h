@@ -31,6 +31,9 @@ class StatusLine {
   std::uint64_t last_frame_ = 0;
 };
 
+/// Says once why a viewed run is not recorded any more, while it goes on.
+void report_trouble(Viewer& viewer);
+
 /// Prints the page's address, and opens it where there is a screen.
 void open_page(std::FILE* out, const std::string& address);
 

@@ -2,13 +2,15 @@
 """Holds that every build computes the same frames, to the last bit:  tools/same_bits.py PROGRAM PROGRAM...
 
 Each program is the frame_hashes of another build (tests/same_bits): it runs scenes on the virtual clock and prints the
-name of each and the hash of all its frames. One that was not built is left out and told, unless TACTUM_ALL_BUILDS=1 says
+name of each and the hash of all its frames. Then each records a run, and every program verifies the recordings of all,
+and those of tests/recordings, frame by frame. One that was not built is left out and told, unless TACTUM_ALL_BUILDS=1 says
 that all must be there. Exit code 77 (skipped) when fewer than two programs are there to compare.
 """
 import os
 import pathlib
 import subprocess
 import sys
+import tempfile
 
 SKIPPED = 77
 
@@ -19,6 +21,28 @@ def frame_hashes(program):
     if done.returncode != 0 or not done.stdout:
         raise RuntimeError(f"{program}: exit code {done.returncode}\n{done.stdout}{done.stderr}")
     return dict(line.split() for line in done.stdout.splitlines())
+
+
+def run(program, *words):
+    """What the program prints; an error where it ends with another code than 0."""
+    done = subprocess.run([str(program), *map(str, words)], capture_output=True, text=True, stdin=subprocess.DEVNULL)
+    if done.returncode != 0:
+        raise RuntimeError(f"{program} {words[0]}: exit code {done.returncode}\n{done.stdout}{done.stderr}")
+    return done.stdout
+
+
+def verify_recordings(programs):
+    """Every program verifies what every other has recorded, and the recordings that are kept."""
+    kept = sorted((pathlib.Path(__file__).resolve().parents[1] / "tests/recordings").glob("*.mcap"))
+    with tempfile.TemporaryDirectory() as folder:
+        recordings = [pathlib.Path(folder) / f"{number}.mcap" for number in range(len(programs))]
+        for program, recording in zip(programs, recordings):
+            run(program, "record", recording)
+        for program in programs:
+            lines = run(program, "verify", *recordings, *kept).splitlines()
+            if len(lines) < 2 * len(programs) + len(kept):
+                raise RuntimeError(f"{program} verifies too little: {lines}")
+            print(f"{len(recordings)} recordings of all builds and {len(kept)} that are kept: the same frames ", program)
 
 
 def main(arguments):
@@ -41,6 +65,7 @@ def main(arguments):
     if differ:
         print(f"the builds differ in: {', '.join(differ)}")
         return 1
+    verify_recordings(present)
     return 0
 
 

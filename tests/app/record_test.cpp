@@ -133,6 +133,87 @@ TEST(Record, AFullDiskIsToldOnceAndTheRunGoesOn) {
   EXPECT_EQ(replayed.out.find("all 0 frames"), std::string::npos) << replayed.out;
 }
 
+/// A disk of its own that is too small: what was written before it was full is replayed.
+TEST(Record, ADiskThatFillsUpEndsTheRecordingAndNotTheRun) {
+  const ScratchFolder folder;
+  std::filesystem::create_directory(folder / "disk");
+  const std::string disk = folder / "disk";
+  const std::string own =
+      "unshare --user --map-root-user --mount sh -c 'mount -t tmpfs -o size=400k none " + disk;
+  if (std::system((own + "' 2>/dev/null").c_str()) != 0)
+    GTEST_SKIP() << "no disk of its own can be made here";
+  const std::string feel = " feel block-on-plate --virtual-clock --updates 8000";
+  const std::string run_and_replay = own + " && " + program() + feel + " --record " + disk + "/run.mcap >" +
+                                     (folder / "out") + " 2>" + (folder / "err") + "; " + program() +
+                                     " replay " + disk + "/run.mcap --verify >" + (folder / "replayed") +
+                                     " 2>&1; echo $? >" + (folder / "code") + "'";
+  std::string command = run_and_replay;  // the program's name is in quotes of its own
+  for (std::size_t at = 0; (at = command.find(program(), at)) != std::string::npos;)
+    command.replace(at, program().size(), program().substr(1, program().size() - 2));
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  const ProgramRun run{0, content(folder / "out"), content(folder / "err")};
+  EXPECT_EQ(occurrences(run.err, "the run goes on, and is not recorded any more"), 1) << run.err;
+  EXPECT_NE(run.err.find("No space left on device"), std::string::npos) << run.err;
+  EXPECT_EQ(hash_of(run), hash_of(run_tactum(feel)));
+  EXPECT_EQ(content(folder / "code"), "0\n") << content(folder / "replayed");
+  EXPECT_NE(content(folder / "replayed").find("frames are the same to the bit"), std::string::npos);
+  EXPECT_EQ(content(folder / "replayed").find("all 0 frames"), std::string::npos);
+}
+
+TEST(Record, AFileThatIsRemovedMeanwhileIsToldOnceAndTheRunGoesOn) {
+  const ScratchFolder folder;
+  const std::string path = folder / "run.mcap";
+  const std::string feel = " feel block-on-plate --virtual-clock --updates 30000";
+  const std::string command = program() + feel + " --record " + path + " >" + (folder / "out") + " 2>" +
+                              (folder / "err") + " & while [ ! -s " + path + " ]; do sleep 0.01; done; rm " +
+                              path + "; wait $!";
+  const int status = std::system(command.c_str());
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_TRUE(WEXITSTATUS(status) == 0 || WEXITSTATUS(status) == 2) << content(folder / "err");
+  const ProgramRun run{0, content(folder / "out"), content(folder / "err")};
+  EXPECT_EQ(occurrences(run.err, "the run goes on, and is not recorded any more"), 1) << run.err;
+  EXPECT_EQ(hash_of(run), hash_of(run_tactum(feel)));
+}
+
+TEST(Record, IsReplayedFromAnySecond) {
+  const ScratchFolder folder;
+  const std::string path = folder / "run.mcap";
+  ASSERT_TRUE(ended(run_tactum("feel gears --virtual-clock --updates 3500 --record " + path)));
+  const ProgramRun late = run_tactum("replay " + path + " --verify --from 2.7");
+  EXPECT_EQ(late.exit_code, 0) << late.err;
+  EXPECT_NE(late.out.find("begins at frame 2000, 2.000 s after the start"), std::string::npos) << late.out;
+  EXPECT_NE(late.out.find("all 1500 frames are the same to the bit"), std::string::npos) << late.out;
+  const ProgramRun beyond = run_tactum("replay " + path + " --from 7");
+  EXPECT_EQ(beyond.exit_code, 1);
+  EXPECT_NE(beyond.err.find("ends before that time"), std::string::npos) << beyond.err;
+  const ProgramRun other = run_tactum("replay " + path + " --verify --from 2.7 --response penalty");
+  EXPECT_NE(other.out.find("begins at frame 0"), std::string::npos) << other.out;
+}
+
+TEST(Record, IsBisectedAgainstSettingsAndRecordings) {
+  const ScratchFolder folder;
+  const std::string path = folder / "run.mcap", other = folder / "other.mcap",
+                    settings = folder / "soft.toml";
+  testing::write(settings, "[settings]\ncoupling.stiffness_N_per_m = 300\n");
+  const std::string feel = "feel block-on-plate --virtual-clock --updates 1200 --record ";
+  ASSERT_TRUE(ended(run_tactum(feel + path)));
+  ASSERT_TRUE(ended(run_tactum(feel + other + " --settings " + settings)));
+  const ProgramRun by_settings = run_tactum("replay " + path + " --bisect " + settings);
+  EXPECT_EQ(by_settings.exit_code, 2) << by_settings.err;
+  EXPECT_NE(by_settings.out.find("is the first that differs: stage \"response\""), std::string::npos)
+      << by_settings.out;
+  EXPECT_NE(
+      by_settings.out.find("setting coupling.stiffness_N_per_m was 600 and is 300; this one alone: frame"),
+      std::string::npos)
+      << by_settings.out;
+  const ProgramRun by_recording = run_tactum("replay " + path + " --bisect " + other);
+  EXPECT_EQ(by_recording.exit_code, 2) << by_recording.err;
+  EXPECT_NE(by_recording.out.find("the file \"settings.toml\" is another"), std::string::npos)
+      << by_recording.out;
+  EXPECT_NE(by_recording.out.find("is the first that differs"), std::string::npos) << by_recording.out;
+  EXPECT_EQ(run_tactum("replay " + path + " --bisect " + path).exit_code, 0);
+}
+
 TEST(Record, APlaceThatCannotBeWrittenIsToldBeforeTheRun) {
   const ProgramRun nowhere = run_tactum("feel gears --virtual-clock --updates 5 --record /nowhere/run.mcap");
   EXPECT_EQ(nowhere.exit_code, 1);

@@ -9,10 +9,12 @@
 
 #include "app/program.h"
 #include "tactum/haptics/setting_table.h"
+#include "tactum/recording/bisect.h"
 #include "tactum/recording/export_csv.h"
 #include "tactum/recording/mcap_reader.h"
 #include "tactum/recording/mcap_writer.h"
 #include "tactum/recording/recorder.h"
+#include "tactum/recording/recording_tape.h"
 #include "tactum/recording/replay.h"
 #include "tactum/scene/build_scene.h"
 #include "tactum/scene/builtin_scenes.h"
@@ -53,7 +55,7 @@ struct Ran {
 
 /// Runs a scene, and records it where a path is given.
 Ran run(const SceneDescription& description, const std::string& path, std::uint64_t frames, bool asks = false,
-        ResponseModel response = ResponseModel::kConstraint) {
+        ResponseModel response = ResponseModel::kConstraint, double snapshot_every_s = 1.0) {
   Result<Scene> scene = build_scene(description);
   EXPECT_TRUE(scene) << scene.error().message();
   scene->settings.response = response;
@@ -61,8 +63,8 @@ Ran run(const SceneDescription& description, const std::string& path, std::uint6
   EXPECT_TRUE(session);
   std::unique_ptr<Recorder> recorder;
   if (!path.empty()) {
-    Result<std::unique_ptr<Recorder>> opened =
-        Recorder::open({path, "", "of a test"}, description, **session);
+    Result<std::unique_ptr<Recorder>> opened = Recorder::open(
+        {.path = path, .version = "of a test", .snapshot_every_s = snapshot_every_s}, description, **session);
     EXPECT_TRUE(opened) << opened.error().message();
     recorder = std::move(*opened);
   }
@@ -133,7 +135,7 @@ TEST(Recording, IsTheSameFramesAgainAndChangesNone) {
       ASSERT_TRUE(replayed) << replayed.error().message();
       EXPECT_TRUE(replayed->end.complete);
       EXPECT_EQ(replayed->same, 700u);
-      EXPECT_FALSE(replayed->difference) << replayed->difference->frame << replayed->difference->field;
+      EXPECT_FALSE(replayed->difference) << sentence_of(*replayed->difference);
       EXPECT_FALSE(replayed->gap);
     }
 }
@@ -146,6 +148,32 @@ TEST(Recording, CommandsAreReplayedAtTheirFrames) {
   const Result<ReplayResult> replayed = replay_bytes(content(folder / "run.mcap"));
   ASSERT_TRUE(replayed);
   EXPECT_EQ(replayed->same, 1500u);
+}
+
+TEST(Recording, IsReplayedFromEverySnapshot) {
+  const ScratchFolder folder;
+  for (const char* name :
+       {"block-on-plate", "gears", "moving-objects", "gears-pick", "dipole-field", "dominoes"})
+    for (const ResponseModel response : {ResponseModel::kConstraint, ResponseModel::kPenalty}) {
+      SCOPED_TRACE(name);
+      run(scene_called(name), folder / "run.mcap", 600, true, response, 0.04);
+      const std::string whole = content(folder / "run.mcap");
+      const auto tape = RecordingTape::open(McapBytes(whole), "run.mcap");
+      ASSERT_TRUE(tape) << tape.error().message();
+      const std::vector<TapeSnapshot>& snapshots = (*tape)->snapshots();
+      ASSERT_GE(snapshots.size(), 5u);
+      for (std::size_t i = 0; i < snapshots.size(); ++i) {
+        const std::uint64_t first = snapshots[i].index;
+        ReplayOptions options;
+        options.from_s = (static_cast<double>(first) + 0.5) * (*tape)->head().dt_s;
+        const Result<ReplayResult> replayed = replay_bytes(whole, options);
+        ASSERT_TRUE(replayed) << replayed.error().message();
+        EXPECT_EQ(replayed->first, first);
+        EXPECT_EQ(replayed->same, 600u - first);
+        EXPECT_EQ(replayed->states, snapshots.size() - 1 - i);
+        ASSERT_FALSE(replayed->difference) << "from " << first << ": " << sentence_of(*replayed->difference);
+      }
+    }
 }
 
 TEST(Recording, ThatWasCutAnywhereIsReplayedAsFarAsItGoes) {
@@ -194,15 +222,94 @@ TEST(Recording, OtherSettingsDifferAndTheFirstFieldIsNamed) {
   run(scene_called("block-on-plate"), folder / "run.mcap", 1500);
   const std::string whole = content(folder / "run.mcap");
   testing::write(folder / "softer.toml", "[settings]\ncoupling.stiffness_N_per_m = 300\n");
-  const Result<ReplayResult> softer = replay_bytes(whole, {"", folder / "softer.toml"});
+  const Result<ReplayResult> softer =
+      replay_bytes(whole, {.response = "", .settings = folder / "softer.toml"});
   ASSERT_TRUE(softer) << softer.error().message();
   ASSERT_TRUE(softer->difference);
   EXPECT_FALSE(softer->difference->field.empty());
   EXPECT_EQ(softer->difference->stage, "response");
   EXPECT_LT(softer->replayed.max_force_N, softer->recorded.max_force_N);
-  const Result<ReplayResult> springs = replay_bytes(whole, {"penalty", ""});
+  const Result<ReplayResult> springs = replay_bytes(whole, {.response = "penalty"});
   ASSERT_TRUE(springs) << springs.error().message();
   EXPECT_TRUE(springs->difference);
+}
+
+/// The first frame that differs, and the setting that it comes from, of two that were changed.
+TEST(Recording, IsBisectedToTheSettingThatDiffers) {
+  const ScratchFolder folder;
+  run(scene_called("block-on-plate"), folder / "run.mcap", 1500);
+  const std::string whole = content(folder / "run.mcap");
+  const McapBytes source(whole);
+  // A limit that is never reached beside a coupling that is felt from the first contact on.
+  testing::write(folder / "other.toml",
+                 "[settings]\ncoupling.stiffness_N_per_m = 300\nsafety.max_force_N = 8\n");
+  const Result<Bisection> found =
+      bisect_settings(source, "run.mcap", {}, {.response = "", .settings = folder / "other.toml"});
+  ASSERT_TRUE(found) << found.error().message();
+  ASSERT_TRUE(found->difference);
+  const Result<ReplayResult> softer =
+      replay_bytes(whole, {.response = "", .settings = folder / "other.toml"});
+  ASSERT_TRUE(softer && softer->difference);
+  EXPECT_EQ(found->difference->frame, softer->difference->frame);
+  EXPECT_EQ(found->difference->stage, softer->difference->stage);
+  EXPECT_EQ(found->difference->field, softer->difference->field);
+  EXPECT_EQ(found->frames, softer->same);
+  ASSERT_EQ(found->settings.size(), 2u);
+  for (const DifferingSetting& setting : found->settings)
+    EXPECT_EQ(setting.alone.has_value(), setting.key == "coupling.stiffness_N_per_m") << setting.key;
+}
+
+TEST(Recording, OfAnotherHandDiffersInItsInput) {
+  const ScratchFolder folder;
+  const SceneDescription scene = scene_called("block-on-plate");
+  run(scene, folder / "a.mcap", 900);
+  run(scene, folder / "b.mcap", 900, true);  // the coupling is changed on the way: the hand yields otherwise
+  const std::string a = content(folder / "a.mcap"), b = content(folder / "b.mcap");
+  const Result<Bisection> same = bisect_recordings(McapBytes(a), "a.mcap", McapBytes(a), "a.mcap");
+  ASSERT_TRUE(same);
+  EXPECT_EQ(same->frames, 900u);
+  EXPECT_FALSE(same->difference);
+  const Result<Bisection> other = bisect_recordings(McapBytes(a), "a.mcap", McapBytes(b), "b.mcap");
+  ASSERT_TRUE(other && other->difference);
+  EXPECT_GE(other->difference->frame, 50u);  // that of the first command
+  EXPECT_EQ(other->frames, other->difference->frame);
+  EXPECT_TRUE(other->notes.empty());
+}
+
+/// Reads the run of another recorder: begun in the middle, ended, and begun again while the loop goes on.
+TEST(RecorderThread, BeginsAndEndsInTheMiddleOfARun) {
+  const ScratchFolder folder;
+  const SceneDescription description = scene_called("gears");
+  Result<std::unique_ptr<Session>> session = Session::open(description, {});
+  ASSERT_TRUE(session);
+  RecordSwitch through;
+  (*session)->report_to(&through);
+  const UserSettings settings{(*session)->scene().settings, (*session)->scene().safety};
+  ASSERT_TRUE((*session)->start());
+  const auto wait_for = [&](std::uint64_t frames) {
+    const std::uint64_t from = (*session)->loop_status().frames;
+    while ((*session)->loop_status().frames < from + frames) std::this_thread::yield();
+  };
+  for (const char* file : {"one.mcap", "two.mcap"}) {
+    wait_for(40);
+    RecorderOptions options{folder / file, "", "of a test"};
+    options.midway = settings;
+    options.snapshot_every_s = 0.05;
+    Result<std::unique_ptr<Recorder>> recorder = Recorder::open(options, description, **session, &through);
+    ASSERT_TRUE(recorder) << recorder.error().message();
+    wait_for(120);
+    (*recorder)->finish();
+  }
+  (*session)->stop();
+  for (const char* file : {"one.mcap", "two.mcap"}) {
+    const Result<ReplayResult> replayed = replay_bytes(content(folder / file));
+    ASSERT_TRUE(replayed) << replayed.error().message();
+    EXPECT_GE(replayed->first, 40u);
+    EXPECT_GE(replayed->frames, 100u);
+    EXPECT_EQ(replayed->same, replayed->frames);
+    EXPECT_GE(replayed->states, 1u);
+    EXPECT_TRUE(replayed->end.complete);
+  }
 }
 
 TEST(Recording, HasItsPartsInside) {

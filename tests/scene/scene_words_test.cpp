@@ -90,8 +90,8 @@ TEST(SceneWords, HeadingsWithTheWrongBrackets) {
   expect("schema = 1\n[[body]\n" + body, "test.toml:2:8", "expected [[body]]");
   expect("schema = 1\n[[body]]\n" + body + "[hand.step]\nhold_s = 1\n", "test.toml:5:1",
          "[[hand.step]] with two brackets");
-  expect("schema = 1\n[[body]]\n" + body + "[[tool]]\nbody = \"a\"\n", "test.toml:5:1",
-         "a table, [tool] with one bracket");
+  expect("schema = 1\n[[body]]\n" + body + "[[coupling]]\nstiffness_N_per_m = 400\n", "test.toml:5:1",
+         "a table, [coupling] with one bracket");
   expect("schema = 1\n[[body]]\n" + body + "[tool]\nbody = \"a\"\n[tool]\ngrasp = \"centre\"\n",
          "test.toml:7:1", "[tool] is there twice");
 }

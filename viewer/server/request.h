@@ -26,6 +26,10 @@ struct Request {
     kScene,    ///< `name`
     kDevice,   ///< `name`
     kGrip,     ///< `name`
+    kRecord,   ///< begin a recording
+    kEnd,      ///< end it
+    kSeek,     ///< `frame` of a recording is shown
+    kPlay,     ///< a recording goes on at `value` times its speed; 0: it stands still
   };
   What what = What::kAck;
   std::uint32_t sequence = 0;
@@ -35,6 +39,7 @@ struct Request {
   std::string key;   ///< of kSet, kUnset
   std::string name;  ///< of kScene, kDevice, kGrip
   double value = 0.0;
+  std::uint32_t frame = 0;  ///< of kSeek
 
   /// Whether only the page that steers may request this.
   bool steers() const { return what >= What::kResume; }

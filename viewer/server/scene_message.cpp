@@ -128,14 +128,14 @@ OrderedJson settings_json(const ShownSettings& shown) {
   return settings;
 }
 
-OrderedJson device_json(const Session& session, const RunFacts& facts) {
-  const DeviceInfo& info = session.device();
+OrderedJson device_json(const ShownScene& scene, const RunFacts& facts) {
+  const DeviceInfo& info = scene.device;
   OrderedJson choices = OrderedJson::array();
   for (const SimulatedDeviceModel& model : simulated_device_presets())
     choices.push_back({{"name", "pointer:" + model.name}, {"label", model.name + " (simulated)"}});
   return {{"name", facts.device},
           {"label", info.name},
-          {"can_be_led", session.can_be_led()},
+          {"can_be_led", scene.can_be_led},
           {"senses_rotation", info.senses_rotation},
           {"actuates_force", info.actuates_force},
           {"actuates_torque", info.actuates_torque},
@@ -278,13 +278,13 @@ bool same_triangles(const TriangleMesh& surface, const TriangleMesh& faces) {
 }
 
 /// What both messages say of the settings.
-OrderedJson settings_part(const Session& session, const ShownSettings& shown) {
+OrderedJson settings_part(const ShownScene& scene, const ShownSettings& shown) {
   constexpr const char* kLevels[] = {"always", "in hand", "uncertain"};  // as in Stability
   const Coupling& coupling = shown.now.frame.coupling;
-  const Stability stability = stability_of(coupling, session.device(), session.rate_Hz());
+  const Stability stability = stability_of(coupling, scene.device, scene.rate_Hz);
   const bool whole_coupling = shown.usual_coupling_by_device && !shown.coupling_by_device;
   return {{"settings", settings_json(shown)},
-          {"margin", margin_sentence(coupling, session.device(), session.rate_Hz())},
+          {"margin", margin_sentence(coupling, scene.device, scene.rate_Hz)},
           {"stability", kLevels[static_cast<std::size_t>(stability)]},
           {"coupling_by_device", shown.coupling_by_device},
           {"toml", changed_settings_toml(shown.now, shown.usual, whole_coupling)}};
@@ -292,18 +292,23 @@ OrderedJson settings_part(const Session& session, const ShownSettings& shown) {
 
 }  // namespace
 
-std::string run_message(const Session& session, const ShownSettings& settings, const RunFacts& facts) {
+ShownScene shown_scene(const Session& session) {
   const Scene& scene = session.scene();
-  const Tool& tool = scene.settings.tool;
+  return {scene.name,       scene.description, scene.world,         scene.settings.tool,
+          session.device(), session.rate_Hz(), session.can_be_led()};
+}
+
+std::string run_message(const ShownScene& scene, const ShownSettings& settings, const RunFacts& facts) {
+  const Tool& tool = scene.tool;
   OrderedJson message = {
       {"type", "run"},
       {"run", facts.run},
       {"version", fmt::format("{}.{}.{}", TACTUM_VERSION_MAJOR, TACTUM_VERSION_MINOR, TACTUM_VERSION_PATCH)},
       {"scene", scene.name},
       {"description", scene.description},
-      {"scenes", scenes_json()},
+      {"scenes", facts.replay ? OrderedJson::array() : scenes_json()},
       {"remarks", remarks_json(facts.remarks)},
-      {"rate_Hz", session.rate_Hz()},
+      {"rate_Hz", scene.rate_Hz},
       {"real_time", facts.loop_in_real_time},
       {"bodies", bodies_json(scene.world)},
       {"posed", posed_bodies(scene.world)},
@@ -311,17 +316,20 @@ std::string run_message(const Session& session, const ShownSettings& settings, c
       {"grasped", tool.body},
       {"picks", tool.picks},
       {"X_BH", pose_json(tool.X_BH)},
-      {"device", device_json(session, facts)},
+      {"device", device_json(scene, facts)},
       {"stages", stages_json()},
       {"channels", channels_json()},
       {"flags", flags_json()}};
-  message.update(settings_part(session, settings));
+  if (facts.replay)
+    message["replay"] = {
+        {"file", facts.replay->file}, {"first", facts.replay->first}, {"past", facts.replay->past}};
+  message.update(settings_part(scene, settings));
   return message.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
 }
 
-std::string settings_message(const Session& session, const ShownSettings& settings) {
+std::string settings_message(const ShownScene& scene, const ShownSettings& settings) {
   OrderedJson message = {{"type", "settings"}};
-  message.update(settings_part(session, settings));
+  message.update(settings_part(scene, settings));
   return message.dump();
 }
 

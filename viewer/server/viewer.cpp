@@ -35,6 +35,13 @@ bool same_coupling(const FrameSettings& a, const FrameSettings& b) {
   });
 }
 
+/// The recording that is open: its file, frames, and how many are missing. Null: none is.
+nlohmann::ordered_json recording_json(const RunRecording& recording) {
+  if (!recording.on()) return nullptr;
+  const RecordingFile file = recording.files().back();
+  return {{"file", file.path}, {"frames", file.frames}, {"dropped", file.dropped}};
+}
+
 /// The scene's goals and how far they are.
 nlohmann::ordered_json goals_json(const Scene& scene, const SessionStatus& newest) {
   nlohmann::ordered_json goals = nlohmann::ordered_json::array();
@@ -49,21 +56,23 @@ nlohmann::ordered_json goals_json(const Scene& scene, const SessionStatus& newes
 }  // namespace
 
 Result<std::unique_ptr<Viewer>> Viewer::open(Scene scene, SessionOptions options, int port,
-                                             std::vector<SceneRemark> remarks) {
+                                             std::vector<SceneRemark> remarks,
+                                             std::optional<SceneDescription> description) {
   if (options.device.empty()) options.device = "pointer:" + scene.device;
   if (options.grip.empty()) options.grip = scene.grip;
   Result<std::unique_ptr<Server>> server = Server::start(port);
   if (!server) return server.error();
-  std::unique_ptr<Viewer> viewer(
-      new Viewer(std::move(scene), std::move(options), std::move(*server), std::move(remarks)));
+  std::unique_ptr<Viewer> viewer(new Viewer(std::move(scene), std::move(options), std::move(*server),
+                                            std::move(remarks), std::move(description)));
   if (Result<void> begun = viewer->begin_run(); !begun) return begun.error();
   return viewer;
 }
 
 Viewer::Viewer(Scene scene, SessionOptions options, std::unique_ptr<Server> server,
-               std::vector<SceneRemark> remarks)
+               std::vector<SceneRemark> remarks, std::optional<SceneDescription> description)
     : scene_(std::move(scene)),
       remarks_(std::move(remarks)),
+      description_(std::move(description)),
       options_(std::move(options)),
       server_(std::move(server)) {
   if (options_.rate_Hz > 0.0) scene_.settings.dt_s = 1.0 / options_.rate_Hz;
@@ -85,7 +94,8 @@ ShownSettings Viewer::shown_settings() const {
 }
 
 std::string Viewer::message_of_run() const {
-  return run_message(*session_, shown_settings(), {run_, options_.device, options_.grip, true, remarks_});
+  return run_message(shown_scene(*session_), shown_settings(),
+                     {run_, options_.device, options_.grip, true, remarks_, {}});
 }
 
 Result<void> Viewer::begin_run() {
@@ -97,7 +107,13 @@ Result<void> Viewer::begin_run() {
   (*session)->time_stages(stages.get());
   (*session)->hold_wrench_at_zero(stopped_);
   (*session)->stop_while(&server_->stop_asked());
+  const bool records = recording_.on();
+  recording_.end();  // it refers to the old session
+  recording_.attach(**session);
   session_ = std::move(*session);  // the old one first: it refers to the old feed
+  if (records)
+    if (Result<void> on = recording_.go_on(*description_, *session_, options_.grip); !on)
+      server_->send_notice(on.error().message());
   scene_.settings.coupling = session_->scene().settings.coupling;  // it may have chosen
   if (device_chooses_)
     usual_.frame.coupling = coupling_gains(session_->device(), session_->rate_Hz()).coupling;
@@ -132,6 +148,7 @@ void Viewer::poll(std::chrono::microseconds longest) {
   for (Request request; server_->take(request);) obey(request);
   newest_ = session_->poll(&timings_);
   gather();
+  watch_recording();
   if (Clock::now() - last_shown_ >= kShowEvery) show();
 }
 
@@ -142,10 +159,45 @@ void Viewer::after_virtual_frame(const FrameRecord& record) {
     sample.wakeup_latency_s = kUnknown;
     ready_.push_back(sample);
   }
+  recording_.wait_for_room();
   if (++virtual_frames_ % kVirtualFramesAtOnce != 0) return;
   for (Request request; server_->take(request);) obey(request);
   newest_ = session_->poll();
+  watch_recording();
   show();
+}
+
+Result<void> Viewer::record(const std::string& path) {
+  return recording_.begin(path, *description_, *session_, options_.grip, std::nullopt);
+}
+
+/// In the middle of the run, with the settings as they are now.
+void Viewer::begin_recording() {
+  if (recording_.on()) return;
+  if (!description_) return server_->send_notice("what was not read from a scene file cannot be recorded");
+  const UserSettings now{scene_.settings, scene_.safety};
+  const Result<void> begun = recording_.begin("", *description_, *session_, options_.grip, now);
+  server_->send_notice(begun ? "recording into " + recording_.files().back().path : begun.error().message());
+  server_->send_status(status_json());
+}
+
+std::vector<RecordingFile> Viewer::end_recording() {
+  recording_.end();
+  watch_recording();
+  return recording_.files();
+}
+
+void Viewer::end_recording_by_page() {
+  const RecordingFile file = end_recording().back();
+  server_->send_notice(fmt::format("{} frames are recorded in {}", file.frames, file.path));
+  server_->send_status(status_json());
+}
+
+void Viewer::watch_recording() {
+  const std::optional<Error> trouble = recording_.trouble();
+  if (!trouble) return;
+  recording_trouble_ = "the run goes on, and is not recorded any more: " + trouble->message();
+  server_->send_notice(recording_trouble_);
 }
 
 /// Puts samples and times of the same frame together. The times come a moment after the sample.
@@ -217,6 +269,14 @@ void Viewer::obey(const Request& request) {
       return change_device(request.name, &SessionOptions::device);
     case What::kGrip:
       return change_device(request.name, &SessionOptions::grip);
+    case What::kRecord:
+      return begin_recording();
+    case What::kEnd:
+      if (!recording_.on()) return;
+      return end_recording_by_page();
+    case What::kSeek:
+    case What::kPlay:
+      return server_->send_notice("there is no time line: this is no recording");
     case What::kAck:
     case What::kSteer:
     case What::kRelease:
@@ -256,7 +316,7 @@ void Viewer::apply(const SettingInfo& setting, double value) {
 }
 
 void Viewer::send_settings() {
-  server_->send_settings(settings_message(*session_, shown_settings()), message_of_run());
+  server_->send_settings(settings_message(shown_scene(*session_), shown_settings()), message_of_run());
 }
 
 /// Only scenes that come with the program, and the one it was started with: a page cannot name files.
@@ -272,6 +332,7 @@ void Viewer::change_scene(const std::string& name) {
   remarks_ = remarks_on(*description, *scene);
   const bool follows_scene = options_.device == "pointer:" + scene_.device;
   scene_ = std::move(*scene);
+  description_ = *description;
   remember_usual();
   if (follows_scene) options_.device = "pointer:" + scene_.device;
   options_.grip = scene_.grip;
@@ -316,6 +377,7 @@ std::string Viewer::status_json() {
                                            {"max", times.max_ns * 1e-3}}},
                                          {"safety", safety_flag_names(newest_.safety)},
                                          {"goals", goals_json(scene_, newest_)},
+                                         {"recording", recording_json(recording_)},
                                          {"remarks", privileges}};
   return status.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }

@@ -10,6 +10,7 @@
 #include <deque>
 #include <memory>
 
+#include "viewer/server/run_recording.h"
 #include "viewer/server/scene_message.h"
 #include "viewer/server/server.h"
 
@@ -18,9 +19,19 @@ namespace tactum {
 class Viewer {
  public:
   /// Opens the session and the server; `port` 0 finds a free one. The scene's simulated device is led by the
-  /// page unless the options name another device. The page shows the remarks on the scene.
+  /// page unless the options name another device. The page shows the remarks on the scene. `description` is
+  /// what the scene was built from: without it the run cannot be recorded.
   static Result<std::unique_ptr<Viewer>> open(Scene scene, SessionOptions options, int port,
-                                              std::vector<SceneRemark> remarks = {});
+                                              std::vector<SceneRemark> remarks = {},
+                                              std::optional<SceneDescription> description = {});
+
+  /// Records the run into this file; before it begins. A page may end that, and begin others.
+  Result<void> record(const std::string& path);
+  /// Ends the recording that is open, if one is; all of them.
+  std::vector<RecordingFile> end_recording();
+  /// Why a recording could not go on, as a sentence for the terminal, which pages were told: once, then
+  /// empty.
+  std::string take_recording_trouble() { return std::exchange(recording_trouble_, ""); }
 
   /// The loop on its own thread.
   Result<void> start();
@@ -41,9 +52,12 @@ class Viewer {
  private:
   using Clock = std::chrono::steady_clock;
   Viewer(Scene scene, SessionOptions options, std::unique_ptr<Server> server,
-         std::vector<SceneRemark> remarks);
+         std::vector<SceneRemark> remarks, std::optional<SceneDescription> description);
 
   Result<void> begin_run();
+  void begin_recording();
+  void end_recording_by_page();
+  void watch_recording();
   void restart();
   void obey(const Request& request);
   void set(const Request& request);
@@ -63,11 +77,14 @@ class Viewer {
   UserSettings usual_;           // as the scene has them
   bool device_chooses_ = false;  // the scene leaves the coupling to the device
   std::vector<SceneRemark> remarks_;
+  std::optional<SceneDescription> description_;
   SessionOptions options_;
   std::unique_ptr<Server> server_;
   std::unique_ptr<FrameFeed> feed_;
   std::unique_ptr<StageClock> stages_;
   std::unique_ptr<Session> session_;
+  RunRecording recording_;  // ends before its session does
+  std::string recording_trouble_;
   std::uint32_t run_ = 0;
   bool threaded_ = false;
   bool stopped_ = false;  // the big stop

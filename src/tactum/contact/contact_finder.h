@@ -98,6 +98,14 @@ class ContactFinder final : public GapOracle {
   /// The same of every body [m].
   std::span<const double> radii() const noexcept { return radius_; }
 
+  /// What is carried from frame to frame (carried_state.h).
+  template <class Self, class Visit>
+  static void carried(Self& self, Visit& visit) noexcept {
+    visit(self.fat_box_, self.travel_, self.last_X_WB_, self.sweep_, self.lists_, self.met_, self.pairs_,
+          self.blocked_, self.priority_, self.budget_limited_, self.tests_left_, self.patches_,
+          self.motion_bound_, self.points_, self.min_tolerance_, self.frame_, self.renewal_);
+  }
+
  private:
   /// What a test found, and the pose of B in A at which it did.
   struct Answer {

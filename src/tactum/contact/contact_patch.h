@@ -40,6 +40,14 @@ struct ContactPatch : PatchSides {
   double distance = 0.0;   ///< of the pieces, or of the local minimum; negative when they overlap [m]
   double tolerance = 0.0;  ///< delta, the contact margin of the pair of bodies [m]
   Manifold manifold;
+
+  /// What is carried from frame to frame (carried_state.h).
+  template <class Self, class Visit>
+  static void carried(Self& self, Visit& visit) noexcept {
+    visit(self.body_a, self.body_b, self.piece_a, self.piece_b, self.pair, self.of_surfaces, self.met,
+          self.neighbour_face, self.round, self.implied, self.facets, self.distance, self.tolerance,
+          self.manifold);
+  }
 };
 
 /// A patch's weight in its facet's stiffness: its area; for a segment its length times a very small width,

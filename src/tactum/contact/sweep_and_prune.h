@@ -46,6 +46,12 @@ class SweepAndPrune {
   /// Pairs that overlap and found no room; they are listed as soon as there is some.
   int missing() const noexcept { return missing_; }
 
+  /// What is carried from frame to frame (carried_state.h).
+  template <class Self, class Visit>
+  static void carried(Self& self, Visit& visit) noexcept {
+    visit(self.boxes_, self.axes_, self.ends_of_, self.pairs_, self.free_slots_, self.table_, self.missing_);
+  }
+
  private:
   struct End {
     double value;

@@ -56,6 +56,15 @@ struct ContactRow : SurfacePair {
   double stiffness = 0.0;      ///< k of the penalty law, the point's part of it; for rows that yield [N/m]
   ImpactLaw impact;
   double impulse = 0.0;  ///< along the normal, the answer [N s]
+
+  /// What is carried from frame to frame (carried_state.h).
+  template <class Self, class Visit>
+  static void carried(Self& self, Visit& visit) noexcept {
+    visit(self.body_a, self.body_b, self.group_a, self.group_b, self.fixed_a, self.fixed_b, self.plane,
+          self.patch, self.friction_patch, self.state, self.n_BA_W, self.p_W, self.distance, self.skin_m,
+          self.asked, self.idle, self.rolls, self.friction, self.margin, self.stiffness, self.impact,
+          self.impulse);
+  }
 };
 
 /// The rows of contacts, and where the first of them stands in the problem.

@@ -56,6 +56,12 @@ class FrictionAnchors {
     now_.clear();
   }
 
+  /// What is carried from frame to frame (carried_state.h).
+  template <class Self, class Visit>
+  static void carried(Self& self, Visit& visit) noexcept {
+    visit(self.last_, self.now_);
+  }
+
  private:
   void sort_and_exchange() noexcept;
 

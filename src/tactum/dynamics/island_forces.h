@@ -63,6 +63,12 @@ class RowMemory {
   RowState& operator[](int row) noexcept { return now_[static_cast<std::size_t>(row)]; }
   const RowState& operator[](int row) const noexcept { return now_[static_cast<std::size_t>(row)]; }
 
+  /// What is carried from frame to frame (carried_state.h).
+  template <class Self, class Visit>
+  static void carried(Self& self, Visit& visit) noexcept {
+    visit(self.last_, self.now_, self.next_);
+  }
+
  private:
   static constexpr std::size_t kLookAhead = 64;
 

@@ -34,6 +34,12 @@ class Islands {
   /// The island that a contact of two bodies belongs to; -1 when neither moves.
   int of_contact(int a, int b) const noexcept { return moves(a) ? of(a) : moves(b) ? of(b) : -1; }
 
+  /// What is carried from frame to frame (carried_state.h).
+  template <class Self, class Visit>
+  static void carried(Self& self, Visit& visit) noexcept {
+    visit(self.parent_, self.moves_);
+  }
+
  private:
   void set_alone(std::size_t body, bool moves) noexcept {
     parent_[body] = static_cast<int>(body);

@@ -15,6 +15,12 @@ struct ContactStage {
   ContactFinder finder;
   std::vector<std::uint8_t> priority;   ///< of each body (contact/schedule.h)
   std::vector<ShadingNormals> shading;  ///< one per body; empty when shading is off, or bends no normal
+
+  /// What is carried from frame to frame (carried_state.h).
+  template <class Self, class Visit>
+  static void carried(Self& self, Visit& visit) noexcept {
+    visit(self.finder, self.priority);
+  }
 };
 
 /// Finds which pairs could touch, when no point of body i moves farther than `motion_bound[i]` [m]. Grasped

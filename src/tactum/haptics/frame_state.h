@@ -66,6 +66,13 @@ struct FrameState : HandFrameState {
   void ended(Stage stage) noexcept {
     if (observer) observer->stage_ended(stage);
   }
+
+  /// What is carried from frame to frame (carried_state.h).
+  template <class Self, class Visit>
+  static void carried(Self& self, Visit& visit) noexcept {
+    visit(self.world, self.X_WB_start, self.load_work_J, self.hand, self.contacts, self.response,
+          self.smoothing, self.port, self.safety);
+  }
 };
 
 /// The first stage of a frame: tracks every hand (hand_stage.h), in the order of the settings, and fills

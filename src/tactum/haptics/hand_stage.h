@@ -12,6 +12,13 @@ struct HandStage : HandTracking {
   Grasp grasp;
   FollowedTurn turned_W;  ///< from the handle on the grasped part to the probe
   FieldPull field;
+
+  /// What is carried from frame to frame (carried_state.h).
+  template <class Self, class Visit>
+  static void carried(Self& self, Visit& visit) noexcept {
+    visit(self.X_WD, self.X_WH, self.V_WH, self.time_s, self.known, self.clutched, self.grasp, self.turned_W,
+          self.field);
+  }
 };
 
 /// The stage before the first frame.

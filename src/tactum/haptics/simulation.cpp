@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "tactum/haptics/coupling_gains.h"
+#include "tactum/haptics/frame_snapshot.h"
 
 namespace tactum::inline v0_1 {
 
@@ -97,6 +98,11 @@ void Simulation::step(std::span<const HandSample> samples, std::span<Wrench> wre
 Wrench Simulation::run(const DeviceSample& sample, const FrameTick& tick) noexcept {
   next_index_ = tick.index + 1;
   return haptic_frame(world_, settings_, sample, tick, state_, report_);
+}
+
+Result<void> Simulation::restore(std::string_view snapshot, std::uint64_t next_index) {
+  next_index_ = next_index;
+  return read_snapshot(snapshot, state_);
 }
 
 }  // namespace tactum::inline v0_1

@@ -13,6 +13,7 @@
 /// and the same samples give the same bits.
 
 #include <memory>
+#include <string_view>
 
 #include "tactum/haptics/frame.h"
 
@@ -56,6 +57,10 @@ class Simulation final : public HapticFrame {
   /// Of the next frame: frames since the start, and the time it is at [s].
   std::uint64_t next_index() const noexcept { return next_index_; }
   double time_s() const noexcept { return static_cast<double>(next_index_) * settings_.dt_s; }
+
+  /// Goes on from a snapshot (frame_snapshot.h) of a simulation of the same world and settings: the next
+  /// frame is number `next_index`. After an error nothing can be stepped any more.
+  Result<void> restore(std::string_view snapshot, std::uint64_t next_index);
 
   /// Puts a stage of the caller's before passivity and safety; null for none. It must outlive the frames.
   void set_force_stage(ForceStage* stage) noexcept { state_.force_stage = stage; }

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "tactum/base/hash.h"
+#include "tactum/haptics/frame_snapshot.h"
 #include "tactum/haptics/setting_table.h"
 #include "tactum/recording/byte_io.h"
 #include "tactum/recording/frame_numbers.h"
@@ -95,6 +97,15 @@ int32 grip            # 0 no friction, 1 sticks, 2 slips
 )";
 }
 
+std::string snapshot_schema() {
+  return R"(# Everything that a frame carries to the next, so that a replay can begin before the frame `index`.
+uint64 index
+uint64 layout         # of `state`; programs with another one begin a replay at the start
+float64[] settings    # in force, in the order of `settings` in /tactum/run, in their units
+uint8[] state         # as src/tactum/base/carried_state.h writes it
+)";
+}
+
 std::string input_message(const RecordedInput& input) {
   std::string message;
   ByteWriter out(message);
@@ -183,6 +194,38 @@ std::string contacts_message(const FrameSlot& slot) {
 
 std::string numbers_message(const std::vector<double>& numbers) {
   return {reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(double)};
+}
+
+std::string snapshot_message(const RecordedSnapshot& snapshot) {
+  std::string message;
+  ByteWriter out(message);
+  put_all(out, snapshot.index, snapshot.layout, static_cast<std::uint32_t>(snapshot.settings.size()));
+  for (const double value : snapshot.settings) out.number(value);
+  out.text(snapshot.state);
+  return message;
+}
+
+bool read_snapshot_message(std::string_view message, RecordedSnapshot& snapshot) {
+  ByteReader in(message);
+  snapshot.index = in.number<std::uint64_t>();
+  snapshot.layout = in.number<std::uint64_t>();
+  const auto count = in.number<std::uint32_t>();
+  if (count > message.size() / sizeof(double)) return false;
+  snapshot.settings.resize(count);
+  for (double& value : snapshot.settings) value = in.number<double>();
+  snapshot.state = in.text();
+  return in.good() && in.done();
+}
+
+std::uint64_t layout_of_snapshots(const FrameState& state) noexcept {
+  Hash hash;
+  const std::uint64_t layout = snapshot_layout(state);
+  hash.add_bytes(&layout, sizeof layout);
+  for (const SettingInfo& setting : setting_table()) {
+    hash.add_bytes(setting.section, std::char_traits<char>::length(setting.section));
+    hash.add_bytes(setting.key, std::char_traits<char>::length(setting.key));
+  }
+  return hash.value();
 }
 
 bool read_numbers(std::string_view message, std::vector<double>& numbers) {

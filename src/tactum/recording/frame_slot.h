@@ -33,6 +33,14 @@ struct RecordedCommand {
   SessionCommand command;
 };
 
+/// The state between two frames, from which a replay can begin.
+struct RecordedSnapshot {
+  std::uint64_t index = 0;       ///< of the frame that begins with it
+  std::uint64_t layout = 0;      ///< layout_of_snapshots() of the program that took it
+  std::vector<double> settings;  ///< in force then, in the order of setting_table()
+  std::string_view state;        ///< write_snapshot(); of another owner's memory
+};
+
 /// A frame on its way to the writer; its room is made once.
 struct FrameSlot {
   RecordedInput input;
@@ -40,6 +48,8 @@ struct FrameSlot {
   std::vector<double> row;     ///< FrameTrace::write()
   std::vector<ShownContact> contacts;
   int contacts_left_out = 0;
+  bool has_frame = true;      ///< false: only the snapshot behind it counts
+  bool has_snapshot = false;  ///< one was taken after the frame (snapshot_room.h)
 };
 
 namespace recording {
@@ -49,6 +59,7 @@ inline constexpr std::string_view kCommand = "/tactum/command";
 inline constexpr std::string_view kReport = "/tactum/report";
 inline constexpr std::string_view kFrame = "/tactum/frame";
 inline constexpr std::string_view kContacts = "/tactum/contacts";
+inline constexpr std::string_view kSnapshot = "/tactum/snapshot";
 inline constexpr int kFormat = 1;  ///< of the messages; a reader takes no other
 
 /// The definitions, as text: a comment and a line for each field.
@@ -57,17 +68,24 @@ std::string command_schema();
 std::string report_schema();
 std::string frame_schema(const std::vector<TraceColumn>& columns);
 std::string contacts_schema();
+std::string snapshot_schema();
 
 /// The messages. Those of report and frame are the numbers alone.
 std::string input_message(const RecordedInput& input);
 std::string command_message(const RecordedCommand& command);
 std::string contacts_message(const FrameSlot& slot);
 std::string numbers_message(const std::vector<double>& numbers);
+std::string snapshot_message(const RecordedSnapshot& snapshot);
 
 /// Back again; false where the bytes are not such a message.
 bool read_input(std::string_view message, RecordedInput& input);
 bool read_command(std::string_view message, RecordedCommand& command);
 bool read_numbers(std::string_view message, std::vector<double>& numbers);
+/// The state stays where the message is.
+bool read_snapshot_message(std::string_view message, RecordedSnapshot& snapshot);
+
+/// What snapshots hold: equal where one program understands those of the other.
+std::uint64_t layout_of_snapshots(const FrameState& state) noexcept;
 }  // namespace recording
 
 }  // namespace tactum::inline v0_1

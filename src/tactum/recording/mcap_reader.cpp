@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <map>
 
 #include "tactum/recording/byte_io.h"
 #include "tactum/recording/compression.h"
@@ -41,6 +40,25 @@ class Walk {
       }
     }
     return std::move(end_);
+  }
+  McapTables& tables() { return tables_; }
+
+  /// One chunk alone.
+  Result<void> run_chunk(std::uint64_t offset) {
+    at_ = offset;
+    begun_ = true;
+    std::string head;
+    bool taken = fetch(at_, mcap::kRecordHead, head);
+    if (taken) {
+      ByteReader in(head);
+      Record record{static_cast<Op>(in.number<std::uint8_t>()), at_, {}};
+      taken = fetch(at_ + mcap::kRecordHead, in.number<std::uint64_t>(), content_);
+      record.content = content_;
+      taken = taken && (record.op == Op::kChunk ? take_chunk(record)
+                                                : wrong(record, "the place", "that of a chunk", "a Chunk"));
+    }
+    if (!taken) return *end_.wrong;
+    return {};
   }
 
  private:
@@ -103,8 +121,7 @@ class Walk {
   bool in_summary_ = false;
   std::uint64_t summary_start_ = 0;
   std::string content_;
-  std::map<std::uint16_t, mcap::Schema> schemas_;
-  std::map<std::uint16_t, mcap::Channel> channels_;
+  McapTables tables_;
   std::map<std::uint16_t, std::string>
       index_;                                 // entries that the last chunk's MessageIndex records must have
   std::uint64_t first_ns_ = 0, last_ns_ = 0;  // of the chunk
@@ -233,6 +250,8 @@ bool Walk::take_chunk(const Record& record) {
   if (size > mcap::kLargestChunk)
     return wrong(record, "the uncompressed size", fmt::format("{}", size),
                  fmt::format("at most {}", mcap::kLargestChunk));
+  index_.clear();
+  any_ = false;
   std::optional<std::string> records;
   if (compression == kCompression)
     records = decompressed(packed, static_cast<std::size_t>(size));
@@ -244,8 +263,6 @@ bool Walk::take_chunk(const Record& record) {
     return wrong(record, "the compressed data", "other bytes", "those of zstd, of the size it has");
   if (crc != crc32(*records))
     return wrong(record, "the checksum", fmt::format("{:08x}", crc), fmt::format("{:08x}", crc32(*records)));
-  index_.clear();
-  any_ = false;
   if (!take_records(record, *records)) return false;
   if (any_ && (first != first_ns_ || last != last_ns_))
     return wrong(record, "the time", fmt::format("{} to {} ns", first, last),
@@ -278,7 +295,7 @@ bool Walk::take_schema(const Record& record) {
   const auto id = in.number<std::uint16_t>();
   mcap::Schema schema{std::string(in.text()), std::string(in.text()), std::string(in.text())};
   if (!in.good() || !in.done() || id == 0) return wrong(record, "the content", "broken", "a schema");
-  schemas_.try_emplace(id, std::move(schema));
+  tables_.schemas.try_emplace(id, std::move(schema));
   return true;
 }
 
@@ -295,9 +312,9 @@ bool Walk::take_channel(const Record& record) {
     channel.metadata.emplace(std::move(key), std::string(texts.text()));
   }
   if (!in.good() || !in.done() || !texts.good()) return wrong(record, "the content", "broken", "a channel");
-  if (channel.schema != 0 && !schemas_.contains(channel.schema))
+  if (channel.schema != 0 && !tables_.schemas.contains(channel.schema))
     return wrong(record, "the schema", fmt::format("{}", channel.schema), "one that stands before it");
-  channels_.try_emplace(id, std::move(channel));
+  tables_.channels.try_emplace(id, std::move(channel));
   return true;
 }
 
@@ -310,8 +327,8 @@ bool Walk::take_message(const Record& chunk, const Record& record, std::uint64_t
   if (!in.good())
     return wrong(record, "the content", fmt::format("{} bytes", record.content.size()),
                  fmt::format("at least {}", kMessageHead));
-  const auto channel = channels_.find(id);
-  if (channel == channels_.end())
+  const auto channel = tables_.channels.find(id);
+  if (channel == tables_.channels.end())
     return wrong(record, "the channel", fmt::format("{}", id), "one that stands before it");
   first_ns_ = any_ ? std::min(first_ns_, time_ns) : time_ns;
   last_ns_ = any_ ? std::max(last_ns_, time_ns) : time_ns;
@@ -319,9 +336,10 @@ bool Walk::take_message(const Record& chunk, const Record& record, std::uint64_t
   ByteWriter entry(index_[id]);
   entry.number(time_ns);
   entry.number(place);
-  const auto schema = schemas_.find(channel->second.schema);
-  return obeyed(visitor_.message({channel->second, schema == schemas_.end() ? nullptr : &schema->second,
-                                  time_ns, in.rest(), chunk.offset}));
+  const auto schema = tables_.schemas.find(channel->second.schema);
+  return obeyed(
+      visitor_.message({channel->second, schema == tables_.schemas.end() ? nullptr : &schema->second, time_ns,
+                        in.rest(), chunk.offset}));
 }
 
 bool Walk::take_index(const Record& record) {
@@ -363,8 +381,19 @@ bool McapFile::read(std::uint64_t offset, std::size_t size, std::string& bytes) 
   return true;
 }
 
-McapEnd read_mcap(const McapSource& source, const std::string& name, McapVisitor& visitor) {
-  return Walk(source, name, visitor).run();
+McapEnd read_mcap(const McapSource& source, const std::string& name, McapVisitor& visitor,
+                  McapTables* tables) {
+  Walk walk(source, name, visitor);
+  McapEnd end = walk.run();
+  if (tables != nullptr) *tables = std::move(walk.tables());
+  return end;
+}
+
+Result<void> read_mcap_chunk(const McapSource& source, const std::string& name, const McapTables& tables,
+                             std::uint64_t offset, McapVisitor& visitor) {
+  Walk walk(source, name, visitor);
+  walk.tables() = tables;
+  return walk.run_chunk(offset);
 }
 
 }  // namespace tactum::inline v0_1

@@ -7,6 +7,7 @@
 /// mcap::kLargestChunk.
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -88,7 +89,19 @@ struct McapEnd {
   std::optional<Error> wrong;  ///< where complete is false: the record and the byte it begins at
 };
 
-/// `name` is the file's, for errors. An error of the visitor's is McapEnd::wrong, as it is.
-McapEnd read_mcap(const McapSource& source, const std::string& name, McapVisitor& visitor);
+/// What defines the messages of a file, so that one of its chunks can be read alone.
+struct McapTables {
+  std::map<std::uint16_t, mcap::Schema> schemas;
+  std::map<std::uint16_t, mcap::Channel> channels;
+};
+
+/// `name` is the file's, for errors. An error of the visitor's is McapEnd::wrong, as it is. Fills `tables`
+/// where they are given.
+McapEnd read_mcap(const McapSource& source, const std::string& name, McapVisitor& visitor,
+                  McapTables* tables = nullptr);
+
+/// The messages of the chunk that begins at `offset`, of a file that was read before. Checks it as much.
+Result<void> read_mcap_chunk(const McapSource& source, const std::string& name, const McapTables& tables,
+                             std::uint64_t offset, McapVisitor& visitor);
 
 }  // namespace tactum::inline v0_1

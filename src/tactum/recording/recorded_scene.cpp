@@ -125,17 +125,43 @@ Result<RecordedScene> build_recorded(const RunHead& head, const std::map<std::st
   scene->settings.dt_s = head.dt_s;
 
   RecordedScene recorded;
+  recorded.name = scene->name;
+  recorded.description = scene->description;
   recorded.safety = scene->safety;
   recorded.goals = scene->goals;
   recorded.device_limits = safety_limits(head.device);
   FrameSettings settings = settings_for(*scene, head.device);
   if (Result<void> restored = restore_settings(head, options, where, settings, recorded); !restored)
     return restored.error();
+  for (const auto& [place, value] : options.changed)
+    setting_table()[static_cast<std::size_t>(place)].set(settings, recorded.safety, value);
   settings.safety = tightened(recorded.device_limits, recorded.safety);
   Result<std::unique_ptr<Simulation>> made = Simulation::make(std::move(scene->world), std::move(settings));
   if (!made) return made.error();
   recorded.simulation = std::move(*made);
   return recorded;
+}
+
+Result<void> RecordedScene::restore(const RecordedSnapshot& snapshot, const ReplayOptions& options,
+                                    const std::string& where) {
+  const std::span<const SettingInfo> table = setting_table();
+  if (snapshot.layout != recording::layout_of_snapshots(simulation->state()) ||
+      snapshot.settings.size() != table.size())
+    return Error{"a snapshot cannot be gone on from", "one of another response or version of the program",
+                 "the response of the recording, or a replay from the start", where};
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    if (!table[i].live || !options.settings.empty() || !options.changed.empty()) continue;
+    if (!in_range(table[i], snapshot.settings[i]))
+      return Error{fmt::format("the setting {} of a snapshot is out of its range", table[i].key),
+                   fmt::format("{}", snapshot.settings[i]),
+                   fmt::format("{} to {}", table[i].low, table[i].high), where};
+    table[i].set(simulation->settings(), safety, snapshot.settings[i]);
+  }
+  simulation->settings().safety = tightened(device_limits, safety);
+  Result<void> restored = simulation->restore(snapshot.state, snapshot.index);
+  if (!restored)
+    return Error{restored.error().what, restored.error().found, restored.error().expected, where};
+  return {};
 }
 
 }  // namespace tactum::inline v0_1

@@ -4,9 +4,11 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tactum/haptics/simulation.h"
+#include "tactum/recording/frame_slot.h"
 #include "tactum/recording/run_head.h"
 #include "tactum/scene/goal.h"
 
@@ -14,11 +16,19 @@ namespace tactum::inline v0_1 {
 
 /// Other settings than those of the recording, for comparison.
 struct ReplayOptions {
-  std::string response;  ///< "constraint" or "penalty"; empty: the recorded one
-  std::string settings;  ///< a file as of `tactum feel --settings`, put over the scene's; empty: none
+  std::string response = {};  ///< "constraint" or "penalty"; empty: the recorded one
+  std::string settings = {};  ///< a file as of `tactum feel --settings`, put over the scene's; empty: none
+  std::vector<std::pair<int, double>> changed = {};  ///< places in setting_table(), and values put over all
+  double from_s = 0.0;  ///< begins at the last snapshot up to there, at the start where there is none [s]
 };
 
 struct RecordedScene {
+  /// Goes on from a snapshot of this recording, with the settings in force then, unless others are asked for.
+  /// An error where it is of another program or response.
+  Result<void> restore(const RecordedSnapshot& snapshot, const ReplayOptions& options,
+                       const std::string& where);
+
+  std::string name, description;
   std::unique_ptr<Simulation> simulation;
   SafetySettings safety;           ///< the user's limits
   SafetyLimits device_limits;      ///< which they tighten

@@ -65,9 +65,13 @@ Result<void> attach_files(McapWriter& writer, RunHead& head, const SceneDescript
 
 }  // namespace
 
-Recorder::Recorder(Session& session, std::unique_ptr<McapWriter> writer)
+Recorder::Recorder(const RecorderOptions& options, Session& session, RecordSwitch* through,
+                   std::unique_ptr<McapWriter> writer)
     : session_(session),
+      through_(through),
+      midway_(options.midway.has_value()),
       writer_(std::move(writer)),
+      snapshots_(session.state(), session.scene().settings.dt_s, options.snapshot_every_s, midway_),
       trace_(session.scene().world, session.scene().settings.dt_s, true, 0),
       slots_(kSlots + 1),
       free_(kSlots),
@@ -82,7 +86,8 @@ Recorder::Recorder(Session& session, std::unique_ptr<McapWriter> writer)
 }
 
 Result<std::unique_ptr<Recorder>> Recorder::open(const RecorderOptions& options,
-                                                 const SceneDescription& scene, Session& session) {
+                                                 const SceneDescription& scene, Session& session,
+                                                 RecordSwitch* through) {
   if (scene.source.text.empty())
     return Error{"only a scene that was read from a text can be recorded", "one made in code",
                  "a scene file, a built-in scene or a mesh", scene.name};
@@ -92,14 +97,17 @@ Result<std::unique_ptr<Recorder>> Recorder::open(const RecorderOptions& options,
   Result<std::unique_ptr<McapWriter>> writer =
       McapWriter::open(options.path, "", "tactum " + options.version);
   if (!writer) return writer.error();
-  std::unique_ptr<Recorder> recorder(new Recorder(session, std::move(*writer)));
+  std::unique_ptr<Recorder> recorder(new Recorder(options, session, through, std::move(*writer)));
   RunHead head = head_of(session, scene.source.file, options, recorder->trace_.columns());
   if (Result<void> attached = attach_files(*recorder->writer_, head, scene); !attached)
     return attached.error();
   recorder->begin(head);
   if (recorder->writer_->trouble()) return *recorder->writer_->trouble();
   recorder->thread_ = std::thread([&self = *recorder] { self.write_in_background(); });
-  session.report_to(recorder.get());
+  if (through != nullptr)
+    through->lead_to(recorder.get());
+  else
+    session.report_to(recorder.get());
   return recorder;
 }
 
@@ -129,11 +137,12 @@ void Recorder::add_channels() {
   report_ = add("tactum/Report", report_schema(), kReport);
   frame_ = add("tactum/Frame", frame_schema(trace_.columns()), kFrame);
   contacts_ = add("tactum/Contacts", contacts_schema(), kContacts);
+  snapshot_ = add("tactum/Snapshot", snapshot_schema(), kSnapshot);
   shown_.emplace(*writer_, session_.scene().world, session_.scene().settings.dt_s, trace_.columns());
 }
 
 void Recorder::obeyed(std::uint64_t index, const SessionCommand& command) noexcept {
-  if (failed_.load(std::memory_order_relaxed)) return;
+  if (failed_.load(std::memory_order_relaxed) || midway_) return;
   if (!commands_.push({index, command})) dropped_.fetch_add(1, std::memory_order_relaxed);
 }
 
@@ -148,6 +157,9 @@ void Recorder::frame_over(const DeviceSample& sample, const FrameTick& tick, con
     dropped_.fetch_add(1, std::memory_order_relaxed);
     return;
   }
+  slot.has_snapshot = snapshots_.take(tick.index + 1, frame.state, frame.settings, session_.scene().safety);
+  slot.has_frame = !midway_;
+  midway_ = midway_ && !slot.has_snapshot;
   slot.input = {sample, tick, state_hash(frame.report, frame.state), dropped()};
   put_report(frame.report, slot.report.data());
   slot.contacts_left_out = show_contacts(frame, kRecordedContacts, slot.contacts);
@@ -175,6 +187,7 @@ void Recorder::write_in_background() {
       trouble_ = writer_->trouble();
     }
     if (ends) return;
+    snapshots_.make_room();
     if (!any) std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
 }
@@ -194,9 +207,16 @@ bool Recorder::drain() {
 }
 
 void Recorder::write(const FrameSlot& slot) {
+  const std::uint64_t time_ns = time_of(slot.input.tick);
+  if (slot.has_frame) write_frame(slot, time_ns);
+  if (!slot.has_snapshot) return;
+  writer_->add_message(snapshot_, time_ns, recording::snapshot_message(snapshots_.taken()));
+  snapshots_.release();
+}
+
+void Recorder::write_frame(const FrameSlot& slot, std::uint64_t time_ns) {
   using namespace recording;
   write_commands(slot.input.tick.index);
-  const std::uint64_t time_ns = time_of(slot.input.tick);
   writer_->add_message(input_, time_ns, input_message(slot.input));
   writer_->add_message(report_, time_ns, numbers_message(slot.report));
   writer_->add_message(frame_, time_ns, numbers_message(slot.row));
@@ -217,7 +237,8 @@ void Recorder::write_commands(std::uint64_t index) {
 }
 
 void Recorder::wait_for_room() const {
-  while (taken_ - passed_.load(std::memory_order_acquire) + 2 > kSlots)
+  const auto full = [this] { return taken_ - passed_.load(std::memory_order_acquire) + 2 > kSlots; };
+  while (!failed_.load(std::memory_order_relaxed) && (full() || snapshots_.in_use()))
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
 }
 
@@ -229,7 +250,10 @@ std::optional<Error> Recorder::trouble() {
 
 void Recorder::finish() {
   if (!thread_.joinable()) return;
-  session_.report_to(nullptr);
+  if (through_ != nullptr)
+    through_->lead_to(nullptr);
+  else
+    session_.report_to(nullptr);
   ends_.store(true, std::memory_order_release);
   thread_.join();
 }

@@ -18,8 +18,10 @@
 #include "tactum/base/spsc_ring.h"
 #include "tactum/recording/frame_slot.h"
 #include "tactum/recording/mcap_writer.h"
+#include "tactum/recording/record_switch.h"
 #include "tactum/recording/run_head.h"
 #include "tactum/recording/shown_run.h"
+#include "tactum/recording/snapshot_room.h"
 #include "tactum/scene/scene_description.h"
 #include "tactum/session/session.h"
 
@@ -30,10 +32,11 @@ class Recorder final : public RunListener {
   static constexpr std::size_t kSlots = 4096;  ///< four seconds at 1 kHz until they are written
   static constexpr double kChunk_s = 0.25;     ///< of a run that is killed no more is lost
 
-  /// Begins the file with the scene and every file it needs. The session has not begun, and was opened with
-  /// `scene`, which was read from a text; it must outlive the recorder.
+  /// Begins the file with the scene and every file it needs. The session was opened with `scene`, which was
+  /// read from a text; it must outlive the recorder. It has not begun; or it has, reports to `through`, and
+  /// the options say so.
   static Result<std::unique_ptr<Recorder>> open(const RecorderOptions& options, const SceneDescription& scene,
-                                                Session& session);
+                                                Session& session, RecordSwitch* through = nullptr);
   ~Recorder() override;
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
@@ -51,18 +54,25 @@ class Recorder final : public RunListener {
 
   std::uint64_t frames() const noexcept { return written_.load(std::memory_order_relaxed); }
   std::uint64_t dropped() const noexcept { return dropped_.load(std::memory_order_relaxed); }
+  /// The state is too large to be copied between two frames: a replay can only begin at the start.
+  bool without_snapshots() const noexcept { return snapshots_.too_large(); }
 
  private:
-  Recorder(Session& session, std::unique_ptr<McapWriter> writer);
+  Recorder(const RecorderOptions& options, Session& session, RecordSwitch* through,
+           std::unique_ptr<McapWriter> writer);
   void add_channels();
   void begin(const RunHead& head);
   void write_in_background();
   bool drain();
   void write(const FrameSlot& slot);
+  void write_frame(const FrameSlot& slot, std::uint64_t time_ns);
   void write_commands(std::uint64_t index);
 
   Session& session_;
+  RecordSwitch* through_;  // null: the session itself reports
+  bool midway_;            // of the loop's thread: no frame counts until there is a snapshot
   std::unique_ptr<McapWriter> writer_;
+  SnapshotRoom snapshots_;
   FrameTrace trace_;
   std::optional<ShownRun> shown_;
   std::vector<FrameSlot> slots_;  // and one that is filled when none is free
@@ -75,7 +85,7 @@ class Recorder final : public RunListener {
   std::atomic<bool> failed_{false}, ends_{false};
   std::mutex mutex_;  // of trouble_, between the writer's thread and the one that asks
   std::optional<Error> trouble_;
-  std::uint16_t run_ = 0, input_ = 0, command_ = 0, report_ = 0, frame_ = 0, contacts_ = 0;
+  std::uint16_t run_ = 0, input_ = 0, command_ = 0, report_ = 0, frame_ = 0, contacts_ = 0, snapshot_ = 0;
   std::thread thread_;
 };
 

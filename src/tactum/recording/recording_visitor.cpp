@@ -40,7 +40,9 @@ Result<void> RecordingVisitor::message(const McapMessage& message) {
     return Error{"a message is of another form", fmt::format("{} bytes", message.data.size()), expected,
                  where};
   };
+  chunk_offset_ = message.chunk_offset;
   if (topic == recording::kRun) {
+    if (reads_again_) return {};
     if (begun()) return Error{"there is a second head", "", "one", where};
     Result<RunHead> head = read_head(message.data, where);
     if (!head) return head.error();
@@ -61,6 +63,11 @@ Result<void> RecordingVisitor::message(const McapMessage& message) {
   if (topic == recording::kContacts)
     return recording::read_contacts(message.data, contacts_) ? contacts(contacts_)
                                                              : broken("a tactum/Contacts");
+  if (topic == recording::kSnapshot) {
+    RecordedSnapshot read;
+    return recording::read_snapshot_message(message.data, read) ? snapshot(read)
+                                                                : broken("a tactum/Snapshot");
+  }
   const bool is_report = topic == recording::kReport;
   if (!is_report && topic != recording::kFrame) return {};
   numbers_.resize(is_report ? report_numbers().size() : head_->columns.size());
@@ -69,8 +76,8 @@ Result<void> RecordingVisitor::message(const McapMessage& message) {
   return is_report ? report(numbers_) : row(numbers_);
 }
 
-McapEnd read_recording(const McapSource& source, RecordingVisitor& visitor) {
-  McapEnd end = read_mcap(source, visitor.name(), visitor);
+McapEnd read_recording(const McapSource& source, RecordingVisitor& visitor, McapTables* tables) {
+  McapEnd end = read_mcap(source, visitor.name(), visitor, tables);
   if (!visitor.begun() && !end.wrong)
     end.wrong =
         Error{"there is no run in the file", "another MCAP file", "a recording of Tactum", visitor.name()};

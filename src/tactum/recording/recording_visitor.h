@@ -40,6 +40,13 @@ class RecordingVisitor : public McapVisitor {
   virtual Result<void> row(const std::vector<double>&) { return {}; }
   /// Last of a frame, and only of one that has some.
   virtual Result<void> contacts(const RecordedContacts&) { return {}; }
+  /// Between two frames, now and then.
+  virtual Result<void> snapshot(const RecordedSnapshot&) { return {}; }
+
+  /// From here on chunks are read a second time: a head in them is the one that is known.
+  void read_again() noexcept { reads_again_ = true; }
+  /// Where the chunk of the message that was passed last begins in the file.
+  std::uint64_t chunk_offset() const noexcept { return chunk_offset_; }
 
  private:
   Result<void> check_files();
@@ -48,11 +55,13 @@ class RecordingVisitor : public McapVisitor {
   Files files_;
   std::map<std::string, std::uint64_t> places_;  // of the files, for errors
   std::optional<RunHead> head_;
+  std::uint64_t chunk_offset_ = 0;
+  bool reads_again_ = false;
   std::vector<double> numbers_;
   RecordedContacts contacts_;
 };
 
 /// Reads a whole recording: read_mcap(), and an error of its own where the file has no head.
-McapEnd read_recording(const McapSource& source, RecordingVisitor& visitor);
+McapEnd read_recording(const McapSource& source, RecordingVisitor& visitor, McapTables* tables = nullptr);
 
 }  // namespace tactum::inline v0_1

@@ -8,21 +8,12 @@
 #include <string>
 #include <vector>
 
+#include "tactum/recording/frame_difference.h"
 #include "tactum/recording/mcap_reader.h"
 #include "tactum/recording/recorded_scene.h"
 #include "tactum/recording/run_head.h"
 
 namespace tactum::inline v0_1 {
-
-/// Where a replay left the recording: the first frame, and in it the first field in the order of the stages.
-struct ReplayDifference {
-  std::uint64_t frame = 0;
-  std::string stage;      ///< stage_name(), of the frame
-  std::string field;      ///< "shown_fx_N"; empty: only state that is in no report differs
-  std::string meaning;    ///< of the field
-  double recorded = 0.0;  ///< its values
-  double replayed = 0.0;
-};
 
 /// What a run comes to, as recorded or as replayed.
 struct RunExtremes {
@@ -33,9 +24,11 @@ struct RunExtremes {
 };
 
 struct ReplayResult {
+  std::uint64_t first = 0;   ///< the frame that it began with
   std::uint64_t frames = 0;  ///< replayed
   std::uint64_t same = 0;    ///< of them, the same to the bit, from the first on
-  std::optional<ReplayDifference> difference;
+  std::uint64_t states = 0;  ///< snapshots that were compared, and are the same to the bit
+  std::optional<FrameDifference> difference;
   std::optional<std::uint64_t> gap;  ///< the frame before which some were not recorded: the replay ends there
   RunExtremes recorded, replayed;
   RunHead head;

@@ -127,7 +127,8 @@ RunHead head_of(const Session& session, const std::string& scene_file, const Rec
   head.dt_s = scene.settings.dt_s;
   head.device = session.device();
   for (const Body& body : scene.world.bodies) head.bodies.push_back(body.name);
-  head.settings = settings_in_force(scene.settings, scene.safety);
+  head.settings = options.midway ? settings_in_force(options.midway->frame, options.midway->safety)
+                                 : settings_in_force(scene.settings, scene.safety);
   head.columns = columns;
   return head;
 }

@@ -3,6 +3,7 @@
 /// one message of /tactum/run, as JSON.
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -10,6 +11,7 @@
 
 #include "tactum/base/result.h"
 #include "tactum/devices/device.h"
+#include "tactum/haptics/setting_table.h"
 #include "tactum/session/session.h"
 #include "tactum/telemetry/trace.h"
 
@@ -17,9 +19,12 @@ namespace tactum::inline v0_1 {
 
 /// Of a recording that begins.
 struct RecorderOptions {
-  std::string path;     ///< of the file, which is made anew
-  std::string grip;     ///< as in SessionOptions
-  std::string version;  ///< of the program, "0.1.0"
+  std::string path = {};          ///< of the file, which is made anew
+  std::string grip = {};          ///< as in SessionOptions
+  std::string version = {};       ///< of the program, "0.1.0"
+  double snapshot_every_s = 1.0;  ///< of states from which a replay can begin; larger ones more rarely [s]
+  /// Of a run that goes on already: the settings as its owner has them. The recording begins with a snapshot.
+  std::optional<UserSettings> midway = {};
 };
 
 /// A file inside the recording, and the hash of its content (base/hash.h).
@@ -47,7 +52,7 @@ struct RunHead {
 inline constexpr const char* kSceneAttachment = "scene.toml";
 inline constexpr const char* kChangesAttachment = "settings.toml";  ///< of --settings
 
-/// That of a session which has not begun.
+/// That of a session. Of one that has begun nothing is read that its loop changes.
 RunHead head_of(const Session& session, const std::string& scene_file, const RecorderOptions& options,
                 const std::vector<TraceColumn>& columns);
 

@@ -40,6 +40,12 @@ class ConstraintResponse {
   /// Its memory, for tests and displays that look inside.
   const ConstraintMemory& memory() const noexcept { return memory_; }
 
+  /// What is carried from frame to frame (carried_state.h).
+  template <class Self, class Visit>
+  static void carried(Self& self, Visit& visit) noexcept {
+    visit(self.memory_, self.grasped_last_);
+  }
+
  private:
   ConstraintMemory memory_;
 };

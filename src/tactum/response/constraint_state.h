@@ -50,6 +50,12 @@ struct CornerRows {
   std::uint64_t name_of(const ContactRow& row) const noexcept {
     return row.state < 0 ? 0 : memory[row.state].name;
   }
+
+  /// What is carried from frame to frame (carried_state.h).
+  template <class Self, class Visit>
+  static void carried(Self& self, Visit& visit) noexcept {
+    visit(self.count, self.own, self.first, self.first_of_positions, self.bent, self.shades, self.memory);
+  }
 };
 
 /// A pose on trial, and the gaps of the patches there; scratch of one frame, an entry per body or patch. Both
@@ -118,6 +124,12 @@ struct ConstraintState {
   /// The problem whose answer is the step.
   ContactProblem& step_problem() { return rows.shades ? position_problem : problem; }
   const ContactProblem& step_problem() const { return rows.shades ? position_problem : problem; }
+
+  /// What is carried from frame to frame (carried_state.h).
+  template <class Self, class Visit>
+  static void carried(Self& self, Visit& visit) noexcept {
+    visit(self.anchors, self.friction_uses, self.trust, self.wanted, self.felt, self.warm_start, self.rows);
+  }
 };
 
 /// The balance of momentum (momentum.h); scratch of one frame.
@@ -172,6 +184,13 @@ struct FreeBodies {
            (islands.of(patch.body_a) == grasped_island || islands.of(patch.body_b) == grasped_island);
   }
 
+  /// What is carried from frame to frame (carried_state.h).
+  template <class Self, class Visit>
+  static void carried(Self& self, Visit& visit) noexcept {
+    visit(self.islands, self.grasped_island, self.grasped_here, self.grasped_torque, self.others, self.alone,
+          self.near_grasped, self.unconverged, self.detour, self.A_contacts);
+  }
+
   // Scratch of one frame, one entry per body, or per patch.
   std::vector<char> struck;     ///< impacts may change its velocity
   std::vector<char> hit;        ///< ... and one did
@@ -211,6 +230,13 @@ struct Waiting {
   ReservedVector<char> counted;  ///< of each patch
   std::vector<int> contacts;     ///< patches of each body
   std::vector<char> hit;         ///< touched by something fast
+
+  /// What is carried from frame to frame (carried_state.h).
+  template <class Self, class Visit>
+  static void carried(Self& self, Visit& visit) noexcept {
+    visit(self.waits, self.waited, self.travel, self.X_rest, self.rested, self.contacts_at_rest, self.rounds,
+          self.ran_out);
+  }
 };
 
 /// Which bodies sleep (sleep.h); one entry per body.
@@ -223,6 +249,12 @@ struct Sleep {
   std::vector<int> touches;    ///< ... and now [-]
   Islands islands;             ///< by this frame's patches, asleep or not
   std::vector<char> restless;  ///< of islands
+
+  /// What is carried from frame to frame (carried_state.h).
+  template <class Self, class Visit>
+  static void carried(Self& self, Visit& visit) noexcept {
+    visit(self.X_still, self.still, self.touched, self.touches, self.islands, self.restless);
+  }
 };
 
 /// Everything that the constraint response keeps from frame to frame. Its parts depend on each other: a step
@@ -237,6 +269,13 @@ struct ConstraintMemory {
   ContactRows contact_rows;
   ImpactScratch impact_scratch;
   std::vector<double> motion_bound;  ///< by body: how far it may move [m]
+
+  /// What is carried from frame to frame (carried_state.h).
+  template <class Self, class Visit>
+  static void carried(Self& self, Visit& visit) noexcept {
+    visit(self.constraint, self.free, self.waiting, self.sleep, self.contact_rows, self.impulses,
+          self.motion_bound);
+  }
 };
 
 /// One step while it is made: its inputs, the gap oracle, and the states that it changes.

@@ -41,6 +41,12 @@ struct ContactRows {
   ReservedVector<FacetPoint> points;  // of one facet
   ReservedVector<ContactRow> rows;
   bool full = false;  ///< points were dropped
+
+  /// What is carried from frame to frame (carried_state.h).
+  template <class Self, class Visit>
+  static void carried(Self& self, Visit& visit) noexcept {
+    visit(self.rows, self.full);
+  }
 };
 
 /// The contacts from which rows are made.

@@ -26,6 +26,12 @@ class ImpulseDisplay {
   /// The energy of impacts that is still to be felt [J].
   double pending_J() const noexcept { return pending_J_; }
 
+  /// What is carried from frame to frame (carried_state.h).
+  template <class Self, class Visit>
+  static void carried(Self& self, Visit& visit) noexcept {
+    visit(self.ahead_, self.energy_, self.pending_J_, self.now_);
+  }
+
  private:
   std::array<Wrench, kMostFrames> ahead_{};   // a ring
   std::array<double, kMostFrames> energy_{};  // beside it

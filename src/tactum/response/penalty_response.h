@@ -56,6 +56,12 @@ class PenaltyResponse {
   /// Whether rows were dropped for want of room.
   bool rows_full() const noexcept { return contacts_.full || memory_.contact_rows.full; }
 
+  /// What is carried from frame to frame (carried_state.h).
+  template <class Self, class Visit>
+  static void carried(Self& self, Visit& visit) noexcept {
+    visit(self.contacts_, self.memory_, self.stored_J_, self.rate_, self.rate_of_, self.pushed_);
+  }
+
  private:
   /// Of each patch, the factor for its depth; empty where the shortest depth is wanted.
   std::span<const double> scale_depths(const StepInput& input, GapOracle& gaps,

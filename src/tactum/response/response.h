@@ -43,6 +43,12 @@ class Response {
   /// The constraint response, if it is the one; else null. For tests and displays that look inside.
   const ConstraintResponse* constraint() const noexcept { return std::get_if<ConstraintResponse>(&model_); }
 
+  /// What is carried from frame to frame (carried_state.h).
+  template <class Self, class Visit>
+  static void carried(Self& self, Visit& visit) noexcept {
+    visit(self.model_);
+  }
+
  private:
   std::variant<PenaltyResponse, ConstraintResponse> model_;
 };

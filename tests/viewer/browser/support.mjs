@@ -33,16 +33,21 @@ process.on("exit", () => started.forEach((program) => program.kill("SIGKILL")));
 
 /** The program with its page, as a user starts it. */
 export class Program {
-  static async start(tactum, scene, options = []) {
-    return await Program.command(tactum, ["feel", scene, ...options]);
+  static async start(tactum, scene, options = [], place = {}) {
+    return await Program.command(tactum, ["feel", scene, ...options], place);
   }
   /** Any command that serves a page and writes a summary. */
-  static async command(tactum, words) {
+  static async command(tactum, words, place = {}) {
+    const folder = mkdtempSync(join(tmpdir(), "tactum-browser-"));
+    const json = join(folder, "summary.json");
+    const program = await Program.serve(tactum, [...words, "--json", json], place);
+    return Object.assign(program, { folder, json });
+  }
+  /** Any command that serves a page. */
+  static async serve(tactum, words, place = {}) {
     const program = new Program();
-    program.folder = mkdtempSync(join(tmpdir(), "tactum-browser-"));
-    program.json = join(program.folder, "summary.json");
-    program.process = spawn(tactum, [...words, "--view", "--json", program.json], {
-      stdio: ["ignore", "pipe", "pipe"], env: { ...process.env, DISPLAY: "", WAYLAND_DISPLAY: "" },
+    program.process = spawn(tactum, [...words, "--view"], {
+      stdio: ["ignore", "pipe", "pipe"], env: { ...process.env, DISPLAY: "", WAYLAND_DISPLAY: "" }, ...place,
     });
     started.push(program.process);
     program.said = "";

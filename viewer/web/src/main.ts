@@ -8,8 +8,10 @@ import { Hand } from "./hand";
 import { edgeKinds } from "./look";
 import { Panel } from "./panel";
 import { readShapes, type Frames, type Picture, type Run, type Shape, type Status, type ServerMessage } from "./protocol";
+import { Recording } from "./recording";
 import { Samples } from "./samples";
 import type { Facts } from "./table";
+import { Timeline } from "./timeline";
 import { withUnit } from "./units";
 import { View, type ViewName } from "./view";
 import { Why } from "./why";
@@ -35,6 +37,9 @@ const panel = new Panel(get("panel"), (message) => {
   if (maySteer()) ask(message);
 });
 const hand = new Hand(view, canvas, { maySteer, send: ask });
+const askToSteer = (message: Record<string, unknown>) => void (maySteer() && ask(message));
+const timeline = new Timeline(askToSteer);
+const recording = new Recording(askToSteer);
 
 function maySteer(): boolean {
   if (status?.steering) return true;
@@ -82,6 +87,8 @@ async function begin(next: Run) {
   charts.begin(next, samples);
   why.begin(next);
   panel.begin(next);
+  timeline.begin(next);
+  body.classList.toggle("replays", timeline.active);
   view.bodies?.showPieces(pressed("pieces"));
   view.bodies?.showThrough(glass);
   showKinds(pressed("edges"));
@@ -161,6 +168,8 @@ function showStatus(message: Status) {
   link.textContent = health.device_lost ? "device lost" : `${run ? `${Math.round(run.rate_Hz)} Hz · ` : ""}${message.pages} ${message.pages === 1 ? "page" : "pages"}`;
   link.classList.toggle("bad", health.device_lost ?? false);
   panel.showStatus(message);
+  timeline.showStatus(message);
+  recording.showStatus(message);
   body.dataset.steering = String(message.steering);
   body.dataset.stopped = String(confirmed);
   body.dataset.pages = String(message.pages);
@@ -218,6 +227,7 @@ function tick(time: number) {
     view.showWrench(samples.wrench(run.stages.length - 1, sample), raw >= 0 ? samples.wrench(raw, sample) : null);
     get("grip-legend").hidden = view.grips.length === 0;
     hand.drawPull(picture);
+    timeline.show(picture.index);
   }
   view.draw();
   charts.draw();
@@ -306,6 +316,7 @@ function showHint() {
   const grasped = run && run.grasped >= 0 ? run.bodies[run.grasped].name : "";
   const hinged = run && run.grasped >= 0 && run.bodies[run.grasped].joint === "hinge";
   get("hint").textContent = !run ? ""
+    : run.replay ? `A recording, ${run.replay.file}: its frames are computed again. Drag to look around, wheel to zoom; press on a chart to go to that moment.`
     : run.picks && hand.canFeel ? "Press on anything that moves to pick it up, drag it against the others, let go to throw it. Drag beside it to look around."
     : run.grasped < 0 ? "Drag to look around, wheel to zoom. Pieces and Edges colour what the part is made of."
     : !hand.canFeel ? "This device is not led by the mouse: look, or choose a simulated device in the settings."
@@ -352,6 +363,10 @@ const actions: [string, string, () => void][] = [
     get("raw-legend").hidden = !on;
     charts.showRaw(on);
   }],
+  ["record", "v", () => recording.toggle()],
+  ["play", "", () => timeline.toggle()],
+  ["step-back", ",", () => timeline.step(-1)],
+  ["step-on", ".", () => timeline.step(1)],
   ["energy", "n", () => charts.showEnergy(toggle("energy"))],
   ["picture", "", savePicture],
   ["mode", "m", () => { hand.turns = toggle("mode"); showHint(); }],
@@ -374,7 +389,9 @@ window.addEventListener("keydown", (event) => {
   if (event.code === "Space") {
     event.preventDefault();
     event.stopImmediatePropagation();
-    if (!event.repeat) stop();
+    if (event.repeat) return;
+    if (timeline.active) timeline.toggle();
+    else stop();
     return;
   }
   if (event.ctrlKey || event.metaKey || isTyping(event.target) || event.target instanceof HTMLSelectElement) return;
@@ -399,6 +416,7 @@ charts.onPause = (on) => {
 };
 charts.onPick = (sample) => {
   if (!samples) return;
+  if (timeline.active) return timeline.seek(samples.frameOf(sample)); // that moment itself, not one beside it
   charts.pause(true);
   charts.moment = sample;
   charts.draw(true);
@@ -450,6 +468,8 @@ const helpRows: [string, string][] = [
   ["+ −", "longer, shorter arrows; without that one newton has the same length in every moment"],
   ["W, N", "the raw wrench beside the shown one, energy charts"],
   ["Space, then Enter", "STOP: force and torque are led to zero at once; feel again"],
+  ["V", "record the run into a file; end it"],
+  ["Space, comma, full stop", "of a recording: play and pause, a frame back, a frame on"],
   ["C, click on a chart", "pause; show that moment"],
   ["L, R", "back to now; start again"],
 ];

@@ -31,6 +31,7 @@ export interface Run extends Settings {
   rate_Hz: number; bodies: Body[]; grasped: number; picks: boolean; X_BH: Pose; device: DeviceFacts; stages: StageInfo[];
   channels: ChannelInfo[]; flags: { safety: FlagInfo[]; frame: FlagInfo[] };
   posed: number[]; // bodies whose poses every sample has, behind its other numbers
+  replay?: { file: string; first: number; past: number }; // of a recording: its frames
   field: number[]; // arrows of the force fields, six numbers each: place [m], force [N]
 }
 export interface Times { mean: number; p50: number; p99: number; p999: number; max: number }
@@ -42,6 +43,8 @@ export interface Status {
     missed_deadlines?: number; late_frames?: number; failed_reads?: number; failed_writes?: number;
     samples_dropped?: number; frame_us?: Times; safety?: string; remarks?: string[];
     goals?: { met: boolean; text: string }[];
+    recording?: { file: string; frames: number; dropped: number } | null; // the file that is being written
+    replay?: { frame: number; speed: number };
   };
 }
 export type ServerMessage =

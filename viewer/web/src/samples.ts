@@ -15,14 +15,16 @@ export class Samples {
   gaps = 0; // frames that are missing between samples
   peakForce = 0; // of the shown force over the run [N]
   private readonly stages: number;
+  private readonly jumps: boolean; // a recording: it may go on anywhere
   private readonly columns: Float32Array[] = [];
   private readonly index = new Float64Array(room);
-  private readonly pictures: Picture[] = [];
+  private pictures: Picture[] = [];
   private nextPicture = 0;
 
   constructor(run: Run) {
     this.dt = 1 / run.rate_Hz;
     this.stages = run.stages.length;
+    this.jumps = run.replay !== undefined;
     for (const stage of run.stages)
       for (const axis of ["fx", "fy", "fz", "tx", "ty", "tz"]) {
         this.names.push(`${stage.key}.${axis}`);
@@ -46,8 +48,9 @@ export class Samples {
   take(frames: Frames) {
     const shown = 6 * (this.stages - 1);
     for (let row = 0, at = 0; row < frames.rows; ++row, at += 1 + frames.numbers) {
-      const slot = this.count % room;
       const index = frames.indices[at];
+      if (this.jumps && this.count > 0 && index !== this.frameOf(this.count - 1) + 1) this.clear();
+      const slot = this.count % room;
       if (this.count > 0) {
         const expected = this.index[(this.count - 1) % room] + 1;
         if (index > expected) this.gaps += index - expected;
@@ -62,6 +65,12 @@ export class Samples {
     if (!frames.picture) return;
     this.pictures[this.nextPicture] = frames.picture;
     this.nextPicture = (this.nextPicture + 1) % pictureRoom;
+  }
+
+  /** Samples are in the order of their frames: what was before a jump is no longer there. */
+  private clear() {
+    this.count = this.gaps = this.peakForce = this.nextPicture = 0;
+    this.pictures = [];
   }
 
   get oldest() {
