@@ -27,7 +27,8 @@ const char* snapshot_part(const FrameState& state, std::size_t byte) noexcept {
   if (before_end_of(state.contacts)) return "contacts";
   if (before_end_of(state.response)) return "response";
   if (before_end_of(state.smoothing)) return "smoothing";
-  return before_end_of(state.port) ? "energy balance" : "safety";
+  if (before_end_of(state.port, state.coupling_work_J)) return "energy balance";
+  return before_end_of(state.safety) ? "safety" : "other hands";
 }
 
 Result<void> read_snapshot(std::string_view bytes, FrameState& state) {

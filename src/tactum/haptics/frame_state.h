@@ -39,6 +39,12 @@ struct HandFrameState {
   // Scratch of one frame.
   HandleMotion handle_moved;  ///< the motion of the device's handle
   PlacedHandle handle;        ///< on the grasped part, where the step has left it
+
+  /// What is carried from frame to frame (carried_state.h).
+  template <class Self, class Visit>
+  static void carried(Self& self, Visit& visit) noexcept {
+    visit(self.hand, self.smoothing, self.port, self.safety, self.coupling_work_J);
+  }
 };
 
 /// The inherited members are those of the first hand.
@@ -71,7 +77,7 @@ struct FrameState : HandFrameState {
   template <class Self, class Visit>
   static void carried(Self& self, Visit& visit) noexcept {
     visit(self.world, self.X_WB_start, self.load_work_J, self.hand, self.contacts, self.response,
-          self.smoothing, self.port, self.safety);
+          self.smoothing, self.port, self.coupling_work_J, self.safety, self.other_hands);
   }
 };
 

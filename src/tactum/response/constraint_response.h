@@ -43,7 +43,7 @@ class ConstraintResponse {
   /// What is carried from frame to frame (carried_state.h).
   template <class Self, class Visit>
   static void carried(Self& self, Visit& visit) noexcept {
-    visit(self.memory_, self.grasped_last_);
+    visit(self.memory_);
   }
 
  private:

@@ -128,7 +128,7 @@ struct ConstraintState {
   /// What is carried from frame to frame (carried_state.h).
   template <class Self, class Visit>
   static void carried(Self& self, Visit& visit) noexcept {
-    visit(self.anchors, self.friction_uses, self.trust, self.wanted, self.felt, self.warm_start, self.rows);
+    visit(self.anchors, self.friction_uses, self.trust, self.hands, self.warm_start, self.rows);
   }
 };
 
@@ -187,8 +187,8 @@ struct FreeBodies {
   /// What is carried from frame to frame (carried_state.h).
   template <class Self, class Visit>
   static void carried(Self& self, Visit& visit) noexcept {
-    visit(self.islands, self.grasped_island, self.grasped_here, self.grasped_torque, self.others, self.alone,
-          self.near_grasped, self.unconverged, self.detour, self.A_contacts);
+    visit(self.islands, self.grasped_island, self.grasped_here, self.others, self.alone, self.near_grasped,
+          self.unconverged, self.detour, self.A_contacts);
   }
 
   // Scratch of one frame, one entry per body, or per patch.
@@ -273,8 +273,7 @@ struct ConstraintMemory {
   /// What is carried from frame to frame (carried_state.h).
   template <class Self, class Visit>
   static void carried(Self& self, Visit& visit) noexcept {
-    visit(self.constraint, self.free, self.waiting, self.sleep, self.contact_rows, self.impulses,
-          self.motion_bound);
+    visit(self.constraint, self.free, self.waiting, self.sleep, self.contact_rows, self.motion_bound);
   }
 };
 
