@@ -165,8 +165,9 @@ TEST(Record, AFileThatIsRemovedMeanwhileIsToldOnceAndTheRunGoesOn) {
   const std::string path = folder / "run.mcap";
   const std::string feel = " feel block-on-plate --virtual-clock --updates 30000";
   const std::string command = program() + feel + " --record " + path + " >" + (folder / "out") + " 2>" +
-                              (folder / "err") + " & while [ ! -s " + path + " ]; do sleep 0.01; done; rm " +
-                              path + "; wait $!";
+                              (folder / "err") + " & while [ $(stat -c %s " + path +
+                              " 2>/dev/null || echo 0) -lt 50000 ]; do sleep 0.01; done; rm " + path +
+                              "; wait $!";
   const int status = std::system(command.c_str());
   ASSERT_TRUE(WIFEXITED(status));
   EXPECT_TRUE(WEXITSTATUS(status) == 0 || WEXITSTATUS(status) == 2) << content(folder / "err");

@@ -8,15 +8,19 @@ from support import TreeTest
 import same_bits
 
 PROGRAM = """#!/bin/sh
-echo gears HASH
-echo heap HEAP
+case "$1" in
+  record) touch "$2" ;;
+  verify) shift; for file in "$@"; do VERIFIES; done ;;
+  *) echo gears HASH; echo heap HEAP ;;
+esac
 exit CODE
 """
 
 
 class SameBits(TreeTest):
-    def program(self, name, frame_hash, code=0, heap="2a"):
+    def program(self, name, frame_hash, code=0, heap="2a", verifies="echo same; echo same"):
         text = PROGRAM.replace("HASH", frame_hash).replace("HEAP", heap).replace("CODE", str(code))
+        text = text.replace("VERIFIES", verifies)
         path = self.write(name, text)
         path.chmod(0o755)
         return str(path)
@@ -36,6 +40,12 @@ class SameBits(TreeTest):
     def test_a_program_that_fails_is_no_proof(self):
         with self.assertRaises(RuntimeError):
             self.run_on(self.program("a", "1f"), self.program("b", "1f", code=1))
+
+    def test_a_recording_that_another_build_does_not_verify_is_told(self):
+        with self.assertRaisesRegex(RuntimeError, "verify: exit code 3"):
+            self.run_on(self.program("a", "1f"), self.program("b", "1f", verifies="exit 3"))
+        with self.assertRaisesRegex(RuntimeError, "verifies too little"):
+            self.run_on(self.program("a", "1f"), self.program("b", "1f", verifies="echo same"))
 
     def test_one_program_is_nothing_to_compare(self):
         self.assertEqual(self.run_on(self.program("a", "1f"), str(self.root / "gone")), same_bits.SKIPPED)

@@ -229,7 +229,7 @@ class StateVisit {
     end_.numbers(&which, 1);
     if constexpr (std::is_same_v<End, StateReader>)
       if (which != value.index()) return end_.refuse();
-    std::visit([this](auto& chosen) { one(chosen); }, value);
+    std::visit([this](auto& chosen) { this->one(chosen); }, value);
   }
 
   template <class Items>

@@ -150,8 +150,8 @@ Result<void> add_pieces(const TriangleMesh& closed, bool convex, const PartOptio
     Result<SolidPieces> solid =
         solid_pieces(closed, options.most_solid_pieces > 0 ? options.most_solid_pieces : few);
     if (solid) {
-      part.notes.pieces = fmt::format("solid: {} convex pieces from {} reflex edges", solid->pieces.size(),
-                                      solid->reflex_edges);
+      part.notes.pieces = fmt::format("solid: {} convex pieces from {} reflex edge{}", solid->pieces.size(),
+                                      solid->reflex_edges, solid->reflex_edges == 1 ? "" : "s");
       add_solid_pieces(std::move(solid->pieces), part);
       return {};
     }
