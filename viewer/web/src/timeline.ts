@@ -4,6 +4,7 @@ import type { Run, Status } from "./protocol";
 
 const speeds: [number, string][] = [[0.01, "1/100"], [0.02, "1/50"], [0.05, "1/20"], [0.1, "1/10"], [0.25, "1/4"], [0.5, "1/2"], [1, "1"], [2, "2"], [4, "4"]];
 const between_ms = 40; // moments are asked for this often at most while the line is dragged
+const lost_ms = 400; // a moment that is not there by then is asked for again: who steers may not have been known yet
 
 export class Timeline {
   private replay: Run["replay"] = undefined;
@@ -77,6 +78,7 @@ export class Timeline {
   showStatus(status: Status) {
     const replay = status.program.replay;
     if (replay) this.setPlaying(replay.speed > 0);
+    if (this.wanted !== null && performance.now() - this.asked > lost_ms) this.send();
   }
   /** The frame that is drawn now. */
   show(frame: number) {
