@@ -32,7 +32,7 @@ class StateWriter {
   template <class Number>
   void numbers(const Number* from, std::size_t count) noexcept {
     const std::size_t bytes = count * sizeof(Number);
-    if (size_ <= room_.size() && bytes <= room_.size() - size_)
+    if (bytes > 0 && size_ <= room_.size() && bytes <= room_.size() - size_)  // an empty list has no memory
       std::memcpy(room_.data() + size_, from, bytes);
     size_ += bytes;
   }
@@ -53,7 +53,7 @@ class StateReader {
   void numbers(Number* to, std::size_t count) noexcept {
     const std::size_t size = count * sizeof(Number);
     good_ = good_ && size <= bytes_.size() - at_;
-    if (!good_) return;
+    if (!good_ || size == 0) return;
     if constexpr (std::is_same_v<Number, bool>) {  // any other byte in a bool would be undefined
       const std::string_view raw = bytes_.substr(at_, size);
       good_ = std::all_of(raw.begin(), raw.end(), [](char byte) { return byte == 0 || byte == 1; });

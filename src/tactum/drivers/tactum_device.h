@@ -165,7 +165,7 @@ static inline int tactum_device_connect(tactum_device_link* link, const char* ho
   address.sin_port = htons((uint16_t)port);
   link->socket = socket(AF_INET, SOCK_DGRAM, 0);
   if (link->socket < 0) return -1;
-  link->session = (uint32_t)(1e6 * tactum_clock_s()) ^ ((uint32_t)getpid() << 16);
+  link->session = (uint32_t)(uint64_t)(1e6 * tactum_clock_s()) ^ ((uint32_t)getpid() << 16);
   if (connect(link->socket, (struct sockaddr*)&address, sizeof address) != 0) return close(link->socket), -1;
   const double begin_s = tactum_clock_s();
   double hello_s = begin_s - 1.0;
