@@ -204,7 +204,7 @@ TEST_F(ServerThread, ASlowPageGetsTheNewestPictureAndEverySample) {
     for (std::uint64_t k = 0; k < 10; ++k) samples.push_back(sample_of(i + k));
     std::string picture(8, 'p');
     std::memcpy(picture.data(), &i, sizeof i);
-    server->show(samples, picture);
+    server->show(samples, picture, i);
   }
   // Two messages are on their way and no more, however long the page waits.
   EXPECT_TRUE(comes_true([&] { return server->status().frames_sent == 2; }));
@@ -223,12 +223,12 @@ TEST_F(ServerThread, BeyondTheBoundSamplesAreLostAndCounted) {
   ASSERT_TRUE(comes_true([&] { return server->status().pages == 1; }));
   const std::uint64_t count = History::kRoom + 5000;
   std::vector<ChartSample> one{sample_of(0)};
-  server->show(one, "");
+  server->show(one, "", 0);
   EXPECT_TRUE(comes_true([&] { return server->status().frames_sent == 1; }));
   for (std::uint64_t i = 1; i < count; i += 1000) {
     std::vector<ChartSample> samples;
     for (std::uint64_t k = i; k < std::min(i + 1000, count); ++k) samples.push_back(sample_of(k));
-    server->show(samples, "");
+    server->show(samples, "", 0);
   }
   const std::vector<std::uint32_t> seen =
       samples_until(*page, static_cast<std::uint32_t>(count - 1), true, 2000);
@@ -236,6 +236,36 @@ TEST_F(ServerThread, BeyondTheBoundSamplesAreLostAndCounted) {
   EXPECT_EQ(seen.back(), count - 1);
   EXPECT_GT(server->status().samples_lost, 0u);
   EXPECT_EQ(seen.size() + server->status().samples_lost, count);
+}
+
+/// A picture whose sample the page is too late for would be shown beside the numbers of another frame: the
+/// samples of a long pause push it out of the history, and a page that comes anew is not given it.
+TEST_F(ServerThread, NoPictureComesWithoutTheSampleOfItsFrame) {
+  server->begin_run(1, "{}", "");
+  auto page = open_page();
+  ASSERT_TRUE(comes_true([&] { return server->status().pages == 1; }));
+  std::uint64_t next = 0;
+  const auto show = [&](std::uint64_t count, std::uint64_t pictured) {
+    std::vector<ChartSample> samples;
+    while (samples.size() < count) samples.push_back(sample_of(next++));
+    std::string picture(8, 'p');
+    std::memcpy(picture.data(), &pictured, sizeof pictured);
+    server->show(samples, picture, pictured);
+    std::string got;
+    samples_until(*page, static_cast<std::uint32_t>(next - 1), true, 2000, &got);
+    return got.empty() ? std::uint32_t{0} : word_at(got, 0);
+  };
+  EXPECT_EQ(show(10, 9), 9u);
+  EXPECT_EQ(show(History::kRoom + 100, 20), 0u) << "pushed out by what came with it";
+  const std::uint64_t whole = next + 9;
+  EXPECT_EQ(show(10, whole), whole);
+  const std::uint64_t old = next;
+  EXPECT_EQ(show(History::kForNewcomers + 10, old), old);
+  auto newcomer = open_page();
+  std::string got;
+  EXPECT_EQ(samples_until(*newcomer, static_cast<std::uint32_t>(next - 1), true, 2000, &got).size(),
+            History::kForNewcomers);
+  EXPECT_EQ(got, "") << "of a sample from before it came";
 }
 
 TEST_F(ServerThread, ManyPagesButNotTooMany) {

@@ -306,6 +306,44 @@ TEST(FrameFeed, TakingAFrameAllocatesNothingAndLosesTheNewestWhenFull) {
   EXPECT_LE(sample_size(), FrameSample::kRoom);
 }
 
+TEST(FrameFeed, APictureHasWhatEveryHandFeels) {
+  Result<Scene> scene = open_scene("peg-two-hands");
+  ASSERT_TRUE(scene);
+  Result<std::unique_ptr<Session>> session = Session::open(std::move(*scene), {});
+  ASSERT_TRUE(session);
+  FrameFeed feed((*session)->scene().world, (*session)->rate_Hz(), (*session)->hands());
+  class Watch final : public LoopObserver {
+   public:
+    Watch(FrameFeed& feed, const Session& session) : feed_(feed), session_(session) {}
+    bool after_frame(const FrameRecord&) noexcept override {
+      FrameSample sample;
+      while (feed_.pop(sample)) {
+      }
+      if (!feed_.look() || feed_.picture().index != session_.last_report().index) return true;
+      const HandPicture& hand = feed_.picture().other_hands.at(0);
+      const HandReport& report = session_.state().other_reports[0];
+      holds_block =
+          holds_block && session_.scene().world.bodies.at(std::size_t(hand.grasped_body)).name == "block";
+      const Vec3 sent_W = session_.state().other_hands[0].hand.X_WD.R * report.shown.f;
+      worst = std::max({worst, (hand.shown_W.f - sent_W).norm(), (hand.X_WH.p - report.X_WH.p).norm(),
+                        (hand.X_WH_proxy.p - report.X_WH_proxy.p).norm()});
+      largest = std::max(largest, sent_W.norm());
+      return true;
+    }
+    bool holds_block = true;
+    double worst = 0.0, largest = 0.0;
+
+   private:
+    FrameFeed& feed_;
+    const Session& session_;
+  } watch(feed, **session);
+  (*session)->show_to(&feed);
+  ASSERT_TRUE((*session)->run_virtual(4000, &watch));
+  EXPECT_TRUE(watch.holds_block);
+  EXPECT_LT(watch.worst, 1e-12);
+  EXPECT_GT(watch.largest, 0.1);
+}
+
 /// In nut-bolt there are more contacts than a picture has room for, and most of them do not push.
 class PictureForces : public ::testing::TestWithParam<std::pair<const char*, std::uint64_t>> {};
 

@@ -112,6 +112,7 @@ struct ConnectionHub {
 
   ShownRun run;
   LatestMessage picture, settings, sentence;
+  std::uint64_t picture_place = 0;                     // in the history, of the sample of the picture's frame
   LatestMessage program_status{shared_text("{}"), 0};  // a new version also when another page steers
   History history;
   std::map<std::uint64_t, PageConnection*> pages;  // by their number, which is never used twice

@@ -13,6 +13,12 @@ std::uint64_t History::newcomers_place() const noexcept {
   return std::max(early, first_);
 }
 
+std::optional<std::uint64_t> History::place_of(std::uint64_t frame) const noexcept {
+  for (std::uint64_t place = end_; place-- > std::max(oldest(), first_);)
+    if (samples_[place % kRoom].frame.index == frame) return place;
+  return std::nullopt;
+}
+
 History::Rows History::write_rows(std::uint64_t& place, std::uint64_t& dropped, std::string& out) const {
   if (place < oldest()) {
     dropped += oldest() - place;

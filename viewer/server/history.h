@@ -3,6 +3,7 @@
 /// was slow gets everything since then, in order, with the number of those it is too late for.
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "tactum/telemetry/frame_feed.h"
@@ -31,6 +32,8 @@ class History {
   std::uint64_t end() const noexcept { return end_; }
   std::uint64_t oldest() const noexcept { return end_ > kRoom ? end_ - kRoom : 0; }
   std::uint64_t newcomers_place() const noexcept;
+  /// The place of a frame's sample, of the newest where there are several; nothing when it is not here.
+  std::optional<std::uint64_t> place_of(std::uint64_t frame) const noexcept;
   /// A new run begins: later pages do not get the samples before.
   void cut() noexcept { first_ = end_; }
 

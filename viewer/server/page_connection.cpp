@@ -51,7 +51,7 @@ class PageConnection : public std::enable_shared_from_this<PageConnection> {
     if (!open_ || writing_) return;
     if (run_ != hub_.run.number) {
       run_ = hub_.run.number;
-      place_ = hub_.history.newcomers_place();
+      place_ = unbroken_since_ = hub_.history.newcomers_place();
       picture_ = 0;
       settings_ = hub_.settings.version;
       return send(hub_.run.message, false);
@@ -175,10 +175,12 @@ class PageConnection : public std::enable_shared_from_this<PageConnection> {
     return text + ",\"program\":" + *hub_.program_status.text + "}";
   }
 
-  /// The newest picture, unless the page has it, and every sample since the last message.
+  /// The newest picture, unless the page has it or is too late for the sample of its frame, and every sample
+  /// since the last message.
   std::string frames() {
     std::string out;
-    const bool newer = picture_ != hub_.picture.version;
+    if (place_ < hub_.history.oldest()) unbroken_since_ = hub_.history.oldest();
+    const bool newer = picture_ != hub_.picture.version && hub_.picture_place >= unbroken_since_;
     const std::string& picture = newer ? *hub_.picture.text : std::string();
     const std::uint64_t lost_before = lost_;
     for (std::uint32_t word :
@@ -218,6 +220,7 @@ class PageConnection : public std::enable_shared_from_this<PageConnection> {
   // What the page has: of each kind, up to which it was told.
   std::uint32_t run_ = 0;
   std::uint64_t picture_ = 0, settings_ = 0, status_ = 0, sentence_ = 0, place_ = 0, lost_ = 0;
+  std::uint64_t unbroken_since_ = 0;  // the place since which the page has got every sample
 };
 
 void ConnectionHub::feed_pages() {

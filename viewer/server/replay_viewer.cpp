@@ -33,7 +33,7 @@ Result<std::unique_ptr<ReplayViewer>> ReplayViewer::open(std::unique_ptr<Replaye
 ReplayViewer::ReplayViewer(std::unique_ptr<ReplayedRun> run, std::unique_ptr<Server> server)
     : run_(std::move(run)),
       server_(std::move(server)),
-      feed_(run_->simulation().world(), FrameFeed::kPictures_Hz),
+      feed_(run_->simulation().world(), FrameFeed::kPictures_Hz, run_->simulation().settings().hands()),
       last_advance_(Clock::now()) {
   const RecordingTape& tape = run_->tape();
   const RecordedScene& scene = run_->scene();
@@ -153,7 +153,7 @@ void ReplayViewer::show(bool with_status) {
   last_shown_ = Clock::now();
   std::string picture;
   if (feed_.look()) write_picture(feed_.picture(), picture);
-  if (!ready_.empty() || !picture.empty()) server_->show(ready_, std::move(picture));
+  if (!ready_.empty() || !picture.empty()) server_->show(ready_, std::move(picture), feed_.picture().index);
   ready_.clear();
   if (!with_status) return;
   last_status_ = last_shown_;

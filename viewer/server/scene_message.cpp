@@ -354,9 +354,17 @@ void write_picture(const FramePicture& picture, std::string& out) {
   wire::put(out, static_cast<std::uint32_t>(picture.X_WB.size()));
   wire::put(out, static_cast<std::uint32_t>(picture.contacts.size()));
   wire::put(out, static_cast<std::uint32_t>(picture.contacts_left_out));
+  wire::put(out, static_cast<std::uint32_t>(picture.other_hands.size()));
   put(out, picture.X_WH);
   put(out, picture.X_WH_proxy);
   put(out, picture.X_WD);
+  for (const HandPicture& hand : picture.other_hands) {
+    wire::put(out, static_cast<std::int32_t>(hand.grasped_body));
+    put(out, hand.X_WH);
+    put(out, hand.X_WH_proxy);
+    wire::put(out, hand.shown_W.f);
+    wire::put(out, hand.shown_W.t);
+  }
   for (const Pose& X_WB : picture.X_WB) put(out, X_WB);
   for (const ShownContact& contact : picture.contacts) {
     for (std::int32_t number : {contact.body_a, contact.body_b, contact.piece_a, contact.piece_b})

@@ -93,11 +93,15 @@ void Server::send_settings(std::string message, std::string run_message) {
   });
 }
 
-void Server::show(std::span<const ChartSample> samples, std::string picture) {
+void Server::show(std::span<const ChartSample> samples, std::string picture, std::uint64_t frame) {
   impl_->post([hub = &impl_->hub, samples = std::vector<ChartSample>(samples.begin(), samples.end()),
-               picture = shared_text(std::move(picture))] {
+               picture = shared_text(std::move(picture)), frame] {
     for (const ChartSample& sample : samples) hub->history.add(sample);
-    if (!picture->empty()) hub->picture.replace(picture);
+    const std::optional<std::uint64_t> place = picture->empty() ? std::nullopt : hub->history.place_of(frame);
+    if (place) {  // the newer samples of a long pause may have taken its room
+      hub->picture.replace(picture);
+      hub->picture_place = *place;
+    }
     hub->feed_pages();
   });
 }

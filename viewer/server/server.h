@@ -52,8 +52,9 @@ class Server {
   void begin_run(std::uint32_t run, std::string message, std::string geometry);
   /// The settings as they are now, as a message; and the run's message with them, for those to come.
   void send_settings(std::string message, std::string run_message);
-  /// Frames that are over, and the picture of the newest; an empty picture means no newer one.
-  void show(std::span<const ChartSample> samples, std::string picture);
+  /// Frames that are over, and the newest picture with its frame, whose sample is among these or was shown
+  /// before; an empty picture means no newer one. No page gets a picture without that sample.
+  void show(std::span<const ChartSample> samples, std::string picture, std::uint64_t frame);
   /// A JSON object for every page, beside the server's own status.
   void send_status(std::string json);
   /// A sentence for all pages, such as why a scene could not be opened.

@@ -101,7 +101,7 @@ std::string Viewer::message_of_run() const {
 Result<void> Viewer::begin_run() {
   Result<std::unique_ptr<Session>> session = Session::open(scene_, options_);
   if (!session) return session.error();
-  auto feed = std::make_unique<FrameFeed>(scene_.world, (*session)->rate_Hz());
+  auto feed = std::make_unique<FrameFeed>(scene_.world, (*session)->rate_Hz(), (*session)->hands());
   auto stages = std::make_unique<StageClock>();
   (*session)->show_to(feed.get());
   (*session)->time_stages(stages.get());
@@ -228,7 +228,7 @@ void Viewer::show() {
     write_picture(feed_->picture(), picture);
     picture_waits_ = false;
   }
-  if (!ready_.empty() || !picture.empty()) server_->show(ready_, std::move(picture));
+  if (!ready_.empty() || !picture.empty()) server_->show(ready_, std::move(picture), feed_->picture().index);
   ready_.clear();
   if (now - last_status_ < kStatusEvery) return;
   last_status_ = now;

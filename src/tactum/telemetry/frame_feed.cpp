@@ -69,9 +69,10 @@ std::vector<int> posed_bodies(const World& world) {
   return posed;
 }
 
-FrameFeed::FrameFeed(const World& world, double rate_Hz)
+FrameFeed::FrameFeed(const World& world, double rate_Hz, std::size_t hands)
     : samples_(kSamples),
-      pictures_([bodies = world.bodies.size()](FramePicture& picture) {
+      pictures_([bodies = world.bodies.size(), hands](FramePicture& picture) {
+        picture.other_hands.resize(hands - 1);
         picture.X_WB.resize(bodies);
         picture.contacts.reserve(kContacts);
       }),
@@ -107,6 +108,13 @@ void FrameFeed::draw(const FrameSource& frame, FramePicture& picture) noexcept {
   picture.X_WH_proxy = frame.report.X_WH_proxy;
   picture.X_WD = state.hand.X_WD;
   picture.grasped_body = state.hand.known ? state.hand.grasp.body : -1;
+  TACTUM_DEMAND(picture.other_hands.size() == state.other_hands.size());
+  for (Index i = 0; i < picture.other_hands.size(); ++i) {
+    const HandStage& hand = state.other_hands[i].hand;
+    const HandReport& report = state.other_reports[i];
+    picture.other_hands[i] = {hand.known ? hand.grasp.body : -1, report.X_WH, report.X_WH_proxy,
+                              rotated(hand.X_WD.R, report.shown)};
+  }
   std::copy(state.world.X_WB.begin(), state.world.X_WB.end(), picture.X_WB.begin());
   picture.contacts_left_out = show_contacts(frame, kContacts, picture.contacts);
 }

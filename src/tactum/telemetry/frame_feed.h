@@ -59,12 +59,20 @@ struct ShownContact {
 /// for them already. Returns how many are left out. No allocation.
 int show_contacts(const FrameSource& frame, std::size_t most, std::vector<ShownContact>& shown) noexcept;
 
+/// A hand after the first.
+struct HandPicture {
+  int grasped_body = -1;  ///< the body that it holds; -1: none
+  Pose X_WH, X_WH_proxy;  ///< of its probe, and of the handle on its part [m]
+  Wrench shown_W;         ///< that was sent to its device, at the handle, world axes [N, N m]
+};
+
 /// The poses and contacts of one frame.
 struct FramePicture {
   std::uint64_t index = 0;
   Pose X_WH, X_WH_proxy, X_WD;
-  int grasped_body = -1;   ///< the body in the hand; -1: none
-  std::vector<Pose> X_WB;  ///< of every body
+  int grasped_body = -1;                 ///< the body in the hand; -1: none
+  std::vector<HandPicture> other_hands;  ///< the second and all after it
+  std::vector<Pose> X_WB;                ///< of every body
   std::vector<ShownContact> contacts;
   int contacts_left_out = 0;  ///< for lack of room
 };
@@ -75,7 +83,8 @@ class FrameFeed {
   static constexpr std::size_t kSamples = 1u << 14;  ///< sixteen seconds at 1 kHz until they are popped
   static constexpr std::size_t kContacts = 256;      ///< contacts of a picture: those that push most
 
-  FrameFeed(const World& world, double rate_Hz);
+  /// Of a run with so many hands.
+  FrameFeed(const World& world, double rate_Hz, std::size_t hands = 1);
 
   /// The loop's thread, after the frame. `clock` may be null. No allocation, no lock, no clock.
   void take(const FrameSource& frame, const StageClock* clock) noexcept;

@@ -40,6 +40,16 @@ export const topics = {
     await program.end();
   },
 
+  async hands(browser, tactum) {
+    const program = await Program.start(tactum, "peg-two-hands");
+    const page = await openPage(browser, program);
+    await until("the second hand is pushed too", async () => Number((await state(page)).otherForces) > 0.2);
+    check(/^The other hand holds “block” and feels [\d.]+ .?N and [\d.]+ .?N m\.$/.test(await page.textContent(".hands li")),
+      `the page says what the other hand feels: ${await page.textContent(".hands")}`);
+    check(page.complaints.length === 0, page.complaints.join("; "));
+    await program.end();
+  },
+
   async field(browser, tactum) {
     const program = await Program.start(tactum, "vortex-field");
     const page = await openPage(browser, program);

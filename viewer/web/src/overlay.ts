@@ -84,6 +84,38 @@ class Rod {
   }
 }
 
+/** A hand that another device leads: its handle, the stretch to its part, and the wrench on it. */
+class SecondHand {
+  readonly root = new THREE.Group();
+  private readonly force: Arrow;
+  private readonly torque: Arc;
+  private readonly stretch: Rod;
+  private readonly handle: THREE.Mesh;
+  constructor(materials: { force: THREE.Material; torque: THREE.Material; stretch: THREE.Material; handle: THREE.Material }) {
+    this.force = new Arrow(0.013, materials.force);
+    this.torque = new Arc(0.2, 0.011, materials.torque);
+    this.stretch = new Rod(0.006, materials.stretch);
+    this.handle = new THREE.Mesh(new THREE.SphereGeometry(0.02, 20, 14), materials.handle);
+    this.handle.renderOrder = 9;
+    this.root.add(this.force.root, this.torque.root, this.stretch.mesh, this.handle);
+  }
+  set(hand: THREE.Vector3, proxy: THREE.Vector3, wrench: number[], scales: Scales) {
+    this.handle.position.copy(hand);
+    this.stretch.set(hand, proxy);
+    setPair(this.force, this.torque, proxy, wrench, scales);
+  }
+}
+
+/** Draws force and torque at a place; the arrow. */
+function setPair(arrow: Arrow, arc: Arc, at: THREE.Vector3, wrench: number[], scales: Scales): THREE.Vector3 {
+  const force = new THREE.Vector3(wrench[0], wrench[1], wrench[2]).multiplyScalar(scales.force).clampLength(0, scales.longest);
+  arrow.set(at, force);
+  const torque = new THREE.Vector3(wrench[3], wrench[4], wrench[5]);
+  const size = torque.length();
+  arc.set(at, size > 0 ? torque.divideScalar(size) : up, Math.min(5.6, size * scales.torque));
+  return force;
+}
+
 /** View units a newton, radians a newton metre; arrows end at the longest. */
 export interface Scales { force: number; torque: number; longest: number }
 
@@ -108,6 +140,7 @@ export class Overlay {
   private readonly heads: THREE.InstancedMesh;
   private readonly patches = new THREE.Mesh(new THREE.BufferGeometry(), this.materials.patch);
   private readonly trail: THREE.Line;
+  private readonly others: SecondHand[] = [];
   private trailPoints: THREE.Vector3[] = [];
   private ghost: THREE.Mesh | null = null;
   private readonly trailColour = new THREE.Color();
@@ -206,19 +239,23 @@ export class Overlay {
 
   /** The shown wrench at the hand, and beside it the raw one if that is wanted. */
   setWrench(at: THREE.Vector3, wrench: number[], raw: number[] | null, scales: Scales): { force: THREE.Vector3; torque: THREE.Vector3 | null } {
-    const force = this.setPair(this.force, this.torque, at, wrench, scales);
-    if (raw) this.setPair(this.rawForce, this.rawTorque, at, raw, scales);
+    const force = setPair(this.force, this.torque, at, wrench, scales);
+    if (raw) setPair(this.rawForce, this.rawTorque, at, raw, scales);
     else this.rawForce.root.visible = this.rawTorque.root.visible = false;
     return { force: at.clone().add(force), torque: this.torque.root.visible ? this.torque.tip : null };
   }
 
-  private setPair(arrow: Arrow, arc: Arc, at: THREE.Vector3, wrench: number[], scales: Scales): THREE.Vector3 {
-    const force = new THREE.Vector3(wrench[0], wrench[1], wrench[2]).multiplyScalar(scales.force).clampLength(0, scales.longest);
-    arrow.set(at, force);
-    const torque = new THREE.Vector3(wrench[3], wrench[4], wrench[5]);
-    const size = torque.length();
-    arc.set(at, size > 0 ? torque.divideScalar(size) : up, Math.min(5.6, size * scales.torque));
-    return force;
+  /** The hands after the first, in view units. */
+  setOthers(others: { hand: THREE.Vector3; proxy: THREE.Vector3; wrench: number[] }[], scales: Scales) {
+    while (this.others.length < others.length) {
+      const other = new SecondHand(this.materials);
+      this.others.push(other);
+      this.root.add(other.root);
+    }
+    this.others.forEach((other, i) => {
+      other.root.visible = i < others.length;
+      if (i < others.length) other.set(others[i].hand, others[i].proxy, others[i].wrench, scales);
+    });
   }
 
   /** The spring from where the part was taken to where the pointer is. */

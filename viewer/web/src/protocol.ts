@@ -58,9 +58,12 @@ export interface Contact {
 }
 export const grips = ["none", "sticks", "slips"] as const;
 export type Grip = (typeof grips)[number];
+/** A hand after the first: where its device would have it, where its handle is, and the wrench that it was sent. */
+export interface OtherHand { body: number; hand: Float32Array; proxy: Float32Array; wrench: number[] }
 /** Where everything is in one frame. */
 export interface Picture {
   index: number; grasped: boolean; body: number; hand: Float32Array; proxy: Float32Array; bodies: Float32Array; // seven numbers a pose
+  others: OtherHand[];
   contacts: Contact[]; leftOut: number;
 }
 /** A message with frames: rows of `numbers` floats behind a frame index each. */
@@ -74,13 +77,14 @@ const contactWords = 21;
 
 function readPicture(words: Int32Array, floats: Float32Array): Picture {
   const bodies = words[2];
-  let at = 5;
+  let at = 6;
   const take = (count: number) => floats.slice(at, (at += count));
   const picture: Picture = {
-    index: words[0] >>> 0, grasped: words[1] > 0, body: words[1] - 1, hand: take(7), proxy: take(7), bodies: new Float32Array(), contacts: [],
+    index: words[0] >>> 0, grasped: words[1] > 0, body: words[1] - 1, hand: take(7), proxy: take(7), bodies: new Float32Array(), others: [], contacts: [],
     leftOut: words[4],
   };
   at += 7; // the device's frame
+  for (let i = 0; i < words[5]; ++i) picture.others.push({ body: words[at++], hand: take(7), proxy: take(7), wrench: [...take(6)] });
   picture.bodies = take(7 * bodies);
   for (let i = 0; i < words[3]; ++i, at += contactWords) {
     picture.contacts.push({

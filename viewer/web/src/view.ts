@@ -323,6 +323,8 @@ export class View {
     const scales = this.arrowScales();
     const hand = this.pointOf(this.picture.proxy);
     const tips = this.overlay.setWrench(hand, wrench, raw, scales);
+    this.overlay.setOthers(this.picture.others.map((other) =>
+      ({ hand: this.pointOf(other.hand), proxy: this.pointOf(other.proxy), wrench: other.wrench })), scales);
     this.overlay.setContacts(this.picture.contacts, pushes, this.run.grasped, this.toView, scales);
     const [x, y] = this.label(this.forceLabel, tips.force, withUnit(force, "N"), force * scales.force > 0.03);
     this.label(this.torqueLabel, tips.torque, withUnit(torque, "N m"), tips.torque !== null, [x, y]);

@@ -39,6 +39,7 @@ export class Why {
   private run: Run | null = null;
   private last = 0;
   private readonly sentence = make("p", { class: "sentence", role: "status", "aria-live": "off" });
+  private readonly others = make("ul", { class: "remarks hands" });
   private readonly table = make("table", { class: "contacts" },
     make("thead", {}, make("tr", {}, make("th", { scope: "col" }, "pieces and features"), make("th", { scope: "col" }, "force"),
       make("th", { scope: "col" }, "distance, normal"))), make("tbody"));
@@ -56,7 +57,7 @@ export class Why {
   constructor(root: HTMLElement) {
     const more = make("details", {}, make("summary", {}, "Every number of this frame"), this.numbers);
     this.more.onclick = () => (this.unfolded = !this.unfolded);
-    root.append(this.sentence, this.goals, this.remarks, make("details", { class: "about" }, make("summary", {}, "About this scene"), this.facts), make("h2", {}, "What pushes"), this.table, this.more, make("h2", {}, "From the contact to your hand"), this.stages,
+    root.append(this.sentence, this.others, this.goals, this.remarks, make("details", { class: "about" }, make("summary", {}, "About this scene"), this.facts), make("h2", {}, "What pushes"), this.table, this.more, make("h2", {}, "From the contact to your hand"), this.stages,
       this.flags, make("h2", {}, "Energy since the start"), this.energy, more);
   }
 
@@ -83,6 +84,7 @@ export class Why {
     const felt = pushes.filter((push) => push.onGrasped);
     const sum = felt.reduce((total, push) => total.map((v, i) => v + push.force[i]), [0, 0, 0]);
     this.showSentence(samples, sample, felt, sum);
+    this.showOthers(picture);
     this.showContacts(pushes, sum, picture);
     this.showStages(samples, sample);
     this.showFlags(samples, sample);
@@ -113,6 +115,14 @@ export class Why {
         `${active.length} ${active.length === 1 ? "place" : "places"}, together they push ${withUnit(size(sum), "N")} ${direction(sum)}${this.shared(size(sum), force)}${field ? `; ${field}` : ""}.`;
     }
     this.sentence.textContent = `${samples.timeOf(sample).toFixed(3)} s. ${text}`;
+  }
+
+  /** What the hands after the first feel. */
+  private showOthers(picture: Picture) {
+    const [one, all] = ["The other hand", (i: number) => `Hand ${i + 2}`];
+    this.others.replaceChildren(...picture.others.map(({ body, wrench }, i) =>
+      make("li", {}, `${picture.others.length === 1 ? one : all(i)} ${body < 0 ? "holds nothing" : `holds ${this.called(body)}`} ` +
+        `and feels ${withUnit(size(wrench), "N")} and ${withUnit(size(wrench.slice(3)), "N m")}.`)));
   }
 
   /** What acts on the held part beside contacts, as far as there is such a thing. */
