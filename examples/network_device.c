@@ -1,7 +1,7 @@
 /* A device of one's own that joins from another process, with the one header that it needs: a ball on a
  * spring, pulled to and fro by an unseen hand, and pushed by what Tactum computes.
  *
- *   ./network_device 5 & tactum feel gears --device network --duration 4 */
+ *   ./network_device 5 & tactum feel block-on-plate --device network --duration 4 */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -31,8 +31,8 @@ int main(int argc, char** argv) {
     double wrench[6];
     tactum_device_receive(&link, wrench);
     const double time_s = tactum_clock_s() - begin_s;
-    for (int i = 0; i < 3; ++i) { /* the hand's place goes 20 mm to and fro along y */
-      const double hand_m = i == 1 ? 0.02 * sin(3.0 * time_s) : 0.0;
+    for (int i = 0; i < 3; ++i) { /* the hand's place goes 20 mm down and up */
+      const double hand_m = i == 2 ? -0.02 * sin(3.0 * time_s) : 0.0;
       const double force_N = wrench[i] + hand_N_per_m * (hand_m - state.position[i]) -
                              (2.0 + info.damping_Ns_per_m) * state.velocity[i];
       state.velocity[i] += dt_s * force_N / info.mass_kg;
