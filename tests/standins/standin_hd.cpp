@@ -22,6 +22,8 @@ struct Scheduler {
   void* data = nullptr;
   std::thread thread;
   std::atomic<bool> stop{false};
+  std::mutex ticking;    // one call at a time
+  bool by_hand = false;  // guarded by it: calls come from standin_hd_tick alone
 };
 
 HdDevice& device_behind() {
@@ -50,7 +52,10 @@ void rest_of_motors(HdDevice& device) { device.motors = {}; }
 void call_back() {
   Scheduler& the = scheduler();
   while (!the.stop) {
-    if (the.callback(the.data) == kDone) return;
+    {
+      const std::lock_guard<std::mutex> one(the.ticking);
+      if (!the.by_hand && the.callback(the.data) == kDone) return;
+    }
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
 }
@@ -66,6 +71,12 @@ struct HDErrorInfo {
 };
 
 HdDevice* standin_hd_device() { return &device_behind(); }
+
+void standin_hd_tick() {
+  const std::lock_guard<std::mutex> one(scheduler().ticking);
+  scheduler().by_hand = true;
+  scheduler().callback(scheduler().data);
+}
 
 unsigned hdInitDevice(const char* name) {
   Locked device;
@@ -217,6 +228,7 @@ void hdStartScheduler() {
     device->running = true;
   }
   scheduler().stop = false;
+  scheduler().by_hand = false;
   scheduler().thread = std::thread(call_back);
 }
 

@@ -41,4 +41,6 @@ struct HdDevice {
 
 extern "C" {
 tactum::standin::HdDevice* standin_hd_device();
+/// Calls the scheduled function now, and no more by itself until the scheduler is started again.
+void standin_hd_tick();
 }
