@@ -20,7 +20,7 @@ constexpr int kBetweenAsking_ms = 10;
 
 /// The service's axes in D, and back.
 Vec3 haply_in_D(const Vec3& v) noexcept { return {-v.y(), v.x(), v.z()}; }
-Vec3 D_in_haply(const Vec3& v) noexcept { return {v.y(), -v.x(), v.z()}; }
+Vec3 to_haply(const Vec3& v) noexcept { return {v.y(), -v.x(), v.z()}; }
 
 double haply_clock_s() noexcept {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -237,7 +237,7 @@ void HaplyDevice::run() noexcept {
 bool HaplyDevice::tick() noexcept {
   const Vec3 F =
       state_.calibrated && state_.ready && state_.powered ? exchange_.command().f : Vec3(Vec3::Zero());
-  answers_ = ask(haply_force_message(device_.id, as_vector_, D_in_haply(F)), answer_);
+  answers_ = ask(haply_force_message(device_.id, as_vector_, to_haply(F)), answer_);
   DeviceSample& sample = exchange_.sample();
   const bool reported = answers_ && haply_state(answer_, device_, state_);
   if (reported) put_into(sample, state_);
