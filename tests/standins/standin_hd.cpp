@@ -170,6 +170,10 @@ void hdGetDoublev(unsigned what, double* values) {
   if (what == 0x2052) give(device->transform);
   if (what == 0x2053) give(device->angular_velocity);
   if (what == 0x2551) give(device->workspace);
+  if (what == 0x2800 || what == 0x2801) {
+    if (!device->knows_last_wrench) return device.fail(0x100);
+    std::copy_n(device->motors.begin() + (what == 0x2800 ? 0 : 3), 3, values);
+  }
   if (what == 0x2602) *values = 1.0;  // N/mm
   if (what == 0x2603) *values = device->max_force_N;
   if (what == 0x2622) *values = 188.0;  // mN m
