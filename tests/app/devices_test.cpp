@@ -28,14 +28,16 @@ struct NothingThere {
   SetVariable dhd{"TACTUM_FORCE_DIMENSION_LIBRARY", "/nowhere/libdhd.so"};
   SetVariable hd{"TACTUM_OPENHAPTICS_LIBRARY", "/nowhere/libHD.so"};
   SetVariable spacenav{"SPNAV_SOCKET", "/nowhere/spnav.sock"};
+  SetVariable haply{"TACTUM_HAPLY_SERVICE", "127.0.0.1:1"};
 };
 
 TEST(Devices, OfADriverThatFindsNothingItIsSaidWhyAndWhatHelps) {
   const NothingThere nothing;
   const ProgramRun run = run_tactum("devices");
   EXPECT_EQ(run.exit_code, 0) << run.err;
-  for (const char* words : {"force-dimension", "install the Force Dimension SDK", "3d-systems",
-                            "install OpenHaptics", "spacemouse", "apt install spacenavd", "simulated:touch"})
+  for (const char* words :
+       {"force-dimension", "install the Force Dimension SDK", "3d-systems", "install OpenHaptics", "haply",
+        "systemctl start haply-inverse-service", "spacemouse", "apt install spacenavd", "simulated:touch"})
     EXPECT_TRUE(holds(run.out, words)) << words << "\n" << run.out;
 }
 

@@ -60,6 +60,7 @@ struct RigMaker {
 std::unique_ptr<DriverRig> make_force_dimension_rig();
 std::unique_ptr<DriverRig> make_3d_systems_rig();
 std::unique_ptr<DriverRig> make_virtuose_rig();
+std::unique_ptr<DriverRig> make_haply_rig();
 std::unique_ptr<DriverRig> make_spacemouse_rig();
 std::unique_ptr<DriverRig> make_network_rig();
 
@@ -67,6 +68,7 @@ inline std::vector<RigMaker> every_rig() {
   return {{"force-dimension", make_force_dimension_rig},
           {"3d-systems", make_3d_systems_rig},
           {"virtuose", make_virtuose_rig},
+          {"haply", make_haply_rig},
           {"spacemouse", make_spacemouse_rig},
           {"network", make_network_rig}};
 }

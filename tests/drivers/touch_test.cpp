@@ -25,6 +25,8 @@ class TouchLoop : public ::testing::Test {
     EXPECT_TRUE(open) << open.error().message();
     return std::move(*device);
   }
+  /// From now on the library calls the driver no more.
+  void stop_ticks() { loaded_.function<void()>("standin_hd_tick")(); }
   template <class Seen>
   bool reads_until(Device& device, Seen seen) {
     return comes_true([&] { return device.read(now_s += 0.001, sample) && seen(sample); });
@@ -130,6 +132,39 @@ TEST_F(TouchLoop, AbsentOrUnknownItIsTold) {
   EXPECT_TRUE(survey.found.empty());
   for (const char* words : {"Device Fault", "Default PHANToM", "--install-udev"})
     EXPECT_TRUE(holds(survey.nothing, words)) << survey.nothing;
+}
+
+TEST_F(TouchLoop, TellsTheWrenchOfTheFrameBeforeWhereTheLibraryDoes) {
+  {
+    const std::unique_ptr<Device> device = opened();
+    ASSERT_TRUE(device);
+    EXPECT_TRUE(device->write({{1, -2, 0.5}, {0.0625, 0, -0.125}}));
+    EXPECT_TRUE(reads_until(*device, [](const DeviceSample& now) {
+      return now.has_delivered && now.F_D_delivered.f == Vec3(1, -2, 0.5) &&
+             (now.F_D_delivered.t - Vec3(0.0625, 0, -0.125)).norm() < 1e-12;
+    })) << sample.F_D_delivered.f.transpose();
+    standin()->overheats = true;
+    EXPECT_TRUE(reads_until(*device, [](const DeviceSample& now) {
+      return now.has_delivered && now.F_D_delivered.f.isZero(0.0);
+    })) << "it is what the motors exert, not what was asked for";
+  }
+  standin()->overheats = false;
+  standin()->knows_last_wrench = false;
+  const std::unique_ptr<Device> device = opened();
+  ASSERT_TRUE(device);
+  ASSERT_TRUE(reads_until(*device, [](const DeviceSample&) { return true; }));
+  EXPECT_FALSE(sample.has_delivered);
+  EXPECT_EQ(device->trouble(), "") << "that is no fault";
+}
+
+TEST_F(TouchLoop, AServoThreadThatFallsSilentIsALostDevice) {
+  const std::unique_ptr<Device> device = opened();
+  ASSERT_TRUE(device);
+  ASSERT_TRUE(reads_until(*device, [](const DeviceSample&) { return true; }));
+  stop_ticks();
+  EXPECT_TRUE(comes_true([&] { return !device->read(now_s += 0.001, sample); }));
+  EXPECT_FALSE(device->write({}));
+  EXPECT_TRUE(holds(device->trouble(), "does not answer")) << device->trouble();
 }
 
 }  // namespace tactum::touch_test

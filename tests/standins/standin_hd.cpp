@@ -22,6 +22,8 @@ struct Scheduler {
   void* data = nullptr;
   std::thread thread;
   std::atomic<bool> stop{false};
+  std::mutex ticking;    // one call at a time
+  bool by_hand = false;  // guarded by it: calls come from standin_hd_tick alone
 };
 
 HdDevice& device_behind() {
@@ -50,7 +52,10 @@ void rest_of_motors(HdDevice& device) { device.motors = {}; }
 void call_back() {
   Scheduler& the = scheduler();
   while (!the.stop) {
-    if (the.callback(the.data) == kDone) return;
+    {
+      const std::lock_guard<std::mutex> one(the.ticking);
+      if (!the.by_hand && the.callback(the.data) == kDone) return;
+    }
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
 }
@@ -66,6 +71,12 @@ struct HDErrorInfo {
 };
 
 HdDevice* standin_hd_device() { return &device_behind(); }
+
+void standin_hd_tick() {
+  const std::lock_guard<std::mutex> one(scheduler().ticking);
+  scheduler().by_hand = true;
+  scheduler().callback(scheduler().data);
+}
 
 unsigned hdInitDevice(const char* name) {
   Locked device;
@@ -159,6 +170,10 @@ void hdGetDoublev(unsigned what, double* values) {
   if (what == 0x2052) give(device->transform);
   if (what == 0x2053) give(device->angular_velocity);
   if (what == 0x2551) give(device->workspace);
+  if (what == 0x2800 || what == 0x2801) {
+    if (!device->knows_last_wrench) return device.fail(0x100);
+    std::copy_n(device->motors.begin() + (what == 0x2800 ? 0 : 3), 3, values);
+  }
   if (what == 0x2602) *values = 1.0;  // N/mm
   if (what == 0x2603) *values = device->max_force_N;
   if (what == 0x2622) *values = 188.0;  // mN m
@@ -217,6 +232,7 @@ void hdStartScheduler() {
     device->running = true;
   }
   scheduler().stop = false;
+  scheduler().by_hand = false;
   scheduler().thread = std::thread(call_back);
 }
 

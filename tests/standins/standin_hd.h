@@ -25,7 +25,8 @@ struct HdDevice {
   std::array<double, 16> transform{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
   std::array<double, 3> velocity{}, angular_velocity{};
   int buttons = 0;
-  bool overheats = false;  // every frame ends with HD_WARM_MOTORS
+  bool knows_last_wrench = true;  // HD_LAST_FORCE and HD_LAST_TORQUE
+  bool overheats = false;         // every frame ends with HD_WARM_MOTORS
   // What happened to it.
   bool open = false, in_frame = false, force_output = false, scheduled = false, running = false;
   int calibration_updates = 0;
@@ -41,4 +42,6 @@ struct HdDevice {
 
 extern "C" {
 tactum::standin::HdDevice* standin_hd_device();
+/// Calls the scheduled function now, and no more by itself until the scheduler is started again.
+void standin_hd_tick();
 }

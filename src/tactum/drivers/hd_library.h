@@ -25,6 +25,8 @@ inline constexpr unsigned kUsableWorkspace = 0x2551, kInputDof = 0x2553, kOutput
 inline constexpr unsigned kCalibrationStyle = 0x2555;
 inline constexpr unsigned kMaxStiffness = 0x2602, kMaxForce = 0x2603, kMaxTorque = 0x2622;
 inline constexpr unsigned kForce = 0x2700, kTorque = 0x2701;
+inline constexpr unsigned kLastForce = 0x2800, kLastTorque = 0x2801;  // of the frame before
+inline constexpr unsigned kInvalidEnum = 0x100;  // an error: the library does not know what was asked for
 inline constexpr unsigned kForceOutput = 0x4000, kMaxForceClamping = 0x4001, kSoftwareForceLimit = 0x4003;
 inline constexpr unsigned kCalibrated = 0x5000, kNeedsUpdate = 0x5001, kNeedsManualInput = 0x5002;
 inline constexpr unsigned kEncoderReset = 1, kAutomatic = 2, kInkwell = 4;

@@ -8,6 +8,7 @@
 #include "tactum/devices/replay_device.h"
 #include "tactum/devices/simulated_device.h"
 #include "tactum/drivers/force_dimension.h"
+#include "tactum/drivers/haply.h"
 #include "tactum/drivers/network_device.h"
 #include "tactum/drivers/spacemouse.h"
 #include "tactum/drivers/touch.h"
@@ -109,6 +110,17 @@ std::vector<DeviceListing> list_virtuose() {
   return {{"virtuose:HOST#PORT", "a Virtuose of Haption; 127.0.0.1#53210 when no host is named", true}};
 }
 
+MadeDevice make_haply(const std::string& argument, const DeviceOptions&) {
+  const Result<HaplyOptions> options = haply_options(argument);
+  if (!options) return options.error();
+  return HaplyDevice::connect(*options);
+}
+
+std::vector<DeviceListing> list_haply() {
+  return {{"haply:ID",
+           "an Inverse3 or Minverse of Haply, with a VerseGrip where there is one; or HOST:PORT/ID", true}};
+}
+
 /// One line per kind of device. NAME or NAME:ARGUMENT makes it.
 struct Kind {
   const char* name;
@@ -124,6 +136,7 @@ constexpr Kind kKinds[] = {
     {"force-dimension", make_force_dimension, list_force_dimension, ForceDimensionDevice::survey},
     {"3d-systems", make_3d_systems, list_3d_systems, TouchDevice::survey},
     {"virtuose", make_virtuose, list_virtuose, VirtuoseDevice::survey},
+    {"haply", make_haply, list_haply, HaplyDevice::survey},
     {"spacemouse", make_spacemouse, list_spacemouse, SpaceMouse::survey},
     {"network", make_network, list_network, NetworkDevice::survey},
 };

@@ -9,6 +9,7 @@
 ///   3d-systems           a Touch, Touch X or PHANToM (touch.h); :NAME as in the maker's set-up program
 ///   network              a device in another process (network_device.h); :PORT or :ADDRESS:PORT of ours
 ///   virtuose             a Virtuose of Haption (virtuose.h); :HOST#PORT of its controller
+///   haply                an Inverse3 or Minverse of Haply (haply.h); :ID, :HOST:PORT or :HOST:PORT/ID
 ///   spacemouse           a SpaceMouse through spacenavd (spacemouse.h); :SOCKET names the daemon's socket
 ///
 /// Simulated devices are made at once. Real ones are connected when they are made, with no motor on, since

@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <mutex>
-#include <thread>
 
 namespace tactum::inline v0_1 {
 namespace {
@@ -16,7 +14,7 @@ constexpr int kMostErrors = 64;        // taken from the stack at once
 
 /// HDAPI's axes in D: D's x is its z, D's y its x, D's z its y.
 Vec3 hd_in_D(const double* v) noexcept { return {v[2], v[0], v[1]}; }
-std::array<double, 3> D_in_hd(const Vec3& v, double unit) noexcept {
+std::array<double, 3> to_hd(const Vec3& v, double unit) noexcept {
   return {v.y() * unit, v.z() * unit, v.x() * unit};
 }
 
@@ -34,12 +32,6 @@ const char* hd_calibration_cure() {
 }
 
 }  // namespace
-
-TouchDevice::TouchDevice(TouchOptions options)
-    : options_(std::move(options)),
-      id_(hd::kInvalidHandle),
-      samples_([](DeviceSample&) {}),
-      commands_([](Wrench&) {}) {}
 
 Result<std::unique_ptr<Device>> TouchDevice::connect(const TouchOptions& options) {
   std::unique_ptr<TouchDevice> device(new TouchDevice(options));
@@ -62,7 +54,6 @@ Result<void> TouchDevice::connect_once() {
     drain_errors();
     if (error.code == 0 && id != hd::kInvalidHandle) {
       id_ = id;
-      lost_ = false;
       error_ = 0;
       ask_abilities();
       return {};
@@ -113,7 +104,6 @@ void TouchDevice::ask_abilities() {
   info_.handle.delay_s = kHdPeriod_s;
   ask_workspace();
   drain_errors();
-  gate_ = CommandGate(info_);
 }
 
 void TouchDevice::ask_workspace() {
@@ -167,35 +157,25 @@ Result<void> TouchDevice::open() {
   call.enable(hd::kMaxForceClamping);
   call.enable(hd::kSoftwareForceLimit);
   drain_errors();
-  commands_.writable() = {};
-  commands_.publish();
-  clock_.start(options_.stale_after_s);
+  exchange_.start(CommandGate(info_), options_.stale_after_s);
   ticks_ = 0;
+  has_last_wrench_ = true;
   task_ = call.schedule(on_tick, this, hd::kPriority);
   is_open_ = true;
   {
     const std::lock_guard<std::mutex> lock(hd_scheduler_mutex);
     if (hd_scheduler_users++ == 0) call.start_scheduler();
   }
-  if (ticks_on()) return {};
+  if (exchange_.served_twice()) return {};
   close();
   return Error{"the library's servo thread does not run", "no frame within a second",
                "the maker's diagnosis passed", info_.name};
 }
 
-/// Whether the library's thread runs: waits for two more of its ticks, for a second at most.
-bool TouchDevice::ticks_on() const noexcept {
-  const std::uint64_t from = ticks_;
-  for (int i = 0; i < 1000 && ticks_ < from + 2 && !lost_; ++i)
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  return ticks_ >= from + 2;
-}
-
 void TouchDevice::close() noexcept {
   if (is_open_) {
-    commands_.writable() = {};
-    commands_.publish();
-    ticks_on();  // so that the zero is sent
+    exchange_.write({});
+    exchange_.served_twice();  // so that the zero is sent
     const std::lock_guard<std::mutex> lock(hd_scheduler_mutex);
     hd_.call.stop_scheduler();
     hd_.call.unschedule(task_);
@@ -221,17 +201,18 @@ void TouchDevice::tick() noexcept {
   const HdFunctions& call = hd_.call;
   call.make_current(id_);
   call.begin_frame(id_);
-  DeviceSample& sample = samples_.writable();
+  DeviceSample& sample = exchange_.sample();
   measure(sample);
   push();
   call.end_frame(id_);
   const bool motors_off = hd_motors_off_by(drain_errors());
-  const std::uint64_t ticks = ticks_;
-  if (ticks % kTicksPerCalibrationCheck == kTicksPerCalibrationCheck - 1) calibrate();
+  if (++ticks_ == kTicksPerCalibrationCheck) {
+    calibrate();
+    ticks_ = 0;
+  }
   sample.motors_on = calibrated_ && !motors_off;
-  sample.valid = !lost_;
-  samples_.publish();
-  ticks_ = ticks + 1;
+  sample.has_delivered = has_last_wrench_;
+  exchange_.publish();
 }
 
 void TouchDevice::measure(DeviceSample& sample) const noexcept {
@@ -252,14 +233,17 @@ void TouchDevice::measure(DeviceSample& sample) const noexcept {
   sample.V_DH = {hd_in_D(v.data()) * kHdMillimetre_m, hd_in_D(w.data())};
   sample.has_velocity = true;
   sample.buttons = static_cast<std::uint32_t>(buttons);
+  if (!has_last_wrench_) return;
+  std::array<double, 3> f{}, t{};
+  call.get_doubles(hd::kLastForce, f.data());
+  if (info_.actuates_torque) call.get_doubles(hd::kLastTorque, t.data());
+  sample.F_D_delivered = {hd_in_D(f.data()), hd_in_D(t.data()) * kHdMillimetre_m};
 }
 
 void TouchDevice::push() noexcept {
-  commands_.take();
-  const bool rests = clock_.stale() || !calibrated_;
-  const Wrench F = rests ? Wrench{} : commands_.readable();
-  hd_.call.set_doubles(hd::kForce, D_in_hd(F.f, 1.0).data());
-  if (info_.actuates_torque) hd_.call.set_doubles(hd::kTorque, D_in_hd(F.t, 1.0 / kHdMillimetre_m).data());
+  const Wrench F = calibrated_ ? exchange_.command() : Wrench{};
+  hd_.call.set_doubles(hd::kForce, to_hd(F.f, 1.0).data());
+  if (info_.actuates_torque) hd_.call.set_doubles(hd::kTorque, to_hd(F.t, 1.0 / kHdMillimetre_m).data());
 }
 
 /// Empties the library's stack of errors; returns the one that matters most, or 0.
@@ -268,35 +252,25 @@ std::uint32_t TouchDevice::drain_errors() noexcept {
   for (int n = 0; n < kMostErrors; ++n) {
     const HdErrorInfo error = hd_.call.get_error();
     if (error.code == 0) break;
+    if (error.code == hd::kInvalidEnum) has_last_wrench_ = false;  // all else is asked of every version
     if (hd_lost_by(error.code) || hd_motors_off_by(error.code)) worst = std::max(worst, error.code);
   }
   if (worst != 0) error_ = worst;
-  if (hd_lost_by(worst)) lost_ = true;
+  if (hd_lost_by(worst)) exchange_.lose();
   return worst;
 }
 
 bool TouchDevice::read(double now_s, DeviceSample& sample) noexcept {
-  if (is_open_ && samples_.take()) {
-    sample = samples_.readable();
-    sample.time_s = now_s;
-  }
-  sample.valid = is_open_ && !lost_ && ticks_ > 0;
-  return sample.valid;
+  sample.valid = false;
+  return is_open_ && exchange_.read(now_s, sample);
 }
 
-bool TouchDevice::write(const Wrench& F_D) noexcept {
-  if (!is_open_ || lost_) return false;
-  Wrench sent;
-  const bool finite = gate_.pass(F_D, sent);
-  const bool taken = clock_.on_time() && finite;
-  commands_.writable() = taken ? sent : Wrench{};
-  commands_.publish();
-  return taken;
-}
+bool TouchDevice::write(const Wrench& F_D) noexcept { return is_open_ && exchange_.write(F_D); }
 
 std::string TouchDevice::trouble() const {
   const unsigned code = error_;
-  if (hd_lost_by(code)) return "the device does not answer: plug it in, switch it on, and start anew";
+  if (exchange_.lost() || hd_lost_by(code))
+    return "the device does not answer: plug it in, switch it on, and start anew";
   if (hd_motors_off_by(code))
     return "the device switched its motors off: too warm, or pushed too hard or too fast; let it rest";
   return is_open_ && !calibrated_ ? hd_calibration_cure() : "";

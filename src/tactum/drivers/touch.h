@@ -1,24 +1,19 @@
 #pragma once
 /// Devices of 3D Systems (Touch, Touch X, PHANToM Premium) through HDAPI (hd_library.h). The library owns a
-/// thread that calls us 1000 times a second; the loop's thread and that one exchange the newest sample and
-/// the newest command, and neither waits for the other:
+/// thread that calls us 1000 times a second, to read and to push within one of its frames; sample and command
+/// are exchanged with the loop's thread (loop_exchange.h). So a command may wait for a period;
+/// `handle.delay_s` says so. Device axes (x right, y up, z toward the user, millimetres) are turned into D:
+/// (x, y, z)_D = (z, x, y) / 1000, from the middle of the usable workspace.
 ///
-///   library's thread   begin frame, read ──sample──>           loop's thread
-///                      force, end frame  <──command──
-///
-/// So a command may wait for a period; `handle.delay_s` says so. Device axes (x right, y up, z toward the
-/// user, millimetres) are turned into D: (x, y, z)_D = (z, x, y) / 1000, from the middle of the usable
-/// workspace. A command that is too old is replaced by zero in the library's own thread.
-///
-/// A device that is not calibrated reports that its motors are off, so the loop sends zero until it is.
+/// A device that is not calibrated reports that its motors are off, so the loop sends zero until it is. The
+/// delivered wrench is that of the library's last frame, where the library has it.
 
 #include <atomic>
 #include <memory>
 #include <string>
 
-#include "tactum/base/newest.h"
-#include "tactum/drivers/command_guard.h"
 #include "tactum/drivers/hd_library.h"
+#include "tactum/drivers/loop_exchange.h"
 #include "tactum/drivers/survey.h"
 
 namespace tactum::inline v0_1 {
@@ -46,7 +41,7 @@ class TouchDevice final : public Device {
   std::string trouble() const override;
 
  private:
-  explicit TouchDevice(TouchOptions options);
+  explicit TouchDevice(TouchOptions options) : options_(std::move(options)), id_(hd::kInvalidHandle) {}
   Result<void> connect_once();
   void ask_abilities();
   void ask_workspace();
@@ -56,7 +51,6 @@ class TouchDevice final : public Device {
   void measure(DeviceSample& sample) const noexcept;
   void push() noexcept;
   std::uint32_t drain_errors() noexcept;
-  bool ticks_on() const noexcept;
 
   TouchOptions options_;
   HdLibrary hd_;
@@ -64,15 +58,13 @@ class TouchDevice final : public Device {
   bool is_open_ = false;
   DeviceInfo info_;
   Vec3 centre_D_ = Vec3::Zero();  // of the workspace, from HDAPI's origin [m]
-  CommandGate gate_;
-  StaleClock clock_;
   unsigned long task_ = 0;
-  // Between the loop's thread and the library's.
-  Newest<DeviceSample> samples_;
-  Newest<Wrench> commands_;
-  std::atomic<std::uint64_t> ticks_{0};
+  LoopExchange exchange_;
+  // On the library's thread.
+  int ticks_ = 0;                // since the calibration was asked for
+  bool has_last_wrench_ = true;  // the library knows its last frame's
+  // What it said last.
   std::atomic<unsigned> error_{0};  // the last that matters
-  std::atomic<bool> lost_{false};   // no longer there
   std::atomic<bool> calibrated_{false};
 };
 
