@@ -44,8 +44,9 @@ class HaplyRig final : public DriverRig {
   void unplug() override { service_.locked()->connected = false; }
 
   std::vector<Wrench> commands_in_D() override {
+    const standin::HaplyService::Locked now = service_.locked();
     std::vector<Wrench> commands;
-    for (const standin::Triple& F : service_.locked()->commands) commands.push_back(in_D(F));
+    for (const standin::Triple& F : now.world.commands) commands.push_back(in_D(F));
     return commands;
   }
   int most_frames_between_commands() const override { return 25; }

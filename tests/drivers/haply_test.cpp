@@ -108,7 +108,8 @@ TEST_F(HaplyLoop, OriginAxesAndFiltersAreSetBeforeAForceIsSent) {
   EXPECT_NEAR(service.locked()->gate_gain, 0.3, 1e-6);
   EXPECT_EQ(service.locked()->damping, 0.0);
   EXPECT_TRUE(pushes(*device));
-  for (const standin::Triple& F : service.locked()->commands)
+  const std::vector<standin::Triple> commands = service.locked()->commands;
+  for (const standin::Triple& F : commands)
     EXPECT_TRUE(F == standin::Triple{} || F == (standin::Triple{-2, -1, 0.5}));
 }
 

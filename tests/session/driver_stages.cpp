@@ -218,8 +218,9 @@ class HaplyStage final : public DriverStage {
   }
   void end() override { service_.answer_all(); }
   std::vector<SentWrench> commands() override {
+    const standin::HaplyService::Locked now = service_.locked();
     std::vector<SentWrench> sent;
-    for (const standin::Triple& F : service_.locked()->commands) sent.push_back({F[0], F[1], F[2], 0, 0, 0});
+    for (const standin::Triple& F : now.world.commands) sent.push_back({F[0], F[1], F[2], 0, 0, 0});
     return sent;
   }
   std::size_t commands_before() const override { return 2; }
