@@ -12,6 +12,7 @@ void add_distance(CLI::App& app);
 void add_doctor(CLI::App& app);
 void add_export(CLI::App& app);
 void add_feel(CLI::App& app);
+void add_import(CLI::App& app);
 void add_inspect(CLI::App& app);
 void add_prepare(CLI::App& app);
 void add_replay(CLI::App& app);

@@ -15,6 +15,7 @@
 #include "feel_options.h"
 #include "output.h"
 #include "referee_watch.h"
+#include "robot_scene.h"
 #include "scene_of_meshes.h"
 #include "tactum/devices/simulated_device.h"
 #include "tactum/haptics/coupling_gains.h"
@@ -135,8 +136,14 @@ SceneDescription description_of(const FeelOptions& options) {
           "one scene, or one or two meshes", ""});
   if (!meshes && !options.save_scene.empty())
     fail({"--save-scene is for scenes that are made of meshes", options.scenes.front(), "a mesh", ""});
+  const bool robot = is_robot_name(options.scenes.front());
+  if (!robot && !options.tool.empty())
+    fail({"--tool is for URDF and MJCF files", options.scenes.front(), "a .urdf or .xml file", ""});
   Result<SceneDescription> description = Error{};
-  if (meshes) {
+  if (robot) {
+    std::FILE* const out = options.json == "-" ? stderr : stdout;
+    description = read_robot(options.scenes.front(), {.tool = options.tool, .folder = {}}, out).description;
+  } else if (meshes) {
     const bool saves = !options.save_scene.empty();
     const std::string folder =
         saves ? std::filesystem::absolute(options.save_scene).parent_path().string() : "";

@@ -10,14 +10,15 @@ void add_what_is_felt(CLI::App* command, FeelOptions* options) {
       "was "
       "not met, or the command line is wrong.");
   command
-      ->add_option(
-          "SCENE", options->scenes,
-          "The name of a scene (tactum scenes lists them), a scene file, or one or two meshes: one is "
-          "felt against a plate, the second of two against the first")
+      ->add_option("SCENE", options->scenes,
+                   "The name of a scene (tactum scenes lists them), a scene file, a URDF or MJCF file "
+                   "(.urdf, .xml), or "
+                   "one or two meshes: one is felt against a plate, the second of two against the first")
       ->expected(1, 2)
       ->capture_default_str();
   command->add_option("--save-scene", options->save_scene,
                       "Write the scene that was made of the meshes to this file");
+  command->add_option("--tool", options->tool, "The body of a URDF or MJCF file that the hand holds");
   command->add_flag("--strict", options->strict, "Treat remarks on the scene as errors");
   command
       ->add_option("--duration", options->duration_s,

@@ -11,6 +11,7 @@ namespace tactum {
 struct FeelOptions {
   std::vector<std::string> scenes{"gears"};  // one, or one or two meshes
   std::string save_scene;
+  std::string tool;  // of a URDF or MJCF file
   bool strict = false;
   double duration_s = 0.0;
   std::uint64_t updates = 0;

@@ -2,16 +2,19 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <utility>
 
 #include "commands.h"
 #include "output.h"
 #include "part_cache.h"
 #include "part_text.h"
+#include "step_meshes.h"
 #include "tactum/base/parallel.h"
 #include "tactum/mesh/mapped_file.h"
 #include "tactum/mesh/prepare_part.h"
@@ -27,6 +30,7 @@ struct PrepareCommand {
   std::string json;   ///< file to write, "-" for stdout
   std::string cache;  ///< folder; empty: the user's
   bool no_cache = false;
+  std::string fit;  ///< of STEP files
   PrepareOptions prepare;
 };
 
@@ -97,8 +101,35 @@ double peak_memory_MB() {
   return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
-void run(const PrepareCommand& options) {
+/// Replaces STEP files by their meshes, in metres.
+void triangulate(PrepareCommand& options, StepMeshes& meshes) {
+  const auto steps = std::count_if(options.meshes.begin(), options.meshes.end(), is_step_name);
+  if (steps == 0) {
+    if (!options.fit.empty())
+      fail({"--fit is for STEP files", options.meshes.front(), "a .step or .stp file", ""});
+    return;
+  }
+  if (steps < std::ssize(options.meshes))
+    fail({"STEP files beside meshes", options.meshes.front(), "files of one kind", ""});
+  if (options.prepare.unit != "auto" || options.prepare.scale != 0.0)
+    fail({"a STEP file states its unit", "--units or --scale", "neither", options.meshes.front()});
+  std::optional<double> fit_m;
+  if (!options.fit.empty()) {
+    const Result<double> length = length_with_unit(options.fit);
+    if (!length) fail(length.error());
+    fit_m = *length;
+  }
+  const Result<std::vector<std::string>> made = meshes.make(options.meshes, fit_m);
+  if (!made) fail(made.error());
+  options.meshes = *made;
+  options.prepare.unit = "m";
+  fmt::print(options.json == "-" ? stderr : stdout, "{}", meshes.report());
+}
+
+void run(PrepareCommand options) {
   const auto start = std::chrono::steady_clock::now();
+  StepMeshes step_meshes;
+  triangulate(options, step_meshes);
   const Bar bar;
   const PartCache cache = options.no_cache ? PartCache() : PartCache(options.cache);
   const std::string key = cache.key_of(options.meshes, options.prepare);
@@ -142,9 +173,14 @@ void add_prepare(CLI::App& app) {
   ways.insert(ways.begin(), "auto");
   command
       ->add_option("MESH", options->meshes,
-                   "Mesh files: OBJ, STL, PLY, OFF, glTF, GLB; several are pieces of one part")
+                   "Mesh files: OBJ, STL, PLY, OFF, glTF, GLB; several are pieces of one part. STEP where "
+                   "tactum-step is installed")
       ->required();
   command->add_option("-o,--output", options->part, "The part file to write")->required();
+  command->add_option(
+      "--fit", options->fit,
+      "The smallest play that is to be felt, with its unit (20um): facets of a STEP file are within a "
+      "twentieth of it");
   CLI::Option* units = command
                            ->add_option("--units", options->prepare.unit,
                                         "The unit of the mesh's numbers; auto guesses and says why")

@@ -12,7 +12,7 @@ tactum::SceneDescription button_scene() {
   scene.name = "button";
   scene.bodies = {{.name = "button",
                    .part = PrismPart{.sides = 24, .radius_m = 0.01, .height_m = 0.006},
-                   .mass_kg = 0.01,
+                   .mass = {.mass_kg = 0.01},
                    .joint = SliderJoint{.axis = {0, 0, 1},
                                         .damping_Ns_per_m = 1.0,
                                         .stiffness_N_per_m = 100.0,

@@ -95,6 +95,19 @@ def scene():
     yield b"\xef\xbb\xbfschema = 1e999\n[[friction]]\nbetween = [1, \"\\u00e9\"]\n"
 
 
+def robots():
+    yield ('<mujoco><compiler angle="radian" eulerseq="zYx" settotalmass="2"/><default><geom size="0.1 0.2"/>'
+           '<default class="a"><joint type="slide" range="0 1"/></default></default><worldbody><body pos="0 0 1" '
+           'euler="1 2 3" childclass="a"><joint/><geom type="capsule" fromto="0 0 0 1 0 0"/><body><joint type="ball" '
+           'range="0 1"/><inertial mass="1" pos="0 0 0" diaginertia="1 1 1"/></body></body></worldbody></mujoco>')
+    yield ('<robot name="r"><link name="a"><collision><geometry><box size="1 1 1"/></geometry></collision></link>'
+           '<link name="b"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial></link>'
+           '<joint type="revolute"><parent link="a"/><child link="b"/><origin xyz="1 0 0" rpy="0 1 0"/>'
+           '<limit lower="0.1" upper="1"/><dynamics damping="1"/></joint></robot>')
+    yield '<mujoco><include file="fuzzed.xml"/><worldbody><geom type="plane" size="0 0 1"/></worldbody></mujoco>'
+    yield "<robot><robot></robot>"
+
+
 def recordings(whole):
     """A recording, the same cut and with other bytes, and what stands behind its checksums: a head."""
     yield whole
@@ -121,6 +134,8 @@ def main(arguments):
         write("prepare", "seed-%d" % i, data)
     for i, data in enumerate(scene()):
         write("scene", "seed-%d" % i, data)
+    for i, data in enumerate(robots()):
+        write("import", "seed-%d" % i, data)
     if not arguments:
         return
     tetrahedron = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"

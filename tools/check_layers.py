@@ -29,6 +29,7 @@ STANDS_ON = {
     "response": ["contact", "dynamics", "loop"],
     "haptics": ["response"],
     "scene": ["haptics", "mesh", "parts"],
+    "import": ["scene"],
     "telemetry": ["haptics"],
     "session": ["scene", "telemetry", "drivers"],
     "recording": ["session"],

@@ -190,5 +190,20 @@ TEST(PrepareCommand, ADamagedPartIsRefusedWithItsReason) {
   EXPECT_NE(run.err.find("bytes were changed"), std::string::npos) << run.err;
 }
 
+/// A copy of the program stands where no other program is.
+TEST(PrepareCommand, StepWithoutItsProgramSaysHowToGetIt) {
+  const testing::ScratchFolder folder;
+  const std::filesystem::path programs =
+      std::filesystem::read_symlink("/proc/self/exe").parent_path().parent_path();
+  std::filesystem::copy_file(programs / "tactum", folder / "tactum");
+  testing::write(folder / "part.step", "ISO-10303-21;");
+  const std::string command =
+      "cd " + (folder / "") + " && PATH= ./tactum prepare part.step -o part.tactum 2>err";
+  EXPECT_NE(std::system(command.c_str()), 0);
+  const std::string said = testing::content(folder / "err");
+  EXPECT_NE(said.find("STEP files need the program tactum-step"), std::string::npos) << said;
+  EXPECT_NE(said.find("libocct-data-exchange-dev"), std::string::npos) << said;
+}
+
 }  // namespace
 }  // namespace tactum::prepare_test

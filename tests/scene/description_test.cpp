@@ -94,9 +94,9 @@ TEST(DescriptionErrors, NameBodiesAndTheirPartsByPath) {
                "expected \"bed\"");
   expect_error([](auto& s) { s.bodies[2].on = "palte"; }, "body[2].on", "expected \"plate\"");
   expect_error([](auto& s) { s.bodies[2].part = BoxPart{{1, 1, 1}}; }, "body[2].part", "two ways to make");
-  expect_error([](auto& s) { s.bodies[2].mass_kg = s.bodies[2].density_kg_per_m3 = 1.0; }, "body[2].mass_kg",
-               "two masses in body[2]");
-  expect_error([](auto& s) { s.bodies[2].mass_kg = kNoNumber; }, "body[2].mass_kg", "more than 0");
+  expect_error([](auto& s) { s.bodies[2].mass.mass_kg = s.bodies[2].density_kg_per_m3 = 1.0; },
+               "body[2].mass_kg", "two masses in body[2]");
+  expect_error([](auto& s) { s.bodies[2].mass.mass_kg = kNoNumber; }, "body[2].mass_kg", "more than 0");
   expect_error([](auto& s) { s.bodies[2].X_OP.p.x() = kNoNumber; }, "body[2].pos_m", "finite numbers");
   expect_error([](auto& s) { s.bodies[2].X_OP.R *= 2.0; }, "body[2].quat_wxyz", "determinant 8");
   expect_error(

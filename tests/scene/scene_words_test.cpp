@@ -48,7 +48,7 @@ TEST(SceneWords, JointKindsOfOtherFormatsNameOurs) {
 }
 
 TEST(SceneWords, ShapesGraspsAndKeysNameOurs) {
-  expect(scene_with(block("", "{ capsule = { radius_m = 1 } }")), "test.toml:8:10", "expected \"cylinder\"");
+  expect(scene_with(block("", "{ pill = { radius_m = 1 } }")), "test.toml:8:10", "expected \"capsule\"");
   expect(scene_with(block("", "{ cuboid = { size_m = [1, 1, 1] } }")), "test.toml:8:10", "expected \"box\"");
   expect(scene_with(block("", "{ cylindre = { radius_m = 1 } }")), "test.toml:8:10", "expected \"cylinder\"");
   expect(scene_with(block("", "{ filename = \"a.stl\" }")), "test.toml:8:10", "expected \"mesh\"");

@@ -182,7 +182,7 @@ SceneDescription dipole_field() {
                   {.name = "needle",
                    .part = BoxPart{{0.008, 0.008, 0.04}},
                    .X_OP = at({0, 0, 0.075}),
-                   .mass_kg = 0.02,
+                   .mass = {.mass_kg = 0.02},
                    .field_points = {.listed = {{{0, 0, -0.02}, -2.0}, {{0, 0, 0.02}, 2.0}}}}};
   scene.fields = {{.shape = DipoleDescription{{.moment_Nm3 = 1.2e-4, .core_m = 0.03}},
                    .largest_force_N = 3,

@@ -18,6 +18,7 @@
 #include "app/program.h"
 #include "tactum/geometry/mesh_report.h"
 #include "tactum/mesh/mesh_import.h"
+#include "tactum/mesh/part_file.h"
 
 namespace tactum {
 namespace {
@@ -136,10 +137,43 @@ TEST(StepCommand, WhatItWritesIsPreparedAsItIs) {
   const testing::ProgramRun prepared = testing::run_tactum(
       "prepare --no-cache --units m " + (folder / "plate.obj") + " -o " + (folder / "plate.part"));
   EXPECT_EQ(prepared.exit_code, 0) << prepared.err;
-  const testing::ProgramRun direct =
-      testing::run_tactum("prepare --no-cache " + (folder / "plate.step") + " -o " + (folder / "p.part"));
-  EXPECT_EQ(direct.exit_code, 1);
-  EXPECT_NE(direct.err.find("tactum-step"), std::string::npos) << direct.err;
+}
+
+TEST(StepCommand, PrepareTakesStepByItself) {
+  const ScratchFolder folder;
+  write_step(folder / "plate.step", {holed_plate()}, "MM");
+  const std::string command =
+      "prepare --no-cache " + (folder / "plate.step") + " -o " + (folder / "p.tactum");
+  const testing::ProgramRun coarse = testing::run_tactum(command);
+  ASSERT_EQ(coarse.exit_code, 0) << coarse.err;
+  EXPECT_NE(coarse.out.find("chord error of 1e-4 of the diagonal"), std::string::npos) << coarse.out;
+  const testing::ProgramRun fine = testing::run_tactum(command + " --fit 20um");
+  ASSERT_EQ(fine.exit_code, 0) << fine.err;
+  EXPECT_NE(fine.out.find("chord error of at most 1 um, a twentieth of the fit of 20 um"), std::string::npos)
+      << fine.out;
+  // The same part as by hand.
+  const Result<StepMesh> step = read_step(folder / "plate.step", {.deviation_m = 1e-6});
+  const Result<PartFile> part = load_part(folder / "p.tactum");
+  ASSERT_TRUE(step && part);
+  EXPECT_EQ(part->part.surface.triangles.size(), step->mesh.triangles.size());
+  for (const Vec3& vertex : part->part.surface.vertices)
+    EXPECT_LT(from_holed_plate(vertex + part->origin, 1e-3), 1e-6);
+}
+
+TEST(StepCommand, AFitIsALengthOfAStepFile) {
+  const ScratchFolder folder;
+  write_step(folder / "plate.step", {holed_plate()}, "MM");
+  const auto error_of = [&](const std::string& arguments) {
+    return testing::run_tactum("prepare --no-cache -o " + (folder / "p.tactum") + " " + arguments).err;
+  };
+  const std::string file = folder / "plate.step";
+  EXPECT_NE(error_of(file + " --fit 20").find("expected a number above 0 with um, mm, cm or m"),
+            std::string::npos);
+  EXPECT_NE(error_of(file + " --fit -1um").find("no length"), std::string::npos);
+  EXPECT_NE(error_of(file + " --units mm").find("a STEP file states its unit"), std::string::npos);
+  EXPECT_NE(error_of("a.stl --fit 20um").find("--fit is for STEP files"), std::string::npos);
+  testing::write(folder / "text.step", "solid nothing\n");
+  EXPECT_NE(error_of(folder / "text.step").find("tactum-step has failed"), std::string::npos);
 }
 
 }  // namespace

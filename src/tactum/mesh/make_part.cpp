@@ -217,6 +217,7 @@ PartOptions for_moved_points(const PartOptions& options) {
   PartOptions moved = options;
   moved.scale = 1.0;
   moved.about_center_of_mass = false;
+  moved.origin.reset();
   return moved;
 }
 
@@ -257,7 +258,7 @@ Result<Part> clouds_about_center(const std::vector<std::vector<Vec3>>& clouds, c
   of_density_one.density_kg_per_m3 = 1.0;
   const Result<Part> as_given = hulls_of(moved, of_density_one);
   if (!as_given) return as_given.error();
-  const Vec3 center = as_given->mass.center;
+  const Vec3 center = options.origin.value_or(as_given->mass.center);
   for (std::vector<Vec3>& cloud : moved)
     for (Vec3& point : cloud) point -= center;
   Result<Part> part = part_from_clouds(moved, for_moved_points(options));
@@ -280,8 +281,8 @@ Result<std::vector<std::vector<Vec3>>> clouds_of_groups(const ImportedMesh& mesh
 /// What follows from the mesh: mass, pieces and surface.
 Result<Part> finished(Part part, FitMesh fit, const PartOptions& options) {
   part.name = options.name;
-  if (options.about_center_of_mass) {
-    part.origin = mass_properties_or_hull(fit.closed, 1.0).center;
+  if (options.about_center_of_mass || options.origin) {
+    part.origin = options.origin ? *options.origin : mass_properties_or_hull(fit.closed, 1.0).center;
     for (TriangleMesh* moved : {&fit.closed, &fit.surface})
       for (Vec3& vertex : moved->vertices) vertex -= part.origin;
   }
@@ -298,7 +299,7 @@ Result<Part> finished(Part part, FitMesh fit, const PartOptions& options) {
 
 Result<Part> part_from_clouds(const std::vector<std::vector<Vec3>>& clouds, const PartOptions& options) {
   if (Result<void> sound = check_options(options); !sound) return sound.error();
-  if (options.about_center_of_mass) return clouds_about_center(clouds, options);
+  if (options.about_center_of_mass || options.origin) return clouds_about_center(clouds, options);
   Result<Part> part = hulls_of(clouds, options);
   if (part) complete(*part, options.threads);
   return part;

@@ -7,6 +7,7 @@
 ///   reflex edges
 ///   any other mesh            no pieces: the surface itself, felt from outside (surface_tree.h)
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,7 @@ struct PartOptions {
   double density_kg_per_m3 = 1000.0;  ///< [kg/m^3]
   PieceSource pieces = PieceSource::kAuto;
   bool about_center_of_mass = false;  ///< the part's origin is its centre of mass (Part::origin)
+  std::optional<Vec3> origin = {};    ///< ... or this point of the scaled input [m]
   int threads = 1;                    ///< the part does not depend on it
   int most_solid_pieces = 0;  ///< 0: 32 where the method is chosen by itself, 512 where solid is wanted
 };

@@ -55,7 +55,7 @@ Result<Format> format_of(std::string_view bytes, const std::string& name) {
   }
   if (ending == "step" || ending == "stp")
     return Error{"exact surfaces cannot be felt as they are", "a STEP file",
-                 "its triangles: tactum-step " + name + " -o PART.obj makes them", name};
+                 "its triangles: tactum prepare " + name + " -o PART.tactum makes them", name};
   return Error{"the format is not known", ending.empty() ? "a name without ending" : "." + ending,
                ".obj, .stl, .ply, .off, .gltf or .glb", name};
 }

@@ -97,14 +97,36 @@ struct FieldPointsDescription {
   std::vector<SamplePoint> listed = {};  ///< ... or these
 };
 
+/// Mass, centre of mass and inertia as they are stated, in place of those that follow from the shape: of a
+/// body whose shape is a simpler one than that of the thing, or whose components overlap.
+struct InertialDescription {
+  double mass_kg = 0.0;                ///< above 0 [kg]
+  Vec3 center_m = Vec3::Zero();        ///< of mass, in P [m]
+  Vec3 inertia_kg_m2 = Vec3::Zero();   ///< xx, yy, zz about the centre of mass, axes of P [kg m^2]
+  Vec3 products_kg_m2 = Vec3::Zero();  ///< the elements xy, xz, yz of the same tensor [kg m^2]
+  Mat3 tensor() const {
+    Mat3 tensor = inertia_kg_m2.asDiagonal();
+    tensor(0, 1) = tensor(1, 0) = products_kg_m2.x();
+    tensor(0, 2) = tensor(2, 0) = products_kg_m2.y();
+    tensor(1, 2) = tensor(2, 1) = products_kg_m2.z();
+    return tensor;
+  }
+};
+
+/// The mass of a body where no density gives it; at most one of the two is there.
+struct MassDescription {
+  std::optional<double> mass_kg = {};                ///< distributed as the shape has it [kg]
+  std::optional<InertialDescription> inertial = {};  ///< ... or stated with all that follows
+};
+
 struct BodyDescription {
   std::string name = {};                              ///< one of its own
   std::optional<PartDescription> part = {};           ///< either this
   std::vector<ComponentDescription> components = {};  ///< ... or these
-  std::string on = {};  ///< an earlier body, in whose part's frame the pose is; empty: the world
-  Pose X_OP = {};       ///< the part's frame in that one, at the start [m]
-  Twist V_WB = {};      ///< at the start, of the centre of mass, axes of the world [m/s, rad/s]
-  std::optional<double> mass_kg = {};            ///< either this [kg]
+  std::string on = {};        ///< an earlier body, in whose part's frame the pose is; empty: the world
+  Pose X_OP = {};             ///< the part's frame in that one, at the start [m]
+  Twist V_WB = {};            ///< at the start, of the centre of mass, axes of the world [m/s, rad/s]
+  MassDescription mass = {};  ///< either this
   std::optional<double> density_kg_per_m3 = {};  ///< ... or this; 1000 when both are absent [kg/m^3]
   JointDescription joint = FreeJoint{};
   BodyLoad load = {};         ///< at the centre of mass; none for a fixed body

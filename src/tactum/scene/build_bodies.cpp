@@ -131,10 +131,11 @@ void build_body(SceneBuilder& builder, const std::string& path, const BodyDescri
   const Shape shape =
       body.part ? build_shape(builder, item, *body.part) : build_components(builder, path, body);
   if (builder.errors()) return;
-  Result<std::shared_ptr<const Part>> part = part_of(shape, body.density_kg_per_m3.value_or(kWaterDensity));
+  Result<std::shared_ptr<const Part>> part = part_of(shape, body.density_kg_per_m3.value_or(kWaterDensity),
+                                                     body.mass.inertial ? &*body.mass.inertial : nullptr);
   if (!part) return builder.fail(item, part.error().message());
   spec.part = std::move(*part);
-  spec.mass_kg = body.mass_kg;
+  spec.mass_kg = body.mass.mass_kg;
   spec.field_points = field_points(body, *spec.part);
   for (const std::string& remark : spec.part->notes.remarks)
     scene.remarks.push_back(fmt::format("{} ({}): {}", spec.name, shape.file, remark));

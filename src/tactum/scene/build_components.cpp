@@ -10,11 +10,12 @@ namespace {
 
 using Pieces = std::vector<Polytope>;
 
-/// One component, its pieces in the body's frame P.
+/// One component, in the body's frame P.
 struct Component {
   std::string name;
   Pose X_PC;
   Pieces pieces;
+  TriangleMesh surface;  ///< of one that has no convex pieces
 };
 
 /// The piece in the frame that `X` is stated in: the hull of the corners that have moved.
@@ -24,21 +25,24 @@ Result<Polytope> moved(const Polytope& piece, const Pose& X) {
   return convex_hull(points);
 }
 
-/// The convex pieces of a shape in its own frame.
-Result<Pieces> pieces_of(const Shape& shape) {
-  if (!shape.pieces.empty()) return shape.pieces;
-  const Result<std::shared_ptr<const Part>> part = part_of(shape, 1.0);
-  if (!part) return part.error();
-  if ((*part)->is_surface())
-    return Error{"a component that is felt by its surface", (*part)->notes.pieces,
-                 "convex pieces: a shape made of them, or a mesh with pieces = \"solid\" or \"given\"", ""};
-  Pieces pieces;
-  for (const Polytope& piece : (*part)->pieces) {
-    Result<Polytope> back = moved(piece, {Mat3::Identity(), (*part)->origin});
-    if (!back) return back.error();
-    pieces.push_back(std::move(*back));
+/// The convex pieces of a shape, or its surface, in the frame that `X` is stated in.
+Result<void> place(const Shape& shape, const Pose& X, Component& component) {
+  Pieces pieces = shape.pieces;
+  Pose X_own = X;
+  if (pieces.empty()) {
+    const Result<std::shared_ptr<const Part>> part = part_of(shape, 1.0);
+    if (!part) return part.error();
+    X_own = X * Pose{Mat3::Identity(), (*part)->origin};
+    pieces = (*part)->pieces;
+    if ((*part)->is_surface()) component.surface = (*part)->surface;
   }
-  return pieces;
+  for (Vec3& vertex : component.surface.vertices) vertex = X_own * vertex;
+  for (const Polytope& piece : pieces) {
+    Result<Polytope> placed = moved(piece, X_own);
+    if (!placed) return placed.error();
+    component.pieces.push_back(std::move(*placed));
+  }
+  return {};
 }
 
 /// The penetration depth of two components [m]: that of the deepest pair of pieces.
@@ -88,19 +92,8 @@ Component build_component(SceneBuilder& builder, const std::string& path,
   const std::string part = item_path(path, "part");
   const Shape shape = build_shape(builder, part, *description.part);
   if (builder.errors()) return component;
-  const Result<Pieces> pieces = pieces_of(shape);
-  if (!pieces) {
-    builder.fail(part, pieces.error());
-    return component;
-  }
-  for (const Polytope& piece : *pieces) {
-    Result<Polytope> placed = moved(piece, component.X_PC);
-    if (!placed) {
-      builder.fail(part, placed.error().message());
-      return component;
-    }
-    component.pieces.push_back(std::move(*placed));
-  }
+  if (const Result<void> placed = place(shape, component.X_PC, component); !placed)
+    builder.fail(part, placed.error());
   return component;
 }
 
@@ -109,10 +102,59 @@ std::string called(const Component& component, std::size_t index) {
                                 : fmt::format("\"{}\"", component.name);
 }
 
+/// Whether mass and inertia follow from the components, so that material in two of them would count twice.
+bool weighs_components(const BodyDescription& body) {
+  const bool fixed = std::holds_alternative<FixedJoint>(body.joint) && parent_of(body.joint).parent.empty();
+  return !body.mass.inertial && !fixed;
+}
+
+/// Refuses a component that is inside one before it, or that has no convex pieces.
+void check_component(SceneBuilder& builder, const std::string& path, const Component& component,
+                     const std::vector<Component>& before) {
+  if (component.pieces.empty())
+    return builder.fail(path, "a component that is felt by its surface, in a body whose mass follows from it",
+                        called(component, before.size()),
+                        "convex pieces: a shape made of them, or a mesh with pieces = \"solid\" or "
+                        "\"given\"; or the key inertial");
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const double depth = overlap(component, before[i]);
+    if (depth <= tolerances::kPenetrating * (size_of(component) + size_of(before[i]))) continue;
+    return builder.fail(path, "two components of one body overlap",
+                        fmt::format("{} and {} are {:.6g} m inside each other", called(before[i], i),
+                                    called(component, before.size()), depth),
+                        "components that touch or stand apart, since what is in both would weigh twice; or "
+                        "the key inertial");
+  }
+}
+
+void append(const TriangleMesh& more, TriangleMesh& mesh) {
+  const int first = static_cast<int>(mesh.vertices.size());
+  mesh.vertices.insert(mesh.vertices.end(), more.vertices.begin(), more.vertices.end());
+  for (const Triangle& t : more.triangles)
+    mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+}
+
+/// All convex pieces as one shape; where a component has none, the triangles of all.
+Shape joined(const std::vector<Component>& components) {
+  Shape shape;
+  bool surface = false;
+  for (const Component& component : components) {
+    surface = surface || component.pieces.empty();
+    shape.pieces.insert(shape.pieces.end(), component.pieces.begin(), component.pieces.end());
+  }
+  if (!surface) return shape;
+  TriangleMesh& mesh = shape.mesh.mesh;
+  for (const Component& component : components) append(component.surface, mesh);
+  for (const Polytope& piece : shape.pieces)
+    if (const Result<Part> solid = part_from_clouds({piece.vertices})) append(solid->surface, mesh);
+  shape.pieces.clear();
+  shape.piece_source = PieceSource::kSurface;
+  return shape;
+}
+
 }  // namespace
 
 Shape build_components(SceneBuilder& builder, const std::string& path, const BodyDescription& body) {
-  Shape shape;
   std::vector<Component> components;
   std::vector<Placement> placements;
   for (const ComponentDescription& component : body.components)
@@ -121,23 +163,15 @@ Shape build_components(SceneBuilder& builder, const std::string& path, const Bod
     const std::string item = item_path(path, "component", components.size());
     if (const auto fault = order_error(placements, components.size(), "component")) {
       builder.fail(item_path(item, "on"), *fault);
-      return shape;
+      return {};
     }
     Component component = build_component(builder, item, description, components);
-    if (builder.errors()) return shape;
-    for (std::size_t i = 0; i < components.size(); ++i) {
-      const double depth = overlap(component, components[i]);
-      if (depth <= tolerances::kPenetrating * (size_of(component) + size_of(components[i]))) continue;
-      builder.fail(item_path(item, "part"), "two components of one body overlap",
-                   fmt::format("{} and {} are {:.6g} m inside each other", called(components[i], i),
-                               called(component, components.size()), depth),
-                   "components that touch or stand apart: what is in both would weigh twice");
-      return shape;
-    }
-    shape.pieces.insert(shape.pieces.end(), component.pieces.begin(), component.pieces.end());
+    if (builder.errors()) return {};
+    if (weighs_components(body)) check_component(builder, item_path(item, "part"), component, components);
+    if (builder.errors()) return {};
     components.push_back(std::move(component));
   }
-  return shape;
+  return joined(components);
 }
 
 }  // namespace tactum::inline v0_1

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 
+#include "tactum/geometry/hull.h"
 #include "tactum/geometry/primitives.h"
 #include "tactum/mesh/round_part.h"
 #include "tactum/scene/scene_builder.h"
@@ -34,6 +36,22 @@ Made shape_of(Result<TriangleMesh> mesh) {
   shape.mesh.mesh = std::move(*mesh);
   shape.piece_source = PieceSource::kSurface;
   return shape;
+}
+
+/// On rings of the two half balls: a quarter of the sides from the equator to the pole.
+std::vector<Vec3> capsule_corners(const CapsulePart& part) {
+  const double half_m = 0.5 * part.height_m;
+  std::vector<Vec3> corners{{0.0, 0.0, half_m + part.radius_m}, {0.0, 0.0, -half_m - part.radius_m}};
+  for (int ring = 0; 4 * ring < part.sides; ++ring) {
+    const double up = 2.0 * kPi * ring / part.sides;
+    for (int i = 0; i < part.sides; ++i) {
+      const double around = 2.0 * kPi * i / part.sides;
+      const double across = part.radius_m * std::cos(up), z = half_m + part.radius_m * std::sin(up);
+      for (const double side : {z, -z})
+        corners.emplace_back(across * std::cos(around), across * std::sin(around), side);
+    }
+  }
+  return corners;
 }
 
 /// One of the two parts of a fit.
@@ -94,6 +112,11 @@ class PartMaker {
   Made make(const PrismPart& part) const {
     return shape_of(make_prism(part.sides, part.radius_m, part.height_m));
   }
+  Made make(const CapsulePart& part) const {
+    Result<Polytope> piece = convex_hull(capsule_corners(part));
+    if (!piece) return piece.error();
+    return shape_of(*piece);
+  }
 
  private:
   /// The size as made: nominal when there is no fit.
@@ -119,10 +142,18 @@ void load_prepared(SceneBuilder& builder, const std::string& path, const MeshPar
                  "none of it");
   };
   if (part.scale) refuse("scale");
+  if (part.scale_xyz) refuse("scale_xyz");
   if (part.pieces) refuse("pieces");
   Result<PartFile> file = load_part(shape.file);
   if (!file) return builder.fail(item_path(path, MeshPart::kKind), file.error().message());
   shape.prepared = std::make_shared<const PartFile>(std::move(*file));
+}
+
+/// Each axis by its own scale; a mirrored mesh is turned outside in, which is mended.
+void stretch(const Vec3& scale, TriangleMesh& mesh) {
+  for (Vec3& vertex : mesh.vertices) vertex = vertex.cwiseProduct(scale);
+  if (scale.prod() < 0.0)
+    for (Triangle& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
 }
 
 Shape load_mesh(SceneBuilder& builder, const std::string& path, const MeshPart& part) {
@@ -143,6 +174,7 @@ Shape load_mesh(SceneBuilder& builder, const std::string& path, const MeshPart& 
   Result<ImportedMesh> imported = import_mesh(shape.file, options);
   if (imported) {
     shape.mesh = std::move(*imported);
+    if (part.scale_xyz) stretch(*part.scale_xyz, shape.mesh.mesh);
   } else {
     builder.fail(item, imported.error().message());
   }

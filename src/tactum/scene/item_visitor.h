@@ -215,6 +215,7 @@ void visit_items(ItemVisitor& visitor, PartDescription& part);
 void visit_items(ItemVisitor& visitor, JointDescription& joint);
 void visit_items(ItemVisitor& visitor, ComponentDescription& component);
 void visit_items(ItemVisitor& visitor, SamplePoint& point);
+void visit_items(ItemVisitor& visitor, InertialDescription& inertial);
 void visit_items(ItemVisitor& visitor, BodyDescription& body);
 
 /// The table [settings], whose settings count more than those of the sections.

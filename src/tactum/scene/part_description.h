@@ -22,6 +22,7 @@ struct MeshPart {
   static constexpr const char* kKind = "mesh";
   std::string mesh = {};                   ///< the name of the file, see SceneSource::folders
   std::optional<double> scale = {};        ///< metres per unit of the file; 1 when absent [m]
+  std::optional<Vec3> scale_xyz = {};      ///< ... or of each axis; below zero it mirrors [m]
   std::optional<PieceSource> pieces = {};  ///< kAuto when absent
 };
 
@@ -121,8 +122,16 @@ struct PrismPart {
   double height_m = 0.0;  ///< [m]
 };
 
-using PartDescription =
-    std::variant<MeshPart, GearPart, PegPart, HoleBlockPart, BoltPart, NutPart, HexKeyPart, SocketPart,
-                 SlottedPlatePart, BoxPart, SpherePart, BallPart, CylinderPart, EllipsoidPart, PrismPart>;
+/// A cylinder about z with half a ball on either end, of facets.
+struct CapsulePart {
+  static constexpr const char* kKind = "capsule";
+  double radius_m = 0.0;  ///< [m]
+  double height_m = 0.0;  ///< of the cylinder alone, without the balls [m]
+  int sides = 32;         ///< facets around it, a multiple of 4 from 8 to 256 [-]
+};
+
+using PartDescription = std::variant<MeshPart, GearPart, PegPart, HoleBlockPart, BoltPart, NutPart,
+                                     HexKeyPart, SocketPart, SlottedPlatePart, BoxPart, SpherePart, BallPart,
+                                     CylinderPart, EllipsoidPart, PrismPart, CapsulePart>;
 
 }  // namespace tactum::inline v0_1

@@ -13,6 +13,7 @@
 #include "tactum/mesh/make_part.h"
 #include "tactum/mesh/mesh_import.h"
 #include "tactum/mesh/part_file.h"
+#include "tactum/scene/body_description.h"
 
 namespace tactum::inline v0_1 {
 
@@ -26,7 +27,9 @@ struct Shape {
   std::shared_ptr<const PartFile> prepared;       ///< instead of a mesh
 };
 
-/// The part about its centre of mass; Part::origin is the place of that in P.
-Result<std::shared_ptr<const Part>> part_of(const Shape& shape, double density_kg_per_m3);
+/// The part about its centre of mass; Part::origin is the place of that in P. With `inertial` mass, centre
+/// and inertia are those; a prepared part, which stands about its own centre, is then refused.
+Result<std::shared_ptr<const Part>> part_of(const Shape& shape, double density_kg_per_m3,
+                                            const InertialDescription* inertial = nullptr);
 
 }  // namespace tactum::inline v0_1

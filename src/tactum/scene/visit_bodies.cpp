@@ -1,5 +1,8 @@
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
+
+#include "tactum/base/tolerances.h"
 #include "tactum/scene/item_visitor.h"
 
 namespace tactum::inline v0_1 {
@@ -76,6 +79,21 @@ void visit_items(ItemVisitor& visitor, SamplePoint& point) {
   visitor.number("weight", point.weight);
 }
 
+void visit_items(ItemVisitor& visitor, InertialDescription& inertial) {
+  visitor.number("mass_kg", inertial.mass_kg, kPositive, Need::kRequired);
+  visitor.vector("center_m", inertial.center_m);
+  visitor.vector("inertia_kg_m2", inertial.inertia_kg_m2, Need::kRequired);
+  visitor.vector("products_kg_m2", inertial.products_kg_m2);
+  if (!inertial.tensor().allFinite()) return;  // an error of its own
+  // Of a plate the largest moment is the sum of the others, to rounding.
+  const Vec3 moments = Eigen::SelfAdjointEigenSolver<Mat3>(inertial.tensor()).eigenvalues();
+  if (!(moments[0] > 0.0 && moments[2] <= (moments[0] + moments[1]) * (1.0 + tolerances::kCentered)))
+    visitor.fail("inertia_kg_m2", "no body has this inertia",
+                 fmt::format("principal moments of {:.6g}, {:.6g} and {:.6g} kg m^2", moments[0], moments[1],
+                             moments[2]),
+                 "moments above 0, none larger than the sum of the others");
+}
+
 void visit_items(ItemVisitor& visitor, BodyDescription& body) {
   visitor.text("name", body.name, Need::kRequired);
   if (body.name.empty())
@@ -96,10 +114,15 @@ void visit_items(ItemVisitor& visitor, BodyDescription& body) {
   if (body.part && !body.components.empty())
     visitor.fail("part", "two ways to make " + visitor.section(), "part and component", "one of them");
   if (!body.part && body.components.empty()) visitor.missing("part", "a table such as { box = {...} }");
-  visitor.number("mass_kg", body.mass_kg, kPositive);
+  visitor.number("mass_kg", body.mass.mass_kg, kPositive);
   visitor.number("density_kg_per_m3", body.density_kg_per_m3, kPositive);
-  if (body.mass_kg && body.density_kg_per_m3)
+  if (body.mass.mass_kg && body.density_kg_per_m3)
     visitor.fail("mass_kg", "two masses in " + visitor.section(), "mass_kg and density_kg_per_m3",
+                 "one of them");
+  visitor.optional("inertial", body.mass.inertial,
+                   [&](InertialDescription& inertial) { visitor.table("inertial", inertial); });
+  if (body.mass.inertial && (body.mass.mass_kg || body.density_kg_per_m3))
+    visitor.fail("inertial", "two masses in " + visitor.section(), "inertial beside a mass or density",
                  "one of them");
 
   visitor.tables("field_point", body.field_points.listed);

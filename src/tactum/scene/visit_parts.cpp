@@ -36,6 +36,10 @@ void visit_screw(ItemVisitor& visitor, ScrewShape& screw) {
 void visit_items(ItemVisitor& visitor, MeshPart& part) {
   visitor.text("mesh", part.mesh, Need::kRequired);
   visitor.number("scale", part.scale, kPositive);
+  visitor.vector("scale_xyz", part.scale_xyz);
+  visitor.exclude("scale", "scale_xyz", "two scales");
+  if (part.scale_xyz && part.scale_xyz->cwiseAbs().minCoeff() == 0.0)
+    visitor.fail("scale_xyz", "a scale of zero in " + visitor.section(), "0", "any other numbers");
   visitor.optional("pieces", part.pieces, [&](PieceSource& pieces) {
     visitor.choice("pieces", pieces, {"auto", "given", "solid", "surface"});
   });
@@ -137,6 +141,15 @@ void visit_items(ItemVisitor& visitor, PrismPart& part) {
   visitor.integer("sides", part.sides, 3, 1024, Need::kRequired);
   visitor.number("radius_m", part.radius_m, kPositive, Need::kRequired);
   visitor.number("height_m", part.height_m, kPositive, Need::kRequired);
+}
+
+void visit_items(ItemVisitor& visitor, CapsulePart& part) {
+  visitor.number("radius_m", part.radius_m, kPositive, Need::kRequired);
+  visitor.number("height_m", part.height_m, kPositive, Need::kRequired);
+  visitor.integer("sides", part.sides, 8, 256);
+  if (part.sides % 4 != 0)
+    visitor.fail("sides", "\"sides\" of a capsule in " + visitor.section(), fmt::format("{}", part.sides),
+                 "a multiple of 4");
 }
 
 namespace {
