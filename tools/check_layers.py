@@ -32,6 +32,7 @@ STANDS_ON = {
     "telemetry": ["haptics"],
     "session": ["scene", "telemetry", "drivers"],
     "recording": ["session"],
+    "embedding": ["session"],
 }
 MOST_HEADERS = 25
 INCLUDE = re.compile(r'^\s*#\s*include\s*["<]([^">]+)[">]', re.MULTILINE)
