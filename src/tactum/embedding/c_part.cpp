@@ -7,7 +7,7 @@
 using namespace tactum;  // the C interface stands outside the namespace
 using namespace tactum::c_calls;
 
-struct tactum_part {
+struct tactum_part {  // NOLINT(readability-identifier-naming): the name of C
   std::shared_ptr<const QueriedPart> part;
 };
 
@@ -65,7 +65,7 @@ tactum_status read_question(const char* call, const tactum_part* a, const tactum
 tactum_status tactum_load_part(const char* path, const tactum_part_options* options, tactum_part** part) {
   return guarded([&] {
     if (path == nullptr || part == nullptr) return bad_call("tactum_load_part", "a pointer is null");
-    tactum_part_options taken;
+    tactum_part_options taken{};
     if (const tactum_status status = take("tactum_load_part", options, taken); status != TACTUM_OK)
       return status;
     return hand_over(QueriedPart::load(path, prepare_options(taken)), part);
@@ -78,7 +78,7 @@ tactum_status tactum_make_part(const double* vertices, size_t vertex_count, cons
   return guarded([&] {
     if (vertices == nullptr || triangles == nullptr || part == nullptr)
       return bad_call("tactum_make_part", "a pointer is null");
-    tactum_part_options taken;
+    tactum_part_options taken{};
     if (const tactum_status status = take("tactum_make_part", options, taken); status != TACTUM_OK)
       return status;
     TriangleMesh mesh;

@@ -8,7 +8,7 @@
 using namespace tactum;  // the C interface stands outside the namespace
 using namespace tactum::c_calls;
 
-struct tactum_simulation {
+struct tactum_simulation {  // NOLINT(readability-identifier-naming): the name of C
   std::unique_ptr<SteppedScene> scene;
   bool hand_is_open = false;
 };
@@ -17,7 +17,7 @@ namespace {
 
 tactum_status read_options(const char* call, const tactum_scene_options* given,
                            SteppedSceneOptions& options) {
-  tactum_scene_options taken;
+  tactum_scene_options taken{};
   if (const tactum_status status = take(call, given, taken); status != TACTUM_OK) return status;
   options.device = text_of(taken.device);
   options.grip = text_of(taken.grip);
@@ -141,7 +141,7 @@ tactum_status tactum_step_pose(tactum_simulation* scene, const tactum_pose* X_DH
 
 tactum_status tactum_step_sample(tactum_simulation* scene, const tactum_sample* sample, tactum_frame* frame) {
   if (scene == nullptr || sample == nullptr) return bad_call("tactum_step_sample", "a pointer is null");
-  tactum_sample taken;
+  tactum_sample taken{};
   if (const tactum_status status = take("tactum_step_sample", sample, taken); status != TACTUM_OK)
     return status;
   DeviceSample read;

@@ -18,7 +18,7 @@ inline void put_rows(const Mat3& M, double* out) noexcept {
 }
 
 inline tactum_pose c_pose(const Pose& X) noexcept {
-  tactum_pose out;
+  tactum_pose out{};
   put_rows(X.R, out.R);
   put(X.p, out.p);
   return out;
@@ -32,7 +32,7 @@ inline Pose pose_of(const tactum_pose& X) noexcept {
 }
 
 inline tactum_wrench c_wrench(const Wrench& F) noexcept {
-  tactum_wrench out;
+  tactum_wrench out{};
   put(F.f, out.f);
   put(F.t, out.t);
   return out;
@@ -40,7 +40,7 @@ inline tactum_wrench c_wrench(const Wrench& F) noexcept {
 inline Wrench wrench_of(const tactum_wrench& F) noexcept { return {vector_of(F.f), vector_of(F.t)}; }
 
 inline tactum_twist c_twist(const Twist& V) noexcept {
-  tactum_twist out;
+  tactum_twist out{};
   put(V.v, out.v);
   put(V.w, out.w);
   return out;
