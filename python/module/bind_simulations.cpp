@@ -9,7 +9,7 @@ namespace {
 
 using namespace pybind11::literals;
 
-ContactRecord record_of(const StepContact& contact) {
+ContactRecord contact_record(const StepContact& contact) {
   ContactRecord out{};
   out.body_a = contact.body_a;
   out.body_b = contact.body_b;
@@ -36,7 +36,7 @@ py::array contacts_of(SteppedScene& scene) {
   const std::vector<StepContact>& contacts = scene.contacts();
   py::array_t<ContactRecord> out(static_cast<py::ssize_t>(contacts.size()));
   ContactRecord* record = out.mutable_data();
-  for (const StepContact& contact : contacts) *record++ = record_of(contact);
+  for (const StepContact& contact : contacts) *record++ = contact_record(contact);
   return out;
 }
 

@@ -19,9 +19,4 @@ struct ContactRecord {
   double residual_m;
 };
 
-/// What a device measures.
-struct SampleOfHand {
-  DeviceSample sample;
-};
-
 }  // namespace tactum::python
