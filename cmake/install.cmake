@@ -15,6 +15,11 @@ if(TACTUM_INSTALL)
     INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/src/tactum DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT library
     FILES_MATCHING PATTERN "*.h" PATTERN "toml_reader.h" EXCLUDE PATTERN "read_description.h" EXCLUDE)  # these show toml++
+  if(TARGET tactum_c)
+    install(TARGETS tactum_c LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT c)
+    install(FILES ${PROJECT_SOURCE_DIR}/src/tactum/embedding/tactum_c.h
+      DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tactum/embedding COMPONENT c)
+  endif()
   install(EXPORT tactumTargets NAMESPACE tactum:: DESTINATION ${package} COMPONENT library)
   configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/tactumConfig.cmake.in
     ${PROJECT_BINARY_DIR}/generated/tactumConfig.cmake INSTALL_DESTINATION ${package})

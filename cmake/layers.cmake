@@ -2,8 +2,11 @@
 # PRIVATELY PRIVATE_DEPENDENCIES...). HOT: the frame runs there; -O3 inlines the small vector functions, which makes
 # the contact core a third faster; packing scalars of three-vectors into pairs costs a tenth of that again. Nobody reads
 # errno or the flags of floating-point exceptions, so choices may be computed instead of jumped to: a value never changes.
+# Position independent with hidden names, so that a shared library or a Python module can be made of the layers; calls
+# inside them stay as direct as in a program.
 # What the headers need of a program that includes them goes with the target: C++20, and no contraction of products and
 # sums, which would give their inline functions other bits there. Warnings stay here.
+option(TACTUM_POSITION_INDEPENDENT "Compile the layers so that shared libraries can hold them" ON)
 function(tactum_layer name)
   cmake_parse_arguments(LAYER "HOT" "" "USES;PRIVATELY" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/tactum/${name}/*.cpp)
@@ -13,6 +16,10 @@ function(tactum_layer name)
     target_compile_options(tactum_${name} PUBLIC -ffp-contract=off)
     target_link_libraries(tactum_${name} PUBLIC ${LAYER_USES}
       PRIVATE ${LAYER_PRIVATELY} $<BUILD_INTERFACE:tactum_warnings>)
+    if(TACTUM_POSITION_INDEPENDENT)
+      set_target_properties(tactum_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden
+        VISIBILITY_INLINES_HIDDEN ON)
+    endif()
     if(LAYER_HOT)
       target_compile_options(tactum_${name} PRIVATE "$<$<CONFIG:Release>:-O3;-fno-tree-slp-vectorize;-fno-math-errno;-fno-trapping-math>")
       # Joined, g++ -O3 takes minutes and gigabytes for the feature walks: it puts them into each other.

@@ -33,6 +33,7 @@ STANDS_ON = {
     "telemetry": ["haptics"],
     "session": ["scene", "telemetry", "drivers"],
     "recording": ["session"],
+    "embedding": ["session"],
 }
 MOST_HEADERS = 25
 INCLUDE = re.compile(r'^\s*#\s*include\s*["<]([^">]+)[">]', re.MULTILINE)
