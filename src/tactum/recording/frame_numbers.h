@@ -11,6 +11,7 @@
 
 #include "tactum/haptics/frame_state.h"
 #include "tactum/haptics/report_fields.h"
+#include "tactum/recording/frame_copy.h"
 
 namespace tactum::inline v0_1 {
 
@@ -26,7 +27,9 @@ const std::vector<ReportNumber>& report_numbers();
 void put_report(const FrameReport& report, double* out) noexcept;
 
 /// The hash of the state that a frame leaves: its report, the bodies, the contacts with their impulses, and
-/// what hand, smoothing, energy balance and safety carry to the next frame.
+/// what hand, smoothing, energy balance and safety of every hand carry to the next frame.
 std::uint64_t state_hash(const FrameReport& report, const FrameState& state) noexcept;
+/// The same of a copy.
+std::uint64_t state_hash(const FrameCopy& frame) noexcept;
 
 }  // namespace tactum::inline v0_1

@@ -177,12 +177,12 @@ bool read_command(std::string_view message, RecordedCommand& recorded) {
   return in.good() && in.done();
 }
 
-std::string contacts_message(const FrameSlot& slot) {
+std::string contacts_message(const RecordedContacts& recorded) {
   std::string message;
   ByteWriter out(message);
-  put_all(out, slot.input.tick.index, static_cast<std::int32_t>(slot.contacts_left_out),
-          static_cast<std::uint32_t>(slot.contacts.size()));
-  for (const ShownContact& contact : slot.contacts) {
+  put_all(out, recorded.index, static_cast<std::int32_t>(recorded.left_out),
+          static_cast<std::uint32_t>(recorded.contacts.size()));
+  for (const ShownContact& contact : recorded.contacts) {
     put_all(out, contact.body_a, contact.body_b);
     put_vector(out, contact.p_W);
     put_vector(out, contact.n_W);

@@ -10,6 +10,8 @@
 
 #include "tactum/devices/device.h"
 #include "tactum/loop/loop.h"
+#include "tactum/recording/frame_copy.h"
+#include "tactum/recording/recorded_contacts.h"
 #include "tactum/session/command.h"
 #include "tactum/telemetry/frame_feed.h"
 #include "tactum/telemetry/trace.h"
@@ -43,11 +45,9 @@ struct RecordedSnapshot {
 
 /// A frame on its way to the writer; its room is made once.
 struct FrameSlot {
-  RecordedInput input;
-  std::vector<double> report;  ///< put_report()
-  std::vector<double> row;     ///< FrameTrace::write()
-  std::vector<ShownContact> contacts;
-  int contacts_left_out = 0;
+  RecordedInput input;  ///< its hash is the writer's to fill
+  FrameCopy frame;
+  std::size_t rows_end = 0;   ///< place behind the frame's rows in the ring of rows, counted from the start
   bool has_frame = true;      ///< false: only the snapshot behind it counts
   bool has_snapshot = false;  ///< one was taken after the frame (snapshot_room.h)
 };
@@ -73,7 +73,7 @@ std::string snapshot_schema();
 /// The messages. Those of report and frame are the numbers alone.
 std::string input_message(const RecordedInput& input);
 std::string command_message(const RecordedCommand& command);
-std::string contacts_message(const FrameSlot& slot);
+std::string contacts_message(const RecordedContacts& contacts);
 std::string numbers_message(const std::vector<double>& numbers);
 std::string snapshot_message(const RecordedSnapshot& snapshot);
 

@@ -173,9 +173,9 @@ void ShownRun::show_wrench(std::uint16_t channel, const double* wrench, std::uin
   writer_.add_message(channel, time_ns, message);
 }
 
-void ShownRun::show(const FrameSlot& slot, std::uint64_t time_ns) {
-  if (slot.input.tick.index % frames_a_message_ != 0) return;
-  const double* row = slot.row.data();
+void ShownRun::show(std::uint64_t index, const std::vector<double>& numbers, std::uint64_t time_ns) {
+  if (index % frames_a_message_ != 0) return;
+  const double* row = numbers.data();
   show_transform("hand", row + hand_, time_ns);
   show_transform("proxy", row + proxy_, time_ns);
   for (std::size_t i = 0; i < bodies_.size(); ++i)

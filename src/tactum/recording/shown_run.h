@@ -16,13 +16,13 @@ class ShownRun {
   static constexpr double kRate_Hz = 60.0;              ///< messages a second, at most
   static constexpr std::size_t kMostTriangles = 20000;  ///< of a scene; beyond it boxes are drawn
 
-  /// Adds the channels. `columns` are those of FrameSlot::row, with the bodies behind.
+  /// Adds the channels. `columns` are those of the rows, with the bodies behind.
   ShownRun(McapWriter& writer, const World& world, double dt_s, const std::vector<TraceColumn>& columns);
 
   /// The bodies' shapes, once.
   void show_scene(const World& world);
   /// Every so many frames, what moves.
-  void show(const FrameSlot& slot, std::uint64_t time_ns);
+  void show(std::uint64_t index, const std::vector<double>& row, std::uint64_t time_ns);
 
  private:
   void show_transform(const char* name, const double* pose, std::uint64_t time_ns);
