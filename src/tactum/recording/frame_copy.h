@@ -49,9 +49,9 @@ struct FrameCopy {
   static std::size_t bytes(std::size_t bodies, std::size_t hand_count) noexcept;
 };
 
-/// Copies a frame, but for its rows. The loop's thread may call it: it allocates nothing. `clock` may be null.
-/// `proxies` are those of the frame before, by hand; they become those of this one, which goes for every
-/// frame, copied or not.
+/// Copies a frame, but for its rows. The loop's thread may call it: it allocates nothing. `clock` may be
+/// null. `proxies` are those of the frame before, by hand; they become those of this one. Those of a frame
+/// that is not copied are remembered all the same.
 void copy_frame(const FrameSource& frame, const StageClock* clock, std::span<ProxyBefore> proxies,
                 FrameCopy& to) noexcept;
 void remember_proxies(const FrameSource& frame, std::span<ProxyBefore> proxies) noexcept;

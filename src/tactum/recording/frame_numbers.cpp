@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "tactum/haptics/frame_hash.h"
+#include "tactum/telemetry/hand_fields.h"
 
 namespace tactum::inline v0_1 {
 namespace {
@@ -81,8 +82,8 @@ struct HashedValues {
   }
 };
 
-/// What is hashed of a frame, wherever it lies: rows and hands have the same members in a frame's state and in
-/// its copy.
+/// What is hashed of a frame, wherever it lies: rows and hands have the same members in a frame's state and
+/// in its copy.
 template <class Rows, class Hand>
 struct HashedFrame {
   const FrameReport& report;
@@ -118,22 +119,39 @@ void add_frame(FrameHash& hash, const HashedFrame<Rows, Hand>& frame) noexcept {
   add_hand(out, frame.first);
 }
 
+template <class Field>
+void add_names(std::vector<ReportNumber>& numbers, Field) {
+  static constexpr FieldInfo info = Field::kInfo;
+  std::string name = info.name;
+  std::replace(name.begin(), name.end(), '.', '_');
+  NumberNames{numbers, &info, name}.visit(Field::of(FrameReport{}));
+}
+
 }  // namespace
 
 const std::vector<ReportNumber>& report_numbers() {
   static const std::vector<ReportNumber> all = [] {
     std::vector<ReportNumber> numbers;
-    const FrameReport report;
-    for_each_report_field([&](auto field) {
-      using Field = decltype(field);
-      static constexpr FieldInfo info = Field::kInfo;
-      std::string name = info.name;
-      std::replace(name.begin(), name.end(), '.', '_');
-      NumberNames{numbers, &info, name}.visit(Field::of(report));
-    });
+    for_each_report_field([&](auto field) { add_names(numbers, field); });
     return numbers;
   }();
   return all;
+}
+
+const std::vector<ReportNumber>& hand_numbers() {
+  static const std::vector<ReportNumber> all = [] {
+    std::vector<ReportNumber> numbers;
+    for_each_hand_field([&](auto field) { add_names(numbers, field); });
+    return numbers;
+  }();
+  return all;
+}
+
+void put_hand_report(const HandReport& report, double* out) noexcept {
+  FrameReport as_first;
+  static_cast<HandReport&>(as_first) = report;
+  NumberValues values{out};
+  for_each_hand_field([&](auto field) { values.visit(decltype(field)::of(as_first)); });
 }
 
 void put_report(const FrameReport& report, double* out) noexcept {

@@ -26,6 +26,11 @@ const std::vector<ReportNumber>& report_numbers();
 /// Writes report_numbers().size() numbers.
 void put_report(const FrameReport& report, double* out) noexcept;
 
+/// Of every number that each hand has of its own, in order.
+const std::vector<ReportNumber>& hand_numbers();
+/// Writes hand_numbers().size() numbers.
+void put_hand_report(const HandReport& report, double* out) noexcept;
+
 /// The hash of the state that a frame leaves: its report, the bodies, the contacts with their impulses, and
 /// what hand, smoothing, energy balance and safety of every hand carry to the next frame.
 std::uint64_t state_hash(const FrameReport& report, const FrameState& state) noexcept;

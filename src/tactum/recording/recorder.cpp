@@ -68,7 +68,8 @@ std::vector<FrameSlot> made_slots(const Session& session) {
   const std::size_t fit = Recorder::kFrameBytes / FrameCopy::bytes(bodies, hands);
   std::vector<FrameSlot> slots;
   slots.reserve(std::clamp(fit, std::size_t{16}, Recorder::kSlots));
-  while (slots.size() < slots.capacity()) slots.push_back({{}, FrameCopy(bodies, hands)});
+  while (slots.size() < slots.capacity())
+    slots.push_back({{}, FrameCopy(bodies, hands), std::vector<HandSample>(hands - 1)});
   return slots;
 }
 
@@ -80,7 +81,8 @@ Recorder::Recorder(const RecorderOptions& options, Session& session, RecordSwitc
       through_(through),
       midway_(options.midway.has_value()),
       writer_(std::move(writer)),
-      snapshots_(session.state(), session.scene().settings.dt_s, options.snapshot_every_s, midway_),
+      snapshots_(session.state(), options.midway ? options.midway->frame : session.scene().settings,
+                 options.snapshot_every_s, midway_),
       trace_(session.scene().world, session.scene().settings.dt_s, true, 0, session.hands()),
       slots_(made_slots(session)),
       free_(slots_.size()),
@@ -91,6 +93,7 @@ Recorder::Recorder(const RecorderOptions& options, Session& session, RecordSwitc
       row_(trace_.width()),
       commands_(kCommandsInRing) {
   shown_contacts_.contacts.reserve(kRecordedContacts);
+  other_hand_.report.resize(hand_numbers().size());
   for (std::uint32_t slot = 0; slot < slots_.size(); ++slot) free_.push(slot);
 }
 
@@ -100,9 +103,6 @@ Result<std::unique_ptr<Recorder>> Recorder::open(const RecorderOptions& options,
   if (scene.source.text.empty())
     return Error{"only a scene that was read from a text can be recorded", "one made in code",
                  "a scene file, a built-in scene or a mesh", scene.name};
-  if (session.hands() > 1)
-    return Error{"a recording holds one hand only", std::to_string(session.hands()) + " tools in the scene",
-                 "a scene with one tool", scene.name};
   Result<std::unique_ptr<McapWriter>> writer =
       McapWriter::open(options.path, "", "tactum " + options.version);
   if (!writer) return writer.error();
@@ -142,12 +142,14 @@ void Recorder::add_channels() {
   const std::uint16_t run = writer_->add_schema({"tactum.Run", "jsonschema", R"({"type":"object"})"});
   run_ = writer_->add_channel({run, std::string(kRun), "json", {}});
   input_ = add("tactum/Input", input_schema(), kInput);
+  if (session_.hands() > 1) hand_ = add("tactum/Hand", hand_schema(), kHand);
   command_ = add("tactum/Command", command_schema(), kCommand);
   report_ = add("tactum/Report", report_schema(), kReport);
   frame_ = add("tactum/Frame", frame_schema(trace_.columns()), kFrame);
   contacts_ = add("tactum/Contacts", contacts_schema(), kContacts);
   snapshot_ = add("tactum/Snapshot", snapshot_schema(), kSnapshot);
-  shown_.emplace(*writer_, session_.scene().world, session_.scene().settings.dt_s, trace_.columns());
+  shown_.emplace(*writer_, session_.scene().world, session_.scene().settings.dt_s, trace_.columns(),
+                 session_.hands());
 }
 
 void Recorder::obeyed(std::uint64_t index, const SessionCommand& command) noexcept {
@@ -169,15 +171,15 @@ std::optional<std::uint32_t> Recorder::room_for(std::size_t rows) noexcept {
 
 void Recorder::copy_rows(const FrameState& state, FrameSlot& slot) noexcept {
   const std::span<const ContactRow> rows = state.response.rows();
-  const std::span<const FrictionUse> uses = state.response.friction_uses();
-  CopiedRow* next = rows_.data() + rows_taken_ % rows_.size();
-  slot.frame.rows = {next, rows.size()};
-  for (const ContactRow& row : rows) *next++ = copied_row(row, uses);
+  CopiedRow* const to = rows_.data() + rows_taken_ % rows_.size();
+  slot.frame.rows = {to, rows.size()};
+  tactum::copy_rows(rows, state.response.friction_uses(), to);
   rows_taken_ += rows.size();
   slot.rows_end = rows_taken_;
 }
 
-void Recorder::frame_over(const DeviceSample& sample, const FrameTick& tick, const FrameSource& frame,
+void Recorder::frame_over(const DeviceSample& sample, const FrameTick& tick,
+                          std::span<const HandSample> others, const FrameSource& frame,
                           const StageClock* clock) noexcept {
   if (failed_.load(std::memory_order_relaxed)) return;
   const std::optional<std::uint32_t> place = room_for(frame.state.response.rows().size());
@@ -193,6 +195,7 @@ void Recorder::frame_over(const DeviceSample& sample, const FrameTick& tick, con
   slot.input.sample = sample;
   slot.input.tick = tick;
   slot.input.dropped = dropped();
+  std::copy(others.begin(), others.end(), slot.other_samples.begin());
   copy_frame(frame, clock, proxies_, slot.frame);
   copy_rows(frame.state, slot);
   ++taken_;
@@ -260,12 +263,24 @@ void Recorder::write_frame(FrameSlot& slot, std::uint64_t time_ns) {
                                            kRecordedContacts, shown_contacts_.contacts);
   write_commands(slot.input.tick.index);
   writer_->add_message(input_, time_ns, input_message(slot.input));
+  write_other_hands(slot, time_ns);
   writer_->add_message(report_, time_ns, numbers_message(report_numbers_));
   writer_->add_message(frame_, time_ns, numbers_message(row_));
   if (!shown_contacts_.contacts.empty())
     writer_->add_message(contacts_, time_ns, contacts_message(shown_contacts_));
   shown_->show(slot.input.tick.index, row_, time_ns);
   written_.fetch_add(1, std::memory_order_relaxed);
+}
+
+/// Before the report, with which the frame counts as whole.
+void Recorder::write_other_hands(const FrameSlot& slot, std::uint64_t time_ns) {
+  for (std::size_t i = 0; i < slot.other_samples.size(); ++i) {
+    other_hand_.index = slot.input.tick.index;
+    other_hand_.hand = static_cast<std::uint8_t>(i + 1);
+    other_hand_.sample = slot.other_samples[i];
+    put_hand_report(slot.frame.other_reports[i], other_hand_.report.data());
+    writer_->add_message(hand_, time_ns, recording::hand_message(other_hand_));
+  }
 }
 
 /// The commands carried out before the frame. A later one waits for its own.

@@ -4,9 +4,9 @@
 ///   loop thread    obeyed, frame_over --- numbers of free slots, of full ones ---> writer thread ---> file
 ///
 /// The loop never waits: where no slot is free, since the disk is too slow, the frame is not recorded and is
-/// counted. The loop only copies a frame (frame_copy.h); hash and numbers are made in the writer's thread. The
-/// memory is set aside at the start (about 50 MB, 100 MB with many bodies). When the file cannot be written any more the
-/// run goes on, nothing more is recorded, and trouble() says so once.
+/// counted. The loop only copies a frame (frame_copy.h); hash and numbers are made in the writer's thread.
+/// The memory is set aside at the start (about 50 MB, 100 MB with many bodies). When the file cannot be
+/// written any more the run goes on, nothing more is recorded, and trouble() says so once.
 
 #include <atomic>
 #include <memory>
@@ -47,8 +47,8 @@ class Recorder final : public RunListener {
   Recorder& operator=(const Recorder&) = delete;
 
   void obeyed(std::uint64_t index, const SessionCommand& command) noexcept override;
-  void frame_over(const DeviceSample& sample, const FrameTick& tick, const FrameSource& frame,
-                  const StageClock* clock) noexcept override;
+  void frame_over(const DeviceSample& sample, const FrameTick& tick, std::span<const HandSample> others,
+                  const FrameSource& frame, const StageClock* clock) noexcept override;
 
   /// For a run on the virtual clock, between two frames: nothing is lost, however slow the disk.
   void wait_for_room() const;
@@ -73,6 +73,7 @@ class Recorder final : public RunListener {
   void copy_rows(const FrameState& state, FrameSlot& slot) noexcept;
   void write(FrameSlot& slot);
   void write_frame(FrameSlot& slot, std::uint64_t time_ns);
+  void write_other_hands(const FrameSlot& slot, std::uint64_t time_ns);
   void write_commands(std::uint64_t index);
 
   Session& session_;
@@ -90,6 +91,7 @@ class Recorder final : public RunListener {
   std::vector<ProxyBefore> proxies_;          // of the loop's thread, by hand
   std::vector<double> report_numbers_, row_;  // of the writer's thread, as the next
   RecordedContacts shown_contacts_;
+  RecordedHand other_hand_;
   SpscRing<RecordedCommand> commands_;
   RecordedCommand waiting_;  // of the writer's thread: taken from the ring, of a later frame
   bool command_waits_ = false;
@@ -98,7 +100,8 @@ class Recorder final : public RunListener {
   std::atomic<bool> failed_{false}, ends_{false};
   std::mutex mutex_;  // of trouble_, between the writer's thread and the one that asks
   std::optional<Error> trouble_;
-  std::uint16_t run_ = 0, input_ = 0, command_ = 0, report_ = 0, frame_ = 0, contacts_ = 0, snapshot_ = 0;
+  std::uint16_t run_ = 0, input_ = 0, hand_ = 0, command_ = 0, report_ = 0, frame_ = 0, contacts_ = 0,
+                snapshot_ = 0;
   std::thread thread_;
 };
 

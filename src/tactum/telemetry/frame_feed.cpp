@@ -28,6 +28,21 @@ float* put(const Pose& X, float* out) noexcept {
   return out;
 }
 
+void copy_row(const ContactRow& row, std::span<const FrictionUse> uses, CopiedRow& to) noexcept {
+  to.body_a = row.body_a;
+  to.body_b = row.body_b;
+  to.p_W = row.p_W;
+  to.n_BA_W = row.n_BA_W;
+  to.distance = row.distance;
+  to.impulse = row.impulse;
+  to.grip = Grip::kNone;
+  to.cone_used = 0.0;
+  if (row.friction_patch < 0) return;
+  const FrictionUse& use = uses[Index(row.friction_patch)];
+  to.grip = use.sticks ? Grip::kSticks : Grip::kSlips;
+  to.cone_used = use.cone_used;
+}
+
 ShownContact shown_contact(const CopiedRow& row, double acted) noexcept {
   ShownContact contact{};
   contact.body_a = row.body_a;
@@ -42,8 +57,9 @@ ShownContact shown_contact(const CopiedRow& row, double acted) noexcept {
 }
 
 ShownContact shown_contact(const FrameSource& frame, const ContactRow& row) noexcept {
-  ShownContact contact = shown_contact(copied_row(row, frame.state.response.friction_uses()),
-                                       acted_s(frame.report, frame.settings.dt_s));
+  CopiedRow copy;
+  copy_row(row, frame.state.response.friction_uses(), copy);
+  ShownContact contact = shown_contact(copy, acted_s(frame.report, frame.settings.dt_s));
   contact.tolerance_m = row.margin;
   contact.patch = row.patch;
   contact.rests =
@@ -141,14 +157,8 @@ void FrameFeed::draw(const FrameSource& frame, FramePicture& picture) noexcept {
   picture.contacts_left_out = show_contacts(frame, kContacts, picture.contacts);
 }
 
-CopiedRow copied_row(const ContactRow& row, std::span<const FrictionUse> uses) noexcept {
-  CopiedRow copy{row.body_a, row.body_b, Grip::kNone, row.p_W, row.n_BA_W, row.distance, row.impulse};
-  if (row.friction_patch >= 0) {
-    const FrictionUse& use = uses[Index(row.friction_patch)];
-    copy.grip = use.sticks ? Grip::kSticks : Grip::kSlips;
-    copy.cone_used = use.cone_used;
-  }
-  return copy;
+void copy_rows(std::span<const ContactRow> rows, std::span<const FrictionUse> uses, CopiedRow* to) noexcept {
+  for (const ContactRow& row : rows) copy_row(row, uses, *to++);
 }
 
 double acted_s(const FrameReport& report, double dt_s) noexcept { return dt_s - report.time_of_impact_s; }

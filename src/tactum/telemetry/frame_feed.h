@@ -67,15 +67,15 @@ struct CopiedRow {
   double cone_used = 0.0;      ///< as in ShownContact [-]
 };
 
-/// `uses` are Response::friction_uses().
-CopiedRow copied_row(const ContactRow& row, std::span<const FrictionUse> uses) noexcept;
+/// Fills `to`, which has as many entries as there are rows. `uses` are Response::friction_uses().
+void copy_rows(std::span<const ContactRow> rows, std::span<const FrictionUse> uses, CopiedRow* to) noexcept;
 
 /// The contacts of a frame, at most `most`: those that push most, on the grasped part first. `shown` has room
 /// for them already. Returns how many are left out. No allocation.
 int show_contacts(const FrameSource& frame, std::size_t most, std::vector<ShownContact>& shown) noexcept;
 
-/// The same of copied rows, without what they do not have. `grasped` is the body in the hand, -1 for none, and
-/// `acted_s` how long the impulses acted [s].
+/// The same of copied rows, without what they do not have. `grasped` is the body in the hand, -1 for none,
+/// and `acted_s` how long the impulses acted [s].
 int show_contacts(std::span<const CopiedRow> rows, int grasped, double acted_s, std::size_t most,
                   std::vector<ShownContact>& shown) noexcept;
 

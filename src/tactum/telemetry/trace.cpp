@@ -11,6 +11,7 @@
 #include "tactum/loop/safety.h"
 #include "tactum/math/screw.h"
 #include "tactum/response/workspace_scale.h"
+#include "tactum/telemetry/hand_fields.h"
 
 namespace tactum::inline v0_1 {
 namespace {
@@ -144,25 +145,12 @@ void visit_field(Visitor& visit, Field) {
                  [](const Row& row) { return static_cast<double>(Field::of(row.report)); });
 }
 
-/// Whether a field is of what each hand has of its own.
-template <class Owner, class Value>
-constexpr bool is_of_hand(Value Owner::*) {
-  return std::is_same_v<Owner, HandReport>;
-}
-template <auto First, auto... Path>
-constexpr bool is_of_hand(const ReportPath<First, Path...>&) {
-  return is_of_hand(First);
-}
-
 /// The quantities of the second hand, and of every one after it.
 template <class Visitor>
 void visit_other_hand(Visitor& visit) {
   visit_hand(visit);
   visit_ramping(visit);
-  for_each_report_field([&](auto field) {
-    using Path = decltype(report_detail::kFields)::template At<decltype(field)::kPlace>;
-    if constexpr (is_of_hand(Path{})) visit_field(visit, field);
-  });
+  for_each_hand_field([&](auto field) { visit_field(visit, field); });
 }
 
 /// The quantities of every trace, in order.
