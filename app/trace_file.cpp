@@ -48,7 +48,8 @@ std::string head_of(const Session& session, std::uint64_t frames, const FrameTra
 TraceFile::TraceFile(const std::string& path, Session& session, std::uint64_t frames, bool bodies)
     : path_(path),
       session_(session),
-      trace_(session.scene().world, session.scene().settings.dt_s, bodies),
+      trace_(session.scene().world, session.scene().settings.dt_s, bodies, FrameTrace::kFrames,
+             session.hands()),
       row_(trace_.width()),
       file_(std::fopen(path.c_str(), "w")) {
   if (!file_) fail({"cannot write the trace", std::strerror(errno), "a file that can be written", path});

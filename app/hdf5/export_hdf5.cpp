@@ -29,29 +29,22 @@ H5Column<T> described(H5File& file, const std::string& name, const std::string& 
   return column;
 }
 
-/// What came in, of every frame.
-class InputColumns {
+/// What came in from a device, of every frame, as columns of a group.
+class SampleColumns {
  public:
-  explicit InputColumns(H5File& file)
-      : index_(described<std::uint64_t>(file, "input/index", "1", "none", "frames since the start")),
-        hash_(described<std::uint64_t>(file, "input/state_hash", "1", "none",
-                                       "hash of the state that the frame left")),
-        now_(described<double>(file, "input/now_s", "s", "none", "the loop's clock at the frame")),
-        measured_(described<double>(file, "input/sample_time_s", "s", "none",
+  SampleColumns(H5File& file, const std::string& group)
+      : measured_(described<double>(file, group + "/sample_time_s", "s", "none",
                                     "when the device's sample was measured, the loop's clock")),
-        p_(described<double>(file, "input/p_DH_m", "m", "D", "the handle", 3)),
-        R_(described<double>(file, "input/R_DH", "1", "D", "its axes as columns of a matrix, row by row", 9)),
-        v_(described<double>(file, "input/v_DH_m_per_s", "m/s", "D", "velocity of the handle", 3)),
-        w_(described<double>(file, "input/w_DH_rad_per_s", "rad/s", "D", "its angular velocity", 3)),
-        buttons_(described<std::uint64_t>(file, "input/buttons", "1", "none", "bit 0 is the primary button")),
-        valid_(described<std::uint8_t>(file, "input/valid", "1", "none", "1 where the read succeeded")),
-        late_(described<std::uint8_t>(file, "input/late", "1", "none", "1 where the frame came too late")) {}
+        p_(described<double>(file, group + "/p_DH_m", "m", "D", "the handle", 3)),
+        R_(described<double>(file, group + "/R_DH", "1", "D", "its axes as columns of a matrix, row by row",
+                             9)),
+        v_(described<double>(file, group + "/v_DH_m_per_s", "m/s", "D", "velocity of the handle", 3)),
+        w_(described<double>(file, group + "/w_DH_rad_per_s", "rad/s", "D", "its angular velocity", 3)),
+        buttons_(
+            described<std::uint64_t>(file, group + "/buttons", "1", "none", "bit 0 is the primary button")),
+        valid_(described<std::uint8_t>(file, group + "/valid", "1", "none", "1 where the read succeeded")) {}
 
-  void add(const RecordedInput& input) {
-    const DeviceSample& sample = input.sample;
-    index_.add(input.tick.index);
-    hash_.add(input.hash);
-    now_.add(input.tick.now_s);
+  void add(const DeviceSample& sample) {
     measured_.add(sample.time_s);
     for (int i = 0; i < 3; ++i) {
       p_.add(sample.X_DH.p[i]);
@@ -61,14 +54,38 @@ class InputColumns {
     }
     buttons_.add(sample.buttons);
     valid_.add(sample.valid ? 1 : 0);
+  }
+
+ private:
+  H5Column<double> measured_, p_, R_, v_, w_;
+  H5Column<std::uint64_t> buttons_;
+  H5Column<std::uint8_t> valid_;
+};
+
+/// The same of the first hand's device, and what the loop adds.
+class InputColumns {
+ public:
+  explicit InputColumns(H5File& file)
+      : index_(described<std::uint64_t>(file, "input/index", "1", "none", "frames since the start")),
+        hash_(described<std::uint64_t>(file, "input/state_hash", "1", "none",
+                                       "hash of the state that the frame left")),
+        now_(described<double>(file, "input/now_s", "s", "none", "the loop's clock at the frame")),
+        late_(described<std::uint8_t>(file, "input/late", "1", "none", "1 where the frame came too late")),
+        sample_(file, "input") {}
+
+  void add(const RecordedInput& input) {
+    index_.add(input.tick.index);
+    hash_.add(input.hash);
+    now_.add(input.tick.now_s);
     late_.add(input.tick.late ? 1 : 0);
+    sample_.add(input.sample);
   }
 
  private:
   H5Column<std::uint64_t> index_, hash_;
-  H5Column<double> now_, measured_, p_, R_, v_, w_;
-  H5Column<std::uint64_t> buttons_;
-  H5Column<std::uint8_t> valid_, late_;
+  H5Column<double> now_;
+  H5Column<std::uint8_t> late_;
+  SampleColumns sample_;
 };
 
 class ContactColumns {
@@ -123,6 +140,12 @@ void describe_run(H5File& file, const RunHead& head) {
   for (const auto& [key, value] : head.settings) file.attribute("settings", key, value);
 }
 
+/// The name of a column of a further hand as that of the first: without "h2_".
+std::string without_hand(const std::string& name) {
+  const std::size_t digits = name.starts_with('h') ? name.find_first_not_of("0123456789", 1) : 0;
+  return digits > 1 && digits < name.size() && name[digits] == '_' ? name.substr(digits + 1) : name;
+}
+
 class Hdf5Writing final : public RecordingVisitor {
  public:
   Hdf5Writing(const std::string& name, H5File& file) : RecordingVisitor(name), file_(file) {}
@@ -132,6 +155,7 @@ class Hdf5Writing final : public RecordingVisitor {
   void finish() {
     columns_.clear();
     inputs_.reset();
+    others_.clear();
     contacts_.reset();
   }
 
@@ -152,11 +176,21 @@ class Hdf5Writing final : public RecordingVisitor {
     }
     file_.attribute("frame", "columns", order);
     inputs_.emplace(file_);
+    for (std::size_t i = 0; i < head().other_devices.size(); ++i) {
+      const std::string group = "hand_" + std::to_string(i + 2);
+      file_.group(group);
+      file_.attribute(group, "device", head().other_devices[i].name);
+      others_.emplace_back(file_, group);
+    }
     contacts_.emplace(file_);
     return {};
   }
   Result<void> input(const RecordedInput& input) override {
     inputs_->add(input);
+    return {};
+  }
+  Result<void> hand(const RecordedHand& hand) override {
+    others_[hand.hand - 1].add(hand.sample);
     return {};
   }
   Result<void> row(const std::vector<double>& row) override {
@@ -174,12 +208,14 @@ class Hdf5Writing final : public RecordingVisitor {
   H5File& file_;
   std::vector<H5Column<double>> columns_;
   std::optional<InputColumns> inputs_;
+  std::vector<SampleColumns> others_;  // of the second hand and all after it
   std::optional<ContactColumns> contacts_;
 };
 
 }  // namespace
 
-std::string unit_of_column(const std::string& name) {
+std::string unit_of_column(const std::string& column) {
+  const std::string name = without_hand(column);
   for (const ReportNumber& number : report_numbers())
     if (number.name == name && number.field->unit[0] != '\0' && number.field->unit[1] == '\0')
       return number.field->unit;
@@ -196,7 +232,8 @@ std::string unit_of_column(const std::string& name) {
   return "1";
 }
 
-std::string frame_of_column(const std::string& name) {
+std::string frame_of_column(const std::string& column) {
+  const std::string name = without_hand(column);
   static constexpr std::array kParts = {
       "_px_m",       "_py_m",       "_pz_m",       "_qw",           "_qx",           "_qy",           "_qz",
       "_vx_m_per_s", "_vy_m_per_s", "_vz_m_per_s", "_wx_rad_per_s", "_wy_rad_per_s", "_wz_rad_per_s", "_fx_N",

@@ -142,6 +142,9 @@ Result<void> read_recorded(const std::string& path, SweepPlan& plan) {
   if (!reading.begun() || reading.read.inputs.empty() || !reading.read.files.contains(kSceneAttachment))
     return end.wrong ? *end.wrong
                      : Error{"the recording has no frames", path, "a run with its scene", plan.file};
+  if (!reading.read.head.other_devices.empty())
+    return Error{"a sweep plays the recording of one hand only",
+                 std::to_string(1 + reading.read.head.other_devices.size()) + " hands", "one", path};
   plan.scene_name = reading.read.head.scene;
   plan.scene_text = reading.read.files[kSceneAttachment];
   plan.source.file = reading.read.head.scene_file;

@@ -224,6 +224,28 @@ TEST(Record, APlaceThatCannotBeWrittenIsToldBeforeTheRun) {
   EXPECT_NE(name.err.find("expected a name that ends in .mcap"), std::string::npos) << name.err;
 }
 
+/// A folder on a disk that is read only: an error before anything moves, told once, with the reason.
+TEST(Record, AReadOnlyFolderIsToldBeforeTheRun) {
+  const ScratchFolder folder;
+  std::filesystem::create_directory(folder / "disk");
+  const std::string disk = folder / "disk";
+  const std::string own = "unshare --user --map-root-user --mount sh -c 'mount -t tmpfs -o ro none " + disk;
+  if (std::system((own + "' 2>/dev/null").c_str()) != 0)
+    GTEST_SKIP() << "no disk of its own can be made here";
+  const std::string quoted = program();
+  const std::string command = own + " && " + quoted.substr(1, quoted.size() - 2) +
+                              " feel block-on-plate --virtual-clock --updates 100 --record " + disk +
+                              "/run.mcap >" + (folder / "out") + " 2>" + (folder / "err") + "; echo $? >" +
+                              (folder / "code") + "'";
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  EXPECT_EQ(content(folder / "code"), "1\n");
+  EXPECT_EQ(occurrences(content(folder / "err"), "run.mcap: cannot write the recording"), 1)
+      << content(folder / "err");
+  EXPECT_NE(content(folder / "err").find("Read-only file system"), std::string::npos)
+      << content(folder / "err");
+  EXPECT_EQ(content(folder / "out").find("frames' hash"), std::string::npos) << "it ran all the same";
+}
+
 TEST(Record, AFileThatIsNoRecordingIsASentence) {
   const ScratchFolder folder;
   testing::write(folder / "a.mcap", "no recording");

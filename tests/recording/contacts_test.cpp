@@ -11,9 +11,9 @@ namespace tactum::contacts_test {
 namespace {
 
 std::string a_message() {
-  FrameSlot slot;
-  slot.input.tick.index = 41;
-  slot.contacts_left_out = 2;
+  RecordedContacts written;
+  written.index = 41;
+  written.left_out = 2;
   for (int i = 0; i < 3; ++i) {
     ShownContact contact;
     contact.body_a = i;
@@ -24,9 +24,9 @@ std::string a_message() {
     contact.force_N = 2.5 * i;
     contact.cone_used = 0.25;
     contact.grip = static_cast<Grip>(i);
-    slot.contacts.push_back(contact);
+    written.contacts.push_back(contact);
   }
-  return recording::contacts_message(slot);
+  return recording::contacts_message(written);
 }
 
 TEST(RecordedContacts, AreThoseThatWereWritten) {

@@ -74,6 +74,29 @@ def check_hdf5(folder):
     return table, contacts
 
 
+def check_two_hands(folder):
+    """A second hand has columns of its own, and a group with what came from its device."""
+    record(folder / "hands.mcap", "peg-two-hands")
+    tactum("replay", folder / "hands.mcap", "--verify")
+    tactum("export", folder / "hands.mcap", "--csv", folder / "hands.csv", "--hdf5", folder / "hands.h5")
+    table = pandas.read_csv(folder / "hands.csv", comment="#", float_precision="round_trip")
+    with h5py.File(folder / "hands.h5") as file:
+        demand(len(file["frame"]) == table.shape[1] and len(table) == FRAMES, "the columns are not those of the table")
+        for name in table.columns:
+            demand(same_bits(file["frame"][name][:], table[name]), f"{name} has other bits than the table")
+        for name, unit, axes in (("h2_sent_fx_N", "N", "W"), ("h2_device_px_m", "m", "D"), ("h2_energy_stored_J", "J", "none"),
+                                 ("h2_hand_wz_rad_per_s", "rad/s", "W"), ("h2_safety", "1", "none")):
+            attributes = file["frame"][name].attrs
+            demand((attributes["unit"], attributes["axes"]) == (unit, axes), f"{name}: {attributes['unit']}, {attributes['axes']}")
+        samples = file["hand_2"]["p_DH_m"][:]
+        demand(file["hand_2"].attrs["device"] == file.attrs["device"], "the second device is not named")
+        demand(all({"unit", "axes", "meaning"} <= set(column.attrs) for column in file["hand_2"].values()), "a column is not described")
+    demand(numpy.allclose(samples[:, 2], table["h2_device_pz_m"], rtol=0, atol=1e-12), "the samples are not those of the table")
+    demand(norms(table, "h2_sent_f", "N").max() > 0.1, "the second hand feels nothing")
+    apart = numpy.sqrt(sum((table[f"hand_p{a}_m"] - table[f"h2_hand_p{a}_m"]).to_numpy() ** 2 for a in "xyz"))
+    demand(apart.min() > 0.005, "the hands are one")
+
+
 def norms(table, quantity, unit, axes="xyz"):
     return numpy.sqrt(sum(table[f"{quantity}{axis}_{unit}"].to_numpy() ** 2 for axis in axes))
 
@@ -170,6 +193,7 @@ def main():
         check_report(folder, table, contacts)
         check_comparison(folder)
         check_cut(folder)
+        check_two_hands(folder)
         check_full_disk(folder)
     print(f"{FRAMES} frames of {table.shape[1]} columns and {len(contacts['frame'])} contacts are the same")
 

@@ -149,6 +149,7 @@ TEST(Trace, ThePageIsMadeFromTheColumns) {
       "(with\n"
       "a workspace scale, torques of the scene are divided by it); `device_*` is in the frame of the "
       "device.\n"
+      "Columns of a second hand have the same names behind `h2_`, those of a third behind `h3_`.\n"
       "`tactum-bench feel --scenes` judges such traces.\n\n"
       "```python\n"
       "import pandas\n"

@@ -91,7 +91,12 @@ void Simulation::step(std::span<const HandSample> samples, std::span<Wrench> wre
   tick.index = next_index_;
   tick.now_s = time_s();
   tick.period_s = settings_.dt_s;
-  ++next_index_;
+  run(samples, tick, wrenches);
+}
+
+void Simulation::run(std::span<const HandSample> samples, const FrameTick& tick,
+                     std::span<Wrench> wrenches) noexcept {
+  next_index_ = tick.index + 1;
   haptic_frame(world_, settings_, samples, tick, state_, report_, wrenches);
 }
 

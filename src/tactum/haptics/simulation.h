@@ -44,6 +44,7 @@ class Simulation final : public HapticFrame {
   void step(std::span<const HandSample> samples, std::span<Wrench> wrenches) noexcept;
   /// The same with the loop's own index and time; the sample's time is then on the loop's clock.
   Wrench run(const DeviceSample& sample, const FrameTick& tick) noexcept override;
+  void run(std::span<const HandSample> samples, const FrameTick& tick, std::span<Wrench> wrenches) noexcept;
 
   const World& world() const noexcept { return world_; }
   /// Between two frames the caller may change what setting_table.h calls live, and the budget.

@@ -23,6 +23,9 @@ std::vector<std::string> notes_on(const RunHead& before, const RunHead& after) {
   compare("compiler", before.compiler, after.compiler);
   compare("scene", before.scene, after.scene);
   compare("device", before.device.name, after.device.name);
+  for (std::size_t i = 0; i < std::min(before.other_devices.size(), after.other_devices.size()); ++i)
+    compare(fmt::format("device of hand {}", i + 2).c_str(), before.other_devices[i].name,
+            after.other_devices[i].name);
   compare("grip", before.grip, after.grip);
   if (before.dt_s != after.dt_s)
     notes.push_back(fmt::format("the step was {} s and is {} s", before.dt_s, after.dt_s));
@@ -101,6 +104,9 @@ Result<Bisection> bisect_recordings(const McapSource& before, const std::string&
       continue;
     }
     bisection.difference = difference_of((*left)->input, (*right)->input);
+    const std::vector<RecordedHand>&ours = (*left)->others, &theirs = (*right)->others;
+    for (std::size_t i = 0; i < std::min(ours.size(), theirs.size()) && !bisection.difference; ++i)
+      bisection.difference = difference_of(ours[i], theirs[i]);
     if (!bisection.difference) bisection.difference = difference_of(at, (*left)->report, (*right)->report);
     if (!bisection.difference && (*left)->input.hash != (*right)->input.hash)
       bisection.difference.emplace().frame = at;

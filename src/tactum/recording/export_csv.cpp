@@ -27,6 +27,8 @@ std::string csv_head(const RunHead& head) {
       "# units: the end of a column's name; a column without one is a count, a flag or a quaternion's part\n",
       in_a_line(head.version), in_a_line(head.scene), in_a_line(head.device.name), 1.0 / head.dt_s,
       in_a_line(head.date));
+  for (std::size_t i = 0; i < head.other_devices.size(); ++i)
+    text += fmt::format("# device of hand {}: {}\n", i + 2, in_a_line(head.other_devices[i].name));
   for (const auto& [key, value] : head.settings)
     text += fmt::format("# setting {} = {}\n", in_a_line(key), setting_text(key, value));
   for (const TraceColumn& column : head.columns)

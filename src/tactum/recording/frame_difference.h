@@ -18,7 +18,7 @@ struct FrameDifference {
   std::string meaning;  ///< of the field
   double before = 0.0;  ///< its values: of the first run, as recorded ...
   double after = 0.0;   ///< ... and of the second, as replayed
-  std::string carried;  ///< where the field is empty: the part of the state, "contacts", if it is known
+  std::string carried;  ///< where the field is empty: the part of the state, as words, if it is known
 };
 
 /// Of two reports as numbers (put_report); none where all bits are the same.
@@ -27,6 +27,9 @@ std::optional<FrameDifference> difference_of(std::uint64_t frame, const std::vec
 
 /// Of what came into a frame, from the device and the loop.
 std::optional<FrameDifference> difference_of(const RecordedInput& before, const RecordedInput& after);
+/// Of what came in from a further hand, and of what the frame reports of it; the field begins with h2_ for
+/// the second hand, and so on.
+std::optional<FrameDifference> difference_of(const RecordedHand& before, const RecordedHand& after);
 
 /// "frame 12 is the first that differs: stage "response", field ...", without a full stop.
 std::string sentence_of(const FrameDifference& difference);

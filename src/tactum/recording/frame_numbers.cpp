@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "tactum/haptics/frame_hash.h"
+#include "tactum/telemetry/hand_fields.h"
 
 namespace tactum::inline v0_1 {
 namespace {
@@ -81,9 +82,49 @@ struct HashedValues {
   }
 };
 
-void add_contacts(HashedValues& out, std::span<const ContactRow> rows) noexcept {
-  for (const ContactRow& row : rows)
+/// What is hashed of a frame, wherever it lies: rows and hands have the same members in a frame's state and
+/// in its copy.
+template <class Rows, class Hand>
+struct HashedFrame {
+  const FrameReport& report;
+  const WorldState& world;
+  Rows rows;
+  double load_work_J, stored_J;
+  const Hand& first;
+};
+
+template <class Hand>
+void add_hand(HashedValues& out, const Hand& own) noexcept {
+  const HandTracking& hand = own.hand;
+  out.all(hand.X_WD, hand.X_WH, hand.V_WH, hand.time_s, hand.known, hand.clutched);
+  const SmoothingState& smoothing = own.smoothing;
+  out.all(smoothing.shown, smoothing.step, smoothing.explained.force_N, smoothing.explained.torque_Nm);
+  const PortState& port = own.port;
+  out.all(port.stored.total_J, port.stored.spring_J, port.stored.force_N, port.stored.torque_Nm, port.tank_J,
+          port.added, port.unfelt_Nm, port.X_DH, port.known, port.history.newest);
+  for (const Wrench& sent : port.history.wrenches) out.visit(sent);
+  const SafetyState& safety = own.safety;
+  out.all(safety.sent, safety.gain, safety.invalid_s, safety.X_DH, safety.measured_s, safety.still_s,
+          safety.measured);
+}
+
+template <class Rows, class Hand>
+void add_frame(FrameHash& hash, const HashedFrame<Rows, Hand>& frame) noexcept {
+  add_to(hash, frame.report);
+  add_to(hash, frame.world);
+  HashedValues out{hash};
+  for (const auto& row : frame.rows)
     out.all(row.body_a, row.body_b, row.p_W, row.n_BA_W, row.distance, row.impulse);
+  out.all(frame.load_work_J, frame.stored_J);
+  add_hand(out, frame.first);
+}
+
+template <class Field>
+void add_names(std::vector<ReportNumber>& numbers, Field) {
+  static constexpr FieldInfo info = Field::kInfo;
+  std::string name = info.name;
+  std::replace(name.begin(), name.end(), '.', '_');
+  NumberNames{numbers, &info, name}.visit(Field::of(FrameReport{}));
 }
 
 }  // namespace
@@ -91,17 +132,26 @@ void add_contacts(HashedValues& out, std::span<const ContactRow> rows) noexcept 
 const std::vector<ReportNumber>& report_numbers() {
   static const std::vector<ReportNumber> all = [] {
     std::vector<ReportNumber> numbers;
-    const FrameReport report;
-    for_each_report_field([&](auto field) {
-      using Field = decltype(field);
-      static constexpr FieldInfo info = Field::kInfo;
-      std::string name = info.name;
-      std::replace(name.begin(), name.end(), '.', '_');
-      NumberNames{numbers, &info, name}.visit(Field::of(report));
-    });
+    for_each_report_field([&](auto field) { add_names(numbers, field); });
     return numbers;
   }();
   return all;
+}
+
+const std::vector<ReportNumber>& hand_numbers() {
+  static const std::vector<ReportNumber> all = [] {
+    std::vector<ReportNumber> numbers;
+    for_each_hand_field([&](auto field) { add_names(numbers, field); });
+    return numbers;
+  }();
+  return all;
+}
+
+void put_hand_report(const HandReport& report, double* out) noexcept {
+  FrameReport as_first;
+  static_cast<HandReport&>(as_first) = report;
+  NumberValues values{out};
+  for_each_hand_field([&](auto field) { values.visit(decltype(field)::of(as_first)); });
 }
 
 void put_report(const FrameReport& report, double* out) noexcept {
@@ -111,22 +161,24 @@ void put_report(const FrameReport& report, double* out) noexcept {
 
 std::uint64_t state_hash(const FrameReport& report, const FrameState& state) noexcept {
   FrameHash hash;
-  add_to(hash, report);
-  add_to(hash, state.world);
+  const HandFrameState& first = state;
+  add_frame(hash, HashedFrame<std::span<const ContactRow>, HandFrameState>{
+                      report, state.world, state.response.rows(), state.load_work_J,
+                      state.response.stored_J(), first});
+  add_to(hash, state.other_reports);
   HashedValues out{hash};
-  add_contacts(out, state.response.rows());
-  out.all(state.load_work_J, state.response.stored_J());
-  const HandStage& hand = state.hand;
-  out.all(hand.X_WD, hand.X_WH, hand.V_WH, hand.time_s, hand.known, hand.clutched);
-  const SmoothingState& smoothing = state.smoothing;
-  out.all(smoothing.shown, smoothing.step, smoothing.explained.force_N, smoothing.explained.torque_Nm);
-  const PortState& port = state.port;
-  out.all(port.stored.total_J, port.stored.spring_J, port.stored.force_N, port.stored.torque_Nm, port.tank_J,
-          port.added, port.unfelt_Nm, port.X_DH, port.known, port.history.newest);
-  for (const Wrench& sent : port.history.wrenches) out.visit(sent);
-  const SafetyState& safety = state.safety;
-  out.all(safety.sent, safety.gain, safety.invalid_s, safety.X_DH, safety.measured_s, safety.still_s,
-          safety.measured);
+  for (const HandFrameState& other : state.other_hands) add_hand(out, other);
+  return hash.value();
+}
+
+std::uint64_t state_hash(const FrameCopy& frame) noexcept {
+  FrameHash hash;
+  add_frame(hash, HashedFrame<std::span<const CopiedRow>, HandCopy>{frame.report, frame.world, frame.rows,
+                                                                    frame.load_work_J, frame.stored_J,
+                                                                    frame.hands.front()});
+  add_to(hash, frame.other_reports);
+  HashedValues out{hash};
+  for (std::size_t h = 1; h < frame.hands.size(); ++h) add_hand(out, frame.hands[h]);
   return hash.value();
 }
 

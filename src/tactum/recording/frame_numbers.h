@@ -11,6 +11,7 @@
 
 #include "tactum/haptics/frame_state.h"
 #include "tactum/haptics/report_fields.h"
+#include "tactum/recording/frame_copy.h"
 
 namespace tactum::inline v0_1 {
 
@@ -25,8 +26,15 @@ const std::vector<ReportNumber>& report_numbers();
 /// Writes report_numbers().size() numbers.
 void put_report(const FrameReport& report, double* out) noexcept;
 
+/// Of every number that each hand has of its own, in order.
+const std::vector<ReportNumber>& hand_numbers();
+/// Writes hand_numbers().size() numbers.
+void put_hand_report(const HandReport& report, double* out) noexcept;
+
 /// The hash of the state that a frame leaves: its report, the bodies, the contacts with their impulses, and
-/// what hand, smoothing, energy balance and safety carry to the next frame.
+/// what hand, smoothing, energy balance and safety of every hand carry to the next frame.
 std::uint64_t state_hash(const FrameReport& report, const FrameState& state) noexcept;
+/// The same of a copy.
+std::uint64_t state_hash(const FrameCopy& frame) noexcept;
 
 }  // namespace tactum::inline v0_1

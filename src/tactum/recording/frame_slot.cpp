@@ -25,18 +25,26 @@ void take_vector(ByteReader& in, Vec3& v) {
   for (int i = 0; i < 3; ++i) v[i] = in.number<double>();
 }
 
-}  // namespace
+void put_sample(ByteWriter& out, const DeviceSample& sample) {
+  put_all(out, sample.valid, sample.has_velocity, sample.motors_on, sample.buttons, sample.time_s);
+  put_vector(out, sample.X_DH.p);
+  for (int row = 0; row < 3; ++row) put_vector(out, sample.X_DH.R.row(row).transpose());
+  put_vector(out, sample.V_DH.v);
+  put_vector(out, sample.V_DH.w);
+}
 
-std::string input_schema() {
-  return R"(# What came into a frame from the device and the loop, to the bit: replay needs nothing else.
-# Frames: D is the device's (x to the operator, y to the right, z up), H the handle.
-uint64 index          # frames since the start
-float64 now_s         # the loop's clock at the frame [s]
-float64 period_s      # nominal time between frames [s]
-bool late             # the frame came later than the loop allows
-bool refused          # the device did not take the last wrench
-bool stop             # the wrench is led to zero
-bool valid            # the read succeeded
+void take_sample(ByteReader& in, DeviceSample& sample) {
+  for (bool* flag : {&sample.valid, &sample.has_velocity, &sample.motors_on}) *flag = in.number<bool>();
+  sample.buttons = in.number<std::uint32_t>();
+  sample.time_s = in.number<double>();
+  take_vector(in, sample.X_DH.p);
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 3; ++column) sample.X_DH.R(row, column) = in.number<double>();
+  take_vector(in, sample.V_DH.v);
+  take_vector(in, sample.V_DH.w);
+}
+
+constexpr const char* kSampleFields = R"(bool valid            # the read succeeded
 bool has_velocity     # the device measures V_DH
 bool motors_on        # the device says that it pushes
 uint32 buttons        # bit 0 is the primary button
@@ -45,7 +53,30 @@ float64[3] p_DH_m     # the handle in D [m]
 float64[9] R_DH       # its axes as columns, row by row
 float64[3] v_DH_m_per_s    # velocity of the handle, axes of D [m/s]
 float64[3] w_DH_rad_per_s  # angular velocity, axes of D [rad/s]
-uint64 state_hash     # of everything the frame left, for --verify
+)";
+
+std::string fields_of(const std::vector<ReportNumber>& numbers) {
+  std::string text;
+  for (const ReportNumber& number : numbers)
+    text +=
+        fmt::format("float64 {}  # {}{}\n", number.name, number.field->meaning, unit_of(number.field->unit));
+  return text;
+}
+
+}  // namespace
+
+std::string input_schema() {
+  return std::string(
+             R"(# What came into a frame from the device and the loop, to the bit: replay needs nothing else.
+# Frames: D is the device's (x to the operator, y to the right, z up), H the handle.
+uint64 index          # frames since the start
+float64 now_s         # the loop's clock at the frame [s]
+float64 period_s      # nominal time between frames [s]
+bool late             # the frame came later than the loop allows
+bool refused          # the device did not take the last wrench
+bool stop             # the wrench is led to zero
+)") + kSampleFields +
+         R"(uint64 state_hash     # of everything the frame left, for --verify
 uint64 dropped        # frames lost before this one, since the start
 )";
 }
@@ -62,12 +93,19 @@ float64 value         # of 2: in the unit that the key ends with
 )";
 }
 
+std::string hand_schema() {
+  return std::string(
+             R"(# What came into a frame from the second hand, or one after it, to the bit, and every field of the report
+# that each hand has of its own. Frames as in tactum/Input, of this hand's device.
+uint64 index          # frames since the start
+uint8 hand            # counted from 0
+bool refused          # its device did not take the last wrench
+)") + kSampleFields +
+         fields_of(hand_numbers());
+}
+
 std::string report_schema() {
-  std::string text = "# The report of the frame, every field; axes and points as told.\n";
-  for (const ReportNumber& number : report_numbers())
-    text +=
-        fmt::format("float64 {}  # {}{}\n", number.name, number.field->meaning, unit_of(number.field->unit));
-  return text;
+  return "# The report of the frame, every field; axes and points as told.\n" + fields_of(report_numbers());
 }
 
 std::string frame_schema(const std::vector<TraceColumn>& columns) {
@@ -101,7 +139,7 @@ std::string snapshot_schema() {
   return R"(# Everything that a frame carries to the next, so that a replay can begin before the frame `index`.
 uint64 index
 uint64 layout         # of `state`; programs with another one begin a replay at the start
-float64[] settings    # in force, in the order of `settings` in /tactum/run, in their units
+float64[] settings    # in force, in the order of `settings` in /tactum/run, in their units; of each hand in turn
 uint8[] state         # as src/tactum/base/carried_state.h writes it
 )";
 }
@@ -110,13 +148,8 @@ std::string input_message(const RecordedInput& input) {
   std::string message;
   ByteWriter out(message);
   const FrameTick& tick = input.tick;
-  const DeviceSample& sample = input.sample;
   put_all(out, tick.index, tick.now_s, tick.period_s, tick.late, tick.refused, tick.stop);
-  put_all(out, sample.valid, sample.has_velocity, sample.motors_on, sample.buttons, sample.time_s);
-  put_vector(out, sample.X_DH.p);
-  for (int row = 0; row < 3; ++row) put_vector(out, sample.X_DH.R.row(row).transpose());
-  put_vector(out, sample.V_DH.v);
-  put_vector(out, sample.V_DH.w);
+  put_sample(out, input.sample);
   put_all(out, input.hash, input.dropped);
   return message;
 }
@@ -124,22 +157,33 @@ std::string input_message(const RecordedInput& input) {
 bool read_input(std::string_view message, RecordedInput& input) {
   ByteReader in(message);
   FrameTick& tick = input.tick;
-  DeviceSample& sample = input.sample;
   tick.index = in.number<std::uint64_t>();
   tick.now_s = in.number<double>();
   tick.period_s = in.number<double>();
-  for (bool* flag :
-       {&tick.late, &tick.refused, &tick.stop, &sample.valid, &sample.has_velocity, &sample.motors_on})
-    *flag = in.number<bool>();
-  sample.buttons = in.number<std::uint32_t>();
-  sample.time_s = in.number<double>();
-  take_vector(in, sample.X_DH.p);
-  for (int row = 0; row < 3; ++row)
-    for (int column = 0; column < 3; ++column) sample.X_DH.R(row, column) = in.number<double>();
-  take_vector(in, sample.V_DH.v);
-  take_vector(in, sample.V_DH.w);
+  for (bool* flag : {&tick.late, &tick.refused, &tick.stop}) *flag = in.number<bool>();
+  take_sample(in, input.sample);
   input.hash = in.number<std::uint64_t>();
   input.dropped = in.number<std::uint64_t>();
+  return in.good() && in.done();
+}
+
+std::string hand_message(const RecordedHand& hand) {
+  std::string message;
+  ByteWriter out(message);
+  put_all(out, hand.index, hand.hand, hand.sample.refused);
+  put_sample(out, hand.sample);
+  for (const double number : hand.report) out.number(number);
+  return message;
+}
+
+bool read_hand(std::string_view message, RecordedHand& hand) {
+  ByteReader in(message);
+  hand.index = in.number<std::uint64_t>();
+  hand.hand = in.number<std::uint8_t>();
+  hand.sample.refused = in.number<bool>();
+  take_sample(in, hand.sample);
+  hand.report.resize(hand_numbers().size());
+  for (double& number : hand.report) number = in.number<double>();
   return in.good() && in.done();
 }
 
@@ -177,12 +221,12 @@ bool read_command(std::string_view message, RecordedCommand& recorded) {
   return in.good() && in.done();
 }
 
-std::string contacts_message(const FrameSlot& slot) {
+std::string contacts_message(const RecordedContacts& recorded) {
   std::string message;
   ByteWriter out(message);
-  put_all(out, slot.input.tick.index, static_cast<std::int32_t>(slot.contacts_left_out),
-          static_cast<std::uint32_t>(slot.contacts.size()));
-  for (const ShownContact& contact : slot.contacts) {
+  put_all(out, recorded.index, static_cast<std::int32_t>(recorded.left_out),
+          static_cast<std::uint32_t>(recorded.contacts.size()));
+  for (const ShownContact& contact : recorded.contacts) {
     put_all(out, contact.body_a, contact.body_b);
     put_vector(out, contact.p_W);
     put_vector(out, contact.n_W);

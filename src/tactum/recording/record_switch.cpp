@@ -27,11 +27,12 @@ void RecordSwitch::obeyed(std::uint64_t index, const SessionCommand& command) no
   leave();
 }
 
-void RecordSwitch::frame_over(const DeviceSample& sample, const FrameTick& tick, const FrameSource& frame,
+void RecordSwitch::frame_over(const DeviceSample& sample, const FrameTick& tick,
+                              std::span<const HandSample> others, const FrameSource& frame,
                               const StageClock* clock) noexcept {
   RunListener* const listener = enter();
   if (listener == nullptr) return;
-  listener->frame_over(sample, tick, frame, clock);
+  listener->frame_over(sample, tick, others, frame, clock);
   leave();
 }
 

@@ -15,8 +15,8 @@ class RecordSwitch final : public RunListener {
   void lead_to(RunListener* listener) noexcept;
 
   void obeyed(std::uint64_t index, const SessionCommand& command) noexcept override;
-  void frame_over(const DeviceSample& sample, const FrameTick& tick, const FrameSource& frame,
-                  const StageClock* clock) noexcept override;
+  void frame_over(const DeviceSample& sample, const FrameTick& tick, std::span<const HandSample> others,
+                  const FrameSource& frame, const StageClock* clock) noexcept override;
 
  private:
   RunListener* enter() noexcept;

@@ -98,7 +98,7 @@ Result<void> restore_settings(const RunHead& head, const ReplayOptions& options,
     if (!in_range(setting, value))
       return Error{fmt::format("the recorded setting {} is out of its range", key), fmt::format("{}", value),
                    fmt::format("{} to {}", setting.low, setting.high), where};
-    setting.set(settings, recorded.safety, value);
+    with_every_hand(settings, [&](std::size_t) { setting.set(settings, recorded.safety, value); });
     recorded.notes.push_back(fmt::format("{} is {} in the scene and was {} at the start", key, now, value));
   }
   return {};
@@ -129,35 +129,52 @@ Result<RecordedScene> build_recorded(const RunHead& head, const std::map<std::st
   recorded.description = scene->description;
   recorded.safety = scene->safety;
   recorded.goals = scene->goals;
-  recorded.device_limits = safety_limits(head.device);
-  FrameSettings settings = settings_for(*scene, head.device);
+  std::vector<DeviceInfo> devices{head.device};
+  devices.insert(devices.end(), head.other_devices.begin(), head.other_devices.end());
+  if (devices.size() != scene->settings.hands())
+    return Error{"the recording has devices for another number of hands than its scene",
+                 std::to_string(devices.size()), std::to_string(scene->settings.hands()), where};
+  for (const DeviceInfo& device : devices) recorded.device_limits.push_back(safety_limits(device));
+  FrameSettings settings = settings_for(*scene, devices);
   if (Result<void> restored = restore_settings(head, options, where, settings, recorded); !restored)
     return restored.error();
   for (const auto& [place, value] : options.changed)
-    setting_table()[static_cast<std::size_t>(place)].set(settings, recorded.safety, value);
-  settings.safety = tightened(recorded.device_limits, recorded.safety);
+    with_every_hand(settings, [&, place = static_cast<std::size_t>(place), value = value](std::size_t) {
+      setting_table()[place].set(settings, recorded.safety, value);
+    });
+  recorded.tighten(settings);
   Result<std::unique_ptr<Simulation>> made = Simulation::make(std::move(scene->world), std::move(settings));
   if (!made) return made.error();
   recorded.simulation = std::move(*made);
   return recorded;
 }
 
+void RecordedScene::tighten(FrameSettings& settings) const {
+  with_every_hand(settings,
+                  [&](std::size_t hand) { settings.safety = tightened(device_limits[hand], safety); });
+}
+
 Result<void> RecordedScene::restore(const RecordedSnapshot& snapshot, const ReplayOptions& options,
                                     const std::string& where) {
   const std::span<const SettingInfo> table = setting_table();
   if (snapshot.layout != recording::layout_of_snapshots(simulation->state()) ||
-      snapshot.settings.size() != table.size())
+      snapshot.settings.size() != table.size() * device_limits.size())
     return Error{"a snapshot cannot be gone on from", "one of another response or version of the program",
                  "the response of the recording, or a replay from the start", where};
-  for (std::size_t i = 0; i < table.size(); ++i) {
-    if (!table[i].live || !options.settings.empty() || !options.changed.empty()) continue;
-    if (!in_range(table[i], snapshot.settings[i]))
-      return Error{fmt::format("the setting {} of a snapshot is out of its range", table[i].key),
+  for (std::size_t i = 0; i < snapshot.settings.size(); ++i) {
+    const SettingInfo& setting = table[i % table.size()];
+    if (setting.live && !in_range(setting, snapshot.settings[i]))
+      return Error{fmt::format("the setting {} of a snapshot is out of its range", setting.key),
                    fmt::format("{}", snapshot.settings[i]),
-                   fmt::format("{} to {}", table[i].low, table[i].high), where};
-    table[i].set(simulation->settings(), safety, snapshot.settings[i]);
+                   fmt::format("{} to {}", setting.low, setting.high), where};
   }
-  simulation->settings().safety = tightened(device_limits, safety);
+  if (options.settings.empty() && options.changed.empty())
+    with_every_hand(simulation->settings(), [&](std::size_t hand) {
+      for (std::size_t i = 0; i < table.size(); ++i)
+        if (table[i].live)
+          table[i].set(simulation->settings(), safety, snapshot.settings[hand * table.size() + i]);
+    });
+  tighten(simulation->settings());
   Result<void> restored = simulation->restore(snapshot.state, snapshot.index);
   if (!restored)
     return Error{restored.error().what, restored.error().found, restored.error().expected, where};

@@ -23,6 +23,8 @@ struct ReplayOptions {
 };
 
 struct RecordedScene {
+  /// Puts the user's limits on those of the devices.
+  void tighten(FrameSettings& settings) const;
   /// Goes on from a snapshot of this recording, with the settings in force then, unless others are asked for.
   /// An error where it is of another program or response.
   Result<void> restore(const RecordedSnapshot& snapshot, const ReplayOptions& options,
@@ -30,10 +32,10 @@ struct RecordedScene {
 
   std::string name, description;
   std::unique_ptr<Simulation> simulation;
-  SafetySettings safety;           ///< the user's limits
-  SafetyLimits device_limits;      ///< which they tighten
-  std::vector<Goal> goals;         ///< of the scene
-  std::vector<std::string> notes;  ///< ReplayResult::notes
+  SafetySettings safety;                    ///< the user's limits
+  std::vector<SafetyLimits> device_limits;  ///< which they tighten, by hand
+  std::vector<Goal> goals;                  ///< of the scene
+  std::vector<std::string> notes;           ///< ReplayResult::notes
 };
 
 /// Builds it from the files of the recording, by the names of their attachments. They are unpacked into a

@@ -63,6 +63,16 @@ Result<void> attach_files(McapWriter& writer, RunHead& head, const SceneDescript
   return {};
 }
 
+std::vector<FrameSlot> made_slots(const Session& session) {
+  const std::size_t bodies = session.scene().world.bodies.size(), hands = session.hands();
+  const std::size_t fit = Recorder::kFrameBytes / FrameCopy::bytes(bodies, hands);
+  std::vector<FrameSlot> slots;
+  slots.reserve(std::clamp(fit, std::size_t{16}, Recorder::kSlots));
+  while (slots.size() < slots.capacity())
+    slots.push_back({{}, FrameCopy(bodies, hands), std::vector<HandSample>(hands - 1)});
+  return slots;
+}
+
 }  // namespace
 
 Recorder::Recorder(const RecorderOptions& options, Session& session, RecordSwitch* through,
@@ -71,18 +81,20 @@ Recorder::Recorder(const RecorderOptions& options, Session& session, RecordSwitc
       through_(through),
       midway_(options.midway.has_value()),
       writer_(std::move(writer)),
-      snapshots_(session.state(), session.scene().settings.dt_s, options.snapshot_every_s, midway_),
-      trace_(session.scene().world, session.scene().settings.dt_s, true, 0),
-      slots_(kSlots + 1),
-      free_(kSlots),
-      full_(kSlots),
+      snapshots_(session.state(), options.midway ? options.midway->frame : session.scene().settings,
+                 options.snapshot_every_s, midway_),
+      trace_(session.scene().world, session.scene().settings.dt_s, true, 0, session.hands()),
+      slots_(made_slots(session)),
+      free_(slots_.size()),
+      full_(slots_.size()),
+      rows_(kRows),
+      proxies_(session.hands()),
+      report_numbers_(report_numbers().size()),
+      row_(trace_.width()),
       commands_(kCommandsInRing) {
-  for (FrameSlot& slot : slots_) {
-    slot.report.resize(report_numbers().size());
-    slot.row.resize(trace_.width());
-    slot.contacts.reserve(kRecordedContacts);
-  }
-  for (std::uint32_t slot = 0; slot < kSlots; ++slot) free_.push(slot);
+  shown_contacts_.contacts.reserve(kRecordedContacts);
+  other_hand_.report.resize(hand_numbers().size());
+  for (std::uint32_t slot = 0; slot < slots_.size(); ++slot) free_.push(slot);
 }
 
 Result<std::unique_ptr<Recorder>> Recorder::open(const RecorderOptions& options,
@@ -91,9 +103,6 @@ Result<std::unique_ptr<Recorder>> Recorder::open(const RecorderOptions& options,
   if (scene.source.text.empty())
     return Error{"only a scene that was read from a text can be recorded", "one made in code",
                  "a scene file, a built-in scene or a mesh", scene.name};
-  if (session.hands() > 1)
-    return Error{"a recording holds one hand only", std::to_string(session.hands()) + " tools in the scene",
-                 "a scene with one tool", scene.name};
   Result<std::unique_ptr<McapWriter>> writer =
       McapWriter::open(options.path, "", "tactum " + options.version);
   if (!writer) return writer.error();
@@ -133,12 +142,14 @@ void Recorder::add_channels() {
   const std::uint16_t run = writer_->add_schema({"tactum.Run", "jsonschema", R"({"type":"object"})"});
   run_ = writer_->add_channel({run, std::string(kRun), "json", {}});
   input_ = add("tactum/Input", input_schema(), kInput);
+  if (session_.hands() > 1) hand_ = add("tactum/Hand", hand_schema(), kHand);
   command_ = add("tactum/Command", command_schema(), kCommand);
   report_ = add("tactum/Report", report_schema(), kReport);
   frame_ = add("tactum/Frame", frame_schema(trace_.columns()), kFrame);
   contacts_ = add("tactum/Contacts", contacts_schema(), kContacts);
   snapshot_ = add("tactum/Snapshot", snapshot_schema(), kSnapshot);
-  shown_.emplace(*writer_, session_.scene().world, session_.scene().settings.dt_s, trace_.columns());
+  shown_.emplace(*writer_, session_.scene().world, session_.scene().settings.dt_s, trace_.columns(),
+                 session_.hands());
 }
 
 void Recorder::obeyed(std::uint64_t index, const SessionCommand& command) noexcept {
@@ -146,25 +157,49 @@ void Recorder::obeyed(std::uint64_t index, const SessionCommand& command) noexce
   if (!commands_.push({index, command})) dropped_.fetch_add(1, std::memory_order_relaxed);
 }
 
-void Recorder::frame_over(const DeviceSample& sample, const FrameTick& tick, const FrameSource& frame,
+/// A free slot, where there is one, and room for so many rows.
+std::optional<std::uint32_t> Recorder::room_for(std::size_t rows) noexcept {
+  // A frame's rows do not go around the ring's end: those before it are passed over.
+  const std::size_t to_end = rows_.size() - rows_taken_ % rows_.size();
+  const std::size_t from = rows > to_end ? rows_taken_ + to_end : rows_taken_;
+  if (from + rows - rows_free_.load(std::memory_order_acquire) > rows_.size()) return {};
+  std::uint32_t place = 0;
+  if (!free_.pop(place)) return {};
+  rows_taken_ = from;
+  return place;
+}
+
+void Recorder::copy_rows(const FrameState& state, FrameSlot& slot) noexcept {
+  const std::span<const ContactRow> rows = state.response.rows();
+  CopiedRow* const to = rows_.data() + rows_taken_ % rows_.size();
+  slot.frame.rows = {to, rows.size()};
+  tactum::copy_rows(rows, state.response.friction_uses(), to);
+  rows_taken_ += rows.size();
+  slot.rows_end = rows_taken_;
+}
+
+void Recorder::frame_over(const DeviceSample& sample, const FrameTick& tick,
+                          std::span<const HandSample> others, const FrameSource& frame,
                           const StageClock* clock) noexcept {
   if (failed_.load(std::memory_order_relaxed)) return;
-  std::uint32_t place = kSlots;
-  const bool room = free_.pop(place);
-  FrameSlot& slot = slots_[place];
-  trace_.write(frame, clock, slot.row);  // also of a frame that is lost: it knows the last one's proxy
-  if (!room) {
+  const std::optional<std::uint32_t> place = room_for(frame.state.response.rows().size());
+  if (!place) {
+    remember_proxies(frame, proxies_);
     dropped_.fetch_add(1, std::memory_order_relaxed);
     return;
   }
+  FrameSlot& slot = slots_[*place];
   slot.has_snapshot = snapshots_.take(tick.index + 1, frame.state, frame.settings, session_.scene().safety);
   slot.has_frame = !midway_;
   midway_ = midway_ && !slot.has_snapshot;
-  slot.input = {sample, tick, state_hash(frame.report, frame.state), dropped()};
-  put_report(frame.report, slot.report.data());
-  slot.contacts_left_out = show_contacts(frame, kRecordedContacts, slot.contacts);
+  slot.input.sample = sample;
+  slot.input.tick = tick;
+  slot.input.dropped = dropped();
+  std::copy(others.begin(), others.end(), slot.other_samples.begin());
+  copy_frame(frame, clock, proxies_, slot.frame);
+  copy_rows(frame.state, slot);
   ++taken_;
-  full_.push(place);
+  full_.push(*place);
 }
 
 void Recorder::write_in_background() {
@@ -197,7 +232,9 @@ bool Recorder::drain() {
   bool any = false;
   while (full_.pop(place)) {
     any = true;
-    if (!failed_.load(std::memory_order_relaxed)) write(slots_[place]);
+    FrameSlot& slot = slots_[place];
+    if (!failed_.load(std::memory_order_relaxed)) write(slot);
+    rows_free_.store(slot.rows_end, std::memory_order_release);
     passed_.fetch_add(1, std::memory_order_release);
     free_.push(place);
     if (writer_->gathered() >= kFullChunk) writer_->end_chunk();
@@ -206,7 +243,7 @@ bool Recorder::drain() {
   return any;
 }
 
-void Recorder::write(const FrameSlot& slot) {
+void Recorder::write(FrameSlot& slot) {
   const std::uint64_t time_ns = time_of(slot.input.tick);
   if (slot.has_frame) write_frame(slot, time_ns);
   if (!slot.has_snapshot) return;
@@ -214,15 +251,36 @@ void Recorder::write(const FrameSlot& slot) {
   snapshots_.release();
 }
 
-void Recorder::write_frame(const FrameSlot& slot, std::uint64_t time_ns) {
+/// Makes numbers of the copied frame, and messages of these.
+void Recorder::write_frame(FrameSlot& slot, std::uint64_t time_ns) {
   using namespace recording;
+  const FrameCopy& frame = slot.frame;
+  slot.input.hash = state_hash(frame);
+  put_report(frame.report, report_numbers_.data());
+  write_row(trace_, frame, row_);
+  shown_contacts_.index = slot.input.tick.index;
+  shown_contacts_.left_out = show_contacts(frame.rows, frame.grasped_body, acted_s(frame.report, frame.dt_s),
+                                           kRecordedContacts, shown_contacts_.contacts);
   write_commands(slot.input.tick.index);
   writer_->add_message(input_, time_ns, input_message(slot.input));
-  writer_->add_message(report_, time_ns, numbers_message(slot.report));
-  writer_->add_message(frame_, time_ns, numbers_message(slot.row));
-  if (!slot.contacts.empty()) writer_->add_message(contacts_, time_ns, contacts_message(slot));
-  shown_->show(slot, time_ns);
+  write_other_hands(slot, time_ns);
+  writer_->add_message(report_, time_ns, numbers_message(report_numbers_));
+  writer_->add_message(frame_, time_ns, numbers_message(row_));
+  if (!shown_contacts_.contacts.empty())
+    writer_->add_message(contacts_, time_ns, contacts_message(shown_contacts_));
+  shown_->show(slot.input.tick.index, row_, time_ns);
   written_.fetch_add(1, std::memory_order_relaxed);
+}
+
+/// Before the report, with which the frame counts as whole.
+void Recorder::write_other_hands(const FrameSlot& slot, std::uint64_t time_ns) {
+  for (std::size_t i = 0; i < slot.other_samples.size(); ++i) {
+    other_hand_.index = slot.input.tick.index;
+    other_hand_.hand = static_cast<std::uint8_t>(i + 1);
+    other_hand_.sample = slot.other_samples[i];
+    put_hand_report(slot.frame.other_reports[i], other_hand_.report.data());
+    writer_->add_message(hand_, time_ns, recording::hand_message(other_hand_));
+  }
 }
 
 /// The commands carried out before the frame. A later one waits for its own.
@@ -237,8 +295,11 @@ void Recorder::write_commands(std::uint64_t index) {
 }
 
 void Recorder::wait_for_room() const {
-  const auto full = [this] { return taken_ - passed_.load(std::memory_order_acquire) + 2 > kSlots; };
-  while (!failed_.load(std::memory_order_relaxed) && (full() || snapshots_.in_use()))
+  const auto full = [this] { return taken_ - passed_.load(std::memory_order_acquire) + 2 > slots_.size(); };
+  const auto rows_full = [this] {  // no frame has half of the rows
+    return rows_taken_ - rows_free_.load(std::memory_order_acquire) > rows_.size() / 2;
+  };
+  while (!failed_.load(std::memory_order_relaxed) && (full() || rows_full() || snapshots_.in_use()))
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
 }
 

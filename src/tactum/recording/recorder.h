@@ -4,8 +4,9 @@
 ///   loop thread    obeyed, frame_over --- numbers of free slots, of full ones ---> writer thread ---> file
 ///
 /// The loop never waits: where no slot is free, since the disk is too slow, the frame is not recorded and is
-/// counted. The memory is set aside at the start (about 20 MB). When the file cannot be written any more the
-/// run goes on, nothing more is recorded, and trouble() says so once.
+/// counted. The loop only copies a frame (frame_copy.h); hash and numbers are made in the writer's thread.
+/// The memory is set aside at the start (about 50 MB, 100 MB with many bodies). When the file cannot be
+/// written any more the run goes on, nothing more is recorded, and trouble() says so once.
 
 #include <atomic>
 #include <memory>
@@ -29,8 +30,12 @@ namespace tactum::inline v0_1 {
 
 class Recorder final : public RunListener {
  public:
-  static constexpr std::size_t kSlots = 4096;  ///< four seconds at 1 kHz until they are written
-  static constexpr double kChunk_s = 0.25;     ///< of a run that is killed no more is lost
+  /// Frames that wait to be written, at most: four seconds at 1 kHz. Of a scene with many bodies as many as
+  /// fit into kFrameBytes.
+  static constexpr std::size_t kSlots = 4096;
+  static constexpr std::size_t kFrameBytes = std::size_t{64} << 20;
+  static constexpr std::size_t kRows = std::size_t{1} << 18;  ///< rows of contacts in all of them
+  static constexpr double kChunk_s = 0.25;                    ///< of a run that is killed no more is lost
 
   /// Begins the file with the scene and every file it needs. The session was opened with `scene`, which was
   /// read from a text; it must outlive the recorder. It has not begun; or it has, reports to `through`, and
@@ -42,8 +47,8 @@ class Recorder final : public RunListener {
   Recorder& operator=(const Recorder&) = delete;
 
   void obeyed(std::uint64_t index, const SessionCommand& command) noexcept override;
-  void frame_over(const DeviceSample& sample, const FrameTick& tick, const FrameSource& frame,
-                  const StageClock* clock) noexcept override;
+  void frame_over(const DeviceSample& sample, const FrameTick& tick, std::span<const HandSample> others,
+                  const FrameSource& frame, const StageClock* clock) noexcept override;
 
   /// For a run on the virtual clock, between two frames: nothing is lost, however slow the disk.
   void wait_for_room() const;
@@ -64,8 +69,11 @@ class Recorder final : public RunListener {
   void begin(const RunHead& head);
   void write_in_background();
   bool drain();
-  void write(const FrameSlot& slot);
-  void write_frame(const FrameSlot& slot, std::uint64_t time_ns);
+  std::optional<std::uint32_t> room_for(std::size_t rows) noexcept;
+  void copy_rows(const FrameState& state, FrameSlot& slot) noexcept;
+  void write(FrameSlot& slot);
+  void write_frame(FrameSlot& slot, std::uint64_t time_ns);
+  void write_other_hands(const FrameSlot& slot, std::uint64_t time_ns);
   void write_commands(std::uint64_t index);
 
   Session& session_;
@@ -75,8 +83,15 @@ class Recorder final : public RunListener {
   SnapshotRoom snapshots_;
   FrameTrace trace_;
   std::optional<ShownRun> shown_;
-  std::vector<FrameSlot> slots_;  // and one that is filled when none is free
+  std::vector<FrameSlot> slots_;
   SpscRing<std::uint32_t> free_, full_;
+  std::vector<CopiedRow> rows_;               // a ring; a frame's lie one behind the other
+  std::size_t rows_taken_ = 0;                // of the loop's thread: places passed since the start
+  std::atomic<std::size_t> rows_free_{0};     // ... and those that were written
+  std::vector<ProxyBefore> proxies_;          // of the loop's thread, by hand
+  std::vector<double> report_numbers_, row_;  // of the writer's thread, as the next
+  RecordedContacts shown_contacts_;
+  RecordedHand other_hand_;
   SpscRing<RecordedCommand> commands_;
   RecordedCommand waiting_;  // of the writer's thread: taken from the ring, of a later frame
   bool command_waits_ = false;
@@ -85,7 +100,8 @@ class Recorder final : public RunListener {
   std::atomic<bool> failed_{false}, ends_{false};
   std::mutex mutex_;  // of trouble_, between the writer's thread and the one that asks
   std::optional<Error> trouble_;
-  std::uint16_t run_ = 0, input_ = 0, command_ = 0, report_ = 0, frame_ = 0, contacts_ = 0, snapshot_ = 0;
+  std::uint16_t run_ = 0, input_ = 0, hand_ = 0, command_ = 0, report_ = 0, frame_ = 0, contacts_ = 0,
+                snapshot_ = 0;
   std::thread thread_;
 };
 

@@ -1,5 +1,7 @@
 #include "tactum/recording/recording_tape.h"
 
+#include <fmt/format.h>
+
 #include <utility>
 
 namespace tactum::inline v0_1 {
@@ -47,6 +49,21 @@ Result<void> RecordingTape::input(const RecordedInput& input) {
   }
   frames_.push_back(std::exchange(coming_, {}));
   frames_.back().input = input;
+  return {};
+}
+
+Result<void> RecordingTape::hand(const RecordedHand& hand) {
+  if (!indexed_) {
+    this_chunk();
+    return {};
+  }
+  if (frames_.empty()) return {};
+  std::vector<RecordedHand>& others = frames_.back().others;
+  if (hand.index != frames_.back().input.tick.index || hand.hand != others.size() + 1)
+    return Error{"a hand is not that of its frame", fmt::format("hand {} of frame {}", hand.hand, hand.index),
+                 fmt::format("hand {} of frame {}", others.size() + 1, frames_.back().input.tick.index),
+                 name()};
+  others.push_back(hand);
   return {};
 }
 

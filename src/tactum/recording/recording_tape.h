@@ -18,7 +18,8 @@ struct TapeFrame {
   std::vector<RecordedCommand> commands;  ///< carried out before it
   std::string snapshot;                   ///< the message of the state it begins with; empty: none is there
   RecordedInput input;
-  std::vector<double> report;  ///< put_report()
+  std::vector<RecordedHand> others;  ///< of the second hand and all after it
+  std::vector<double> report;        ///< put_report()
 };
 
 /// A place from which a replay can begin.
@@ -60,6 +61,7 @@ class RecordingTape final : private RecordingVisitor {
   Result<void> begin(Files files) override;
   Result<void> command(const RecordedCommand& command) override;
   Result<void> input(const RecordedInput& input) override;
+  Result<void> hand(const RecordedHand& hand) override;
   Result<void> report(const std::vector<double>& numbers) override;
   Result<void> snapshot(const RecordedSnapshot& snapshot) override;
   std::size_t this_chunk();

@@ -56,6 +56,11 @@ Result<void> RecordingVisitor::message(const McapMessage& message) {
     RecordedInput read;
     return recording::read_input(message.data, read) ? input(read) : broken("a tactum/Input");
   }
+  if (topic == recording::kHand) {
+    const bool one = recording::read_hand(message.data, hand_) && hand_.hand >= 1 &&
+                     hand_.hand <= head_->other_devices.size();
+    return one ? hand(hand_) : broken("a tactum/Hand of one of the devices");
+  }
   if (topic == recording::kCommand) {
     RecordedCommand read;
     return recording::read_command(message.data, read) ? command(read) : broken("a tactum/Command");

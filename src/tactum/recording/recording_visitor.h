@@ -36,6 +36,8 @@ class RecordingVisitor : public McapVisitor {
   virtual Result<void> command(const RecordedCommand&) { return {}; }
   /// The messages of a frame come in this order, each once; `columns` as in RunHead.
   virtual Result<void> input(const RecordedInput&) { return {}; }
+  /// Of every further hand in turn, where there are several.
+  virtual Result<void> hand(const RecordedHand&) { return {}; }
   virtual Result<void> report(const std::vector<double>&) { return {}; }
   virtual Result<void> row(const std::vector<double>&) { return {}; }
   /// Last of a frame, and only of one that has some.
@@ -59,6 +61,7 @@ class RecordingVisitor : public McapVisitor {
   bool reads_again_ = false;
   std::vector<double> numbers_;
   RecordedContacts contacts_;
+  RecordedHand hand_;
 };
 
 /// Reads a whole recording: read_mcap(), and an error of its own where the file has no head.

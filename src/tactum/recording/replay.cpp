@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "tactum/haptics/frame_snapshot.h"
+#include "tactum/haptics/setting_table.h"
 #include "tactum/recording/frame_numbers.h"
 #include "tactum/recording/replayed_run.h"
 
@@ -24,10 +25,16 @@ std::size_t place_called(const char* name) {
   return static_cast<std::size_t>(found - all.begin());
 }
 
+std::string section_and_key(const SettingInfo& setting) {
+  return setting.section[0] == '\0' ? setting.key : fmt::format("{}.{}", setting.section, setting.key);
+}
+
 /// Compares the frames of a run that is computed again with those that were recorded.
 class Comparing {
  public:
-  explicit Comparing(const ReplayedRun& run) : run_(run), numbers_(report_numbers().size()) {}
+  /// `settings`: whether those of the recording are in force, and are compared.
+  Comparing(const ReplayedRun& run, bool settings)
+      : run_(run), settings_(settings), numbers_(report_numbers().size()) {}
   ReplayResult result;
 
   /// Before a frame is computed: the state that it begins with, where it was recorded.
@@ -40,13 +47,16 @@ class Comparing {
     if (snapshot.layout != recording::layout_of_snapshots(state)) return;
     state_.resize(write_snapshot(state, {}));
     write_snapshot(state, state_);
+    carried_ = differing_setting(snapshot.settings);
+    if (!carried_.empty()) return;
     if (state_ == snapshot.state) {
       if (!result.difference) ++result.states;
       return;
     }
     const auto differs =
         std::mismatch(state_.begin(), state_.end(), snapshot.state.begin(), snapshot.state.end());
-    carried_ = snapshot_part(state, static_cast<std::size_t>(differs.first - state_.begin()));
+    carried_ = fmt::format("of \"{}\"",
+                           snapshot_part(state, static_cast<std::size_t>(differs.first - state_.begin())));
   }
 
   void end(const TapeFrame& recorded) {
@@ -57,6 +67,11 @@ class Comparing {
     ++result.frames;
     if (result.difference) return;
     result.difference = difference_of(recorded.input.tick.index, recorded.report, numbers_);
+    for (std::size_t i = 0; i < recorded.others.size() && !result.difference; ++i) {
+      other_ = recorded.others[i];
+      put_hand_report(run_.simulation().state().other_reports[i], other_.report.data());
+      result.difference = difference_of(recorded.others[i], other_);
+    }
     if (result.difference) return;
     const bool same = state_hash(report, run_.simulation().state()) == recorded.input.hash;
     if (same && carried_.empty()) {
@@ -81,11 +96,33 @@ class Comparing {
     if (numbers[places_.pushing] > 0.0) ++extremes.contact_frames;
   }
 
+  /// The first setting that a snapshot has otherwise; empty for none.
+  std::string differing_setting(const std::vector<double>& recorded) const {
+    const std::span<const SettingInfo> table = setting_table();
+    FrameSettings now = run_.simulation().settings();
+    std::string found;
+    if (!settings_ || recorded.size() != table.size() * now.hands()) return found;
+    with_every_hand(now, [&](std::size_t hand) {
+      for (std::size_t i = 0; i < table.size() && found.empty(); ++i) {
+        SafetySettings safety = run_.scene().safety;
+        const double value = table[i].get(now, safety), was = recorded[hand * table.size() + i];
+        if (value == was || !in_range(table[i], was)) continue;
+        table[i].set(now, safety, was);  // one in degrees may come back with another last bit
+        if (table[i].get(now, safety) != value)
+          found =
+              fmt::format("the setting {}, which was {} and is {}", section_and_key(table[i]), was, value);
+      }
+    });
+    return found;
+  }
+
   const ReplayedRun& run_;
+  bool settings_;
   std::vector<double> numbers_;
   ExtremePlaces places_{place_called("shown_fx_N"),   place_called("shown_tx_Nm"),
                         place_called("X_WH_px_m"),    place_called("X_WH_proxy_px_m"),
                         place_called("grasped_body"), place_called("grasped_contact_points")};
+  RecordedHand other_;
   std::string state_;
   std::string carried_;  // the part of the state in which the frame began otherwise; empty: in none
 };
@@ -109,7 +146,7 @@ Result<ReplayResult> replay(const McapSource& source, const std::string& name, c
         !restored)
       return restored.error();
   }
-  Comparing comparing(run);
+  Comparing comparing(run, options.settings.empty() && options.changed.empty() && options.response.empty());
   comparing.result.first = run.next_index();
   while (true) {
     const Result<const TapeFrame*> frame =

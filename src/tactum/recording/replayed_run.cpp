@@ -1,5 +1,7 @@
 #include "tactum/recording/replayed_run.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "tactum/haptics/frame_snapshot.h"
@@ -93,17 +95,37 @@ Result<void> ReplayedRun::take_over(const std::string& message) {
   return scene_.restore(snapshot, options_, tape_->name());
 }
 
+/// The frame, of one hand or of several.
+Result<void> ReplayedRun::compute(const TapeFrame& frame) {
+  const std::size_t others = scene_.device_limits.size() - 1;
+  if (frame.others.size() != others)
+    return Error{fmt::format("frame {} lacks what came from a hand", frame.input.tick.index),
+                 std::to_string(1 + frame.others.size()), std::to_string(1 + others) + " hands",
+                 tape_->name()};
+  if (others == 0) {
+    scene_.simulation->run(frame.input.sample, frame.input.tick);
+    return {};
+  }
+  samples_.resize(1 + others);
+  wrenches_.resize(1 + others);
+  static_cast<DeviceSample&>(samples_.front()) = frame.input.sample;
+  samples_.front().refused = frame.input.tick.refused;
+  for (std::size_t i = 0; i < others; ++i) samples_[i + 1] = frame.others[i].sample;
+  scene_.simulation->run(samples_, frame.input.tick, wrenches_);
+  return {};
+}
+
 Result<const TapeFrame*> ReplayedRun::step(const std::function<void(const TapeFrame&)>& begin) {
   Result<const TapeFrame*> read = tape_->next();
   if (!read || *read == nullptr) return read;
   const TapeFrame& frame = **read;
   if (needs_state_)
     if (Result<void> taken = take_over(frame.snapshot); !taken) return taken.error();
+  if (begin) begin(frame);
   for (const RecordedCommand& recorded : frame.commands)  // those that lead the hand came in by the samples
     if (recorded.command.kind == SessionCommand::Kind::kSet)
       set_live(recorded.command, scene_.device_limits, scene_.simulation->settings(), scene_.safety);
-  if (begin) begin(frame);
-  scene_.simulation->run(frame.input.sample, frame.input.tick);
+  if (Result<void> computed = compute(frame); !computed) return computed.error();
   next_ = frame.input.tick.index + 1;
   return &frame;
 }

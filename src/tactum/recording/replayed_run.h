@@ -32,7 +32,8 @@ class ReplayedRun {
   /// Goes to the frame that begins with a snapshot; -1: to the first of all.
   Result<void> restore(int snapshot);
   /// Computes the next frame; what was recorded of it, null behind the last one. Before it, `begin` sees the
-  /// recorded frame while state and settings are those it begins with.
+  /// recorded frame while state and settings are those that the frame before it has left: none of its
+  /// commands is carried out yet.
   Result<const TapeFrame*> step(const std::function<void(const TapeFrame&)>& begin = nullptr);
 
  private:
@@ -40,6 +41,7 @@ class ReplayedRun {
       : tape_(std::move(tape)), options_(std::move(options)) {}
   Result<void> begin();
   Result<void> restore_start();
+  Result<void> compute(const TapeFrame& frame);
   Result<void> take_over(const std::string& message);
 
   std::unique_ptr<RecordingTape> tape_;
@@ -48,6 +50,8 @@ class ReplayedRun {
   FrameSettings settings_;  // before the first frame, as the state is
   SafetySettings safety_;
   std::string state_;
+  std::vector<HandSample> samples_;  // of every hand, where there are several
+  std::vector<Wrench> wrenches_;
   std::uint64_t next_ = 0;
   bool usable_ = false;       // it can go on from the recorded snapshots
   bool needs_state_ = false;  // the next frame's snapshot must be taken over first

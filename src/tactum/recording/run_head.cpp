@@ -126,6 +126,7 @@ RunHead head_of(const Session& session, const std::string& scene_file, const Rec
   head.grip = options.grip.empty() ? scene.grip : options.grip;
   head.dt_s = scene.settings.dt_s;
   head.device = session.device();
+  for (std::size_t h = 1; h < session.hands(); ++h) head.other_devices.push_back(session.device_of(h));
   for (const Body& body : scene.world.bodies) head.bodies.push_back(body.name);
   head.settings = options.midway ? settings_in_force(options.midway->frame, options.midway->safety)
                                  : settings_in_force(scene.settings, scene.safety);
@@ -157,6 +158,7 @@ std::string head_text(const RunHead& head) {
             {"files", Json::array()},
             {"columns", Json::array()}};
   for (const auto& [key, value] : head.settings) json["settings"][key] = number_json(value);
+  for (const DeviceInfo& other : head.other_devices) json["other_devices"].push_back(device_json(other));
   for (const RecordedFile& file : head.files)
     json["files"].push_back(
         {{"attachment", file.attachment}, {"name", file.name}, {"hash", fmt::format("{:016x}", file.hash)}});
@@ -186,6 +188,8 @@ Result<RunHead> read_head(std::string_view text, const std::string& where) {
       *value = json.at(key).get<std::string>();
     head.dt_s = number_of(json.at("dt_s"));
     head.device = device_of(json.at("device"));
+    if (const auto others = json.find("other_devices"); others != json.end())  // of several hands only
+      for (const Json& other : *others) head.other_devices.push_back(device_of(other));
     read_lists(json, head);
   } catch (const std::exception& exception) {  // of nlohmann, or a number that is none
     return error(exception.what());

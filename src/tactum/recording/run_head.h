@@ -34,15 +34,20 @@ struct RecordedFile {
   std::uint64_t hash = 0;
 };
 
-struct RunHead {
+/// The devices of a run, by hand.
+struct RecordedDevices {
+  DeviceInfo device;                      ///< of the first hand
+  std::vector<DeviceInfo> other_devices;  ///< of the second hand and all after it
+};
+
+struct RunHead : RecordedDevices {
   std::string version;     ///< of Tactum
   std::string compiler;    ///< and build type
   std::string date;        ///< of the start, UTC
   std::string scene;       ///< its name
   std::string scene_file;  ///< where it was read from, for errors
   std::string grip;
-  double dt_s = 0.001;  ///< from frame to frame [s]
-  DeviceInfo device;
+  double dt_s = 0.001;                                   ///< from frame to frame [s]
   std::vector<std::string> bodies;                       ///< names, by number
   std::vector<std::pair<std::string, double>> settings;  ///< in force at the start, all of setting_table()
   std::vector<RecordedFile> files;

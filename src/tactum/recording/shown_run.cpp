@@ -97,7 +97,7 @@ Json box_json(const TriangleMesh& mesh, std::size_t body) {
           {"color", colour_of(body)}};
 }
 
-std::size_t place_of(const std::vector<TraceColumn>& columns, const char* name) {
+std::size_t place_of(const std::vector<TraceColumn>& columns, const std::string& name) {
   const auto found = std::find_if(columns.begin(), columns.end(),
                                   [&](const TraceColumn& column) { return column.name == name; });
   TACTUM_DEMAND(found != columns.end());  // every trace has it
@@ -107,14 +107,10 @@ std::size_t place_of(const std::vector<TraceColumn>& columns, const char* name) 
 }  // namespace
 
 ShownRun::ShownRun(McapWriter& writer, const World& world, double dt_s,
-                   const std::vector<TraceColumn>& columns)
+                   const std::vector<TraceColumn>& columns, std::size_t hands)
     : writer_(writer),
       frames_a_message_(
           std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::ceil(1.0 / (dt_s * kRate_Hz))))),
-      hand_(place_of(columns, "hand_px_m")),
-      proxy_(place_of(columns, "proxy_px_m")),
-      sent_(place_of(columns, "sent_fx_N")),
-      computed_(place_of(columns, "computed_fx_N")),
       first_body_(columns.size() - kBodyNumbers * world.bodies.size()) {
   for (std::size_t i = 0; i < world.bodies.size(); ++i)
     bodies_.push_back(fmt::format("body {} {}", i, world.bodies[i].name));
@@ -124,8 +120,15 @@ ShownRun::ShownRun(McapWriter& writer, const World& world, double dt_s,
   const std::uint16_t wrench = writer.add_schema({"geometry_msgs/WrenchStamped", "ros1msg", kWrenchSchema});
   transforms_ = writer.add_channel({transform, "/tf", "json", {}});
   scene_ = writer.add_channel({update, "/scene", "json", {}});
-  sent_channel_ = writer.add_channel({wrench, "/wrench/sent", "ros1", {}});
-  computed_channel_ = writer.add_channel({wrench, "/wrench/computed", "ros1", {}});
+  for (std::size_t h = 0; h < hands; ++h) {
+    const std::string number = h == 0 ? "" : std::to_string(h + 1);
+    const std::string column = h == 0 ? "" : "h" + number + "_";
+    hands_.push_back({h == 0 ? "hand" : "hand " + number, h == 0 ? "proxy" : "proxy " + number,
+                      place_of(columns, column + "hand_px_m"), place_of(columns, column + "proxy_px_m"),
+                      place_of(columns, column + "sent_fx_N"), place_of(columns, column + "computed_fx_N"),
+                      writer.add_channel({wrench, "/wrench/sent" + number, "ros1", {}}),
+                      writer.add_channel({wrench, "/wrench/computed" + number, "ros1", {}})});
+  }
 }
 
 void ShownRun::show_scene(const World& world) {
@@ -173,15 +176,19 @@ void ShownRun::show_wrench(std::uint16_t channel, const double* wrench, std::uin
   writer_.add_message(channel, time_ns, message);
 }
 
-void ShownRun::show(const FrameSlot& slot, std::uint64_t time_ns) {
-  if (slot.input.tick.index % frames_a_message_ != 0) return;
-  const double* row = slot.row.data();
-  show_transform("hand", row + hand_, time_ns);
-  show_transform("proxy", row + proxy_, time_ns);
+void ShownRun::show(std::uint64_t index, const std::vector<double>& numbers, std::uint64_t time_ns) {
+  if (index % frames_a_message_ != 0) return;
+  const double* row = numbers.data();
+  for (const ShownHand& hand : hands_) {
+    show_transform(hand.hand.c_str(), row + hand.hand_at, time_ns);
+    show_transform(hand.proxy.c_str(), row + hand.proxy_at, time_ns);
+  }
   for (std::size_t i = 0; i < bodies_.size(); ++i)
     show_transform(bodies_[i].c_str(), row + first_body_ + kBodyNumbers * i, time_ns);
-  show_wrench(sent_channel_, row + sent_, time_ns);
-  show_wrench(computed_channel_, row + computed_, time_ns);
+  for (const ShownHand& hand : hands_) {
+    show_wrench(hand.sent_channel, row + hand.sent, time_ns);
+    show_wrench(hand.computed_channel, row + hand.computed, time_ns);
+  }
   ++sequence_;
 }
 

@@ -16,13 +16,14 @@ class ShownRun {
   static constexpr double kRate_Hz = 60.0;              ///< messages a second, at most
   static constexpr std::size_t kMostTriangles = 20000;  ///< of a scene; beyond it boxes are drawn
 
-  /// Adds the channels. `columns` are those of FrameSlot::row, with the bodies behind.
-  ShownRun(McapWriter& writer, const World& world, double dt_s, const std::vector<TraceColumn>& columns);
+  /// Adds the channels. `columns` are those of the rows, with the bodies behind.
+  ShownRun(McapWriter& writer, const World& world, double dt_s, const std::vector<TraceColumn>& columns,
+           std::size_t hands = 1);
 
   /// The bodies' shapes, once.
   void show_scene(const World& world);
   /// Every so many frames, what moves.
-  void show(const FrameSlot& slot, std::uint64_t time_ns);
+  void show(std::uint64_t index, const std::vector<double>& row, std::uint64_t time_ns);
 
  private:
   void show_transform(const char* name, const double* pose, std::uint64_t time_ns);
@@ -31,9 +32,15 @@ class ShownRun {
   McapWriter& writer_;
   std::vector<std::string> bodies_;  // the names of their frames
   std::uint64_t frames_a_message_;
-  std::size_t hand_, proxy_, sent_, computed_, first_body_;  // places in a row
+  struct ShownHand {
+    std::string hand, proxy;                        // the names of their frames
+    std::size_t hand_at, proxy_at, sent, computed;  // places in a row
+    std::uint16_t sent_channel, computed_channel;
+  };
+  std::vector<ShownHand> hands_;
+  std::size_t first_body_;  // its place in a row
   std::uint32_t sequence_ = 0;
-  std::uint16_t transforms_, scene_, sent_channel_, computed_channel_;
+  std::uint16_t transforms_, scene_;
 };
 
 }  // namespace tactum::inline v0_1

@@ -18,14 +18,16 @@ std::size_t most_copied(double dt_s) {
 
 }  // namespace
 
-SnapshotRoom::SnapshotRoom(const FrameState& state, double dt_s, double every_s, bool at_once)
-    : dt_s_(dt_s),
+SnapshotRoom::SnapshotRoom(const FrameState& state, const FrameSettings& settings, double every_s,
+                           bool at_once)
+    : dt_s_(settings.dt_s),
       every_s_(every_s),
+      seen_(settings),
       due_(at_once ? 0 : frames_of(every_s)),
       room_(kFirstRoom),
-      largest_(at_once ? std::numeric_limits<std::size_t>::max() : most_copied(dt_s)) {
+      largest_(at_once ? std::numeric_limits<std::size_t>::max() : most_copied(dt_s_)) {
   snapshot_.layout = recording::layout_of_snapshots(state);
-  snapshot_.settings.resize(setting_table().size());
+  snapshot_.settings.resize(setting_table().size() * settings.hands());
 }
 
 std::uint64_t SnapshotRoom::frames_of(double seconds) const noexcept {
@@ -45,7 +47,12 @@ bool SnapshotRoom::take(std::uint64_t next_index, const FrameState& state, const
   snapshot_.index = next_index;
   snapshot_.state = {room_.data(), size};
   const std::span<const SettingInfo> table = setting_table();
-  for (std::size_t i = 0; i < table.size(); ++i) snapshot_.settings[i] = table[i].get(settings, safety);
+  double* next = snapshot_.settings.data();
+  for (const SettingInfo& setting : table) *next++ = setting.get(settings, safety);
+  for (const HandSettings& other : settings.other_hands) {  // what is not a hand's own is as in the first
+    static_cast<HandSettings&>(seen_) = other;
+    for (const SettingInfo& setting : table) *next++ = setting.get(seen_, safety);
+  }
   const std::uint64_t frames = frames_of(every_s_ * std::max(1.0, static_cast<double>(size) / kUsual));
   due_ += (next_index - due_) / frames * frames + frames;
   use_.store(Use::kTaken, std::memory_order_release);

@@ -23,7 +23,7 @@ class SnapshotRoom {
 
   /// `every_s`: how often, where the state is small [s]; `at_once`: the first after the next frame, else
   /// after so long. Reads no number of the state.
-  SnapshotRoom(const FrameState& state, double dt_s, double every_s, bool at_once);
+  SnapshotRoom(const FrameState& state, const FrameSettings& settings, double every_s, bool at_once);
 
   /// The loop's thread, after the frame before `next_index`: whether a snapshot was taken, for the writer.
   bool take(std::uint64_t next_index, const FrameState& state, const FrameSettings& settings,
@@ -47,7 +47,8 @@ class SnapshotRoom {
   std::uint64_t frames_of(double seconds) const noexcept;
 
   double dt_s_, every_s_;
-  std::uint64_t due_;  // the next snapshot is before this frame, or after; of the loop's thread
+  FrameSettings seen_;  // with one hand after another in the first one's place
+  std::uint64_t due_;   // the next snapshot is before this frame, or after; of the loop's thread
   std::vector<char> room_;
   RecordedSnapshot snapshot_;
   std::size_t largest_;  // bytes of a state that is copied; of the loop's thread

@@ -14,4 +14,11 @@ void set_live(const SessionCommand& command, const SafetyLimits& device, FrameSe
   settings.safety = tightened(device, safety);
 }
 
+void set_live(const SessionCommand& command, std::span<const SafetyLimits> devices, FrameSettings& settings,
+              SafetySettings& safety) noexcept {
+  with_every_hand(settings, [&](std::size_t hand) {
+    if (hand < devices.size()) set_live(command, devices[hand], settings, safety);
+  });
+}
+
 }  // namespace tactum::inline v0_1

@@ -4,6 +4,8 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
+#include <utility>
 
 #include "tactum/loop/safety.h"
 #include "tactum/math/pose.h"
@@ -35,5 +37,21 @@ struct SessionCommand {
 /// device. A setting that is not live, or a value out of its range, changes nothing.
 void set_live(const SessionCommand& command, const SafetyLimits& device, FrameSettings& settings,
               SafetySettings& safety) noexcept;
+/// The same for every hand, whose devices have these limits: a setting is that of all hands.
+void set_live(const SessionCommand& command, std::span<const SafetyLimits> devices, FrameSettings& settings,
+              SafetySettings& safety) noexcept;
+
+/// Calls `visit(hand)` for every hand, counted from 0 and the first one last, while the settings have what is
+/// that hand's own in the first one's place, where the table of settings sees it.
+template <class Visit>
+void with_every_hand(FrameSettings& settings, const Visit& visit) {
+  for (std::size_t i = 0; i < settings.other_hands.size(); ++i) {
+    HandSettings& first = settings;
+    std::swap(first, settings.other_hands[i]);
+    visit(i + 1);
+    std::swap(first, settings.other_hands[i]);
+  }
+  visit(std::size_t{0});
+}
 
 }  // namespace tactum::inline v0_1

@@ -105,7 +105,6 @@ Result<std::unique_ptr<Session>> Session::open_with(const SceneDescription& scen
 
 Session::Session(Scene scene, std::unique_ptr<Device> device)
     : scene_(std::move(scene)),
-      device_limits_(safety_limits(device->info())),
       device_(std::move(device)),
       several_(dynamic_cast<HandDevices*>(device_.get())),
       pointer_(dynamic_cast<PointerDevice*>(several_ != nullptr ? &several_->device(0) : device_.get())),
@@ -115,7 +114,7 @@ Session::Session(Scene scene, std::unique_ptr<Device> device)
       goals_(scene_.world, scene_.goals),
       glances_(kGlances) {
   scene_.settings = settings_on(scene_, *device_, several_);
-  for (std::size_t h = 1; h < hands(); ++h) other_device_limits_.push_back(safety_limits(device_of(h)));
+  for (std::size_t h = 0; h < hands(); ++h) device_limits_.push_back(safety_limits(device_of(h)));
   put_goals(goals_, newest_);
 }
 
@@ -155,17 +154,9 @@ void Session::obey(const SessionCommand& command) noexcept {
     case SessionCommand::Kind::kRest:
       if (pointer_ != nullptr && pointer_->aimed()) pointer_->rest();
       return;
-    case SessionCommand::Kind::kSet: {
+    case SessionCommand::Kind::kSet:
       set_live(command, device_limits_, scene_.settings, scene_.safety);
-      // A setting is that of all hands: the others take the first one's place for it.
-      for (std::size_t i = 0; i < other_device_limits_.size(); ++i) {
-        HandSettings& first = scene_.settings;
-        std::swap(first, scene_.settings.other_hands[i]);
-        set_live(command, other_device_limits_[i], scene_.settings, scene_.safety);
-        std::swap(first, scene_.settings.other_hands[i]);
-      }
       return;
-    }
   }
 }
 
@@ -180,6 +171,17 @@ Wrench Session::run_frame(const DeviceSample& sample, const FrameTick& tick) noe
   haptic_frame(scene_.world, scene_.settings, several_->samples(), tick, state_, report_,
                several_->wrenches());
   return several_->largest();
+}
+
+/// Tells the listener of a frame that is over. Where there are several hands, each has a device that may
+/// refuse its wrench.
+void Session::report_over(const DeviceSample& sample, FrameTick tick) noexcept {
+  std::span<const HandSample> others;
+  if (several_ != nullptr) {
+    tick.refused = several_->samples().front().refused;
+    others = several_->samples().subspan(1);
+  }
+  listener_->frame_over(sample, tick, others, {report_, state_, scene_.settings}, stage_clock_);
 }
 
 Wrench Session::run(const DeviceSample& sample, const FrameTick& tick) noexcept {
@@ -197,8 +199,7 @@ Wrench Session::run(const DeviceSample& sample, const FrameTick& tick) noexcept 
   watch_goals();
   if (feed_ != nullptr) feed_->take({report_, state_, scene_.settings}, stage_clock_);
   if (trace_ != nullptr) trace_->take({report_, state_, scene_.settings}, stage_clock_);
-  if (listener_ != nullptr)
-    listener_->frame_over(sample, felt, {report_, state_, scene_.settings}, stage_clock_);
+  if (listener_ != nullptr) report_over(sample, felt);
   SessionStatus glance{report_.index,
                        report_.shown.f.norm(),
                        report_.shown.t.norm(),

@@ -132,14 +132,14 @@ class Session final : private HapticFrame {
   Session(Scene scene, std::unique_ptr<Device> device);
   Wrench run(const DeviceSample& sample, const FrameTick& tick) noexcept override;
   Wrench run_frame(const DeviceSample& sample, const FrameTick& tick) noexcept;
+  void report_over(const DeviceSample& sample, FrameTick tick) noexcept;
   void watch_goals() noexcept;
   void obey(const SessionCommand& command) noexcept;
 
   static constexpr std::size_t kCommands = 256;
 
   Scene scene_;
-  SafetyLimits device_limits_;                     // scene_.safety tightens them
-  std::vector<SafetyLimits> other_device_limits_;  // of the second hand and all after it
+  std::vector<SafetyLimits> device_limits_;  // by hand; scene_.safety tightens them
   std::unique_ptr<Device> device_;
   HandDevices* several_;    // the device, when it is those of several hands
   PointerDevice* pointer_;  // the device, when it is one that can be led

@@ -28,24 +28,42 @@ float* put(const Pose& X, float* out) noexcept {
   return out;
 }
 
-ShownContact shown_contact(const FrameSource& frame, const ContactRow& row) noexcept {
+void copy_row(const ContactRow& row, std::span<const FrictionUse> uses, CopiedRow& to) noexcept {
+  to.body_a = row.body_a;
+  to.body_b = row.body_b;
+  to.p_W = row.p_W;
+  to.n_BA_W = row.n_BA_W;
+  to.distance = row.distance;
+  to.impulse = row.impulse;
+  to.grip = Grip::kNone;
+  to.cone_used = 0.0;
+  if (row.friction_patch < 0) return;
+  const FrictionUse& use = uses[Index(row.friction_patch)];
+  to.grip = use.sticks ? Grip::kSticks : Grip::kSlips;
+  to.cone_used = use.cone_used;
+}
+
+ShownContact shown_contact(const CopiedRow& row, double acted) noexcept {
   ShownContact contact{};
   contact.body_a = row.body_a;
   contact.body_b = row.body_b;
   contact.p_W = row.p_W;
   contact.n_W = row.n_BA_W;
   contact.distance_m = row.distance;
+  contact.force_N = acted > 0.0 ? row.impulse / acted : 0.0;
+  contact.grip = row.grip;
+  contact.cone_used = row.cone_used;
+  return contact;
+}
+
+ShownContact shown_contact(const FrameSource& frame, const ContactRow& row) noexcept {
+  CopiedRow copy;
+  copy_row(row, frame.state.response.friction_uses(), copy);
+  ShownContact contact = shown_contact(copy, acted_s(frame.report, frame.settings.dt_s));
   contact.tolerance_m = row.margin;
-  const double rest = frame.settings.dt_s - frame.report.time_of_impact_s;  // the impulses acted so long
-  contact.force_N = rest > 0.0 ? row.impulse / rest : 0.0;
   contact.patch = row.patch;
   contact.rests =
       contact.force_N == 0.0 && stands_still(frame, row.body_a) && stands_still(frame, row.body_b);
-  if (row.friction_patch >= 0) {
-    const FrictionUse& use = frame.state.response.friction_uses()[Index(row.friction_patch)];
-    contact.grip = use.sticks ? Grip::kSticks : Grip::kSlips;
-    contact.cone_used = use.cone_used;
-  }
   const std::span<const ContactPatch> patches = frame.state.contacts.finder.patches();
   if (row.patch < 0 || Index(row.patch) >= patches.size()) return contact;
   const ContactPatch& patch = patches[Index(row.patch)];
@@ -54,6 +72,34 @@ ShownContact shown_contact(const FrameSource& frame, const ContactRow& row) noex
   contact.a = patch.manifold.a;
   contact.b = patch.manifold.b;
   return contact;
+}
+
+/// Where there are more contacts than room, those that push most are kept: at the top of a heap stands the
+/// one that is given up next.
+template <class Row, class ContactOf>
+int keep_strongest(std::span<const Row> rows, const ContactOf& contact_of, int grasped, std::size_t most,
+                   std::vector<ShownContact>& shown) noexcept {
+  const auto pushes_more = [grasped](const ShownContact& x, const ShownContact& y) {
+    const auto on_grasped = [grasped](const ShownContact& c) {
+      return c.force_N > 0.0 && (c.body_a == grasped || c.body_b == grasped);
+    };
+    return on_grasped(x) != on_grasped(y) ? on_grasped(x) : x.force_N > y.force_N;
+  };
+  shown.clear();
+  int left_out = 0;
+  for (const Row& row : rows) {
+    const ShownContact contact = contact_of(row);
+    if (shown.size() < most) {
+      shown.push_back(contact);
+      continue;
+    }
+    if (left_out++ == 0) std::make_heap(shown.begin(), shown.end(), pushes_more);
+    if (!pushes_more(contact, shown.front())) continue;
+    std::pop_heap(shown.begin(), shown.end(), pushes_more);
+    shown.back() = contact;
+    std::push_heap(shown.begin(), shown.end(), pushes_more);
+  }
+  return left_out;
 }
 
 }  // namespace
@@ -119,31 +165,23 @@ void FrameFeed::draw(const FrameSource& frame, FramePicture& picture) noexcept {
   picture.contacts_left_out = show_contacts(frame, kContacts, picture.contacts);
 }
 
-/// Where there are more contacts than room, those that push most are kept: at the top of a heap stands the
-/// one that is given up next.
+void copy_rows(std::span<const ContactRow> rows, std::span<const FrictionUse> uses, CopiedRow* to) noexcept {
+  for (const ContactRow& row : rows) copy_row(row, uses, *to++);
+}
+
+double acted_s(const FrameReport& report, double dt_s) noexcept { return dt_s - report.time_of_impact_s; }
+
 int show_contacts(const FrameSource& frame, std::size_t most, std::vector<ShownContact>& shown) noexcept {
   const int grasped = frame.state.hand.known ? frame.state.hand.grasp.body : -1;
-  const auto pushes_more = [grasped](const ShownContact& x, const ShownContact& y) {
-    const auto on_grasped = [grasped](const ShownContact& c) {
-      return c.force_N > 0.0 && (c.body_a == grasped || c.body_b == grasped);
-    };
-    return on_grasped(x) != on_grasped(y) ? on_grasped(x) : x.force_N > y.force_N;
-  };
-  shown.clear();
-  int left_out = 0;
-  for (const ContactRow& row : frame.state.response.rows()) {
-    const ShownContact contact = shown_contact(frame, row);
-    if (shown.size() < most) {
-      shown.push_back(contact);
-      continue;
-    }
-    if (left_out++ == 0) std::make_heap(shown.begin(), shown.end(), pushes_more);
-    if (!pushes_more(contact, shown.front())) continue;
-    std::pop_heap(shown.begin(), shown.end(), pushes_more);
-    shown.back() = contact;
-    std::push_heap(shown.begin(), shown.end(), pushes_more);
-  }
-  return left_out;
+  return keep_strongest(
+      frame.state.response.rows(), [&](const ContactRow& row) { return shown_contact(frame, row); }, grasped,
+      most, shown);
+}
+
+int show_contacts(std::span<const CopiedRow> rows, int grasped, double acted_s, std::size_t most,
+                  std::vector<ShownContact>& shown) noexcept {
+  return keep_strongest(
+      rows, [acted_s](const CopiedRow& row) { return shown_contact(row, acted_s); }, grasped, most, shown);
 }
 
 }  // namespace tactum::inline v0_1

@@ -55,9 +55,32 @@ struct ShownContact {
   bool rests = false;        ///< neither body moves: no force is computed between bodies that sleep
 };
 
+/// What recordings tell of a row of the contact problem: small, so that the loop's thread can pass every row
+/// on, and another can choose.
+struct CopiedRow {
+  std::int32_t body_a = -1, body_b = -1;
+  Grip grip = Grip::kNone;
+  Vec3 p_W = Vec3::Zero();     ///< [m]
+  Vec3 n_BA_W = Vec3::Zero();  ///< [-]
+  double distance = 0.0;       ///< [m]
+  double impulse = 0.0;        ///< [N s]
+  double cone_used = 0.0;      ///< as in ShownContact [-]
+};
+
+/// Fills `to`, which has as many entries as there are rows. `uses` are Response::friction_uses().
+void copy_rows(std::span<const ContactRow> rows, std::span<const FrictionUse> uses, CopiedRow* to) noexcept;
+
 /// The contacts of a frame, at most `most`: those that push most, on the grasped part first. `shown` has room
 /// for them already. Returns how many are left out. No allocation.
 int show_contacts(const FrameSource& frame, std::size_t most, std::vector<ShownContact>& shown) noexcept;
+
+/// The same of copied rows, without what they do not have. `grasped` is the body in the hand, -1 for none,
+/// and `acted_s` how long the impulses acted [s].
+int show_contacts(std::span<const CopiedRow> rows, int grasped, double acted_s, std::size_t most,
+                  std::vector<ShownContact>& shown) noexcept;
+
+/// How long the impulses of a frame acted [s].
+double acted_s(const FrameReport& report, double dt_s) noexcept;
 
 /// A hand after the first.
 struct HandPicture {
