@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <memory>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -55,6 +56,9 @@ class DriverRig {
 struct RigMaker {
   std::string name;
   std::function<std::unique_ptr<DriverRig>()> make;
+
+  /// In a list of tests.
+  friend void PrintTo(const RigMaker& maker, std::ostream* out) { *out << maker.name; }
 };
 
 std::unique_ptr<DriverRig> make_force_dimension_rig();

@@ -47,7 +47,7 @@ class HaplyService {
     // What happened.
     std::vector<Triple> commands;  // forces that were understood
     int messages = 0;              // of this session
-    int of_damper = 0;  // commands that it cut
+    int of_damper = 0;             // commands that it cut
     std::string profile{};
     std::vector<std::string> broken_rules;
   };

@@ -25,6 +25,7 @@
  * a call is that of one thread at a time; a part is const in all calls but its release, so that many may
  * query it.
  */
+/* NOLINTBEGIN(modernize-*, readability-identifier-naming): the headers and names of C. */
 #include <stddef.h>
 #include <stdint.h>
 
@@ -37,8 +38,6 @@ extern "C" {
 #else
 #define TACTUM_C_API
 #endif
-
-/* NOLINTBEGIN(modernize-*, readability-identifier-naming): the names of C. */
 
 typedef enum tactum_status {
   TACTUM_OK = 0,
