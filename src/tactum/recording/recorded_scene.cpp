@@ -98,7 +98,9 @@ Result<void> restore_settings(const RunHead& head, const ReplayOptions& options,
     if (!in_range(setting, value))
       return Error{fmt::format("the recorded setting {} is out of its range", key), fmt::format("{}", value),
                    fmt::format("{} to {}", setting.low, setting.high), where};
-    with_every_hand(settings, [&](std::size_t) { setting.set(settings, recorded.safety, value); });
+    with_every_hand(settings, [&, was = value](std::size_t) {  // clang captures no structured binding
+      setting.set(settings, recorded.safety, was);
+    });
     recorded.notes.push_back(fmt::format("{} is {} in the scene and was {} at the start", key, now, value));
   }
   return {};
