@@ -52,6 +52,30 @@ class Unplugged final : public Device {
   bool gone_ = false;
 };
 
+/// Leads a hand by a way from where its probe is, after a tenth of a second.
+class Lead final : public LoopObserver {
+ public:
+  Lead(Session& session, std::uint32_t hand, const Vec3& by) : session_(session), hand_(hand), by_(by) {}
+  bool after_frame(const FrameRecord& record) noexcept override {
+    if (record.tick.index != 100) return true;
+    SessionCommand aim;
+    aim.kind = SessionCommand::Kind::kAim;
+    aim.hand = hand_;
+    const Pose X_WH = session_.state().of_hand(hand_).hand.X_WH;
+    const Quat q(X_WH.R);
+    for (int i = 0; i < 3; ++i) aim.p_WH[static_cast<std::size_t>(i)] = X_WH.p[i] + by_[i];
+    aim.quat_wxyz_WH = {q.w(), q.x(), q.y(), q.z()};
+    to = X_WH.p + by_;
+    return session_.ask(aim);
+  }
+  Vec3 to = Vec3::Zero();
+
+ private:
+  Session& session_;
+  std::uint32_t hand_;
+  Vec3 by_;
+};
+
 Scene two_hands() {
   Result<Scene> scene = open_scene("peg-two-hands");
   EXPECT_TRUE(scene) << scene.error().message();
@@ -171,6 +195,36 @@ TEST(TwoDevices, AreAsManyAsThereAreTools) {
   session = Session::open_with(std::move(scene), simulated(second));
   ASSERT_FALSE(session);
   EXPECT_NE(session.error().message().find("1 devices"), std::string::npos);
+}
+
+TEST(TwoDevices, EachHandIsLedOnItsOwn) {
+  const std::string pointer = "pointer:premium-1.5-6dof";
+  for (const std::uint32_t led : {0u, 1u})
+    for (const double scale : {1.0, 3.0}) {
+      Scene scene = two_hands();
+      scene.settings.workspace.scale = 2.0;
+      scene.settings.other_hands[0].workspace.scale = scale;
+      auto session = Session::open(
+          std::move(scene), {.device = pointer, .other_devices = {pointer}, .grip = {}, .rate_Hz = 0.0});
+      ASSERT_TRUE(session) << session.error().message();
+      EXPECT_TRUE((*session)->can_be_led(0) && (*session)->can_be_led(1));
+      EXPECT_FALSE((*session)->can_be_led(2));
+      const Vec3 apart = led == 0 ? Vec3(0.004, 0.002, 0.01) : Vec3(-0.004, 0.002, -0.01);
+      Lead lead(**session, led, apart);
+      ASSERT_TRUE((*session)->run_virtual(1500, &lead));
+      const FrameState& state = (*session)->state();
+      EXPECT_LT((state.of_hand(led).hand.X_WH.p - lead.to).norm(), 5e-4) << led << ' ' << scale;
+      EXPECT_GT((state.of_hand(1 - led).hand.X_WH.p - lead.to).norm(), 0.01);  // goes on by its script
+    }
+  auto one = Session::open(two_hands(), {.device = pointer, .grip = {}, .rate_Hz = 0.0});
+  ASSERT_TRUE(one);
+  EXPECT_TRUE((*one)->can_be_led(0));
+  EXPECT_FALSE((*one)->can_be_led(1));
+  SessionCommand aim;
+  aim.kind = SessionCommand::Kind::kAim;
+  aim.hand = 7;  // no such hand: nothing happens
+  EXPECT_TRUE((*one)->ask(aim));
+  EXPECT_TRUE((*one)->run_virtual(10, nullptr));
 }
 
 }  // namespace

@@ -100,9 +100,9 @@ TEST_F(ServerThread, AForeignOriginOrNoneOpensNoWebSocket) {
 TEST_F(ServerThread, OversizedEndsThePageAndMalformedIsCounted) {
   auto page = open_page();
   ASSERT_TRUE(page->accepted());
-  for (const char* text :
-       {"", "[]", "{}", "{\"do\":\"fly\"}", "{\"do\":\"ack\"}", "{\"do\":\"ack\",\"seq\":-1}",
-        "{\"do\":\"stop\",\"now\":1}", "{\"do\":\"aim\",\"p\":[0,0,1e9],\"q\":[1,0,0,0],\"buttons\":0}"})
+  for (const char* text : {"", "[]", "{}", "{\"do\":\"fly\"}", "{\"do\":\"ack\"}",
+                           "{\"do\":\"ack\",\"seq\":-1}", "{\"do\":\"stop\",\"now\":1}",
+                           "{\"do\":\"aim\",\"hand\":0,\"p\":[0,0,1e9],\"q\":[1,0,0,0],\"buttons\":0}"})
     page->say(text);
   page->say("\x01\x02", 2);
   EXPECT_TRUE(comes_true([&] { return refused(Refusal::kMalformed) == 9; })) << refused(Refusal::kMalformed);
@@ -143,6 +143,43 @@ TEST_F(ServerThread, OneSteersAndAnyoneStops) {
   second.reset();  // gone: no page leads the hand
   ASSERT_TRUE(comes_true([&] { return server->take(request); }));
   EXPECT_EQ(request.what, Request::What::kRest);
+}
+
+/// A request to lead the hand.
+std::string aim_of(int hand) {
+  return "{\"do\":\"aim\",\"hand\":" + std::to_string(hand) + ",\"p\":[0,0,0],\"q\":[1,0,0,0],\"buttons\":0}";
+}
+
+TEST_F(ServerThread, HandsAfterTheFirstAreLedByThePageThatTakesThem) {
+  auto first = open_page();
+  ASSERT_TRUE(comes_true([&] { return server->status().pages == 1; }));
+  auto second = open_page();
+  ASSERT_TRUE(comes_true([&] { return server->status().pages == 2; }));
+  Request request;
+  const auto passes = [&](RawPage& page, int hand) {
+    page.say(aim_of(hand));
+    return comes_true([&] { return server->take(request); }) && request.what == Request::What::kAim &&
+           request.hand == static_cast<std::uint32_t>(hand);
+  };
+  EXPECT_TRUE(passes(*first, 0));
+  EXPECT_TRUE(passes(*second, 1));  // two pages, two hands
+  EXPECT_TRUE(passes(*second, 2));
+  EXPECT_TRUE(passes(*second, 1));
+  second->say(aim_of(0));  // the first hand is that of the page that steers
+  EXPECT_TRUE(comes_true([&] { return refused(Refusal::kNotSteering) == 1; }));
+  first->say(aim_of(1));  // even that page takes no hand from another
+  EXPECT_TRUE(comes_true([&] { return refused(Refusal::kNotSteering) == 2; }));
+  second->say("{\"do\":\"leave\",\"hand\":1}");
+  EXPECT_TRUE(comes_true([&] {
+    first->say(aim_of(1));
+    return server->take(request);
+  }));
+  EXPECT_EQ(request.what, Request::What::kAim);
+  while (server->take(request)) continue;
+  second.reset();  // its page is gone: the hand rests, and is free again
+  ASSERT_TRUE(comes_true([&] { return server->take(request) && request.what == Request::What::kRest; }));
+  EXPECT_EQ(request.hand, 2u);
+  EXPECT_TRUE(passes(*first, 2));
 }
 
 ChartSample sample_of(std::uint64_t index) {
@@ -337,7 +374,8 @@ TEST(Access, ARateLimitPassesABurstAndThenTheRate) {
 }
 
 TEST(Request, EveryFormIsReadAndNothingElse) {
-  const Result<Request> aim = parse_request("{\"do\":\"aim\",\"p\":[1,2,3],\"q\":[1,0,0,0],\"buttons\":1}");
+  const Result<Request> aim =
+      parse_request("{\"do\":\"aim\",\"hand\":0,\"p\":[1,2,3],\"q\":[1,0,0,0],\"buttons\":1}");
   ASSERT_TRUE(aim);
   EXPECT_EQ(aim->what, Request::What::kAim);
   EXPECT_EQ(aim->p[2], 3.0);
@@ -351,10 +389,11 @@ TEST(Request, EveryFormIsReadAndNothingElse) {
   for (const char* text :
        {"", "null", "7", "{\"do\":7}", "{\"do\":\"set\",\"key\":\"a\"}",
         "{\"do\":\"set\",\"key\":\"a\",\"value\":\"7\"}", "{\"do\":\"set\",\"key\":\"a\",\"value\":1e999}",
-        "{\"do\":\"aim\",\"p\":[1,2],\"q\":[1,0,0,0],\"buttons\":1}",
-        "{\"do\":\"aim\",\"p\":[1,2,3],\"q\":[0,0,0,0],\"buttons\":1}",
-        "{\"do\":\"aim\",\"p\":[1,2,3],\"q\":[1,0,0,0],\"buttons\":-1}",
-        "{\"do\":\"aim\",\"p\":[1,2,null],\"q\":[1,0,0,0],\"buttons\":1}",
+        "{\"do\":\"aim\",\"hand\":0,\"p\":[1,2],\"q\":[1,0,0,0],\"buttons\":1}",
+        "{\"do\":\"aim\",\"hand\":0,\"p\":[1,2,3],\"q\":[0,0,0,0],\"buttons\":1}",
+        "{\"do\":\"aim\",\"hand\":0,\"p\":[1,2,3],\"q\":[1,0,0,0],\"buttons\":-1}",
+        "{\"do\":\"aim\",\"hand\":0,\"p\":[1,2,null],\"q\":[1,0,0,0],\"buttons\":1}",
+        "{\"do\":\"aim\",\"p\":[1,2,3],\"q\":[1,0,0,0],\"buttons\":1}", "{\"do\":\"leave\",\"hand\":1000}",
         "{\"do\":\"scene\",\"name\":\"gears\",\"p q\":1}"})
     EXPECT_FALSE(parse_request(text)) << text;
   EXPECT_FALSE(parse_request("{\"do\":\"scene\",\"name\":\"" + std::string(300, 'x') + "\"}"));

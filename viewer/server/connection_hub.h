@@ -117,7 +117,8 @@ struct ConnectionHub {
   History history;
   std::map<std::uint64_t, PageConnection*> pages;  // by their number, which is never used twice
   std::uint64_t next_page = 1;
-  std::uint64_t steering = 0;  // that page; 0: nobody
+  std::uint64_t steering = 0;                      // that page; 0: nobody
+  std::map<std::uint32_t, std::uint64_t> leading;  // by hand after the first: the page that leads it
 
   RequestInbox inbox;
 

@@ -90,16 +90,40 @@ class PageConnection : public std::enable_shared_from_this<PageConnection> {
     open_ = false;
     hub_.pages.erase(number_);
     hub_.inbox.count([](ServerStatus& status) { --status.pages; });
-    if (hub_.steering == number_) stop_steering();
+    give_up();
     ++hub_.program_status.version;
   }
 
-  /// No page leads the hand now: it stays where it is.
+  /// No page leads the first hand now: it stays where it is.
   void stop_steering() {
     hub_.steering = 0;
+    rest(0);
+  }
+  void rest(std::uint32_t hand) {
     Request rest;
     rest.what = Request::What::kRest;
+    rest.hand = hand;
     hub_.inbox.ask(rest);
+  }
+  /// This page steers and leads no more.
+  void give_up() {
+    if (hub_.steering == number_) stop_steering();
+    for (const auto& [hand, page] : hub_.leading)
+      if (page == number_) rest(hand);
+    std::erase_if(hub_.leading, [this](const auto& led) { return led.second == number_; });
+  }
+  /// A hand after the first is led by one page at a time: whichever takes it, until that leaves it.
+  void lead(const Request& request) {
+    const auto led = hub_.leading.find(request.hand);
+    const bool free = led == hub_.leading.end();
+    if (!free && led->second != number_) return hub_.inbox.refuse(Refusal::kNotSteering);
+    const bool takes = request.what == Request::What::kAim;
+    if (takes) hub_.leading[request.hand] = number_;
+    if (!takes && !free) hub_.leading.erase(led);
+    if (request.what != Request::What::kLeave) hub_.inbox.ask(request);
+    if (takes != free) return;  // the pages know
+    ++hub_.program_status.version;
+    hub_.feed_pages();
   }
 
   void read() {
@@ -145,17 +169,26 @@ class PageConnection : public std::enable_shared_from_this<PageConnection> {
       if (request.what == What::kSteer && hub_.steering != number_) {
         if (hub_.steering != 0) stop_steering();
         hub_.steering = number_;
-      } else if (request.what == What::kRelease && hub_.steering == number_) {
-        stop_steering();
+      } else if (request.what == What::kRelease) {
+        give_up();
       }
       ++hub_.program_status.version;
       return hub_.feed_pages();
     }
+    if (request.leads_another()) return lead(request);
     if (request.steers() && hub_.steering != number_) return hub_.inbox.refuse(Refusal::kNotSteering);
     hub_.inbox.ask(request);
     if (request.what != Request::What::kStop) return;
     ++hub_.program_status.version;  // tells every page that the stop has arrived
     hub_.feed_pages();
+  }
+
+  /// The hands after the first that other pages lead.
+  std::vector<std::uint32_t> led_elsewhere() const {
+    std::vector<std::uint32_t> hands;
+    for (const auto& [hand, page] : hub_.leading)
+      if (page != number_) hands.push_back(hand);
+    return hands;
   }
 
   std::string status_text() const {
@@ -167,6 +200,7 @@ class PageConnection : public std::enable_shared_from_this<PageConnection> {
                                            {"pages", hub_.pages.size()},
                                            {"steering", hub_.steering == number_},
                                            {"somebody_steers", hub_.steering != 0},
+                                           {"led_elsewhere", led_elsewhere()},
                                            {"stop_asked", hub_.inbox.stop_asked().load()},
                                            {"samples_lost", lost_},
                                            {"refused", refused}};

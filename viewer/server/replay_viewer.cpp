@@ -47,8 +47,7 @@ ReplayViewer::ReplayViewer(std::unique_ptr<ReplayedRun> run, std::unique_ptr<Ser
   facts.loop_in_real_time = false;
   facts.replay = {std::filesystem::path(tape.name()).filename().string(), tape.first(), tape.past()};
   const ShownScene shown{
-      scene.name, scene.description, run_->simulation().world(), settings.tool, device, 1.0 / settings.dt_s,
-      false};
+      scene.name, scene.description, run_->simulation().world(), settings, device, 1.0 / settings.dt_s, {}};
   server_->begin_run(1, run_message(shown, {now, now, false, false}, facts),
                      geometry_of(run_->simulation().world()));
   shown_ = tape.first();
@@ -78,6 +77,7 @@ void ReplayViewer::obey(const Request& request) {
     case What::kRelease:
     case What::kAim:
     case What::kRest:
+    case What::kLeave:
     case What::kStop:
     case What::kResume:
     case What::kSeek:

@@ -12,6 +12,7 @@ using What = Request::What;
 
 constexpr double kFarthest_m = 1000.0;
 constexpr std::size_t kLongestName = 200;
+constexpr std::uint32_t kMostHands = 16;
 
 /// The keys of each request beside `do`, separated by blanks.
 struct Form {
@@ -20,12 +21,15 @@ struct Form {
   const char* keys;
 };
 constexpr Form kForms[] = {
-    {"ack", What::kAck, "seq"},     {"steer", What::kSteer, ""},      {"release", What::kRelease, ""},
-    {"stop", What::kStop, ""},      {"resume", What::kResume, ""},    {"aim", What::kAim, "p q buttons"},
-    {"rest", What::kRest, ""},      {"set", What::kSet, "key value"}, {"unset", What::kUnset, "key"},
-    {"reset", What::kReset, ""},    {"scene", What::kScene, "name"},  {"device", What::kDevice, "name"},
-    {"grip", What::kGrip, "name"},  {"record", What::kRecord, ""},    {"end", What::kEnd, ""},
-    {"seek", What::kSeek, "frame"}, {"play", What::kPlay, "value"},
+    {"ack", What::kAck, "seq"},        {"steer", What::kSteer, ""},
+    {"release", What::kRelease, ""},   {"stop", What::kStop, ""},
+    {"resume", What::kResume, ""},     {"aim", What::kAim, "hand p q buttons"},
+    {"rest", What::kRest, "hand"},     {"leave", What::kLeave, "hand"},
+    {"set", What::kSet, "key value"},  {"unset", What::kUnset, "key"},
+    {"reset", What::kReset, ""},       {"scene", What::kScene, "name"},
+    {"device", What::kDevice, "name"}, {"grip", What::kGrip, "name"},
+    {"record", What::kRecord, ""},     {"end", What::kEnd, ""},
+    {"seek", What::kSeek, "frame"},    {"play", What::kPlay, "value"},
 };
 
 Error malformed(const std::string& what, const std::string& where = "") { return {what, "", "", where}; }
@@ -69,6 +73,7 @@ bool read_value(const Json& json, double& out) {
 bool read_key(const std::string& key, const Json& value, Request& request) {
   if (key == "seq") return read(value, request.sequence);
   if (key == "buttons") return read(value, request.buttons);
+  if (key == "hand") return read(value, request.hand) && request.hand < kMostHands;
   if (key == "frame") return read(value, request.frame);
   if (key == "key") return read(value, request.key);
   if (key == "name") return read(value, request.name);

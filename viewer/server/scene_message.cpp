@@ -128,6 +128,18 @@ OrderedJson settings_json(const ShownSettings& shown) {
   return settings;
 }
 
+bool can_be_led(const ShownScene& scene, std::size_t hand) {
+  return hand < scene.led.size() && scene.led[hand];
+}
+
+/// The hands after the first: which body each grasps, and whether pages may lead it.
+OrderedJson other_hands_json(const ShownScene& scene) {
+  OrderedJson hands = OrderedJson::array();
+  for (std::size_t h = 1; h < scene.settings.hands(); ++h)
+    hands.push_back({{"grasped", scene.settings.hand(h).tool.body}, {"can_be_led", can_be_led(scene, h)}});
+  return hands;
+}
+
 OrderedJson device_json(const ShownScene& scene, const RunFacts& facts) {
   const DeviceInfo& info = scene.device;
   OrderedJson choices = OrderedJson::array();
@@ -135,7 +147,7 @@ OrderedJson device_json(const ShownScene& scene, const RunFacts& facts) {
     choices.push_back({{"name", "pointer:" + model.name}, {"label", model.name + " (simulated)"}});
   return {{"name", facts.device},
           {"label", info.name},
-          {"can_be_led", scene.can_be_led},
+          {"can_be_led", can_be_led(scene, 0)},
           {"senses_rotation", info.senses_rotation},
           {"actuates_force", info.actuates_force},
           {"actuates_torque", info.actuates_torque},
@@ -294,12 +306,14 @@ OrderedJson settings_part(const ShownScene& scene, const ShownSettings& shown) {
 
 ShownScene shown_scene(const Session& session) {
   const Scene& scene = session.scene();
-  return {scene.name,       scene.description, scene.world,         scene.settings.tool,
-          session.device(), session.rate_Hz(), session.can_be_led()};
+  std::vector<bool> led;
+  for (std::size_t h = 0; h < session.hands(); ++h) led.push_back(session.can_be_led(h));
+  return {scene.name,       scene.description, scene.world, scene.settings,
+          session.device(), session.rate_Hz(), led};
 }
 
 std::string run_message(const ShownScene& scene, const ShownSettings& settings, const RunFacts& facts) {
-  const Tool& tool = scene.tool;
+  const Tool& tool = scene.settings.tool;
   OrderedJson message = {
       {"type", "run"},
       {"run", facts.run},
@@ -315,6 +329,7 @@ std::string run_message(const ShownScene& scene, const ShownSettings& settings, 
       {"field", field_json(scene.world)},
       {"grasped", tool.body},
       {"picks", tool.picks},
+      {"other_hands", other_hands_json(scene)},
       {"X_BH", pose_json(tool.X_BH)},
       {"device", device_json(scene, facts)},
       {"stages", stages_json()},

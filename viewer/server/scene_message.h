@@ -17,10 +17,10 @@ struct ShownScene {
   const std::string& name;
   const std::string& description;
   const World& world;
-  const Tool& tool;
+  const FrameSettings& settings;
   const DeviceInfo& device;
   double rate_Hz;
-  bool can_be_led;  ///< the page may lead the hand
+  std::vector<bool> led;  ///< by hand: whether pages may lead it; hands that are not listed cannot be led
 };
 ShownScene shown_scene(const Session& session);
 

@@ -53,12 +53,20 @@ nlohmann::ordered_json goals_json(const Scene& scene, const SessionStatus& newes
   return goals;
 }
 
+/// Hands for which no device is named are led from the pages.
+void lead_by_pages(const Scene& scene, SessionOptions& options) {
+  if (options.device.empty()) options.device = "pointer:" + scene.device;
+  options.other_devices.resize(scene.other_hands.size());
+  for (std::size_t i = 0; i < scene.other_hands.size(); ++i)
+    if (options.other_devices[i].empty()) options.other_devices[i] = "pointer:" + scene.other_hands[i].device;
+}
+
 }  // namespace
 
 Result<std::unique_ptr<Viewer>> Viewer::open(Scene scene, SessionOptions options, int port,
                                              std::vector<SceneRemark> remarks,
                                              std::optional<SceneDescription> description) {
-  if (options.device.empty()) options.device = "pointer:" + scene.device;
+  lead_by_pages(scene, options);
   if (options.grip.empty()) options.grip = scene.grip;
   Result<std::unique_ptr<Server>> server = Server::start(port);
   if (!server) return server.error();
@@ -250,12 +258,13 @@ void Viewer::obey(const Request& request) {
       return;
     case What::kAim:
       session_->ask({.kind = SessionCommand::Kind::kAim,
+                     .hand = request.hand,
                      .buttons = request.buttons,
                      .p_WH = request.p,
                      .quat_wxyz_WH = request.q});
       return;
     case What::kRest:
-      session_->ask({.kind = SessionCommand::Kind::kRest});
+      session_->ask({.kind = SessionCommand::Kind::kRest, .hand = request.hand});
       return;
     case What::kSet:
       return set(request);
@@ -280,6 +289,7 @@ void Viewer::obey(const Request& request) {
     case What::kAck:
     case What::kSteer:
     case What::kRelease:
+    case What::kLeave:
       return;  // the server's own affair
   }
 }
@@ -334,9 +344,10 @@ void Viewer::change_scene(const std::string& name) {
   scene_ = std::move(*scene);
   description_ = *description;
   remember_usual();
-  if (follows_scene) options_.device = "pointer:" + scene_.device;
+  if (follows_scene) options_.device.clear();
   options_.grip = scene_.grip;
   options_.other_devices.clear();  // they were named for the tools of another scene
+  lead_by_pages(scene_, options_);
   restart();
 }
 

@@ -90,6 +90,7 @@ float64[3] p_WH_m     # of 0: the wanted place of the hand in the world [m]
 float64[4] q_WH_wxyz  # of 0: its orientation there
 string setting        # of 2: section and key, as in scene files
 float64 value         # of 2: in the unit that the key ends with
+uint8 hand            # of 0 and 1: counted from 0; missing in older recordings
 )";
 }
 
@@ -203,6 +204,7 @@ std::string command_message(const RecordedCommand& recorded) {
   for (const double number : command.quat_wxyz_WH) out.number(number);
   out.text(setting);
   out.number(command.value);
+  out.number(static_cast<std::uint8_t>(command.hand));
   return message;
 }
 
@@ -216,6 +218,7 @@ bool read_command(std::string_view message, RecordedCommand& recorded) {
   for (double& number : command.quat_wxyz_WH) number = in.number<double>();
   command.setting = setting_called(in.text());
   command.value = in.number<double>();
+  command.hand = in.done() ? 0 : in.number<std::uint8_t>();  // older recordings have one hand that is led
   if (kind > static_cast<std::uint8_t>(SessionCommand::Kind::kSet)) return false;
   command.kind = static_cast<SessionCommand::Kind>(kind);
   return in.good() && in.done();

@@ -20,6 +20,7 @@ struct SessionCommand {
     kSet,   ///< a setting that is live (setting_table.h)
   };
   Kind kind = Kind::kRest;
+  std::uint32_t hand = 0;        ///< of kAim and kRest: which hand, counted from 0
   std::uint32_t buttons = 0;     ///< of kAim: bit 0 is the primary button
   std::array<double, 3> p_WH{};  ///< of kAim: the wanted place of the hand in the world [m]
   std::array<double, 4> quat_wxyz_WH{1.0, 0.0, 0.0, 0.0};  ///< of kAim: its orientation there

@@ -107,14 +107,17 @@ Session::Session(Scene scene, std::unique_ptr<Device> device)
     : scene_(std::move(scene)),
       device_(std::move(device)),
       several_(dynamic_cast<HandDevices*>(device_.get())),
-      pointer_(dynamic_cast<PointerDevice*>(several_ != nullptr ? &several_->device(0) : device_.get())),
       commands_(kCommands),
       state_(scene_.world, scene_.settings),
       record_(scene_.settings.hands()),
       goals_(scene_.world, scene_.goals),
       glances_(kGlances) {
   scene_.settings = settings_on(scene_, *device_, several_);
-  for (std::size_t h = 0; h < hands(); ++h) device_limits_.push_back(safety_limits(device_of(h)));
+  for (std::size_t h = 0; h < hands(); ++h) {
+    device_limits_.push_back(safety_limits(device_of(h)));
+    pointers_.push_back(
+        dynamic_cast<PointerDevice*>(several_ != nullptr ? &several_->device(h) : device_.get()));
+  }
   put_goals(goals_, newest_);
 }
 
@@ -142,17 +145,22 @@ SessionStatus Session::poll(std::vector<FrameTiming>* timings) {
   return newest_;
 }
 
+/// The pose is in the world; the device wants it in its own frame, at its own scale.
+void Session::aim(const SessionCommand& command) noexcept {
+  const HandStage& hand = state_.of_hand(command.hand).hand;
+  if (!hand.known) return;
+  Pose X_DH = relative_pose(hand.X_WD, command.aim());
+  X_DH.p /= scene_.settings.hand(command.hand).workspace.scale;
+  pointers_[command.hand]->aim(X_DH, command.buttons);
+}
+
 void Session::obey(const SessionCommand& command) noexcept {
   switch (command.kind) {
-    case SessionCommand::Kind::kAim: {
-      if (pointer_ == nullptr || !state_.hand.known) return;
-      Pose X_DH = relative_pose(state_.hand.X_WD, command.aim());
-      X_DH.p /= scene_.settings.workspace.scale;
-      pointer_->aim(X_DH, command.buttons);
+    case SessionCommand::Kind::kAim:
+      if (can_be_led(command.hand)) aim(command);
       return;
-    }
     case SessionCommand::Kind::kRest:
-      if (pointer_ != nullptr && pointer_->aimed()) pointer_->rest();
+      if (can_be_led(command.hand) && pointers_[command.hand]->aimed()) pointers_[command.hand]->rest();
       return;
     case SessionCommand::Kind::kSet:
       set_live(command, device_limits_, scene_.settings, scene_.safety);

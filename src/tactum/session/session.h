@@ -93,8 +93,10 @@ class Session final : private HapticFrame {
   /// The same from any thread, while `asked` is true; set before the run, null for none. It must outlive the
   /// session.
   void stop_while(const std::atomic<bool>* asked) noexcept { stop_asked_ = asked; }
-  /// Whether the hand can be led by SessionCommand::kAim.
-  bool can_be_led() const noexcept { return pointer_ != nullptr; }
+  /// Whether a hand, counted from 0, can be led by SessionCommand::kAim.
+  bool can_be_led(std::size_t hand = 0) const noexcept {
+    return hand < pointers_.size() && pointers_[hand] != nullptr;
+  }
 
   const Scene& scene() const noexcept { return scene_; }
   /// Of the first hand's device.
@@ -135,14 +137,15 @@ class Session final : private HapticFrame {
   void report_over(const DeviceSample& sample, FrameTick tick) noexcept;
   void watch_goals() noexcept;
   void obey(const SessionCommand& command) noexcept;
+  void aim(const SessionCommand& command) noexcept;
 
   static constexpr std::size_t kCommands = 256;
 
   Scene scene_;
   std::vector<SafetyLimits> device_limits_;  // by hand; scene_.safety tightens them
   std::unique_ptr<Device> device_;
-  HandDevices* several_;    // the device, when it is those of several hands
-  PointerDevice* pointer_;  // the device, when it is one that can be led
+  HandDevices* several_;                  // the device, when it is those of several hands
+  std::vector<PointerDevice*> pointers_;  // by hand: its device, when it is one that can be led, or null
   SpscRing<SessionCommand> commands_;
   std::atomic<bool> wrench_at_zero_{false};
   const std::atomic<bool>* stop_asked_ = nullptr;

@@ -4,6 +4,27 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { check, downloaded, inkOf, keep, openPage, pause, Program, state, until } from "./support.mjs";
 
+const placeOf = async (page, name) => JSON.parse((await state(page)).bodiesAt)[name];
+
+/** Presses on a body until this page has its hand, and drags it to the right. */
+async function dragBody(page, name, right) {
+  for (let tries = 0; tries < 20; ++tries) {
+    const [x, y] = await placeOf(page, name);
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    if (await page.evaluate(() => document.getElementById("canvas").classList.contains("holding"))) {
+      for (let i = 1; i <= 20; ++i) {
+        await page.mouse.move(x + (right * i) / 20, y);
+        await pause(0.03);
+      }
+      return;
+    }
+    await page.mouse.up();
+    await pause(0.2);
+  }
+  throw new Error(`“${name}” could not be taken`);
+}
+
 const arrowsOf = async (page) => Number((await state(page)).fieldArrows);
 
 export const topics = {
@@ -46,7 +67,22 @@ export const topics = {
     await until("the second hand is pushed too", async () => Number((await state(page)).otherForces) > 0.2);
     check(/^The other hand holds “block” and feels [\d.]+ .?N and [\d.]+ .?N m\.$/.test(await page.textContent(".hands li")),
       `the page says what the other hand feels: ${await page.textContent(".hands")}`);
-    check(page.complaints.length === 0, page.complaints.join("; "));
+    const other = await openPage(browser, program);
+    const before = [await placeOf(page, "peg"), await placeOf(page, "block")];
+    await dragBody(page, "peg", -120); // two pages, two hands
+    await dragBody(other, "block", 120);
+    await until("both hands have followed", async () =>
+      (await placeOf(page, "peg"))[0] < before[0][0] - 60 && (await placeOf(page, "block"))[0] > before[1][0] + 60);
+    check((await state(page)).steering === "true" && (await state(other)).steering === "false", "the second page steers nothing else");
+    await page.mouse.up();
+    await page.mouse.move(...(await placeOf(page, "block")));
+    await page.mouse.down();
+    await until("a hand that another page leads is not taken, and the page says so", () => page.isVisible("#notice"));
+    await page.mouse.up();
+    await other.mouse.up();
+    await dragBody(page, "block", -60); // left, it is free
+    await page.mouse.up();
+    check(page.complaints.length + other.complaints.length === 0, [...page.complaints, ...other.complaints].join("; "));
     await program.end();
   },
 

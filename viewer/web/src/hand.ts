@@ -6,6 +6,9 @@
 //   wheel, dragging nearer and farther
 //   where bodies can be picked up, the hand goes to where one is pressed on and holds it until the pointer is let go
 //   arrows          fine steps, page up and down in depth, with shift turns
+//
+// Where several hands hold parts, the one whose part is pressed on is led. A hand after the first is taken by the page
+// that aims it, and left when the pointer lets go, so that two pages lead two hands.
 import * as THREE from "three";
 import type { Picture, Run } from "./protocol";
 import type { View } from "./view";
@@ -18,8 +21,8 @@ const sendEvery_ms = 16;
 const nearEnough_m = 0.004; // of the hand to what it shall pick up
 
 export interface HandTalk {
-  /** Makes sure that this page steers; false when it cannot. */
-  maySteer(): boolean;
+  /** Makes sure that this page may lead the hand, counted from 0; false when it cannot. */
+  mayLead(hand: number): boolean;
   send(message: Record<string, unknown>): void;
 }
 
@@ -33,6 +36,8 @@ export class Hand {
   turns = false; // dragging turns, without the key
   buttons = 0;
   private run: Run | null = null;
+  private which = 0; // the hand that is led, the first one is 0
+  private readonly others = new Map<number, { p: THREE.Vector3; q: THREE.Quaternion }>(); // aims of hands that were led before
   private p = new THREE.Vector3(); // the aim: the handle in the world [m]
   private q = new THREE.Quaternion();
   private aimed = false; // the aim is ours
@@ -52,13 +57,22 @@ export class Hand {
 
   begin(run: Run) {
     this.run = run;
+    this.which = 0;
+    this.others.clear();
     this.aimed = false;
     this.drag = null;
     this.view.controls.enabled = true;
     this.view.overlay.setPull(null, null);
   }
-  /** Somebody else has the hand now. */
-  lose() {
+  /** The line to the program is cut. */
+  loseAll() {
+    this.others.clear();
+    this.lose(this.which);
+  }
+  /** Somebody else leads the hand now. */
+  lose(hand: number) {
+    this.others.delete(hand);
+    if (hand !== this.which) return;
     this.aimed = false;
     this.release();
   }
@@ -66,15 +80,55 @@ export class Hand {
     return this.drag !== null;
   }
   get canFeel() {
-    return this.run !== null && (this.run.grasped >= 0 || this.run.picks) && this.run.device.can_be_led;
+    return this.run !== null && this.handsLed.length > 0;
+  }
+  /** Whether hands after the first are led by pages. */
+  get leadsOthers() {
+    return this.handsLed.some((hand) => hand > 0);
+  }
+  /** The hands that hold something, or can, and are led by pages. */
+  private get handsLed(): number[] {
+    if (!this.run) return [];
+    const { grasped, picks, device, other_hands } = this.run;
+    const first = (grasped >= 0 || picks) && device.can_be_led ? [0] : [];
+    return [...first, ...other_hands.flatMap((hand, i) => (hand.grasped >= 0 && hand.can_be_led ? [i + 1] : []))];
+  }
+  private graspedBy(hand: number): number {
+    if (!this.run) return -1;
+    return hand === 0 ? this.run.grasped : this.run.other_hands[hand - 1].grasped;
+  }
+  private get grasped() {
+    return this.graspedBy(this.which);
+  }
+  /** The hand that would lead the body, or -1. */
+  private handFor(body: number): number {
+    const holder = this.handsLed.find((hand) => this.graspedBy(hand) === body);
+    return holder ?? (this.run?.picks && this.run.device.can_be_led && this.run.bodies[body].moves ? 0 : -1);
+  }
+  private get picks() {
+    return this.which === 0 && this.run?.picks === true;
+  }
+  private placeOf(picture: Picture): { body: number; hand: Float32Array; proxy: Float32Array } {
+    return this.which === 0 ? picture : picture.others[this.which - 1];
+  }
+  /** Another hand is led from now on; the one before goes where it was aimed. */
+  private choose(hand: number) {
+    if (hand === this.which) return;
+    if (this.aimed) this.others.set(this.which, { p: this.p.clone(), q: this.q.clone() });
+    this.which = hand;
+    const last = this.others.get(hand);
+    this.aimed = last !== undefined;
+    if (!last) return;
+    this.p.copy(last.p);
+    this.q.copy(last.q);
   }
 
   /** From where the handle is, or from where we last wanted it. */
   private takeUp(): boolean {
     const picture = this.view.picture;
-    if (!picture || !this.canFeel || !this.talk.maySteer()) return false;
+    if (!picture || !this.handsLed.includes(this.which) || !this.talk.mayLead(this.which)) return false;
     if (!this.aimed) {
-      const h = picture.hand;
+      const h = this.placeOf(picture).hand;
       this.p.set(h[0], h[1], h[2]);
       this.q.set(h[4], h[5], h[6], h[3]);
       this.aimed = true;
@@ -86,7 +140,9 @@ export class Hand {
     if (event.button !== 0 || this.drag || !this.canFeel) return;
     const ray = this.view.rayAt(event.clientX, event.clientY);
     const hit = this.view.bodies?.pick(ray);
-    if (!hit || !this.run || !(this.run.picks ? this.run.bodies[hit.body].moves : hit.body === this.run.grasped)) return;
+    const which = hit ? this.handFor(hit.body) : -1;
+    if (!hit || !this.run || which < 0) return;
+    this.choose(which);
     if (!this.takeUp()) return;
     event.stopImmediatePropagation(); // the camera stays where it is
     this.view.controls.enabled = false;
@@ -94,12 +150,12 @@ export class Hand {
     this.canvas.classList.add("holding");
     const point = hit.point.clone().applyMatrix4(this.view.toWorld);
     const body = this.run.bodies[hit.body];
-    const hinged = body.joint === "hinge" && !event.altKey && !this.run.picks;
+    const hinged = body.joint === "hinge" && !event.altKey && !this.picks;
     const sight = this.view.camera.getWorldDirection(new THREE.Vector3());
     const normal = hinged && body.axis_W ? new THREE.Vector3(...body.axis_W) : sight.clone();
     if (hinged && Math.abs(normal.dot(ray.ray.direction)) < 0.12) normal.copy(sight);
     const grasped = this.view.bodies?.matrices[hit.body] ?? new THREE.Matrix4();
-    this.reaching = this.run.picks;
+    this.reaching = this.picks;
     if (this.reaching) this.p.copy(point);
     this.drag = {
       pointer: event.pointerId, from: point, plane: new THREE.Plane().setFromNormalAndCoplanarPoint(normal, point),
@@ -145,7 +201,7 @@ export class Hand {
   private turnHinge(event: PointerEvent) {
     const drag = this.drag as Drag;
     const now = this.onPlane(event);
-    const body = this.run?.bodies[this.run.grasped];
+    const body = this.run?.bodies[this.grasped];
     if (!now || !body?.axis_W || !body.anchor_W) return;
     const axis = new THREE.Vector3(...body.axis_W);
     const anchor = new THREE.Vector3(...body.anchor_W);
@@ -156,7 +212,7 @@ export class Hand {
     };
     const nearest = (angle: number, to: number) => angle + 2 * Math.PI * Math.round((to - angle) / (2 * Math.PI));
     drag.last = nearest(angleTo(now), drag.last);
-    const there = drag.grabbed.clone().applyMatrix4(this.view.bodies?.matrices[this.run?.grasped ?? 0] ?? new THREE.Matrix4());
+    const there = drag.grabbed.clone().applyMatrix4(this.view.bodies?.matrices[this.grasped] ?? new THREE.Matrix4());
     const part = nearest(angleTo(there), drag.last);
     drag.angle = Math.min(part + farthestLead, Math.max(part - farthestLead, drag.last));
     const turn = new THREE.Quaternion().setFromAxisAngle(axis, drag.angle);
@@ -178,11 +234,14 @@ export class Hand {
     if (event.pointerId === this.drag?.pointer) this.release();
   }
   private release() {
+    const dragged = this.drag !== null;
     this.drag = null;
     this.reaching = false;
-    if (this.run?.picks && this.buttons !== 0) {
+    if (this.picks && this.buttons !== 0) {
       this.buttons = 0;
       if (this.aimed) this.send(true);
+    } else if (dragged && this.which > 0 && this.aimed) {
+      this.send(true); // the last aim, after which the hand is left
     }
     this.view.controls.enabled = true;
     this.canvas.classList.remove("holding");
@@ -204,8 +263,7 @@ export class Hand {
   private hover(event: PointerEvent) {
     if (event.pointerType === "touch") return;
     const hit = this.canFeel ? this.view.bodies?.pick(this.view.rayAt(event.clientX, event.clientY)) : null;
-    const holds = hit && this.run && (this.run.picks ? this.run.bodies[hit.body].moves : hit.body === this.run.grasped);
-    this.canvas.classList.toggle("can-hold", Boolean(holds));
+    this.canvas.classList.toggle("can-hold", hit ? this.handFor(hit.body) >= 0 : false);
   }
 
   private key(event: KeyboardEvent) {
@@ -218,7 +276,7 @@ export class Hand {
     event.preventDefault();
     if (!this.takeUp()) return;
     const finer = event.altKey ? 0.2 : 1;
-    const body = this.run?.bodies[this.run.grasped];
+    const body = this.run?.bodies[this.grasped];
     if (body?.joint === "hinge" && body.axis_W && body.anchor_W && direction[2] === 0) {
       const turn = new THREE.Quaternion().setFromAxisAngle(new THREE.Vector3(...body.axis_W), -(direction[0] || direction[1]) * fineTurn * finer);
       const anchor = new THREE.Vector3(...body.anchor_W);
@@ -248,8 +306,9 @@ export class Hand {
     window.clearTimeout(this.waiting);
     this.waiting = 0;
     this.lastSent = performance.now();
-    const { p, q } = this;
-    this.talk.send({ do: "aim", p: [p.x, p.y, p.z], q: [q.w, q.x, q.y, q.z], buttons: this.buttons });
+    const { p, q, which } = this;
+    this.talk.send({ do: "aim", hand: which, p: [p.x, p.y, p.z], q: [q.w, q.x, q.y, q.z], buttons: this.buttons });
+    if (which > 0 && !this.drag) this.talk.send({ do: "leave", hand: which });
   }
 
   /** Presses the button when the hand has come near enough, and drags from there once something is held. */
@@ -276,11 +335,12 @@ export class Hand {
     const drag = this.drag;
     if (!drag || !this.run) return;
     if (this.reaching) this.grabWhenNear(picture);
-    const grasped = this.view.bodies?.matrices[this.run.grasped];
+    const grasped = this.view.bodies?.matrices[this.grasped];
     if (!grasped) return;
+    const place = this.placeOf(picture);
     const from = drag.grabbed.clone().applyMatrix4(grasped);
-    const proxy = new THREE.Vector3(picture.proxy[0], picture.proxy[1], picture.proxy[2]);
-    const turned = new THREE.Quaternion(picture.proxy[4], picture.proxy[5], picture.proxy[6], picture.proxy[3]).invert();
+    const proxy = new THREE.Vector3(place.proxy[0], place.proxy[1], place.proxy[2]);
+    const turned = new THREE.Quaternion(place.proxy[4], place.proxy[5], place.proxy[6], place.proxy[3]).invert();
     const to = from.clone().sub(proxy).applyQuaternion(turned).applyQuaternion(this.q).add(this.p);
     this.view.overlay.setPull(from.applyMatrix4(this.view.toView), to.applyMatrix4(this.view.toView));
   }

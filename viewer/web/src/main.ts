@@ -5,6 +5,7 @@ import { Charts } from "./charts";
 import { Connection } from "./connection";
 import { download, get, make } from "./dom";
 import { Hand } from "./hand";
+import { showHelp } from "./help";
 import { edgeKinds } from "./look";
 import { Panel } from "./panel";
 import { readShapes, type Frames, type Picture, type Run, type Shape, type Status, type ServerMessage } from "./protocol";
@@ -36,7 +37,7 @@ const ask = (message: Record<string, unknown>) => connection.send(message);
 const panel = new Panel(get("panel"), (message) => {
   if (maySteer()) ask(message);
 });
-const hand = new Hand(view, canvas, { maySteer, send: ask });
+const hand = new Hand(view, canvas, { mayLead, send: ask });
 const askToSteer = (message: Record<string, unknown>) => void (maySteer() && ask(message));
 const timeline = new Timeline(askToSteer);
 const recording = new Recording(askToSteer);
@@ -49,6 +50,14 @@ function maySteer(): boolean {
   }
   ask({ do: "steer" });
   return true;
+}
+
+/** The first hand is led by the page that steers, any other by the page that takes it. */
+function mayLead(which: number): boolean {
+  if (which === 0) return maySteer();
+  if (!status?.led_elsewhere.includes(which)) return true;
+  notice("Another page leads this hand.");
+  return false;
 }
 
 function notice(text: string) {
@@ -133,7 +142,7 @@ function linked(up: boolean) {
     ++begun;
     waitingFrames = [];
     if (asked) unanswered();
-    hand.lose();
+    hand.loseAll();
   }
 }
 
@@ -155,9 +164,10 @@ function showStatus(message: Status) {
   const led = status?.steering ?? false;
   status = message;
   if (led && !message.steering) {
-    hand.lose();
+    hand.lose(0);
     notice("Another page has taken the hand.");
   }
+  for (const other of message.led_elsewhere) hand.lose(other);
   const confirmed = message.stop_asked || (message.program.stopped ?? false);
   if (asked && confirmed === asked.stop) answered();
   if (!asked) showStopped(confirmed ? "stopped" : "");
@@ -197,8 +207,8 @@ function showSummary(sample: number) {
   body.dataset.gaps = String(samples.gaps);
   body.dataset.newest = String(samples.frameOf(samples.count - 1));
   body.dataset.graspedAt = run.grasped >= 0 ? view.onScreen(run.grasped).map(Math.round).join(",") : "";
-  if (run.picks) {
-    body.dataset.grasped = run.grasped >= 0 ? run.bodies[run.grasped].name : "";
+  if (run.picks) body.dataset.grasped = run.grasped >= 0 ? run.bodies[run.grasped].name : "";
+  if (run.picks || run.other_hands.length > 0) {
     body.dataset.bodiesAt = JSON.stringify(Object.fromEntries(run.bodies.flatMap((one, i) => one.moves ? [[one.name, view.onScreen(i).map(Math.round)]] : [])));
   }
   const now = performance.now();
@@ -321,7 +331,7 @@ function showHint() {
     : run.picks && hand.canFeel ? "Press on anything that moves to pick it up, drag it against the others, let go to throw it. Drag beside it to look around."
     : run.grasped < 0 ? "Drag to look around, wheel to zoom. Pieces and Edges colour what the part is made of."
     : !hand.canFeel ? "This device is not led by the mouse: look, or choose a simulated device in the settings."
-    : `Drag the orange part (${grasped}) to ${hinged || hand.turns ? "turn" : "move"} it and feel it push back; until you do, a scripted hand moves it. Drag beside it to look around.`;
+    : `Drag the orange part (${grasped}) to ${hinged || hand.turns ? "turn" : "move"} it and feel it push back; until you do, a scripted hand moves it.${hand.leadsOthers ? " The other hand is led by dragging its part, here or on a second page." : ""} Drag beside it to look around.`;
 }
 function reset() {
   if (maySteer()) ask({ do: "reset" });
@@ -455,39 +465,6 @@ tabs.forEach((tab, i) => {
     next.focus();
   };
 });
-
-const helpRows: [string, string][] = [
-  ["Drag the orange part", "take it by a spring; what it touches pushes back"],
-  ["Shift + drag, or Turn", "turn it about its handle"],
-  ["Wheel while dragging", "farther and nearer"],
-  ["Letting go", "the part stays where the hand was; R starts again with the scripted hand"],
-  ["Arrows, page up and down", "fine steps (shift turns, alt is finer) when the scene has the focus"],
-  ["G", "the device's button: grasp"],
-  ["Drag beside it, wheel, right drag", "look around, zoom to the pointer, shift the view; a double click becomes the middle"],
-  ["1 2 3 4, the cube", "slanted, front, side, top; a face of the cube"],
-  ["P, E, X, T, F", "pieces, kinds of edges, glass (parts that hide the held one, all, none), trail, force fields"],
-  ["+ −", "longer, shorter arrows; without that one newton has the same length in every moment"],
-  ["W, N", "the raw wrench beside the shown one, energy charts"],
-  ["Space, then Enter", "STOP: force and torque are led to zero at once; feel again"],
-  ["V", "record the run into a file; end it"],
-  ["Space, comma, full stop", "of a recording: play and pause, a frame back, a frame on"],
-  ["C, click on a chart", "pause; show that moment"],
-  ["L, R", "back to now; start again"],
-];
-function showHelp(on: boolean) {
-  const help = get<HTMLDialogElement>("help");
-  if (!on) return help.close();
-  if (help.childElementCount === 0) fillHelp(help);
-  help.showModal();
-  get("help-button").setAttribute("aria-expanded", "true");
-}
-function fillHelp(help: HTMLDialogElement) {
-  const close = make("button", { "aria-label": "Close" }, "×");
-  close.onclick = () => showHelp(false);
-  help.onclose = () => get("help-button").setAttribute("aria-expanded", "false");
-  help.append(close, make("h2", {}, "How to"), make("dl", {}, ...helpRows.flatMap(([key, what]) => [make("dt", {}, key), make("dd", {}, what)])),
-    make("p", { class: "quiet" }, "Orange: the part in your hand. Blue ghost: where the device is. Red arrow: force on the hand. Pink arc: torque. White discs: contact points. Arrows at contacts are green where friction sticks, yellow where it slips."));
-}
 
 const prefersDark = window.matchMedia("(prefers-color-scheme: dark)");
 prefersDark.onchange = () => theme(prefersDark.matches);

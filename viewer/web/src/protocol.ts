@@ -28,7 +28,9 @@ export interface DeviceFacts {
 export interface Run extends Settings {
   type: "run"; run: number; version: string; scene: string; description: string; remarks: Remark[];
   scenes: { name: string; description: string; absent: string[] }[];
-  rate_Hz: number; bodies: Body[]; grasped: number; picks: boolean; X_BH: Pose; device: DeviceFacts; stages: StageInfo[];
+  rate_Hz: number; bodies: Body[]; grasped: number; picks: boolean; X_BH: Pose;
+  other_hands: { grasped: number; can_be_led: boolean }[]; // those after the first
+  device: DeviceFacts; stages: StageInfo[];
   channels: ChannelInfo[]; flags: { safety: FlagInfo[]; frame: FlagInfo[] };
   posed: number[]; // bodies whose poses every sample has, behind its other numbers
   replay?: { file: string; first: number; past: number }; // of a recording: its frames
@@ -37,6 +39,7 @@ export interface Run extends Settings {
 export interface Times { mean: number; p50: number; p99: number; p999: number; max: number }
 export interface Status {
   type: "status"; pages: number; steering: boolean; somebody_steers: boolean; stop_asked: boolean; samples_lost: number;
+  led_elsewhere: number[]; // hands after the first that other pages lead, the first counted as 0
   refused: Record<string, number>;
   program: {
     stopped?: boolean; stop_ramp_s?: number; running?: boolean; device_lost?: boolean; frames?: number;
