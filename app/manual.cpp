@@ -179,7 +179,7 @@ std::string replaced(std::string text, const std::string& word, const std::strin
 }  // namespace
 
 std::string manual_page(const CLI::App& app) {
-  const std::string name = app.get_name();
+  const std::string& name = app.get_name();
   std::string what = app.get_description();
   if (!what.empty() && what.back() == '.') what.pop_back();
   std::string page = fmt::format(".TH {} 1 \"\" \"Tactum {}\" \"User Commands\"\n",
@@ -200,7 +200,7 @@ std::string manual_page(const CLI::App& app) {
 }
 
 std::string bash_completion(const CLI::App& app) {
-  const std::string name = app.get_name();
+  const std::string& name = app.get_name();
   std::string text = replaced(std::string(kBashFunction), "CASES", bash_cases(app, app));
   text = replaced(text, "FUNCTION", "_" + replaced(name, "-", "_"));
   return replaced(text, "NAME", name);

@@ -50,7 +50,7 @@ inside sh -c 'dpkg -l | grep -c ^ii' | sed 's/$/ packages in the clean root/'
 part "The program"
 install "$(deb tactum)"
 inside tactum --version
-inside tactum feel gears --virtual-clock --updates 2000
+inside tactum feel gears --virtual-clock | grep -E '^(goal|frames)'
 inside test -s /usr/share/man/man1/tactum.1.gz
 inside test -s /usr/share/bash-completion/completions/tactum
 
@@ -64,7 +64,6 @@ echo "$line"
 found="$(inside sh -c "$line")"
 echo "$found"
 [[ -n $printed && $found == "$printed" ]] || stop "docs/packages.md says it prints: $printed"
-install python3-matplotlib
 for script in "$clean"/examples/python/*.py; do
   inside python3 "/examples/python/$(basename "$script")" >"$log" || { cat "$log"; stop "$(basename "$script") has failed"; }
   rm -f "$log"
