@@ -15,7 +15,16 @@ namespace {
 using Command = CLI::App;
 
 std::vector<const Command*> commands_of(const Command& command) {
-  return command.get_subcommands([](const Command*) { return true; });
+  return command.get_subcommands([](const Command* below) { return !below->get_name().empty(); });
+}
+
+/// The options of a command, with those of its groups: CLI11 keeps a group as a command without a name.
+std::vector<const CLI::Option*> all_options(const Command& command) {
+  const auto named = [](const CLI::Option* option) { return option->get_name() != "--help"; };
+  std::vector<const CLI::Option*> options = command.get_options([](const CLI::Option*) { return true; });
+  for (const Command* group : command.get_subcommands([](const Command* c) { return c->get_name().empty(); }))
+    for (const CLI::Option* option : group->get_options(named)) options.push_back(option);
+  return options;
 }
 
 /// Text as man(7) shows it letter by letter: no letter of it is an instruction.
@@ -87,7 +96,7 @@ std::string relations_of(const CLI::Option& option) {
 std::string options_of(const Command& command) {
   std::string page;
   for (const bool positional : {true, false})
-    for (const CLI::Option* option : command.get_options([](const CLI::Option*) { return true; }))
+    for (const CLI::Option* option : all_options(command))
       if (option->nonpositional() != positional)
         page += fmt::format(".TP\n{}\n{}\n", heading_of(*option),
                             as_roff(option->get_description() + relations_of(*option)));
@@ -115,7 +124,7 @@ std::string version_text() {
 /// Every name an option can be called by, with a blank between them.
 std::string option_words(const Command& command) {
   std::string words;
-  for (const CLI::Option* option : command.get_options([](const CLI::Option*) { return true; })) {
+  for (const CLI::Option* option : all_options(command)) {
     for (const std::string& name : option->get_snames()) words += " -" + name;
     for (const std::string& name : option->get_lnames()) words += " --" + name;
   }

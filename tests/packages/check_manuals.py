@@ -10,7 +10,7 @@ import shutil
 import subprocess
 import sys
 
-OPTION_LINE = re.compile(r"^  (-[\w,-]+)", re.MULTILINE)
+OPTION_LINE = re.compile(r"^  (?:  )?(-[\w,-]+)", re.MULTILINE)
 COMMAND_LINE = re.compile(r"^  ([a-z][\w-]*) ", re.MULTILINE)
 
 
