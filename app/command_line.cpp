@@ -12,6 +12,7 @@
 #include <functional>
 #include <stdexcept>
 
+#include "app/manual.h"
 #include "tactum/base/nearest_word.h"
 #include "tactum/version.h"
 
@@ -107,9 +108,10 @@ CLI::Validator number_check(const std::function<bool(double)>& allows, const std
 }  // namespace
 
 int run_command_line(CLI::App& app, int argc, char** argv) {
-  if (argc > 1 && std::string(argv[1]) == "help") return print_help(app, {argv + 2, argv + argc});
   app.set_version_flag("--version", fmt::format("{} {}.{}.{}", app.get_name(), TACTUM_VERSION_MAJOR,
                                                 TACTUM_VERSION_MINOR, TACTUM_VERSION_PATCH));
+  if (print_manual(app, argc, argv)) return 0;
+  if (argc > 1 && std::string(argv[1]) == "help") return print_help(app, {argv + 2, argv + argc});
   try {
     app.parse(argc, argv);
   } catch (const CLI::RuntimeError& error) {

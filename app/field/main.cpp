@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "app/manual.h"
 #include "tactum/scene/field_file.h"
 #include "vtk_image.h"
 
@@ -23,6 +24,7 @@ int main(int argc, char** argv) {
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   app.add_option("--newtons-per-unit", options.newtons_per_unit, "Of its vectors [N]")->capture_default_str();
+  if (print_manual(app, argc, argv)) return 0;
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

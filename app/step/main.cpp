@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 
+#include "app/manual.h"
 #include "step_mesh.h"
 
 int main(int argc, char** argv) {
@@ -23,6 +24,7 @@ int main(int argc, char** argv) {
   app.add_option("--angle", angle_deg, "Between neighbouring facets of a curve, at most [deg]")
       ->check(CLI::Range(0.1, 90.0))
       ->capture_default_str();
+  if (print_manual(app, argc, argv)) return 0;
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -15,6 +15,7 @@
 #include <mutex>
 #include <thread>
 
+#include "app/manual.h"
 #include "app/report/sweep_page.h"
 #include "app/sweep/sweep_job.h"
 #include "app/sweep/sweep_table.h"
@@ -142,16 +143,17 @@ Result<void> sweep_over_mpi(const SweepOptions& options, int rank, int ranks) {
 
 int main(int argc, char** argv) {
   using namespace tactum;
-  int provided = 0, rank = 0, ranks = 1;
-  MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &provided);
-  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-  MPI_Comm_size(MPI_COMM_WORLD, &ranks);
   SweepOptions options;
   CLI::App app("tactum sweep over MPI: one rank a core.", "tactum-sweep-mpi");
   app.add_option("FILE", options.file, "The sweep")->required();
   app.add_option("-o,--out", options.out, "The result");
   app.add_option("--page", options.page, "A page with maps of the result");
   app.add_flag("--anew", options.anew, "Compute everything again");
+  if (print_manual(app, argc, argv)) return 0;
+  int provided = 0, rank = 0, ranks = 1;
+  MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &provided);
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  MPI_Comm_size(MPI_COMM_WORLD, &ranks);
   int code = 0;
   try {
     app.parse(argc, argv);
@@ -159,8 +161,9 @@ int main(int argc, char** argv) {
     if (!done && rank == 0) fmt::print(stderr, "tactum: {}\n", done.error().message());
     code = done ? 0 : 1;
   } catch (const CLI::ParseError& error) {
-    if (rank == 0) fmt::print(stderr, "tactum: {}\n", error.what());
-    code = 2;
+    code = error.get_exit_code() == 0 ? 0 : 2;  // 0: --help
+    if (rank == 0 && code == 0) app.exit(error);
+    if (rank == 0 && code != 0) fmt::print(stderr, "tactum: {}\n", error.what());
   }
   MPI_Finalize();
   return code;
