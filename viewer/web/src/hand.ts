@@ -7,7 +7,7 @@
 //   where bodies can be picked up, the hand goes to where one is pressed on and holds it until the pointer is let go
 //   arrows          fine steps, page up and down in depth, with shift turns
 import * as THREE from "three";
-import type { Picture, Run } from "./protocol";
+import type { Picture, Run, Vec } from "./protocol";
 import type { View } from "./view";
 
 const turnPerPixel = 0.008; // [rad]
@@ -15,6 +15,7 @@ const farthestLead = 1.0; // how far an aim may turn ahead of a hinged part [rad
 const fineStep = 0.006; // of the scene's radius
 const fineTurn = (0.5 * Math.PI) / 180; // [rad]
 const sendEvery_ms = 16;
+const leash = 0.3; // of the scene's radius
 const nearEnough_m = 0.004; // of the hand to what it shall pick up
 
 export interface HandTalk {
@@ -230,6 +231,18 @@ export class Hand {
       const step = new THREE.Vector3(...direction).applyQuaternion(this.view.camera.quaternion);
       this.p.addScaledVector(step, (fineStep * finer) / this.view.scale);
     }
+    this.send(false);
+  }
+
+  /** Moves and turns the aim in the axes of the view, by parts of the scene's radius and by radians. It goes no farther ahead
+   *  of the handle than a leash: what is pushed against a wall comes back at once. */
+  lead(move: Vec, turn: Vec) {
+    if (this.drag || !this.takeUp()) return;
+    const handle = this.view.picture?.hand ?? [0, 0, 0];
+    this.p.addScaledVector(new THREE.Vector3(...move).applyQuaternion(this.view.camera.quaternion), 1 / this.view.scale);
+    const from = new THREE.Vector3(handle[0], handle[1], handle[2]);
+    this.p.sub(from).clampLength(0, leash / this.view.scale).add(from);
+    this.turnBy(turn[1], turn[0], turn[2]);
     this.send(false);
   }
 

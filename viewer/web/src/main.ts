@@ -6,6 +6,7 @@ import { Connection } from "./connection";
 import { download, get, make } from "./dom";
 import { Hand } from "./hand";
 import { edgeKinds } from "./look";
+import { Pads } from "./pads";
 import { Panel } from "./panel";
 import { readShapes, type Frames, type Picture, type Run, type Shape, type Status, type ServerMessage } from "./protocol";
 import { Recording } from "./recording";
@@ -37,6 +38,7 @@ const panel = new Panel(get("panel"), (message) => {
   if (maySteer()) ask(message);
 });
 const hand = new Hand(view, canvas, { maySteer, send: ask });
+const pads = new Pads(hand, notice);
 const askToSteer = (message: Record<string, unknown>) => void (maySteer() && ask(message));
 const timeline = new Timeline(askToSteer);
 const recording = new Recording(askToSteer);
@@ -187,8 +189,8 @@ function showSummary(sample: number) {
   const torque = samples.length(shown, 3, sample);
   const points = samples.at(samples.column("grasped_contact_points"), sample);
   get("summary").textContent = run.grasped < 0 ? "nothing is held" : `${withUnit(force, "N")} · ${withUnit(torque, "N m")} · ${points > 0 ? `touching at ${points} ${points === 1 ? "point" : "points"}` : "free"}`;
-  body.dataset.force = String(force);
-  body.dataset.torque = String(torque);
+  if (charts.moment === null && points > 0) pads.feel(force / run.device.max_force_N);
+  [body.dataset.force, body.dataset.torque] = [String(force), String(torque)];
   body.dataset.peakForce = String(samples.peakForce);
   body.dataset.otherForces = (view.picture?.others ?? []).map((other) => Math.hypot(...other.wrench.slice(0, 3))).join(",");
   body.dataset.fieldArrows = String(view.field.count);
@@ -462,7 +464,7 @@ const helpRows: [string, string][] = [
   ["Wheel while dragging", "farther and nearer"],
   ["Letting go", "the part stays where the hand was; R starts again with the scripted hand"],
   ["Arrows, page up and down", "fine steps (shift turns, alt is finer) when the scene has the focus"],
-  ["G", "the device's button: grasp"],
+  ["G", "the device's button: grasp"], ["SpaceMouse, gamepad", "lead the hand as long as they are deflected; a gamepad rumbles while the part pushes"],
   ["Drag beside it, wheel, right drag", "look around, zoom to the pointer, shift the view; a double click becomes the middle"],
   ["1 2 3 4, the cube", "slanted, front, side, top; a face of the cube"],
   ["P, E, X, T, F", "pieces, kinds of edges, glass (parts that hide the held one, all, none), trail, force fields"],
