@@ -18,7 +18,7 @@ constexpr int kVelocityFrames = 3;  // frames to either side
 constexpr int kUnknowns = 5;
 // What the method is good for where friction is not quite that of the law (first_touch_test.cpp).
 constexpr double kDampingError_Ns_per_m = 0.1;
-constexpr double kDampingErrorShare = 0.1;
+constexpr double kDampingErrorShare = 0.15;
 
 /// The force of the commands integrated twice, each command held until the next.
 class ImpulseIntegral {

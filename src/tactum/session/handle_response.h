@@ -27,7 +27,7 @@ struct ResponseSample {
 struct HandleResponse {
   double mass_kg = 0.0;           ///< [kg]
   double damping_Ns_per_m = 0.0;  ///< [N s/m]
-  /// Of the damping: 0.1 N s/m and a tenth of it, or two standard deviations where that is more [N s/m].
+  /// Of the damping: 0.1 N s/m and 15 % of it, or two standard deviations where that is more [N s/m].
   double damping_error_Ns_per_m = 0.0;
   double friction_N = 0.0;   ///< Coulomb [N]
   double delay_s = 0.0;      ///< from a write to the motion that is read, to 1 ms [s]
