@@ -8,6 +8,8 @@
 #include "tactum/drivers/registry.h"
 #include "tactum/drivers/udev_rules.h"
 #include "tactum/haptics/coupling_gains.h"
+#include "tactum/session/device_profile.h"
+#include "try_device.h"
 
 namespace tactum {
 namespace {
@@ -17,6 +19,7 @@ constexpr double kRate_Hz = 1000.0;  // for which the couplings are listed
 struct DevicesOptions {
   bool install_udev = false;
   bool print_udev = false;
+  TryOptions trial;
 };
 
 void print_margin(const DeviceInfo& info) {
@@ -33,13 +36,22 @@ std::string abilities_of(const DeviceInfo& info) {
   return text + (info.actuates_force && !info.actuates_torque ? ", cannot turn the handle" : "");
 }
 
+/// With the profile of the device, where it has one that can be used.
+DeviceInfo known_info(const DeviceInfo& info) {
+  if (profile_sentence(info).empty()) return info;
+  const Result<DeviceProfile> profile = read_profile(profile_path(info));
+  return profile ? with_profile(info, *profile) : info;
+}
+
 void print_survey(const DriverSurvey& survey) {
   if (survey.found.empty()) fmt::print("{:<32}{}\n", survey.driver, survey.nothing);
   for (const FoundDevice& found : survey.found) {
     fmt::print("{:<32}{}{}: {}\n", found.name, found.info.name,
                found.info.serial.empty() ? "" : ", serial " + found.info.serial, abilities_of(found.info));
     if (!found.health.empty()) fmt::print("{:<32}{}\n", "", found.health);
-    print_margin(found.info);
+    const std::string profile = profile_sentence(found.info);
+    if (!profile.empty()) fmt::print("{:<32}{}\n", "", profile);
+    print_margin(known_info(found.info));
   }
 }
 
@@ -76,8 +88,23 @@ void add_devices(CLI::App& app) {
                                            "Write the udev rules that let users open the devices");
   command->add_flag("--print-udev", options->print_udev, "Print those rules, and write nothing")
       ->excludes(install);
+  CLI::Option* trial = command
+                           ->add_option("--try", options->trial.device,
+                                        "Touch this device for the first time, step by step: axes, signs, "
+                                        "delay, damping (docs/devices/first-touch.md)")
+                           ->excludes(install);
+  command->add_flag("--yes", options->trial.yes, "Go on by itself before every step of --try")->needs(trial);
+  command->add_option("--patience", options->trial.patience_s, "A step of --try waits so long for you [s]")
+      ->check(number_between(0.1, 3600.0, "seconds"))
+      ->needs(trial);
+  command
+      ->add_option("--profile", options->trial.profile,
+                   "Write what --try has measured to this file, and not where tactum feel looks for it")
+      ->needs(trial);
   command->callback([options] {
-    if (options->print_udev)
+    if (!options->trial.device.empty())
+      try_device(options->trial);
+    else if (options->print_udev)
       fmt::print("# {}\n{}", kUdevRulesPath, udev_rules());
     else if (options->install_udev)
       install_udev();

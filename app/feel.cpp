@@ -27,6 +27,7 @@
 #include "tactum/scene/builtin_scenes.h"
 #include "tactum/scene/scene_file.h"
 #include "tactum/scene/scene_remarks.h"
+#include "tactum/session/device_profile.h"
 #include "tactum/session/session.h"
 #include "tactum/telemetry/statistics.h"
 #include "tactum/version.h"
@@ -269,6 +270,8 @@ void report_what_is_felt(std::FILE* out, const Session& session, const std::stri
   if (session.device().actuates_force && !replayed)
     fmt::print(out, "{}{}\n", margin_sentence(coupling, session.device(), session.rate_Hz()),
                scene.coupling_by_device ? " It was chosen for this device and rate." : "");
+  if (const std::string profile = profile_sentence(session.device()); !profile.empty())
+    fmt::print(out, "{}\n", profile);
   for (std::size_t h = 1; h < session.hands(); ++h)
     fmt::print(out, "hand {} on {}: {}\n", h + 1, session.device_of(h).name,
                margin_sentence(scene.settings.hand(h).coupling, session.device_of(h), session.rate_Hz()));

@@ -59,6 +59,48 @@ TEST(Devices, TheRulesForUdevArePrinted) {
   EXPECT_FALSE(holds(run.out, "0666")) << "nobody else may open them";
 }
 
+TEST(Devices, AFirstTouchIsRehearsedAndItsProfileWritten) {
+  const testing::ScratchFolder folder;
+  const std::string profile = folder / "profile.toml";
+  const ProgramRun run = run_tactum("devices --try omega.6 --yes --profile '" + profile + "'");
+  EXPECT_EQ(run.exit_code, 0) << run.out << run.err;
+  for (const char* words : {"A rehearsal", "axes: x is toward you",
+                            "a force up (+z) moved the handle up (+z)", "damping 0.", "stable in any hand"})
+    EXPECT_TRUE(holds(run.out, words)) << words << "\n" << run.out;
+  EXPECT_TRUE(holds(testing::content(profile), "device = \"simulated omega.6\""))
+      << testing::content(profile);
+}
+
+TEST(Devices, AFirstTouchNeedsAPersonOrAWord) {
+  const ProgramRun run = run_tactum("devices --try omega.6 </dev/null");
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_TRUE(holds(run.err, "--yes")) << run.err;
+}
+
+/// The stand-in's handle does not move, so nothing but zero may be sent to it.
+TEST(Devices, AFirstTouchOfADeviceThatNobodyMovesSendsNoForce) {
+  const testing::ScratchFolder folder;
+  const SetVariable dhd("TACTUM_FORCE_DIMENSION_LIBRARY", standin_file("standin_dhd"));
+  const SetVariable record("TACTUM_STANDIN_RECORD", folder / "record");
+  const ProgramRun run = run_tactum("devices --try force-dimension --yes --patience 0.2 --profile '" +
+                                    (folder / "p.toml") + "'");
+  EXPECT_EQ(run.exit_code, 2) << run.err;
+  EXPECT_TRUE(holds(run.out, "new samples a second")) << run.out;
+  EXPECT_TRUE(holds(run.out, "No profile is written")) << run.out;
+  std::istringstream lines(testing::content(folder / "record"));
+  std::string line, end;
+  while (std::getline(lines, line)) {
+    std::istringstream numbers(line);
+    double x = 0.0, y = 0.0, z = 0.0;
+    if (numbers >> x >> y >> z) {
+      EXPECT_EQ(std::abs(x) + std::abs(y) + std::abs(z), 0.0);
+    } else {
+      end = line;
+    }
+  }
+  EXPECT_EQ(end, "forces off at the end, 0 rules broken");
+}
+
 TEST(Doctor, EveryFindingStandsInALineAndADeviceThatIsNotThereHasItsCure) {
   const NothingThere nothing;
   const ProgramRun good = run_tactum("doctor --duration 0.1 --device touch");

@@ -7,6 +7,7 @@
 #include "tactum/drivers/registry.h"
 #include "tactum/haptics/simulation.h"
 #include "tactum/scene/build_scene.h"
+#include "tactum/session/device_profile.h"
 
 namespace tactum::inline v0_1 {
 namespace {
@@ -51,7 +52,9 @@ Result<std::unique_ptr<Session>> Session::open(Scene scene, const SessionOptions
                    scene.name};
     Result<std::unique_ptr<Device>> device = make_device(name, device_options);
     if (!device) return device.error();
-    devices.push_back(std::move(*device));
+    Result<std::unique_ptr<Device>> known = profiled(std::move(*device));
+    if (!known) return known.error();
+    devices.push_back(std::move(*known));
     return {};
   };
   if (Result<void> added = add(options.device, scene); !added) return added.error();

@@ -4,13 +4,14 @@ import { topics as connectionTopics } from "./connection_topics.mjs";
 import { topics as controlTopics } from "./control_topics.mjs";
 import { topics as forceTopics } from "./force_topics.mjs";
 import { topics as layoutTopics } from "./layout_topics.mjs";
+import { topics as padTopics } from "./pad_topics.mjs";
 import { topics as pictureTopics } from "./picture_topics.mjs";
 import { topics as recordingTopics } from "./recording_topics.mjs";
 import { topics as sceneTopics } from "./scene_topics.mjs";
 import { missing, openBrowser } from "./support.mjs";
 
 const [topic, tactum] = process.argv.slice(2);
-const topics = { ...sceneTopics, ...forceTopics, ...connectionTopics, ...controlTopics, ...layoutTopics, ...pictureTopics, ...recordingTopics };
+const topics = { ...sceneTopics, ...forceTopics, ...connectionTopics, ...controlTopics, ...layoutTopics, ...padTopics, ...pictureTopics, ...recordingTopics };
 
 if (!topics[topic] || !tactum) {
   console.error(`usage: node run.mjs ${Object.keys(topics).join("|")} TACTUM`);

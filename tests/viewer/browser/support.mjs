@@ -82,8 +82,9 @@ export async function until(sentence, ask, seconds = 40) {
   throw new Error(`waited in vain until ${sentence}`);
 }
 
-/** A page that remembers what it complained of, and its sockets so that a test can cut them. */
-export async function openPage(browser, program, options = {}, look = "") {
+/** A page that remembers what it complained of, and its sockets so that a test can cut them. `before` runs in the page before
+ *  its own scripts. */
+export async function openPage(browser, program, options = {}, look = "", before = null) {
   const context = await browser.newContext({ viewport: { width: 1280, height: 720 }, colorScheme: "dark", acceptDownloads: true, ...options });
   const page = await context.newPage();
   page.complaints = [];
@@ -101,6 +102,7 @@ export async function openPage(browser, program, options = {}, look = "") {
       }
     };
   });
+  if (before) await page.addInitScript(before);
   await page.goto(program.address + look);
   await until("the page shows frames", async () => Number((await state(page)).samples) > 200);
   return page;

@@ -10,7 +10,7 @@
 // Where several hands hold parts, the one whose part is pressed on is led. A hand after the first is taken by the page
 // that aims it, and left when the pointer lets go, so that two pages lead two hands.
 import * as THREE from "three";
-import type { Picture, Run } from "./protocol";
+import type { Picture, Run, Vec } from "./protocol";
 import type { View } from "./view";
 
 const turnPerPixel = 0.008; // [rad]
@@ -18,6 +18,7 @@ const farthestLead = 1.0; // how far an aim may turn ahead of a hinged part [rad
 const fineStep = 0.006; // of the scene's radius
 const fineTurn = (0.5 * Math.PI) / 180; // [rad]
 const sendEvery_ms = 16;
+const leash = 0.3; // of the scene's radius
 const nearEnough_m = 0.004; // of the hand to what it shall pick up
 
 export interface HandTalk {
@@ -288,6 +289,18 @@ export class Hand {
       const step = new THREE.Vector3(...direction).applyQuaternion(this.view.camera.quaternion);
       this.p.addScaledVector(step, (fineStep * finer) / this.view.scale);
     }
+    this.send(false);
+  }
+
+  /** Moves and turns the aim in the axes of the view, by parts of the scene's radius and by radians. It goes no farther ahead
+   *  of the handle than a leash: what is pushed against a wall comes back at once. */
+  lead(move: Vec, turn: Vec) {
+    if (this.drag || !this.takeUp()) return;
+    const handle = this.view.picture ? this.placeOf(this.view.picture).hand : [0, 0, 0];
+    this.p.addScaledVector(new THREE.Vector3(...move).applyQuaternion(this.view.camera.quaternion), 1 / this.view.scale);
+    const from = new THREE.Vector3(handle[0], handle[1], handle[2]);
+    this.p.sub(from).clampLength(0, leash / this.view.scale).add(from);
+    this.turnBy(turn[1], turn[0], turn[2]);
     this.send(false);
   }
 

@@ -8,6 +8,7 @@ const helpRows: [string, string][] = [
   ["Letting go", "the part stays where the hand was; R starts again with the scripted hand"],
   ["Arrows, page up and down", "fine steps (shift turns, alt is finer) when the scene has the focus"],
   ["G", "the device's button: grasp"],
+  ["SpaceMouse, gamepad", "lead the hand as long as they are deflected; a gamepad rumbles while the part pushes"],
   ["Drag beside it, wheel, right drag", "look around, zoom to the pointer, shift the view; a double click becomes the middle"],
   ["1 2 3 4, the cube", "slanted, front, side, top; a face of the cube"],
   ["P, E, X, T, F", "pieces, kinds of edges, glass (parts that hide the held one, all, none), trail, force fields"],

@@ -7,6 +7,7 @@ import { download, get, make } from "./dom";
 import { Hand } from "./hand";
 import { showHelp } from "./help";
 import { edgeKinds } from "./look";
+import { Pads } from "./pads";
 import { Panel } from "./panel";
 import { readShapes, type Frames, type Picture, type Run, type Shape, type Status, type ServerMessage } from "./protocol";
 import { Recording } from "./recording";
@@ -38,6 +39,7 @@ const panel = new Panel(get("panel"), (message) => {
   if (maySteer()) ask(message);
 });
 const hand = new Hand(view, canvas, { mayLead, send: ask });
+const pads = new Pads(hand, notice);
 const askToSteer = (message: Record<string, unknown>) => void (maySteer() && ask(message));
 const timeline = new Timeline(askToSteer);
 const recording = new Recording(askToSteer);
@@ -197,6 +199,7 @@ function showSummary(sample: number) {
   const torque = samples.length(shown, 3, sample);
   const points = samples.at(samples.column("grasped_contact_points"), sample);
   get("summary").textContent = run.grasped < 0 ? "nothing is held" : `${withUnit(force, "N")} · ${withUnit(torque, "N m")} · ${points > 0 ? `touching at ${points} ${points === 1 ? "point" : "points"}` : "free"}`;
+  if (charts.moment === null && points > 0) pads.feel(force / run.device.max_force_N);
   body.dataset.force = String(force);
   body.dataset.torque = String(torque);
   body.dataset.peakForce = String(samples.peakForce);
