@@ -11,6 +11,7 @@
 #include <optional>
 #include <thread>
 
+#include "bridge_run.h"
 #include "commands.h"
 #include "feel_options.h"
 #include "output.h"
@@ -45,6 +46,7 @@ struct Watchers {
   RefereeWatch* referee = nullptr;
   TraceFile* trace = nullptr;
   Recorder* recorder = nullptr;
+  BridgeRun* bridge = nullptr;
 };
 
 /// Says why nothing is recorded any more: once, while the run goes on.
@@ -224,10 +226,14 @@ Summary feel_live(Session& session, std::uint64_t frames, const Watchers& watche
   if (const Result<void> started = session.start(frames); !started) fail(started.error());
   for (const std::string& sentence : session.privileges().sentences) fmt::print(stderr, "{}\n", sentence);
   StatusLine status;
-  while (session.loop_status().running && !interrupted()) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    status.show(session, session.poll());
+  // Clients of bridges wait for what they see, a terminal and a disk do not.
+  const auto pause = std::chrono::milliseconds(watchers.bridge != nullptr ? 5 : 50);
+  for (int look = 0; session.loop_status().running && !interrupted(); ++look) {
+    std::this_thread::sleep_for(pause);
+    const SessionStatus newest = session.poll();
+    if (watchers.bridge == nullptr || look % 10 == 0) status.show(session, newest);
     if (watchers.trace != nullptr) watchers.trace->drain();
+    if (watchers.bridge != nullptr) watchers.bridge->poll();
     if (watchers.recorder != nullptr) report_trouble(*watchers.recorder);
   }
   session.stop();
@@ -382,6 +388,16 @@ std::unique_ptr<Recorder> begin_recording(const FeelOptions& options, const Scen
   return std::move(*recorder);
 }
 
+/// Null where none was asked for.
+std::unique_ptr<BridgeRun> begin_bridge(std::FILE* out, const FeelOptions& options, Session& session,
+                                        TraceFile* trace) {
+  if (options.bridge.bridges.empty()) return nullptr;
+  auto bridge = std::make_unique<BridgeRun>(options.bridge, session, trace);
+  for (const std::string& sentence : bridge->bridge().sentences()) fmt::print(out, "{}\n", sentence);
+  std::fflush(out);
+  return bridge;
+}
+
 void feel(const FeelOptions& options) {
   check_writable(options.json);
   // With --json - the standard output is for machines alone.
@@ -402,9 +418,12 @@ void feel(const FeelOptions& options) {
   std::optional<RefereeWatch> judges;
   if (options.referee) judges.emplace(session);
   std::optional<TraceFile> trace;
-  if (!options.trace.empty()) trace.emplace(options.trace, session, frames, options.trace_bodies);
+  const bool bridges = !options.bridge.bridges.empty();
+  if (!options.trace.empty()) trace.emplace(options.trace, session, frames, options.trace_bodies, bridges);
+  const std::unique_ptr<BridgeRun> bridge = begin_bridge(out, options, session, trace ? &*trace : nullptr);
   const std::unique_ptr<Recorder> recorder = begin_recording(options, description, session);
-  const Watchers watchers{judges ? &*judges : nullptr, trace ? &*trace : nullptr, recorder.get()};
+  const Watchers watchers{judges ? &*judges : nullptr, trace ? &*trace : nullptr, recorder.get(),
+                          bridge.get()};
   const Summary times = options.virtual_clock
                             ? feel_virtually(options, description, session, frames, watchers)
                             : feel_live(session, frames, watchers);
@@ -440,6 +459,7 @@ void add_feel(CLI::App& app) {
                              ->needs(virtual_clock);
   add_record(command, options.get());
   CLI::Option* trace = add_trace(command, options.get());
+  CLI::Option* bridge = add_bridge(command, options.get())->excludes(virtual_clock);
   CLI::Option* view = command->add_flag(
       "--view", options->view,
       "Serve a page that shows the scene, and on which the mouse is the hand: until interrupted, or, where a "
@@ -447,6 +467,7 @@ void add_feel(CLI::App& app) {
   replays->excludes(view);
   referee->excludes(view);
   trace->excludes(view);
+  bridge->excludes(view);
   add_page(command, options.get(), view)->excludes(virtual_clock);
   command->callback([options] { feel(*options); });
 }

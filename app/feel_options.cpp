@@ -73,6 +73,25 @@ CLI::Option* add_trace(CLI::App* command, FeelOptions* options) {
   return trace;
 }
 
+CLI::Option* add_bridge(CLI::App* command, FeelOptions* options) {
+  CLI::Option* bridge =
+      command
+          ->add_option("--bridge", options->bridge.bridges,
+                       "Tell the run to other programs while it goes on (docs/bridges.md): rosbridge, "
+                       "foxglove, or one of them with :PORT; once for each bridge")
+          ->allow_extra_args(false)
+          ->check([](const std::string& text) {
+            const Result<BridgeChoice> choice = parse_bridge(text);
+            return choice ? std::string() : choice.error().message();
+          });
+  command
+      ->add_option("--bridge-rate", options->bridge.rate_Hz,
+                   "Messages a second on each topic of the bridges, at most; by default 100")
+      ->check(number_between(0.1, 1e5, "messages a second"))
+      ->needs(bridge);
+  return bridge;
+}
+
 CLI::Option* add_page(CLI::App* command, FeelOptions* options, CLI::Option* view) {
   command->add_option("--port", options->port, "The port of the page; by default one that is free")
       ->check(whole_number_between(1, 65535, "a port"))

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "bridge_run.h"
+
 namespace tactum {
 
 struct FeelOptions {
@@ -27,6 +29,7 @@ struct FeelOptions {
   bool virtual_clock = false;
   bool referee = false;
   bool view = false;
+  BridgeOptions bridge;
   int port = 0;
   double wait_s = 0.0;
 };
@@ -36,6 +39,8 @@ void add_what_is_felt(CLI::App* command, FeelOptions* options);
 /// --record and --trace, with what belongs to them.
 CLI::Option* add_record(CLI::App* command, FeelOptions* options);
 CLI::Option* add_trace(CLI::App* command, FeelOptions* options);
+/// --bridge, with what belongs to it.
+CLI::Option* add_bridge(CLI::App* command, FeelOptions* options);
 /// The options of the page; returns that of waiting for it.
 CLI::Option* add_page(CLI::App* command, FeelOptions* options, CLI::Option* view);
 

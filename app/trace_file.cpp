@@ -28,7 +28,8 @@ std::string settings_as_comments(const Scene& scene) {
   return text;
 }
 
-std::string head_of(const Session& session, std::uint64_t frames, const FrameTrace& trace) {
+std::string head_of(const Session& session, std::uint64_t frames, const FrameTrace& trace,
+                    std::size_t columns) {
   const Scene& scene = session.scene();
   const std::time_t now = std::time(nullptr);
   std::string text = fmt::format(
@@ -39,21 +40,24 @@ std::string head_of(const Session& session, std::uint64_t frames, const FrameTra
       TACTUM_VERSION_MAJOR, TACTUM_VERSION_MINOR, TACTUM_VERSION_PATCH, scene.name, session.device().name,
       session.rate_Hz(), frames, fmt::gmtime(now));
   text += settings_as_comments(scene);
-  for (std::size_t i = 0; i < trace.width(); ++i) text += (i == 0 ? "" : ",") + trace.columns()[i].name;
+  for (std::size_t i = 0; i < columns; ++i) text += (i == 0 ? "" : ",") + trace.columns()[i].name;
   return text + "\n";
 }
 
 }  // namespace
 
-TraceFile::TraceFile(const std::string& path, Session& session, std::uint64_t frames, bool bodies)
+TraceFile::TraceFile(const std::string& path, Session& session, std::uint64_t frames, bool bodies,
+                     bool passes_on)
     : path_(path),
       session_(session),
-      trace_(session.scene().world, session.scene().settings.dt_s, bodies, FrameTrace::kFrames,
+      trace_(session.scene().world, session.scene().settings.dt_s, bodies || passes_on, FrameTrace::kFrames,
              session.hands()),
+      columns_(FrameTrace(session.scene().world, session.scene().settings.dt_s, bodies, 0, session.hands())
+                   .width()),
       row_(trace_.width()),
       file_(std::fopen(path.c_str(), "w")) {
   if (!file_) fail({"cannot write the trace", std::strerror(errno), "a file that can be written", path});
-  const std::string head = head_of(session, frames, trace_);
+  const std::string head = head_of(session, frames, trace_, columns_);
   std::fwrite(head.data(), 1, head.size(), file_.get());
   session_.trace_to(&trace_);
 }
@@ -63,9 +67,10 @@ TraceFile::~TraceFile() { session_.trace_to(nullptr); }
 void TraceFile::drain() {
   fmt::memory_buffer text;
   while (trace_.pop(row_)) {
-    for (std::size_t i = 0; i < row_.size(); ++i)
+    for (std::size_t i = 0; i < columns_; ++i)
       fmt::format_to(std::back_inserter(text), "{}{}", i == 0 ? "" : ",", row_[i] + 0.0);
     text.push_back('\n');
+    if (other_) other_(row_);
     ++rows_;
   }
   std::fwrite(text.data(), 1, text.size(), file_.get());

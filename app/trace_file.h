@@ -2,7 +2,9 @@
 /// Writes the trace of a run (telemetry/trace.h) as CSV, for tactum feel --trace.
 
 #include <cstdio>
+#include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,7 +17,9 @@ class TraceFile {
   /// Opens the file, and writes the head: comment lines that begin with '#' (scene, device, settings, frames,
   /// date), then the names of the columns. Fails with a sentence where that cannot be. From here on the
   /// session's frames are traced; it must outlive this.
-  TraceFile(const std::string& path, Session& session, std::uint64_t frames, bool bodies);
+  /// The rows have the bodies where `bodies` or `passes_on` says so; the file has them for `bodies` alone.
+  TraceFile(const std::string& path, Session& session, std::uint64_t frames, bool bodies,
+            bool passes_on = false);
   ~TraceFile();
   TraceFile(const TraceFile&) = delete;
   TraceFile& operator=(const TraceFile&) = delete;
@@ -24,6 +28,10 @@ class TraceFile {
   void drain();
   /// Writes the rest. Fails with a sentence when the disk did not take all of it.
   void finish();
+
+  /// Who is given every row as it is drained; an empty function for nobody.
+  void pass_rows_to(std::function<void(std::span<const double>)> other) { other_ = std::move(other); }
+  const FrameTrace& rows_of_frames() const { return trace_; }
 
   std::uint64_t rows() const { return rows_; }
   std::uint64_t lost() const { return trace_.dropped(); }
@@ -35,7 +43,9 @@ class TraceFile {
   std::string path_;
   Session& session_;
   FrameTrace trace_;
+  std::size_t columns_;  // of the file; the rows may have more
   std::vector<double> row_;
+  std::function<void(std::span<const double>)> other_;
   std::uint64_t rows_ = 0;
   std::unique_ptr<std::FILE, Close> file_;
 };

@@ -17,7 +17,7 @@ if(TACTUM_INSTALL)
     FILES_MATCHING PATTERN "*.h" PATTERN "toml_reader.h" EXCLUDE PATTERN "read_description.h" EXCLUDE)  # these show toml++
   if(TARGET tactum_c)
     install(TARGETS tactum_c LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT c)
-    install(FILES ${PROJECT_SOURCE_DIR}/src/tactum/embedding/tactum_c.h
+    install(FILES ${PROJECT_SOURCE_DIR}/src/tactum/embedding/tactum_c.h ${PROJECT_SOURCE_DIR}/src/tactum/embedding/tactum_client.h
       DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tactum/embedding COMPONENT c)
   endif()
   install(EXPORT tactumTargets NAMESPACE tactum:: DESTINATION ${package} COMPONENT library)

@@ -10,3 +10,13 @@ if(TARGET tactum_c)
   add_dependencies(dlopen_host tactum_c)
   add_test(NAME embedding.dlopen_host COMMAND dlopen_host $<TARGET_FILE:tactum_c>)
 endif()
+
+# The client in C++17 over it, as a host of its own compiles it, with either compiler's warnings.
+add_executable(client_host embedding/client_host.cpp)
+target_include_directories(client_host PRIVATE ${PROJECT_SOURCE_DIR}/src)
+target_compile_options(client_host PRIVATE -Wall -Wextra -Wpedantic -Werror)
+set_target_properties(client_host PROPERTIES CXX_STANDARD 17 CXX_EXTENSIONS OFF)
+target_link_libraries(client_host PRIVATE ${tactum_c_for_programs})
+if(NOT TACTUM_SANITIZE STREQUAL "thread")
+  add_test(NAME embedding.client_host COMMAND client_host)
+endif()

@@ -46,7 +46,7 @@ struct LatestMessage {
 };
 
 /// The run that is shown.
-struct ShownRun {
+struct PageRun {
   std::uint32_t number = 0;
   SharedText message = shared_text("{}");
   SharedText geometry = shared_text("");
@@ -110,7 +110,7 @@ struct ConnectionHub {
   int connections = 0;
   RateLimit requests{200.0, 400.0};
 
-  ShownRun run;
+  PageRun run;
   LatestMessage picture, settings, sentence;
   std::uint64_t picture_place = 0;                     // in the history, of the sample of the picture's frame
   LatestMessage program_status{shared_text("{}"), 0};  // a new version also when another page steers

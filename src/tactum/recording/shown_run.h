@@ -8,6 +8,7 @@
 
 #include "tactum/recording/frame_slot.h"
 #include "tactum/recording/mcap_writer.h"
+#include "tactum/recording/shown_messages.h"
 
 namespace tactum::inline v0_1 {
 
@@ -26,19 +27,15 @@ class ShownRun {
   void show(std::uint64_t index, const std::vector<double>& row, std::uint64_t time_ns);
 
  private:
-  void show_transform(const char* name, const double* pose, std::uint64_t time_ns);
   void show_wrench(std::uint16_t channel, const double* wrench, std::uint64_t time_ns);
 
   McapWriter& writer_;
-  std::vector<std::string> bodies_;  // the names of their frames
+  ShownColumns columns_;
   std::uint64_t frames_a_message_;
-  struct ShownHand {
-    std::string hand, proxy;                        // the names of their frames
-    std::size_t hand_at, proxy_at, sent, computed;  // places in a row
-    std::uint16_t sent_channel, computed_channel;
+  struct WrenchChannels {
+    std::uint16_t sent, computed;
   };
-  std::vector<ShownHand> hands_;
-  std::size_t first_body_;  // its place in a row
+  std::vector<WrenchChannels> wrenches_;  // by hand
   std::uint32_t sequence_ = 0;
   std::uint16_t transforms_, scene_;
 };
