@@ -201,7 +201,7 @@ TEST(FirstTouch, AnUnpluggedDeviceIsOfferedZeroInEveryStep) {
   }
 }
 
-TEST(FirstTouch, StoppingLeadsToZeroWithoutAStepInEveryStep) {
+TEST(FirstTouch, StoppingLeadsToZeroInEveryStep) {
   for (int question = 1; question <= 16; ++question) {
     Trial trial(preset("sigma.7"));
     trial.person.stops_at = question;
