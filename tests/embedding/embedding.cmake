@@ -12,7 +12,7 @@ if(TARGET tactum_c)
 endif()
 
 # The client in C++17 over it, as a host of its own compiles it, with either compiler's warnings.
-add_executable(client_host embedding/client_host.cpp)
+add_executable(client_host embedding/host/client_host.cpp)
 target_include_directories(client_host PRIVATE ${PROJECT_SOURCE_DIR}/src)
 target_compile_options(client_host PRIVATE -Wall -Wextra -Wpedantic -Werror)
 set_target_properties(client_host PROPERTIES CXX_STANDARD 17 CXX_EXTENSIONS OFF)
