@@ -191,7 +191,8 @@ std::string manual_page(const CLI::App& app) {
   const std::string& name = app.get_name();
   std::string what = app.get_description();
   if (!what.empty() && what.back() == '.') what.pop_back();
-  std::string page = fmt::format(".TH {} 1 \"\" \"Tactum {}\" \"User Commands\"\n",
+  // .ad l: long lists of words leave lines that no blanks could fill.
+  std::string page = fmt::format(".TH {} 1 \"\" \"Tactum {}\" \"User Commands\"\n.ad l\n",
                                  as_roff(in_capitals(name)), version_text());
   page += fmt::format(".SH NAME\n{} \\- {}\n", as_roff(name), as_roff(what));
   const bool has_commands = !commands_of(app).empty();
