@@ -64,8 +64,8 @@ def link_to(path, target):
     return f"files/{inside.as_posix()}"
 
 
-def linked(path, line):
-    """The line with its links rewritten; what is in backticks stays."""
+def linked(path, text):
+    """A paragraph with its links rewritten, which may go over the end of a line; what is in backticks stays."""
     codes = []
 
     def hidden(match):
@@ -74,24 +74,32 @@ def linked(path, line):
 
     def rewritten(match):
         picture, words, target = match.groups()
-        if picture:
-            copied = link_to(path, target)
-            return f'<img src="{copied}" alt="{words}"/>'
-        words = LINK.sub(lambda inner: rewritten(inner), words)
         goal = link_to(path, target)
-        return f"[{words}]({goal})"
+        if picture:
+            return f'<img src="{goal}" alt="{words}"/>'
+        return f"[{LINK.sub(rewritten, words)}]({goal})".replace("\n", " ")
 
-    line = re.sub(r"(?<![\w\\])@(?=[a-z])", r"\\@", CODE.sub(hidden, line))  # no command of Doxygen
-    line = LINK.sub(rewritten, line)
-    return re.sub("\x00(\\d+)\x00", lambda match: codes[int(match.group(1))], line)
+    text = re.sub(r"(?<![\w\\])@(?=[a-z])", r"\\@", CODE.sub(hidden, text))  # no command of Doxygen
+    text = LINK.sub(rewritten, text)
+    return re.sub("\x00(\\d+)\x00", lambda match: codes[int(match.group(1))], text)
 
 
 def page(path):
     """The text of a page for Doxygen."""
-    lines, seen, first = [], {}, True
+    done, paragraph, seen, first = [], [], {}, True
+
+    def end_paragraph():
+        if paragraph:
+            done.append(linked(path, "\n".join(paragraph)))
+            paragraph.clear()
+
     for line, prose in outside_fences(path.read_text()):
         heading = HEADING.match(line) if prose else None
         fence = FENCE.match(line)
+        if prose and line.strip() and not heading and not fence:
+            paragraph.append(line)
+            continue
+        end_paragraph()
         if heading:
             marks, words = heading.groups()
             name = page_name(path) + ("" if first else "-" + slug(words))
@@ -102,12 +110,9 @@ def page(path):
             line = f"{marks} {linked(path, words)} {{#{name}}}"
         elif fence:
             line = fence.group(1) + (f"{{.{fence.group(2)}}}" if fence.group(2) in ("cpp", "c", "py", "sh") else "")
-        elif prose:
-            line = linked(path, line)
-            if line.startswith("[") and lines and lines[-1][:1].isalpha():  # Doxygen may miss a link that begins a line
-                line = f"{lines.pop()} {line}"
-        lines.append(line)
-    return "\n".join(lines)
+        done.append(line)
+    end_paragraph()
+    return "\n".join(done)
 
 
 class Links(html.parser.HTMLParser):

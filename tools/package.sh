@@ -15,10 +15,10 @@ cmake --build "$root/build/package" --target package >"$root/build/cpack.log" 2>
 # CMake leaves out what it finds no library for: then a package would lack it.
 for file in tactum/usr/bin/tactum tactum-tools/usr/bin/tactum-{bench,step,field,sweep-mpi} python3-tactum/usr/lib/python3/dist-packages/tactum/_tactum; do
   package="${file%%/*}"
-  dpkg-deb --contents "$root/build/package/packages/$package"_*.deb | grep -q " \./${file#*/}" ||
+  dpkg-deb --contents "$root/build/package/packages/$package"_*.deb | grep " \./${file#*/}" >/dev/null ||
     { echo "package: ${file#*/} was left out: see build/configure-package.log" >&2; exit 1; }
 done
 ls -sh "$root/build/package/packages"
-lintian --fail-on error,warning --no-tag-display-limit "$root"/build/package/packages/*.deb
+lintian --fail-on error,warning --tag-display-limit 0 "$root"/build/package/packages/*.deb
 echo "lintian has nothing to say that packaging/overrides does not answer"
 [[ ${1:-} == --no-wheel ]] || "$root/tools/wheel.sh"

@@ -1,4 +1,4 @@
-# What is installed and packed (docs/packages.md). The manuals and completions against the programs' own --help: 3 s.
+# What is installed and packed (docs/packages.md). The manuals and completions against the programs' own --help: 5 s.
 set(programs)
 foreach(program tactum tactum-bench tactum-step tactum-field tactum-sweep-mpi)
   if(TARGET ${program})
