@@ -235,6 +235,58 @@ TEST(GltfImport, SparseAccessorsChangeWhatIsBelowOrZero) {
   }
 }
 
+TEST(GltfImport, PrimitivesThatShareTheirPointsCarryOnlyTheirOwn) {
+  for (const bool is_sparse : {true, false}) {
+    for (const std::size_t count : {4, 40, 90}) {
+      for (const std::size_t pieces : {1, 4, 60}) {
+        Sample sample;
+        std::vector<double> coordinates = kPoints;
+        coordinates.resize(3 * count);
+        const int points =
+            is_sparse
+                ? sample.add_accessor(kFloat, count, "VEC3",
+                                      {{"sparse", sparse(sample, {1, 2, 3}, kFloat,
+                                                         {30, 0, 0, 0, 20, 0, 0, 0, 10}, 3, kUnsignedByte)}})
+                : sample.add_points(kFloat, coordinates);
+        sample.set_primitive(points, sample.add_indices(kUnsignedByte, kCorners));
+        const Json first = sample.document["meshes"][0]["primitives"][0];
+        for (std::size_t i = 1; i < pieces; ++i) {
+          Json next = first;
+          const std::vector<double> corners(kCorners.begin(), kCorners.begin() + 3);
+          next["indices"] = sample.add_indices(kUnsignedByte, corners);
+          sample.document["meshes"][0]["primitives"].push_back(next);
+        }
+        ImportOptions options;
+        options.max_vertices = 200;
+        const Result<ImportedMesh> mesh = import_mesh_bytes(sample.glb(), "a.glb", options);
+        ASSERT_TRUE(mesh) << mesh.error().message();
+        EXPECT_EQ(mesh->mesh.vertices.size(), 4 + 3 * (pieces - 1));
+        EXPECT_EQ(mesh->mesh.triangles.size(), 4 + (pieces - 1));
+        EXPECT_EQ(mesh->report.unused_vertices, static_cast<int>(count) - 4);
+      }
+    }
+  }
+}
+
+TEST(GltfImport, AccessorsWithoutBytesAreBoundedTogether) {
+  Sample sample;
+  for (int i = 0; i < 3; ++i) {
+    const Json changes = sparse(sample, {1, 2, 3}, kFloat, {30, 0, 0, 0, 20, 0, 0, 0, 10}, 3, kUnsignedByte);
+    const int points = sample.add_accessor(kFloat, 90, "VEC3", {{"sparse", changes}});
+    const int corners = sample.add_indices(kUnsignedByte, kCorners);
+    if (i == 0) sample.set_primitive(points, corners);
+    Json next = sample.document["meshes"][0]["primitives"][0];
+    next["attributes"]["POSITION"] = points;
+    sample.document["meshes"][0]["primitives"].push_back(next);
+  }
+  ImportOptions options;
+  options.max_vertices = 200;
+  const Result<ImportedMesh> mesh = import_mesh_bytes(sample.glb(), "a.glb", options);
+  ASSERT_FALSE(mesh);
+  EXPECT_NE(mesh.error().message().find("too many points in all accessors"), std::string::npos)
+      << mesh.error().message();
+}
+
 TEST(GltfImport, BrokenAccessorsAreTold) {
   const auto with_sparse = [](const std::vector<double>& places, std::size_t count) {
     Sample sample;

@@ -12,12 +12,10 @@
 
 #include "support/allocation_guard.h"
 #include "support/effort.h"
-#include "tactum/mesh/make_part.h"
 #include "tactum/scene/builtin_scenes.h"
 #include "tactum/scene/scene_file.h"
 #include "viewer/raw_page.h"
 #include "viewer/server/page.h"
-#include "viewer/server/shape_edges.h"
 
 namespace tactum {
 namespace {
@@ -439,46 +437,6 @@ TEST(Page, IsThereAndSmall) {
   EXPECT_GT(bytes, 1000u);
   EXPECT_LE(bytes, 250'000u);
   EXPECT_EQ(page_files().front().path, "index.html");
-}
-
-TEST(ShapeEdges, SeamsBetweenPiecesAreNotDrawn) {
-  // A bar of two cubes: twelve edges of the whole, in pieces; the four around the seam are no edges.
-  const auto cube = [](double x) {
-    std::vector<Vec3> points;
-    for (int i = 0; i < 8; ++i) points.emplace_back(x + (i & 1), (i >> 1) & 1, (i >> 2) & 1);
-    return points;
-  };
-  const Result<Part> bar = part_from_clouds({cube(0.0), cube(1.0)});
-  ASSERT_TRUE(bar);
-  const std::vector<DrawnEdge> edges = edges_to_draw(*bar);
-  EXPECT_EQ(edges.size(), 16u);  // 4 + 4 at the ends, 4 + 4 halves along
-  for (const DrawnEdge& edge : edges)
-    EXPECT_FALSE(std::abs(edge.tail.x() - 1.0) < 1e-9 && std::abs(edge.head.x() - 1.0) < 1e-9);
-  const std::vector<bool> covered = covered_triangles(*bar);
-  EXPECT_EQ(covered.size(), 24u);
-  EXPECT_EQ(std::count(covered.begin(), covered.end(), true), 4);  // two a face, on either side
-}
-
-/// A wall that stands on a slab: where they meet the part bends inward, and neither piece does.
-TEST(ShapeEdges, WhereTwoPiecesBendInwardTheyAreReflex) {
-  const auto box = [](const Vec3& from, const Vec3& to) {
-    std::vector<Vec3> corners;
-    for (int i = 0; i < 8; ++i)
-      corners.emplace_back((i & 1) != 0 ? to.x() : from.x(), (i & 2) != 0 ? to.y() : from.y(),
-                           (i & 4) != 0 ? to.z() : from.z());
-    return corners;
-  };
-  const Result<Part> bracket = part_from_clouds({box({0, 0, 0}, {3, 1, 1}), box({0, 0, 1}, {1, 1, 2})});
-  ASSERT_TRUE(bracket);
-  int reflex = 0;
-  for (const DrawnEdge& edge : edges_to_draw(*bracket)) {
-    const bool inner = std::abs(edge.tail.x() - 1.0) + std::abs(edge.head.x() - 1.0) +
-                           std::abs(edge.tail.z() - 1.0) + std::abs(edge.head.z() - 1.0) <
-                       1e-9;
-    EXPECT_EQ(edge.kind == EdgeKind::kReflex, inner);
-    reflex += edge.kind == EdgeKind::kReflex ? 1 : 0;
-  }
-  EXPECT_EQ(reflex, 1);
 }
 
 }  // namespace

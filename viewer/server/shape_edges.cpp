@@ -35,15 +35,44 @@ std::vector<Aabb> boxes_of(const Part& part) {
   return boxes;
 }
 
-/// The pieces whose boxes come as near to `point` as that.
-std::vector<const Polytope*> pieces_near(const Part& part, const std::vector<Aabb>& boxes, const Vec3& point,
+/// The pieces whose boxes come as near to the box of an edge as that.
+std::vector<const Polytope*> pieces_near(const Part& part, const std::vector<Aabb>& boxes, const Aabb& edge,
                                          double distance) {
   std::vector<const Polytope*> near;
   for (std::size_t i = 0; i < boxes.size(); ++i)
-    if ((point.array() > boxes[i].min.array() - distance).all() &&
-        (point.array() < boxes[i].max.array() + distance).all())
+    if ((edge.max.array() > boxes[i].min.array() - distance).all() &&
+        (edge.min.array() < boxes[i].max.array() + distance).all())
       near.push_back(&part.pieces[i]);
   return near;
+}
+
+/// Where along the edge, from 0 at its tail to 1 at its head, a piece begins or ends: what fills the turn
+/// about the edge is the same between two of these.
+std::vector<double> changes_along(const std::vector<const Polytope*>& pieces, const Vec3& tail,
+                                  const Vec3& head, double aside) {
+  const Vec3 along = head - tail;
+  std::vector<double> changes{0.0, 1.0};
+  for (const Polytope* piece : pieces) {
+    double from = 0.0, to = 1.0;
+    for (const Polytope::Face& face : piece->faces) {
+      const double rise = face.normal.dot(along);
+      const double room = face.offset + aside - face.normal.dot(tail);
+      if (std::abs(rise) < aside) {  // the edge lies along the face
+        if (room < 0.0) to = -1.0;
+        continue;
+      }
+      // Where the edge meets the face itself, not the one `aside` of it.
+      const double at = (room - aside) / rise;
+      (rise > 0.0 ? to : from) = rise > 0.0 ? std::min(to, at) : std::max(from, at);
+    }
+    if (from < to) changes.insert(changes.end(), {from, to});
+  }
+  std::sort(changes.begin(), changes.end());
+  const double least = std::min(0.5, 2.0 * aside / along.norm());  // shorter parts are not judged
+  const auto same = [least](double a, double b) { return b - a < least; };
+  changes.erase(std::unique(changes.begin(), changes.end(), same), changes.end());
+  changes.back() = 1.0;
+  return changes;
 }
 
 /// Which part of the turn about an edge the pieces fill, `aside` from it [rad]: for a box's edge a right
@@ -61,6 +90,31 @@ double filled_turn(const std::vector<const Polytope*>& pieces, const Vec3& middl
                   : 0;
   }
   return 2.0 * kPi * filled / kDirections;
+}
+
+/// The parts of an edge about which the pieces fill less or more than half a turn; neighbours of one kind are
+/// one. `across` is square to the edge.
+std::vector<DrawnEdge> bends_of(const std::vector<const Polytope*>& pieces, const Vec3& tail,
+                                const Vec3& head, const Vec3& across, double aside) {
+  const Vec3 along = head - tail;
+  const Vec3 up = across.cross(along.normalized());
+  const std::vector<double> changes = changes_along(pieces, tail, head, aside);
+  std::vector<DrawnEdge> bends;
+  double end = -1.0;  // of the last one
+  for (std::size_t i = 0; i + 1 < changes.size(); ++i) {
+    const Vec3 middle = tail + 0.5 * (changes[i] + changes[i + 1]) * along;
+    const double filled = filled_turn(pieces, middle, across, up, aside);
+    const bool sharp = filled < kPi - kDrawnBend_rad;
+    if (!sharp && (filled <= kPi + kDrawnBend_rad || filled >= 2.0 * kPi - kDrawnBend_rad)) continue;
+    const EdgeKind kind = sharp ? EdgeKind::kSharp : EdgeKind::kReflex;
+    const Vec3 head_here = tail + changes[i + 1] * along;
+    if (end == changes[i] && bends.back().kind == kind)
+      bends.back().head = head_here;
+    else
+      bends.push_back({tail + changes[i] * along, head_here, kind});
+    end = changes[i + 1];
+  }
+  return bends;
 }
 
 bool same_edge(const DrawnEdge& p, const DrawnEdge& q, double noise) {
@@ -83,19 +137,15 @@ std::vector<DrawnEdge> edges_of_solids(const Part& part) {
       if (left.dot(right) > flattest) continue;
       const Vec3& tail = piece.vertices[static_cast<std::size_t>(edge.tail)];
       const Vec3& head = piece.vertices[static_cast<std::size_t>(edge.head)];
-      const Vec3 middle = 0.5 * (tail + head);
-      const Vec3 across = (left - right).normalized();
-      const double filled = filled_turn(pieces_near(part, boxes, middle, aside), middle, across,
-                                        across.cross(edge.direction), aside);
-      if (filled < kPi - kDrawnBend_rad) {
-        edges.push_back({tail, head, EdgeKind::kSharp});
-      } else if (filled > kPi + kDrawnBend_rad && filled < 2.0 * kPi - kDrawnBend_rad) {
-        // The pieces on either side of it may both have it.
-        const DrawnEdge bent_inward{tail, head, EdgeKind::kReflex};
-        const bool known = std::any_of(reflex.begin(), reflex.end(), [&](const DrawnEdge& other) {
-          return same_edge(bent_inward, other, kSamePlace * size);
-        });
-        if (!known) reflex.push_back(bent_inward);
+      for (const DrawnEdge& drawn :
+           bends_of(pieces_near(part, boxes, Aabb{tail.cwiseMin(head), tail.cwiseMax(head)}, aside), tail,
+                    head, (left - right).normalized(), aside)) {
+        // The pieces on either side of a reflex edge may both have it.
+        const bool known = drawn.kind == EdgeKind::kReflex &&
+                           std::any_of(reflex.begin(), reflex.end(), [&](const DrawnEdge& other) {
+                             return same_edge(drawn, other, kSamePlace * size);
+                           });
+        if (!known) (drawn.kind == EdgeKind::kReflex ? reflex : edges).push_back(drawn);
       }
     }
   }

@@ -1,6 +1,7 @@
 #pragma once
 /// The drawn features of a part: the edges where its surface bends, and the triangles that lie on its
-/// surface. Each edge of solid pieces is judged by the shape of the whole part about its middle:
+/// surface. Each edge of solid pieces is judged by the shape of the whole part about it, between any two
+/// places along it where a piece begins or ends:
 ///
 ///               |
 ///        wall   |          at s a quarter of the turn about the edge is filled: sharp;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <optional>
@@ -59,10 +60,19 @@ class GltfReducer {
     if (Result<void> done = accessors_.read_buffers(chunk_); !done) return done.error();
     if (Result<void> done = reduce_meshes(); !done) return done.error();
     if (Result<void> done = reduce_nodes(); !done) return done.error();
+    for (const auto& [index, accessor] : points_)
+      builder_.report().unused_vertices +=
+          static_cast<int>(std::count(accessor.used.begin(), accessor.used.end(), false));
     return glb();
   }
 
  private:
+  /// The points of an accessor, and which of them a triangle uses.
+  struct Points {
+    std::vector<float> coordinates;
+    std::vector<bool> used;
+  };
+
   Error wrong(const std::string& found, const std::string& expected, const std::string& place = {}) const {
     return gltf::broken(builder_, found, expected, place);
   }
@@ -143,24 +153,58 @@ class GltfReducer {
         mode > 6 || attributes == given.end() ? std::nullopt : whole(*attributes, "POSITION");
     if (!position)
       return wrong("a primitive without points or of unknown mode", "attributes.POSITION", place);
-    const Result<std::vector<float>> points = accessors_.points(*position, place);
+    const Result<Points*> points = points_of(*position, place);
     if (!points) return points.error();
-    Result<std::vector<std::uint32_t>> corners = corners_of(given, points->size() / 3, place);
+    Result<std::vector<std::uint32_t>> corners = corners_of(given, (*points)->used.size(), place);
     if (!corners) return corners.error();
     if (corners->size() < 3 || (mode == 4 && corners->size() % 3 != 0)) {
       return wrong(std::to_string(corners->size()) + " corners", "three for each triangle", place);
     }
     if (mode != 4) *corners = unrolled(*corners, mode);
     if (corners->empty()) return {};
-    const std::uint64_t added = std::max(points->size() / 3, corners->size());
-    vertices += added;
-    all_vertices_ += added;
+    vertices += corners->size();
+    all_vertices_ += corners->size();
     if (all_vertices_ > 3 * static_cast<std::uint64_t>(builder_.options().max_vertices))
       return wrong("too many vertices in all meshes", "fewer", place);
-    const int points_out = append(points->data(), points->size(), 3, gltf::kFloat);
+    const std::vector<float> used = used_points(**points, *corners);
+    const int points_out = append(used.data(), used.size(), 3, gltf::kFloat);
     const int corners_out = append(corners->data(), corners->size(), 1, gltf::kUnsignedInt);
     primitives.push_back({{"mode", 4}, {"attributes", {{"POSITION", points_out}}}, {"indices", corners_out}});
     return {};
+  }
+
+  /// The points of an accessor, read once: many primitives may share one.
+  Result<Points*> points_of(std::uint64_t index, const std::string& place) {
+    const auto known = points_.find(index);
+    if (known != points_.end()) return &known->second;
+    Result<std::vector<float>> read = accessors_.points(index, place);
+    if (!read) return read.error();
+    all_points_ += read->size() / 3;
+    // An accessor without bytes of its own may have any number of points in a small file.
+    if (all_points_ > static_cast<std::uint64_t>(builder_.options().max_vertices))
+      return wrong("too many points in all accessors",
+                   "at most " + std::to_string(builder_.options().max_vertices), place);
+    const std::size_t count = read->size() / 3;
+    return &points_.emplace(index, Points{std::move(*read), std::vector<bool>(count)}).first->second;
+  }
+
+  /// The points that the corners name, in the order of their accessor; the corners name places among these
+  /// then. Else each of many primitives that share an accessor would carry all its points.
+  static std::vector<float> used_points(Points& points, std::vector<std::uint32_t>& corners) {
+    std::vector<std::uint32_t> named = corners;
+    std::sort(named.begin(), named.end());
+    named.erase(std::unique(named.begin(), named.end()), named.end());
+    std::vector<float> coordinates;
+    coordinates.reserve(3 * named.size());
+    for (const std::uint32_t point : named) {
+      points.used[point] = true;
+      const auto first = points.coordinates.begin() + 3 * static_cast<std::ptrdiff_t>(point);
+      coordinates.insert(coordinates.end(), first, first + 3);
+    }
+    for (std::uint32_t& corner : corners)
+      corner =
+          static_cast<std::uint32_t>(std::lower_bound(named.begin(), named.end(), corner) - named.begin());
+    return coordinates;
   }
 
   /// The indices of a primitive; without any, its points in order.
@@ -302,6 +346,8 @@ class GltfReducer {
   gltf::Accessors accessors_{document_, builder_};
   json out_ = json::object();
   std::string bin_;
+  std::map<std::uint64_t, Points> points_;    ///< of each accessor that a primitive has named
+  std::uint64_t all_points_ = 0;              ///< in them
   std::vector<int> out_mesh_;                 ///< number in the output of each mesh, -1 when it is empty
   std::vector<std::uint64_t> mesh_vertices_;  ///< of each mesh
   std::uint64_t all_vertices_ = 0;

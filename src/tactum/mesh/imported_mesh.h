@@ -34,7 +34,7 @@ struct ImportReport {
   int points_dropped = 0;            ///< point elements
   int lines_dropped = 0;             ///< line elements
   int faces_dropped = 0;             ///< faces of fewer than three corners
-  int unused_vertices = 0;           ///< vertices no triangle uses (kept)
+  int unused_vertices = 0;           ///< vertices no triangle uses (kept, but of glTF)
   std::vector<std::string> remarks;  ///< the same and more as sentences
 };
 
