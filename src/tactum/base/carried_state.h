@@ -20,6 +20,7 @@
 #include <variant>
 
 #include "tactum/base/hash.h"
+#include "tactum/base/member_count.h"
 #include "tactum/base/reserved_vector.h"
 #include "tactum/base/static_vector.h"
 
@@ -90,24 +91,10 @@ class StateLayout {
 
 namespace carried_detail {
 
-/// Converts to any member of an aggregate.
-struct AnyMember {
-  template <class T>
-  operator T() const noexcept;  // NOLINT: an initializer of everything
-};
-
-template <class Struct, class... Members>
-consteval std::size_t members_of() {
-  if constexpr (requires { Struct{Members{}..., AnyMember{}}; })
-    return members_of<Struct, Members..., AnyMember>();
-  else
-    return sizeof...(Members);
-}
-
 /// Passes the members of a struct, bases excepted, to `visit`.
 template <class Struct, class Visit>
 void visit_members(Struct& value, Visit& visit) noexcept {
-  constexpr std::size_t kCount = members_of<std::remove_const_t<Struct>>();
+  constexpr std::size_t kCount = kMemberCount<std::remove_const_t<Struct>>;
   static_assert(kCount >= 1 && kCount <= 13, "give this type a function `carried`");
   if constexpr (kCount == 1) {
     auto& [a] = value;

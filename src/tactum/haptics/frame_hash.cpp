@@ -1,25 +1,12 @@
 #include "tactum/haptics/frame_hash.h"
 
+#include "tactum/base/member_count.h"
 #include "tactum/haptics/report_fields.h"
 
 namespace tactum::inline v0_1 {
 namespace {
 
 // Checks that no member of the report is missing in the list of its fields: as many are listed as there are.
-
-/// Converts to any member of an aggregate.
-struct AnyMember {
-  template <class T>
-  operator T() const;  // NOLINT: an initializer of everything
-};
-
-template <class Struct, class... Members>
-consteval std::size_t members_of() {
-  if constexpr (requires { Struct{Members{}..., AnyMember{}}; })
-    return members_of<Struct, Members..., AnyMember>();
-  else
-    return sizeof...(Members);
-}
 
 template <auto Member>
 constexpr char kMemberId = 0;
@@ -51,12 +38,12 @@ consteval std::size_t named_members_of(const report_detail::FieldList<Fields...>
 }
 
 // The report begins with that of the first hand, which counts as one member.
-static_assert(named_members_of<FrameReport>(report_detail::kFields) + 1 == members_of<FrameReport>());
-static_assert(named_members_of<HandReport>(report_detail::kFields) == members_of<HandReport>());
-static_assert(named_members_of<FrictionReport>(report_detail::kFields) == members_of<FrictionReport>());
-static_assert(named_members_of<PortReport>(report_detail::kFields) == members_of<PortReport>());
-static_assert(named_members_of<EnergyTotals>(report_detail::kFields) == members_of<EnergyTotals>());
-static_assert(named_members_of<ContactWork>(report_detail::kFields) == members_of<ContactWork>());
+static_assert(named_members_of<FrameReport>(report_detail::kFields) + 1 == kMemberCount<FrameReport>);
+static_assert(named_members_of<HandReport>(report_detail::kFields) == kMemberCount<HandReport>);
+static_assert(named_members_of<FrictionReport>(report_detail::kFields) == kMemberCount<FrictionReport>);
+static_assert(named_members_of<PortReport>(report_detail::kFields) == kMemberCount<PortReport>);
+static_assert(named_members_of<EnergyTotals>(report_detail::kFields) == kMemberCount<EnergyTotals>);
+static_assert(named_members_of<ContactWork>(report_detail::kFields) == kMemberCount<ContactWork>);
 
 void add(FrameHash& hash, double value) { hash.add(value + 0.0); }  // one zero, whatever its sign
 
