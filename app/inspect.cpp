@@ -209,7 +209,9 @@ void add_inspect(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "inspect", "Say what is in mesh files and prepared parts, and what is wrong with them");
   auto options = std::make_shared<InspectOptions>();
-  command->add_option("FILE", options->files, "Mesh files (OBJ, STL, PLY, OFF, glTF, GLB) and prepared parts")
+  command
+      ->add_option("FILE", options->files,
+                   "Mesh files (OBJ, STL, PLY, OFF, glTF, GLB, COLLADA) and prepared parts")
       ->required();
   command->add_option("--json", options->json, "Write the reports to this file (- for stdout)");
   command->add_option("--scale", options->scale, "Metres per unit of the numbers in the files")

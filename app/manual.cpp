@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <sstream>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "tactum/version.h"
@@ -185,6 +186,69 @@ std::string replaced(std::string text, const std::string& word, const std::strin
   return text;
 }
 
+/// A text in the quotes of fish, which know two escapes.
+std::string in_fish_quotes(const std::string& text) {
+  std::string quoted = "'";
+  for (const char letter : text) {
+    if (letter == '\'' || letter == '\\') quoted += '\\';
+    quoted += letter == '\n' ? ' ' : letter;
+  }
+  return quoted + "'";
+}
+
+/// The words of every command below this one, quoted.
+std::string fish_paths(const Command& command, const Command& app) {
+  std::string paths;
+  for (const Command* below : commands_of(command))
+    paths += " " + in_fish_quotes(words_below(*below, app)) + fish_paths(*below, app);
+  return paths;
+}
+
+/// What the names of the functions of a program's completion begin with.
+std::string fish_function(const Command& app) { return "__" + replaced(app.get_name(), "-", "_"); }
+
+/// The lines of fish for the command and each below it: what may follow its words.
+std::string fish_lines(const Command& command, const Command& app) {
+  const std::string path = words_below(command, app);
+  const std::string begin = "complete -c " + app.get_name();
+  const std::string takes = fmt::format(" -n \"{}_takes '{}'\"", fish_function(app), path);
+  std::string lines;
+  for (const CLI::Option* option : all_options(command)) {
+    if (!option->nonpositional()) continue;
+    lines += begin + takes;
+    for (const std::string& name : option->get_snames()) lines += " -s " + name;
+    for (const std::string& name : option->get_lnames()) lines += " -l " + name;
+    if (option->get_items_expected_max() > 0) lines += " -r";
+    lines += " -d " + in_fish_quotes(option->get_description()) + "\n";
+  }
+  for (const Command* below : commands_of(command))
+    lines += fmt::format("{} -f -n \"{}_is_at '{}'\" -a {} -d {}\n", begin, fish_function(app), path,
+                         below->get_name(), in_fish_quotes(below->get_description()));
+  if (&command == &app && !commands_of(app).empty())
+    lines += begin + " -f" + takes + " -a help -d 'Print what is said of a command'\n";
+  for (const Command* below : commands_of(command)) lines += fish_lines(*below, app);
+  return lines;
+}
+
+constexpr std::string_view kFishFunctions = R"(# Completion of NAME for fish; `NAME help --fish` prints it.
+function FUNCTION_is_at -d 'Whether the words so far lead to this command of NAME'
+    set -l path ''
+    for word in (commandline -opc)[2..-1]
+        set -l next (string trim "$path $word")
+        contains -- $next PATHS; and set path $next
+    end
+    test "$path" = "$argv[1]"
+end
+function FUNCTION_takes -d 'The same, where its options and arguments may follow'
+    set -l words (commandline -opc)
+    test "$words[2]" != help; and FUNCTION_is_at $argv[1]
+end
+)";
+
+constexpr std::string_view kFishScenes =
+    R"fish(complete -c NAME -n "FUNCTION_takes 'feel'" -a "(NAME scenes 2>/dev/null | string match -rv '^\(' | string replace -r ' .*' '')"
+)fish";
+
 }  // namespace
 
 std::string manual_page(const CLI::App& app) {
@@ -216,12 +280,26 @@ std::string bash_completion(const CLI::App& app) {
   return replaced(text, "NAME", name);
 }
 
+std::string fish_completion(const CLI::App& app) {
+  const std::string& name = app.get_name();
+  const auto named = [&](std::string_view text) {
+    return replaced(replaced(std::string(text), "FUNCTION", fish_function(app)), "NAME", name);
+  };
+  std::string text = replaced(named(kFishFunctions), " PATHS", fish_paths(app, app)) + fish_lines(app, app);
+  return name == "tactum" ? text + named(kFishScenes) : text;
+}
+
 bool print_manual(const CLI::App& app, int argc, char** argv) {
   if (argc != 3 || std::string_view(argv[1]) != "help") return false;
   const std::string_view asked = argv[2];
-  if (asked != "--man" && asked != "--bash") return false;
-  std::fputs((asked == "--man" ? manual_page(app) : bash_completion(app)).c_str(), stdout);
-  return true;
+  constexpr std::pair<std::string_view, std::string (*)(const CLI::App&)> kForms[] = {
+      {"--man", &manual_page}, {"--bash", &bash_completion}, {"--fish", &fish_completion}};
+  for (const auto& [name, make] : kForms)
+    if (asked == name) {
+      std::fputs(make(app).c_str(), stdout);
+      return true;
+    }
+  return false;
 }
 
 }  // namespace tactum

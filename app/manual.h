@@ -13,7 +13,10 @@ std::string manual_page(const CLI::App& app);
 /// A completion for bash: commands, the options of the command at hand, else names of files.
 std::string bash_completion(const CLI::App& app);
 
-/// Answers `PROGRAM help --man` and `PROGRAM help --bash` on standard output. False when something else was
+/// The same for fish, which shows what each command and option means beside it.
+std::string fish_completion(const CLI::App& app);
+
+/// Answers `PROGRAM help --man`, `--bash` and `--fish` on standard output. False when something else was
 /// asked, and nothing is printed.
 bool print_manual(const CLI::App& app, int argc, char** argv);
 

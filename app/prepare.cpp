@@ -172,9 +172,10 @@ void add_prepare(CLI::App& app) {
   std::vector<std::string> ways = pieces_ways();
   ways.insert(ways.begin(), "auto");
   command
-      ->add_option("MESH", options->meshes,
-                   "Mesh files: OBJ, STL, PLY, OFF, glTF, GLB; several are pieces of one part. STEP where "
-                   "tactum-step is installed")
+      ->add_option(
+          "MESH", options->meshes,
+          "Mesh files: OBJ, STL, PLY, OFF, glTF, GLB, COLLADA; several are pieces of one part. STEP where "
+          "tactum-step is installed")
       ->required();
   command->add_option("-o,--output", options->part, "The part file to write")->required();
   command->add_option(

@@ -86,7 +86,7 @@ std::string plate_text(const SizedMesh& mesh) {
 }  // namespace
 
 bool is_mesh_name(const std::string& name) {
-  constexpr std::array kEndings{".stl", ".obj", ".ply", ".off", ".gltf", ".glb", ".tactum"};
+  constexpr std::array kEndings{".stl", ".obj", ".ply", ".off", ".gltf", ".glb", ".dae", ".tactum"};
   return std::find(kEndings.begin(), kEndings.end(), lower_ending(name)) != kEndings.end();
 }
 

@@ -11,7 +11,7 @@ import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).parent / "corpus"
-ENDINGS = ("obj", "stl", "ply", "off", "gltf", "glb")  # the first byte of a seed is the number of its ending
+ENDINGS = ("obj", "stl", "ply", "off", "gltf", "glb", "dae")  # the first byte of a seed is the number of its ending
 CORNERS = [(x, y, z) for z in (0, 1) for y in (0, 1) for x in (0, 1)]
 FACES = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
 TRIANGLES = [(f[0], f[i], f[i + 1]) for f in FACES for i in (1, 2)]
@@ -95,6 +95,22 @@ def scene():
     yield b"\xef\xbb\xbfschema = 1e999\n[[friction]]\nbetween = [1, \"\\u00e9\"]\n"
 
 
+def collada():
+    geometry = ('<asset><unit meter="0.01"/><up_axis>Y_UP</up_axis></asset><library_geometries><geometry id="g"><mesh><source id="s">'
+                '<float_array id="a">0 0 0 3 0 0 0 2 0 0 0 1</float_array><technique_common><accessor source="#a" count="4" '
+                'stride="3"/></technique_common></source><vertices id="v"><input semantic="POSITION" source="#s"/></vertices>'
+                '<%s><input semantic="VERTEX" source="#v" offset="0"/>%s</%s></mesh></geometry></library_geometries>')
+    scene = ('<library_visual_scenes><visual_scene id="w"><node id="n"><rotate>0 0 1 90</rotate><scale>-1 1 2</scale>%s</node>'
+             '</visual_scene></library_visual_scenes><scene><instance_visual_scene url="#w"/></scene></COLLADA>')
+    shown = scene % '<instance_geometry url="#g"/>'
+    head = '<?xml version="1.0"?><COLLADA version="1.4.1">'
+    yield head + geometry % ("triangles", "<p>0 2 1 0 1 3 0 3 2 1 2 3</p>", "triangles") + shown
+    yield head + geometry % ("polylist", "<vcount>3 4</vcount><p>0 2 1 0 1 3 2</p>", "polylist") + shown
+    yield head + geometry % ("tristrips", "<p>0 2 1 3 0 2</p>", "tristrips") + shown
+    yield head + geometry % ("trifans", "<p>0 2 1 3 9</p>", "trifans") + shown
+    yield head + geometry % ("polygons", "<p>0 2 1</p>", "polygons") + scene % '<instance_node url="#n"/>'
+
+
 def robots():
     yield ('<mujoco><compiler angle="radian" eulerseq="zYx" settotalmass="2"/><default><geom size="0.1 0.2"/>'
            '<default class="a"><joint type="slide" range="0 1"/></default></default><worldbody><body pos="0 0 1" '
@@ -127,9 +143,9 @@ def write(folder, name, data, first=b""):
 
 
 def main(arguments):
-    for number, (ending, make) in enumerate(zip(ENDINGS, (obj, stl, ply, off, gltf))):
+    for ending, make in (("obj", obj), ("stl", stl), ("ply", ply), ("off", off), ("gltf", gltf), ("dae", collada)):
         for i, data in enumerate(make()):
-            write("mesh", "seed-%s-%d" % (ending, i), data, bytes([number]))
+            write("mesh", "seed-%s-%d" % (ending, i), data, bytes([ENDINGS.index(ending)]))
     for i, data in enumerate(prepare()):
         write("prepare", "seed-%d" % i, data)
     for i, data in enumerate(scene()):

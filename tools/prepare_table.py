@@ -12,7 +12,7 @@ import subprocess
 import sys
 import tempfile
 
-ENDINGS = {".obj", ".stl", ".ply", ".off", ".gltf", ".glb"}
+ENDINGS = {".obj", ".stl", ".ply", ".off", ".gltf", ".glb", ".dae"}
 
 
 def row_of(program, mesh, name, part):

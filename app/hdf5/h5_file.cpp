@@ -17,9 +17,6 @@ H5Handle text_type() {
 
 /// Of the format of HDF5 1.8, whose groups take as many attributes as there are.
 hid_t made_file(const std::string& name) {
-  // Without this the library tries once more, when the program ends, to write what a full disk did not take,
-  // and crashes over it. All that is opened here is closed here.
-  H5dont_atexit();
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // what fails is told by us
   const H5Handle options(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
   const H5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
@@ -100,6 +97,8 @@ void H5File::text(const std::string& name, const std::string& text) {
       H5Dclose);
   check(data.good() && H5Dwrite(data.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, &characters) >= 0);
 }
+
+void leave_hdf5_at_exit() noexcept { H5dont_atexit(); }
 
 Result<void> H5File::close() {
   check(H5Fflush(file_.id(), H5F_SCOPE_GLOBAL) >= 0);

@@ -13,6 +13,11 @@
 
 namespace tactum {
 
+/// For a program that uses HDF5 through these classes alone, before it writes its first file. Without this
+/// the library tries once more, when the program ends, to write what a full disk did not take, and crashes
+/// over it. All that is opened here is closed here; what others have opened in the same process would not be.
+void leave_hdf5_at_exit() noexcept;
+
 /// A handle of the library, closed by the function that belongs to it.
 class H5Handle {
  public:

@@ -7,6 +7,9 @@
 #include <cstring>
 #include <memory>
 
+#ifdef TACTUM_WITH_HDF5
+#include "app/hdf5/export_hdf5.h"
+#endif
 #include "conversions.h"
 #include "tactum/recording/export_csv.h"
 #include "tactum/recording/recording_visitor.h"
@@ -93,6 +96,18 @@ std::uint64_t write_csv(const ReadRecording& recording, const std::string& path)
   return or_raise(export_csv(file, recording.path, out.get())).rows;
 }
 
+#ifdef TACTUM_WITH_HDF5
+std::uint64_t write_hdf5(const ReadRecording& recording, const std::string& path) {
+  const py::gil_scoped_release released;
+  const McapFile file = or_raise(McapFile::open(recording.path));
+  return or_raise(export_hdf5(file, recording.path, path)).rows;
+}
+#else
+std::uint64_t write_hdf5(const ReadRecording&, const std::string& path) {
+  throw Refusal({"this module was built without HDF5", "", "one that was built where libhdf5-dev is", path});
+}
+#endif
+
 }  // namespace
 
 void bind_recordings(py::module_& module) {
@@ -110,7 +125,8 @@ void bind_recordings(py::module_& module) {
       .def_readonly("complete", &ReadRecording::complete)
       .def_readonly("wrong", &ReadRecording::wrong)
       .def("replay", &replay_of, py::kw_only(), "response"_a = "", "settings_file"_a = "", "from_s"_a = 0.0)
-      .def("export_csv", &write_csv, "path"_a);
+      .def("export_csv", &write_csv, "path"_a)
+      .def("export_hdf5", &write_hdf5, "path"_a);
 }
 
 }  // namespace tactum::python

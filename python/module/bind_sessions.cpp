@@ -143,16 +143,19 @@ void bind_sessions(py::module_& module) {
   py::class_<WatchedSession>(module, "Session", "One run of a scene on a device, in C++ throughout.")
       .def_static(
           "_open",
-          [](const std::string& scene, const std::string& device, const std::string& grip,
+          [](const std::string& scene, const std::string& device,
+             const std::vector<std::string>& other_devices, const std::string& grip,
              const std::string& settings, double rate_Hz, const std::string& record, bool trace) {
             const py::gil_scoped_release released;
             SessionOptions options;
             options.device = device;
+            options.other_devices = other_devices;
             options.grip = grip;
             options.rate_Hz = rate_Hz;
             return std::make_unique<WatchedSession>(scene, settings, options, record, trace);
           },
-          "scene"_a, "device"_a, "grip"_a, "settings"_a, "rate_Hz"_a, "record"_a, "trace"_a)
+          "scene"_a, "device"_a, "other_devices"_a, "grip"_a, "settings"_a, "rate_Hz"_a, "record"_a,
+          "trace"_a)
       .def("run", &WatchedSession::run, "frames"_a = 0)
       .def("start", &WatchedSession::start, "frames"_a = 0)
       .def("stop", &WatchedSession::stop)

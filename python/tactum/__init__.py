@@ -44,23 +44,24 @@ def _settings_text(settings):
     return "[settings]\n" + "\n".join(lines) + "\n" if lines else ""
 
 
-def open(scene, *, device="", grip="", response="", settings=None, rate_Hz=0.0):
+def open(scene, *, device="", other_devices=(), grip="", response="", settings=None, rate_Hz=0.0):
     """A scene to be stepped: a Simulation.
 
     scene: a name of scenes(), or the path of a scene file. device: whose limits hold, by a name of devices(); "": the
-    scene's. grip: of the simulated hand. response: "constraint" or "penalty"; "": the scene's. settings: a dict of settings
+    scene's. other_devices: the same of the second hand and all after it. grip: of the simulated hands. response: "constraint" or "penalty"; "": the scene's. settings: a dict of settings
     by key ({"coupling.damping_ratio": 0.7}), or the text of a table [settings]. rate_Hz: frames a second; 0: the scene's.
     """
-    return Simulation._open(scene, device, grip, response, _settings_text(settings), rate_Hz)
+    return Simulation._open(scene, device, list(other_devices), grip, response, _settings_text(settings), rate_Hz)
 
 
-def open_session(scene, *, device="", grip="", settings=None, rate_Hz=0.0, record="", trace=False):
+def open_session(scene, *, device="", other_devices=(), grip="", settings=None, rate_Hz=0.0, record="", trace=False):
     """A scene on a device, run in C++ throughout: a Session.
 
+    device, other_devices, grip, settings, rate_Hz: as of open().
     record: a file ending in .mcap that takes the run, which `tactum replay` and Recording read. trace: keep every frame's
     numbers, for Session.trace().
     """
-    return Session._open(scene, device, grip, _settings_text(settings), rate_Hz, record, trace)
+    return Session._open(scene, device, list(other_devices), grip, _settings_text(settings), rate_Hz, record, trace)
 
 
 def pose(p=(0.0, 0.0, 0.0), rotation=None):

@@ -1,4 +1,5 @@
 """Types of tactum. Shapes: a pose is (4, 4), a wrench or twist (6,), a vector (3,); numbers are float64, SI units."""
+from collections.abc import Sequence
 from typing import Any, overload
 
 import numpy as np
@@ -125,9 +126,10 @@ class World:
     def friction(self, material_a: str, material_b: str, coefficient: float) -> None:
         """Coulomb's coefficient of bodies of two materials; 0 where none is given."""
     def restitution(self, material_a: str, material_b: str, coefficient: float) -> None: ...
-    def simulate(self, tool: str = "", *, device: str = "premium-1.5-6dof", rate_Hz: float = 1000.0,
-                 p_BH: ArrayLike | None = None) -> Simulation:
-        """The world with the body `tool` in the hand, at p_BH in its frame [m]; the limits are the device's."""
+    def simulate(self, tool: str | list[str] = "", *, device: str | list[str] = "premium-1.5-6dof",
+                 rate_Hz: float = 1000.0, p_BH: ArrayLike | list[ArrayLike | None] | None = None) -> Simulation:
+        """The world with the body `tool` in the hand, at p_BH in its frame [m]; the limits are the device's. With a list of
+        tools there is a hand for each, and a list of devices and places may be given beside it."""
 
 
 class Sample:
@@ -144,29 +146,37 @@ class Sample:
 
 class Simulation:
     """A scene or a world, stepped by its caller: the frames of `tactum feel`, to the bit. The first pose is where the hand
-    takes hold of the tool, which stays where it is; only the way from there moves it."""
+    takes hold of the tool, which stays where it is; only the way from there moves it. Where the scene has several hands,
+    poses and wrenches have an axis for them, in the order of the scene's tools."""
+    @property
+    def hands(self) -> int: ...
     @overload
-    def step(self, X_DH: ArrayLike) -> tuple[Floats, NDArray[Any]]: ...
+    def step(self, X_DH: ArrayLike | Sample) -> tuple[Floats, NDArray[Any]]: ...
     @overload
-    def step(self, sample: Sample) -> tuple[Floats, NDArray[Any]]:
-        """One frame, dt_s after the last. Returns the wrench on the hand, at the handle, axes of D (6,) [N, N m], and the
+    def step(self, X_DH: Sequence[ArrayLike | Sample]) -> tuple[Floats, NDArray[Any]]:
+        """One frame, dt_s after the last, with a pose (4, 4) or Sample of the hand, or with one for each hand: a list, or an
+        array (hands, 4, 4). Returns the wrench on the hand, at the handle, axes of D (6,) [N, N m], or (hands, 6), and the
         contacts, a structured array of contact_dtype: body_a, body_b, piece_a, piece_b, kind_a, feature_a, kind_b, feature_b
         (kinds: 0 vertex, 1 edge, 2 face), point (3,) [m] and normal (3,) from B to A in W, distance_m at the start of the
         frame, normal_force_N, friction_N of all points on the same surfaces, friction_coefficient, cone_used, grip (0 no
         friction, 1 sticks, 2 slips), patch, residual_m (by how much the frame missed what the contact asks; nan: penalty).
         """
     def run(self, X_DH: ArrayLike) -> Floats:
-        """A frame for each pose (n, 4, 4), without Python in between: the wrenches (n, 6)."""
+        """A frame for each pose (n, 4, 4), or (n, hands, 4, 4), without Python in between: the wrenches (n, 6), or
+        (n, hands, 6)."""
     def open_hand(self) -> None:
-        """Opens the device, simulated or real; where it is simulated its hand moves as the scene says."""
-    def read_hand(self) -> Sample: ...
-    def write_hand(self, F_D: ArrayLike) -> bool: ...
+        """Opens the devices of all hands, simulated or real; where one is simulated its hand moves as the scene says."""
+    def read_hand(self, hand: int = 0) -> Sample:
+        """What the device of a hand, counted from 0, measures now: read every hand before each step."""
+    def write_hand(self, F_D: ArrayLike, hand: int = 0) -> bool:
+        """Sets the wrench (6,) on a hand; False where its device did not take it."""
     def close_hand(self) -> None: ...
     def follow_hand(self, frames: int) -> tuple[Floats, Floats]:
-        """So many frames led by the open hand, in C++: wrenches (n, 6) and poses X_DH (n, 4, 4)."""
+        """So many frames led by the open hands, in C++: wrenches (n, 6) and poses X_DH (n, 4, 4); of several hands
+        (n, hands, 6) and (n, hands, 4, 4)."""
     @property
     def hand_frames(self) -> int:
-        """How many frames the motion of the scene's hand lasts."""
+        """How many frames the motion of the scene's first hand lasts."""
     @property
     def contacts(self) -> NDArray[Any]: ...
     @property
@@ -179,7 +189,10 @@ class Simulation:
     def report(self) -> dict[str, Any]:
         """Of the last frame: index, time_s, flags, safety, grasped_body, penetrating, min_distance_m, X_WH, X_WH_proxy,
         F_W_contacts (on the grasped part, at its centre of mass), F_W_felt (before limits and safety), solver_iterations,
-        exact_tests."""
+        exact_tests. What belongs to a hand is that of the first."""
+    @property
+    def hand_reports(self) -> list[dict[str, Any]]:
+        """What the report has of each hand: safety, grasped_body, X_WH, X_WH_proxy, F_W_contacts, F_W_felt."""
     @property
     def bodies(self) -> list[str]: ...
     def body_mesh(self, body: int) -> tuple[Floats, NDArray[np.int32]]:
@@ -187,7 +200,11 @@ class Simulation:
     @property
     def name(self) -> str: ...
     @property
-    def device(self) -> str: ...
+    def device(self) -> str:
+        """Of the first hand."""
+    @property
+    def devices(self) -> list[str]:
+        """By hand."""
     @property
     def frames(self) -> int: ...
     @property
@@ -253,12 +270,15 @@ class Recording:
         torque."""
     def export_csv(self, path: str) -> int:
         """Writes a CSV table and returns its rows."""
+    def export_hdf5(self, path: str) -> int:
+        """Writes the HDF5 file of `tactum export --hdf5`, byte for byte, and returns its frames. Raises Error where the
+        module was built without HDF5."""
 
 
-def open(scene: str, *, device: str = "", grip: str = "", response: str = "", settings: dict[str, Any] | str | None = None,
-         rate_Hz: float = 0.0) -> Simulation: ...
-def open_session(scene: str, *, device: str = "", grip: str = "", settings: dict[str, Any] | str | None = None,
-                 rate_Hz: float = 0.0, record: str = "", trace: bool = False) -> Session: ...
+def open(scene: str, *, device: str = "", other_devices: Sequence[str] = (), grip: str = "", response: str = "",
+         settings: dict[str, Any] | str | None = None, rate_Hz: float = 0.0) -> Simulation: ...
+def open_session(scene: str, *, device: str = "", other_devices: Sequence[str] = (), grip: str = "",
+                 settings: dict[str, Any] | str | None = None, rate_Hz: float = 0.0, record: str = "", trace: bool = False) -> Session: ...
 def pose(p: ArrayLike = (0, 0, 0), rotation: ArrayLike | None = None) -> Floats: ...
 def scenes() -> list[tuple[str, str]]:
     """Names and descriptions of the scenes that come with the program."""

@@ -68,6 +68,75 @@ class Stepping(unittest.TestCase):
         self.assertGreater(np.abs(wrenches).max(), 0.001)
         np.testing.assert_array_equal(sent, wrenches + 0.0)
 
+    @unittest.skipUnless(PROGRAM, "the program is not built")
+    def test_two_hands_are_the_program_s_to_the_bit(self):
+        """The peg in one hand and its hole in the other, through first contact: as the scene is, with another device in the
+        first or the second hand, with a looser grip, and with other settings."""
+        softer = "[settings.coupling]\nstiffness_N_per_m = 400.0\n"
+        variants = [([], {}),
+                    (["--settings", "softer.toml"], {"settings": softer}),
+                    (["--device", "touch", "--device", "premium-1.5-6dof"], {"device": "touch"}),
+                    (["--device", "premium-1.5-6dof", "--device", "touch"], {"other_devices": ["touch"]}),
+                    (["--hand", "loose"], {"grip": "loose"})]
+        frames = 1600
+        for arguments, options in variants:
+            with self.subTest(**options), tempfile.TemporaryDirectory() as folder:
+                summary, trace = os.path.join(folder, "summary.json"), os.path.join(folder, "trace.csv")
+                pathlib.Path(folder, "softer.toml").write_text(softer)
+                subprocess.run([os.path.abspath(PROGRAM), "feel", "peg-two-hands", "--virtual-clock", "--updates",
+                                str(frames), "--json", summary, "--trace", trace, *arguments], cwd=folder,
+                               stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+                wanted = json.loads(pathlib.Path(summary).read_text())
+                with open(trace) as lines:
+                    names = next(line for line in lines if not line.startswith("#")).strip().split(",")
+                    table = np.array([[float(number) for number in line.split(",")] for line in lines])
+                sim = tactum.open("peg-two-hands", **options)
+                self.assertEqual((sim.hands, len(sim.devices)), (2, 2))
+                sim.open_hand()
+                wrenches = np.empty((frames, 2, 6))
+                for i in range(frames):  # the loop of the program, in Python
+                    both, contacts = sim.step([sim.read_hand(0), sim.read_hand(1)])
+                    for hand, wrench in enumerate(both):
+                        sim.write_hand(wrench, hand)
+                    wrenches[i] = both
+                sim.close_hand()
+                self.assertEqual(f"{sim.hash:016x}", wanted["frame_hash"])
+                for hand, prefix in enumerate(("", "h2_")):  # in this scene the axes of D are those of W
+                    sent = table[:, [names.index(f"{prefix}sent_{kind}{axis}_{unit}")
+                                     for kind, unit in (("f", "N"), ("t", "Nm")) for axis in "xyz"]]
+                    np.testing.assert_array_equal(sent, wrenches[:, hand] + 0.0)
+                    self.assertGreater(np.abs(sent).max(), 0.001)
+
+    def test_every_way_to_step_two_hands_is_the_same(self):
+        follower = tactum.open("peg-two-hands")
+        follower.open_hand()
+        followed, poses = follower.follow_hand(1300)
+        self.assertEqual((followed.shape, poses.shape), ((1300, 2, 6), (1300, 2, 4, 4)))
+        # By poses alone the frame estimates the velocities, so the ways by pose are compared with each other.
+        by_list, by_array, by_samples = (tactum.open("peg-two-hands") for _ in range(3))
+        ran = tactum.open("peg-two-hands").run(poses)
+        for i, (X, Y) in enumerate(poses):
+            for sim, both in ((by_list, [X, Y]), (by_array, np.array([X, Y])), (by_samples, (tactum.Sample(X), Y))):
+                np.testing.assert_array_equal(sim.step(both)[0], ran[i])
+        self.assertGreater(np.abs(ran).max(), 0.1)
+        first, second = by_list.hand_reports
+        self.assertEqual({first["grasped_body"], second["grasped_body"]}, {0, 1})
+        np.testing.assert_allclose(first["F_W_contacts"][:3], -second["F_W_contacts"][:3], atol=1e-9)
+
+    def test_the_number_of_hands_is_told(self):
+        with self.assertRaisesRegex(tactum.Error, "a pose or a sample for each hand: found 1, expected 2"):
+            tactum.open("peg-two-hands").step(np.eye(4))
+        with self.assertRaisesRegex(tactum.Error, "a pose or a sample for each hand: found 2, expected 1"):
+            tactum.open("gears").step([np.eye(4), np.eye(4)])
+        with self.assertRaisesRegex(tactum.Error, r"found \(3, 4, 4\), expected \(n, 2, 4, 4\)"):
+            tactum.open("peg-two-hands").run(np.zeros((3, 4, 4)))
+        with self.assertRaisesRegex(tactum.Error, "more devices than the scene has hands: found 2, expected at most 1"):
+            tactum.open("gears", other_devices=["touch"])
+        with self.assertRaises(IndexError):
+            tactum.open("gears").read_hand(1)
+        with self.assertRaises(TypeError):
+            tactum.open("gears").step("here")
+
     def test_every_way_to_step_is_the_same(self):
         sim, follower, runner = (tactum.open("gears") for _ in range(3))
         sim.open_hand()
@@ -120,6 +189,19 @@ class Stepping(unittest.TestCase):
         self.assertAlmostEqual(sim.X_WB[0, 2, 3], 0.005, delta=1e-4)
         vertices, triangles = sim.body_mesh(0)
         self.assertEqual((vertices.shape, triangles.shape), ((8, 3), (12, 3)))
+        # Two hands with a block each, pressed onto each other: what one feels the other gives.
+        world = tactum.World()
+        for name, z in (("lower", 0.0), ("upper", 0.011)):
+            world.add(name, cube((0.010, 0.010, 0.005)), tactum.pose((0, 0, z)))
+        sim = world.simulate(["lower", "upper"], device=["premium-1.5-6dof", "touch"], p_BH=[None, (0, 0, 0)])
+        for i in range(1500):
+            way = 0.003 * min(1.0, i * 1e-3)
+            (below, above), contacts = sim.step([tactum.pose((0, 0, way)), tactum.pose((0, 0, -way))])
+        self.assertLess(below[2], -0.1)
+        self.assertGreater(above[2], 0.1)
+        self.assertGreater(len(contacts), 0)
+        with self.assertRaisesRegex(tactum.Error, "device: there is another number of devices than of tools: found 2"):
+            world.simulate("lower", device=["touch", "touch"])
         with self.assertRaisesRegex(tactum.Error, "world: there is no such body: found bolt"):
             world.simulate(tool="bolt")
         with self.assertRaisesRegex(tactum.Error, "no such joint: found screw"):
@@ -215,6 +297,13 @@ class Runs(unittest.TestCase):
             self.assertEqual(recording.export_csv(csv), 700)
             lines = pathlib.Path(csv).read_text().splitlines()
             self.assertEqual(sum(not line.startswith("#") for line in lines), 701)
+            if PROGRAM:
+                ours, theirs = os.path.join(folder, "ours.h5"), os.path.join(folder, "theirs.h5")
+                self.assertEqual(recording.export_hdf5(ours), 700)
+                subprocess.run([PROGRAM, "export", path, "--hdf5", theirs], stderr=subprocess.DEVNULL, check=True)
+                self.assertEqual(pathlib.Path(ours).read_bytes(), pathlib.Path(theirs).read_bytes())
+            with self.assertRaisesRegex(tactum.Error, "cannot write the file"):
+                recording.export_hdf5(os.path.join(folder, "no-such-folder", "run.h5"))
             with self.assertRaisesRegex(tactum.Error, "no such column: found weight"):
                 recording.column("weight")
             sim = tactum.open("block-on-plate")
@@ -239,8 +328,6 @@ class Runs(unittest.TestCase):
             tactum.open("gears", settings={"coupling.stifness_N_per_m": 1.0})
         with self.assertRaisesRegex(tactum.Error, "no such response: found hard"):
             tactum.open("gears", response="hard")
-        with self.assertRaisesRegex(tactum.Error, "stepped with one hand: found 2 tools"):
-            tactum.open("peg-two-hands")
         if PROGRAM:
             said = subprocess.run([PROGRAM, "feel", "gearz"], capture_output=True, text=True).stderr
             with self.assertRaises(tactum.Error) as raised:

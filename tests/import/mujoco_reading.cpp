@@ -54,7 +54,7 @@ Joint joint_of(const mjModel& m, const mjData& d, int j) {
 /// The bodies that are welded to `root`, together.
 ReadBody body_of(const mjModel& m, const mjData& d, int root) {
   ReadBody read;
-  read.name = mj_id2name(&m, mjOBJ_BODY, root);
+  if (const char* name = mj_id2name(&m, mjOBJ_BODY, root)) read.name = name;
   for (int b = 0; b < m.nbody; ++b) {
     if (m.body_weldid[b] != root) continue;
     read.alone = read.alone && b == root;

@@ -10,7 +10,7 @@
 namespace tactum::import_test {
 
 struct ReadBody {
-  std::string name;
+  std::string name;  ///< empty: the file gives none
   double mass_kg = 0.0;
   Vec3 center_W = Vec3::Zero();
   Mat3 inertia_W = Mat3::Zero();  ///< about the centre of mass

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """The manual pages and completions of the programs against their `--help`:  tests/packages/check_manuals.py PROGRAM...
 
-For every command: the options that `help COMMAND` lists are those of its section in the page, and those that bash offers
-behind it; the commands likewise. Where groff is installed, it lays out each page without a warning.
+For every command: the options that `help COMMAND` lists are those of its section in the page, and those that bash and
+fish, where it is installed, offer behind it; the commands likewise. Where groff is installed, it lays out each page without a warning.
 """
 import pathlib
 import re
@@ -46,12 +46,42 @@ def offered(program, completion, words, begun):
     return set(output("bash", "--norc", "-c", script, "bash", completion, program, *words, begun).split())
 
 
+def offered_by_fish(program, completion, words, begun):
+    """What fish offers for `begun` behind the words: it shows its own wildcard for files, which no check counts."""
+    line = " ".join((program.name, *words, begun))
+    script = "set -x PATH $argv[2] $PATH; source $argv[1]; complete -C $argv[3]"
+    listed = output("fish", "--no-config", "-c", script, completion, program.parent, line).splitlines()
+    return {one.split("\t")[0] for one in listed}
+
+
+def check_fish(program, completion, words, told_options, told_commands):
+    """A sentence for every fault behind these words."""
+    where = " ".join((program.name, *words))
+    given = offered_by_fish(program, completion, words, "-") | offered_by_fish(program, completion, words, "--")
+    faults = [f"{where}: fish offers {sorted(given)}, --help has {sorted(told_options)}"] if given != told_options else []
+    if not told_commands:
+        return faults
+    expected = {*told_commands} | ({"help"} if not words else set())
+    given = offered_by_fish(program, completion, words, "")
+    if given != expected:
+        faults.append(f"{where}: fish offers {sorted(given)}, --help has {sorted(expected)}")
+    if not words:
+        after_help = offered_by_fish(program, completion, ("help",), "")
+        if after_help != {*told_commands}:
+            faults.append(f"{where} help: fish offers {sorted(after_help)}, expected {sorted(told_commands)}")
+        if offered_by_fish(program, completion, ("help", told_commands[0]), "--"):
+            faults.append(f"{where} help {told_commands[0]}: fish offers options, which help does not take")
+    return faults
+
+
 def check(program, folder):
     """A sentence for every fault, and how many commands were looked at."""
     faults = []
     page, text = output(program, "help", "--man"), output(program, "help", "--bash")
     completion = folder / f"{program.name}.bash"
     completion.write_text(text)
+    fish = folder / f"{program.name}.fish"
+    fish.write_text(output(program, "help", "--fish"))
     documented = sections(page, program.name)
     waiting, seen = [()], set()
     while waiting:
@@ -65,6 +95,8 @@ def check(program, folder):
         given = offered(program, completion, words, "-")
         if given != options:
             faults.append(f"{where}: bash offers {sorted(given)}, --help has {sorted(options)}")
+        if shutil.which("fish"):
+            faults += check_fish(program, fish, words, options, commands)
         if commands:
             given = offered(program, completion, words, "")
             expected = {*commands} | ({"help"} if not words else set())
@@ -89,9 +121,13 @@ def main(programs, folder):
         count += commands
         if program.name == "tactum" and "peg-in-hole" not in offered(program.resolve(), folder / "tactum.bash", ("feel",), "peg-i"):
             faults.append("tactum feel peg-i: bash does not offer peg-in-hole")
+        if program.name == "tactum" and shutil.which("fish") and "peg-in-hole" not in offered_by_fish(
+                program.resolve(), folder / "tactum.fish", ("feel",), "peg-i"):
+            faults.append("tactum feel peg-i: fish does not offer peg-in-hole")
     for fault in faults:
         print(fault)
-    print(f"manuals: {count} commands of {len(programs)} programs, {len(faults)} faults")
+    fish = "" if shutil.which("fish") else "; fish is not installed, its completion was not tried"
+    print(f"manuals: {count} commands of {len(programs)} programs, {len(faults)} faults{fish}")
     return 1 if faults or count == 0 else 0
 
 

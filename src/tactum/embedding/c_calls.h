@@ -38,6 +38,10 @@ template <class T>
 constexpr std::size_t first_size() {
   return sizeof(T);
 }
+template <>
+constexpr std::size_t first_size<tactum_scene_options>() {
+  return offsetof(tactum_scene_options, other_devices);
+}
 
 /// Reads options that a program of another version may have filled in; null: all defaults. Bytes that this
 /// version does not know must be zero, since they ask for something that it cannot do.

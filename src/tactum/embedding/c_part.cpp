@@ -1,15 +1,10 @@
 /// Parts, distance and clearance of the C interface.
 
-#include "tactum/embedding/c_calls.h"
+#include "tactum/embedding/c_handles.h"
 #include "tactum/embedding/c_values.h"
-#include "tactum/embedding/part_query.h"
 
 using namespace tactum;  // the C interface stands outside the namespace
 using namespace tactum::c_calls;
-
-struct tactum_part {  // NOLINT(readability-identifier-naming): the name of C
-  std::shared_ptr<const QueriedPart> part;
-};
 
 namespace {
 

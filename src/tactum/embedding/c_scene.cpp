@@ -1,17 +1,13 @@
-/// Scenes of the C interface: opened, stepped, and their hand.
+/// Scenes of the C interface: opened, stepped, and their hands.
 
-#include "tactum/embedding/c_calls.h"
+#include <algorithm>
+
+#include "tactum/embedding/c_handles.h"
 #include "tactum/embedding/c_values.h"
-#include "tactum/embedding/stepped_scene.h"
 #include "tactum/scene/scene_file.h"
 
 using namespace tactum;  // the C interface stands outside the namespace
 using namespace tactum::c_calls;
-
-struct tactum_simulation {  // NOLINT(readability-identifier-naming): the name of C
-  std::unique_ptr<SteppedScene> scene;
-  bool hand_is_open = false;
-};
 
 namespace {
 
@@ -19,17 +15,15 @@ tactum_status read_options(const char* call, const tactum_scene_options* given,
                            SteppedSceneOptions& options) {
   tactum_scene_options taken{};
   if (const tactum_status status = take(call, given, taken); status != TACTUM_OK) return status;
+  if (taken.other_devices == nullptr && taken.other_device_count > 0)
+    return bad_call(call, "a pointer is null");
   options.device = text_of(taken.device);
+  for (size_t i = 0; i < taken.other_device_count; ++i)
+    options.other_devices.push_back(text_of(taken.other_devices[i]));
   options.grip = text_of(taken.grip);
   options.response = text_of(taken.response);
   options.settings = text_of(taken.settings);
   options.rate_Hz = taken.rate_Hz;
-  return TACTUM_OK;
-}
-
-tactum_status hand_over_scene(Result<std::unique_ptr<SteppedScene>> opened, tactum_simulation** scene) {
-  if (!opened) return refuse(opened.error());
-  *scene = new tactum_simulation{std::move(*opened)};
   return TACTUM_OK;
 }
 
@@ -51,12 +45,37 @@ void fill_frame(const SteppedScene& scene, const Wrench& F_D, tactum_frame* fram
   give(out, frame);
 }
 
-tactum_status step_checked(const char* call, tactum_simulation* scene, const DeviceSample& sample,
-                           tactum_frame* frame) noexcept {
+/// Steps with the samples of all hands, which stand in the scene.
+tactum_status step_checked(const char* call, tactum_simulation* scene, tactum_frame* frame) noexcept {
   if (frame != nullptr)
     if (const tactum_status status = check_room(call, frame); status != TACTUM_OK) return status;
-  const Wrench F_D = scene->scene->step(sample);
-  if (frame != nullptr) fill_frame(*scene->scene, F_D, frame);
+  scene->scene->step(scene->samples, scene->F_D);
+  if (frame != nullptr) fill_frame(*scene->scene, scene->F_D.front(), frame);
+  return TACTUM_OK;
+}
+
+/// Of a call for a scene with one hand.
+tactum_status check_one_hand(const char* call, const tactum_simulation* scene) noexcept {
+  if (scene->scene->hands() == 1) return TACTUM_OK;
+  return bad_call(call, "the scene has several hands, which tactum_step_hands takes");
+}
+
+tactum_status check_hand(const char* call, const tactum_simulation* scene, int32_t hand) noexcept {
+  if (scene == nullptr) return bad_call(call, "the scene is null");
+  const bool there = hand >= 0 && static_cast<size_t>(hand) < scene->scene->hands();
+  return there ? TACTUM_OK : bad_call(call, "there is no hand of this number");
+}
+
+tactum_status take_sample(const char* call, const tactum_sample* sample, HandSample& read) noexcept {
+  tactum_sample taken{};
+  if (const tactum_status status = take(call, sample, taken); status != TACTUM_OK) return status;
+  read = {};
+  read.X_DH = pose_of(taken.X_DH);
+  read.V_DH = twist_of(taken.V_DH);
+  read.has_velocity = taken.has_velocity != 0;
+  read.buttons = taken.buttons;
+  read.motors_on = taken.motors_off == 0;
+  read.valid = taken.invalid == 0;
   return TACTUM_OK;
 }
 
@@ -133,25 +152,64 @@ void tactum_close_scene(tactum_simulation* scene) {
 
 tactum_status tactum_step_pose(tactum_simulation* scene, const tactum_pose* X_DH, tactum_frame* frame) {
   if (scene == nullptr || X_DH == nullptr) return bad_call("tactum_step_pose", "a pointer is null");
-  DeviceSample sample;
-  sample.valid = true;
-  sample.X_DH = pose_of(*X_DH);
-  return step_checked("tactum_step_pose", scene, sample, frame);
+  if (const tactum_status status = check_one_hand("tactum_step_pose", scene); status != TACTUM_OK)
+    return status;
+  scene->samples.front() = {};
+  scene->samples.front().valid = true;
+  scene->samples.front().X_DH = pose_of(*X_DH);
+  return step_checked("tactum_step_pose", scene, frame);
 }
 
 tactum_status tactum_step_sample(tactum_simulation* scene, const tactum_sample* sample, tactum_frame* frame) {
   if (scene == nullptr || sample == nullptr) return bad_call("tactum_step_sample", "a pointer is null");
-  tactum_sample taken{};
-  if (const tactum_status status = take("tactum_step_sample", sample, taken); status != TACTUM_OK)
+  if (const tactum_status status = check_one_hand("tactum_step_sample", scene); status != TACTUM_OK)
     return status;
-  DeviceSample read;
-  read.X_DH = pose_of(taken.X_DH);
-  read.V_DH = twist_of(taken.V_DH);
-  read.has_velocity = taken.has_velocity != 0;
-  read.buttons = taken.buttons;
-  read.motors_on = taken.motors_off == 0;
-  read.valid = taken.invalid == 0;
-  return step_checked("tactum_step_sample", scene, read, frame);
+  if (const tactum_status status = take_sample("tactum_step_sample", sample, scene->samples.front());
+      status != TACTUM_OK)
+    return status;
+  return step_checked("tactum_step_sample", scene, frame);
+}
+
+int32_t tactum_hand_count(const tactum_simulation* scene) {
+  return scene == nullptr ? 0 : static_cast<int32_t>(scene->scene->hands());
+}
+
+tactum_status tactum_step_hands(tactum_simulation* scene, size_t sample_size, const tactum_sample* samples,
+                                size_t hands, tactum_wrench* F_D, tactum_frame* frame) {
+  if (scene == nullptr || samples == nullptr) return bad_call("tactum_step_hands", "a pointer is null");
+  if (sample_size < first_size<tactum_sample>())
+    return bad_call("tactum_step_hands", "sample_size is not that of the struct");
+  if (hands != scene->samples.size())
+    return bad_call("tactum_step_hands", "there is another number of samples than of hands");
+  const auto* bytes = reinterpret_cast<const unsigned char*>(samples);
+  for (size_t h = 0; h < hands; ++h) {
+    const auto* sample = reinterpret_cast<const tactum_sample*>(bytes + h * sample_size);
+    if (const tactum_status status = take_sample("tactum_step_hands", sample, scene->samples[h]);
+        status != TACTUM_OK)
+      return status;
+  }
+  if (const tactum_status status = step_checked("tactum_step_hands", scene, frame); status != TACTUM_OK)
+    return status;
+  if (F_D != nullptr) std::transform(scene->F_D.begin(), scene->F_D.end(), F_D, &c_wrench);
+  return TACTUM_OK;
+}
+
+tactum_status tactum_get_hand(const tactum_simulation* scene, int32_t hand, tactum_hand* out) {
+  if (const tactum_status status = check_hand("tactum_get_hand", scene, hand); status != TACTUM_OK)
+    return status;
+  if (const tactum_status status = check_room("tactum_get_hand", out); status != TACTUM_OK) return status;
+  const Simulation& simulation = scene->scene->simulation();
+  const auto h = static_cast<size_t>(hand);
+  const HandReport& report = h == 0 ? simulation.report() : simulation.state().other_reports[h - 1];
+  tactum_hand full{};
+  full.F_D = c_wrench(scene->F_D[h]);
+  full.F_W = c_wrench(report.restoring);
+  full.X_WH = c_pose(report.X_WH);
+  full.X_WH_proxy = c_pose(report.X_WH_proxy);
+  full.grasped_body = report.grasped_body;
+  full.safety = report.safety;
+  give(full, out);
+  return TACTUM_OK;
 }
 
 double tactum_frame_step(const tactum_simulation* scene) {
@@ -217,7 +275,7 @@ tactum_status tactum_open_hand(tactum_simulation* scene) {
   return guarded([&] {
     if (scene == nullptr) return bad_call("tactum_open_hand", "the scene is null");
     if (scene->hand_is_open) return TACTUM_OK;
-    const Result<void> opened = scene->scene->hand().open();
+    const Result<void> opened = scene->scene->devices().open();
     if (!opened) return refuse(opened.error());
     scene->hand_is_open = true;
     return TACTUM_OK;
@@ -225,11 +283,17 @@ tactum_status tactum_open_hand(tactum_simulation* scene) {
 }
 
 tactum_status tactum_read_hand(tactum_simulation* scene, tactum_sample* sample) {
+  return tactum_read_hand_of(scene, 0, sample);
+}
+
+tactum_status tactum_read_hand_of(tactum_simulation* scene, int32_t hand, tactum_sample* sample) {
   if (scene == nullptr || !scene->hand_is_open) return bad_call("tactum_read_hand", "the hand is not open");
+  if (const tactum_status status = check_hand("tactum_read_hand", scene, hand); status != TACTUM_OK)
+    return status;
   if (const tactum_status status = check_room("tactum_read_hand", sample); status != TACTUM_OK) return status;
   DeviceSample read;
   const double now_s = scene->scene->next_time_s();
-  if (!scene->scene->hand().read(now_s, read)) read.valid = false;
+  if (!scene->scene->hand(static_cast<size_t>(hand)).read(now_s, read)) read.valid = false;
   tactum_sample out{};
   out.X_DH = c_pose(read.X_DH);
   out.V_DH = c_twist(read.V_DH);
@@ -242,16 +306,22 @@ tactum_status tactum_read_hand(tactum_simulation* scene, tactum_sample* sample) 
 }
 
 tactum_status tactum_write_hand(tactum_simulation* scene, const tactum_wrench* F_D) {
+  return tactum_write_hand_of(scene, 0, F_D);
+}
+
+tactum_status tactum_write_hand_of(tactum_simulation* scene, int32_t hand, const tactum_wrench* F_D) {
   if (scene == nullptr || F_D == nullptr || !scene->hand_is_open)
     return bad_call("tactum_write_hand", "a pointer is null or the hand is not open");
-  if (scene->scene->hand().write(wrench_of(*F_D))) return TACTUM_OK;
+  if (const tactum_status status = check_hand("tactum_write_hand", scene, hand); status != TACTUM_OK)
+    return status;
+  if (scene->scene->hand(static_cast<size_t>(hand)).write(wrench_of(*F_D))) return TACTUM_OK;
   return say(TACTUM_REFUSED, "the device did not take the wrench");
 }
 
 void tactum_close_hand(tactum_simulation* scene) {
   if (scene == nullptr || !scene->hand_is_open) return;
-  scene->scene->hand().write({});
-  scene->scene->hand().close();
+  scene->scene->devices().write({});
+  scene->scene->devices().close();
   scene->hand_is_open = false;
 }
 

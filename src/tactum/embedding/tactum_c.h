@@ -11,6 +11,8 @@
  *   tactum_step_pose(scene, &X_DH, &frame);                    frame.F_D: the wrench on the hand
  *   tactum_close_scene(scene);
  *
+ * A world that is no scene file is made call by call: tactum_make_world, tactum_add_body, tactum_open_world.
+ *
  * Units are SI: m, kg, s, rad, N, N m. Frames stand in the names: X_WB is the pose of B in W. W is the world,
  * right-handed, z up; D the device, x towards the operator, y to the operator's right, z up; H its handle; P
  * the frame of a part's mesh, as its file has it; B a body, at its centre of mass, with the axes of P.
@@ -114,8 +116,8 @@ typedef struct tactum_mesh_view {
   size_t triangle_count;
 } tactum_mesh_view;
 
-/** Loads a prepared part, or a mesh file (OBJ, STL, PLY, OFF, glTF, GLB), which is then prepared: repaired,
- * cut into pieces, verified. Options may be NULL; a prepared part needs none. Slow. Release it with
+/** Loads a prepared part, or a mesh file (OBJ, STL, PLY, OFF, glTF, GLB, COLLADA), which is then prepared:
+ * repaired, cut into pieces, verified. Options may be NULL; a prepared part needs none. Slow. Release it with
  * tactum_release_part. */
 TACTUM_C_API tactum_status tactum_load_part(const char* path, const tactum_part_options* options,
                                             tactum_part** part);
@@ -168,9 +170,11 @@ typedef struct tactum_scene_options {
   size_t struct_size;
   const char* device; /* whose limits hold, by name as in `tactum devices`; NULL: the scene's simulated one */
   const char* grip;   /* of a simulated hand: loose, medium, firm; NULL: the scene's */
-  const char* response; /* constraint or penalty; NULL: the scene's */
-  const char* settings; /* a table [settings] as text, put over those of the scene; NULL: none */
-  double rate_Hz;       /* frames a second; 0: the scene's [Hz] */
+  const char* response;             /* constraint or penalty; NULL: the scene's */
+  const char* settings;             /* a table [settings] as text, put over those of the scene; NULL: none */
+  double rate_Hz;                   /* frames a second; 0: the scene's [Hz] */
+  const char* const* other_devices; /* of the second hand and all after it; NULL: the scene's */
+  size_t other_device_count;
 } tactum_scene_options;
 
 /** What a device measures in a frame. */
@@ -184,7 +188,7 @@ typedef struct tactum_sample {
   int32_t invalid;      /* the read has failed: no force is sent */
 } tactum_sample;
 
-/** What has come out of a frame. */
+/** What has come out of a frame; what belongs to a hand is that of the first. */
 typedef struct tactum_frame {
   size_t struct_size;
   uint64_t index;    /* of the frame, from 0 */
@@ -231,8 +235,19 @@ typedef struct tactum_body {
   int32_t reserved;  /* 0 */
 } tactum_body;
 
-/** Opens a scene by its name (`tactum scenes`) or from a scene file. Options may be NULL. Slow. A scene of
- * several hands is refused. Close it with tactum_close_scene. */
+/** What a frame has given one hand. */
+typedef struct tactum_hand {
+  size_t struct_size;
+  tactum_wrench F_D;      /* as tactum_frame has it [N, N m] */
+  tactum_wrench F_W;      /* [N, N m] */
+  tactum_pose X_WH;       /* [m] */
+  tactum_pose X_WH_proxy; /* [m] */
+  int32_t grasped_body;   /* -1: none */
+  uint32_t safety;
+} tactum_hand;
+
+/** Opens a scene by its name (`tactum scenes`) or from a scene file. Options may be NULL. Slow. Close it with
+ * tactum_close_scene. */
 TACTUM_C_API tactum_status tactum_open_scene(const char* name_or_file, const tactum_scene_options* options,
                                              tactum_simulation** scene);
 /** The same from the text of a scene file; meshes are searched in `folder`, which may be NULL. */
@@ -251,6 +266,15 @@ TACTUM_C_API tactum_status tactum_step_pose(tactum_simulation* scene, const tact
 /** The same with all that a device measures. */
 TACTUM_C_API tactum_status tactum_step_sample(tactum_simulation* scene, const tactum_sample* sample,
                                               tactum_frame* frame);
+/** How many hands the scene has; 0 for a null scene. */
+TACTUM_C_API int32_t tactum_hand_count(const tactum_simulation* scene);
+/** The same of a scene with any number of hands: a sample for each of them, in the order of the scene's tools,
+ * each of `sample_size` = sizeof(tactum_sample) bytes. F_D takes the wrench on each hand, and may be NULL. */
+TACTUM_C_API tactum_status tactum_step_hands(tactum_simulation* scene, size_t sample_size,
+                                             const tactum_sample* samples, size_t hands, tactum_wrench* F_D,
+                                             tactum_frame* frame);
+/** Of the last frame, of one hand, counted from 0. */
+TACTUM_C_API tactum_status tactum_get_hand(const tactum_simulation* scene, int32_t hand, tactum_hand* out);
 /** Frame after frame, [s]. */
 TACTUM_C_API double tactum_frame_step(const tactum_simulation* scene);
 /** The hash of all frames so far: the same run has the same, on every machine, and so does `tactum feel
@@ -269,19 +293,94 @@ TACTUM_C_API tactum_status tactum_get_body(const tactum_simulation* scene, int32
 TACTUM_C_API tactum_status tactum_body_mesh(const tactum_simulation* scene, int32_t body,
                                             tactum_mesh_view* view);
 
-/* ---- The hand of a scene: the device of its options, simulated or real. ---- */
+/* ---- The hands of a scene: the devices of its options, simulated or real. ---- */
 
-/** Opens the device: switches the motors of a real one on. Where it is simulated, its hand moves as the scene
- * says. */
+/** Opens the device, or those of all hands: switches the motors of a real one on. Where it is simulated, its
+ * hand moves as the scene says. */
 TACTUM_C_API tactum_status tactum_open_hand(tactum_simulation* scene);
 /** What it measures now, for tactum_step_sample. A simulated one goes on to the time of the next frame. */
 TACTUM_C_API tactum_status tactum_read_hand(tactum_simulation* scene, tactum_sample* sample);
 /** Sets the wrench on the hand, of tactum_frame::F_D. */
 TACTUM_C_API tactum_status tactum_write_hand(tactum_simulation* scene, const tactum_wrench* F_D);
-/** Zero wrench, then releases the device; tactum_close_scene does it too. */
+/** The same of one of several hands, counted from 0: all of them are read before each step. */
+TACTUM_C_API tactum_status tactum_read_hand_of(tactum_simulation* scene, int32_t hand, tactum_sample* sample);
+TACTUM_C_API tactum_status tactum_write_hand_of(tactum_simulation* scene, int32_t hand,
+                                                const tactum_wrench* F_D);
+/** Zero wrench, then releases the device of each hand; tactum_close_scene does it too. */
 TACTUM_C_API void tactum_close_hand(tactum_simulation* scene);
-/** How many frames the motion of its simulated hand lasts; 0: the scene has none. */
+/** How many frames the motion of its first simulated hand lasts; 0: the scene has none. */
 TACTUM_C_API uint64_t tactum_hand_frames(const tactum_simulation* scene);
+
+/* ---- Worlds, put together call by call. ---- */
+
+typedef struct tactum_world tactum_world;
+
+typedef enum tactum_joint_kind {
+  TACTUM_JOINT_FREE = 0,
+  TACTUM_JOINT_FIXED = 1,  /* never moves, or rides on the body it is joined to */
+  TACTUM_JOINT_HINGE = 2,  /* turns about an axis through a point */
+  TACTUM_JOINT_SLIDER = 3, /* slides along an axis, without turning */
+  TACTUM_JOINT_BALL = 4    /* turns about a point */
+} tactum_joint_kind;
+
+/** Its position is how far the body has come from its pose at the start. Numbers are torques for a hinge or
+ * ball, forces for a slider. */
+typedef struct tactum_joint {
+  size_t struct_size;
+  int32_t kind;       /* tactum_joint_kind */
+  int32_t has_limits; /* `lower` and `upper` hold; -INFINITY and INFINITY are none */
+  double axis_W[3];   /* of a hinge or slider, of any length, as it stands at the start; zero: z [-] */
+  double anchor_W[3]; /* a point of a hinge's axis, a ball's centre, at the start [m] */
+  double damping;     /* viscous [N m s/rad or N s/m] */
+  double friction;    /* largest dry friction of a hinge or slider [N m or N] */
+  double stiffness;   /* of the spring of a hinge or slider [N m/rad or N/m] */
+  double rest;        /* the position at which its spring is at rest [rad or m] */
+  double lower;       /* least position of a hinge or slider [rad or m] */
+  double upper;       /* largest position [rad or m] */
+} tactum_joint;
+
+typedef struct tactum_body_options {
+  size_t struct_size;
+  const char* name;          /* one that no other body of the world has; NULL: none */
+  const char* material;      /* by which bodies get friction and restitution; NULL: none */
+  const tactum_joint* joint; /* to the world; NULL: the body is free */
+  double mass_kg;            /* 0: by the density [kg] */
+  double density_kg_per_m3;  /* 0: that of the part; not beside a mass [kg/m^3] */
+  tactum_twist V_WB;         /* at the start, of the centre of mass, axes of W [m/s, rad/s] */
+} tactum_body_options;
+
+/** What a hand holds, and the device whose limits hold for it. */
+typedef struct tactum_tool {
+  size_t struct_size;
+  const char* body;   /* by its name; NULL: the hand is empty */
+  const char* device; /* by name as in `tactum devices`; NULL: premium-1.5-6dof, simulated */
+  double p_BH[3];     /* where the hand holds it, from its centre of mass, axes of P [m] */
+} tactum_tool;
+
+/** An empty world. `gravity_W` may be NULL: none [m/s^2]. Release it with tactum_release_world. */
+TACTUM_C_API tactum_status tactum_make_world(const double gravity_W[3], tactum_world** world);
+/** Adds a body with the mesh of its part at X_WP. The part is copied and may be released. Options may be NULL,
+ * and `body` too, which takes its number. What is refused leaves the world as it was. */
+TACTUM_C_API tactum_status tactum_add_body(tactum_world* world, const tactum_part* part,
+                                           const tactum_pose* X_WP, const tactum_body_options* options,
+                                           int32_t* body);
+/** Joins a free body to another one, both by name. The two never touch each other unless `contact` is not 0. */
+TACTUM_C_API tactum_status tactum_join_bodies(tactum_world* world, const char* body, const char* parent,
+                                              const tactum_joint* joint, int32_t contact);
+/** Coulomb's coefficient, or that of impacts, of all bodies of two materials with each other; 0 where none is
+ * given. Of one pair the last call counts. A material that no body has is refused by tactum_open_world. */
+TACTUM_C_API tactum_status tactum_set_friction(tactum_world* world, const char* material_a,
+                                               const char* material_b, double coefficient);
+TACTUM_C_API tactum_status tactum_set_restitution(tactum_world* world, const char* material_a,
+                                                  const char* material_b, double coefficient);
+/** A scene of the world as it is now, with a hand for each tool, each of `tool_size` = sizeof(tactum_tool)
+ * bytes; with no tools, one hand that is empty. `rate_Hz` 0: 1000 [Hz]. The world may be used again, changed
+ * and released. Slow. Close the scene with tactum_close_scene. */
+TACTUM_C_API tactum_status tactum_open_world(const tactum_world* world, size_t tool_size,
+                                             const tactum_tool* tools, size_t tool_count, double rate_Hz,
+                                             tactum_simulation** scene);
+/** NULL is allowed. */
+TACTUM_C_API void tactum_release_world(tactum_world* world);
 
 /* ---- The axes of engines. Any thread. ----
  *

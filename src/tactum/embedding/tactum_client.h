@@ -148,15 +148,64 @@ class Scene {
     check(tactum_get_body(handle(), body, &out));
     return out;
   }
+  std::int32_t hands() const { return tactum_hand_count(handle()); }
+  /// One frame of a scene with any number of hands: a sample for each; returns the wrench on each.
+  std::vector<tactum_wrench> step(const std::vector<tactum_sample>& samples) {
+    std::vector<tactum_wrench> F_D(samples.size());
+    check(tactum_step_hands(handle(), sizeof(tactum_sample), samples.data(), samples.size(), F_D.data(),
+                            nullptr));
+    return F_D;
+  }
   /// The handle, for all other calls of tactum_c.h.
   tactum_simulation* handle() const noexcept { return scene_.get(); }
 
  private:
+  friend class World;
   struct Close {
     void operator()(tactum_simulation* scene) const noexcept { tactum_close_scene(scene); }
   };
   explicit Scene(tactum_simulation* scene) noexcept : scene_(scene) {}
   std::unique_ptr<tactum_simulation, Close> scene_;
+};
+
+/// Bodies, put together call by call; may be moved, not copied.
+class World {
+ public:
+  /// [m/s^2]
+  explicit World(const std::array<double, 3>& gravity_W = {}) {
+    tactum_world* world = nullptr;
+    check(tactum_make_world(gravity_W.data(), &world));
+    world_.reset(world);
+  }
+  /// Adds a body and returns its number. The part is copied.
+  std::int32_t add(const Part& part, const tactum_pose& X_WP, const tactum_body_options* options = nullptr) {
+    std::int32_t body = -1;
+    check(tactum_add_body(handle(), part.handle(), &X_WP, options, &body));
+    return body;
+  }
+  void join(const std::string& body, const std::string& parent, const tactum_joint& joint,
+            bool contact = false) {
+    check(tactum_join_bodies(handle(), body.c_str(), parent.c_str(), &joint, contact ? 1 : 0));
+  }
+  void friction(const std::string& material_a, const std::string& material_b, double coefficient) {
+    check(tactum_set_friction(handle(), material_a.c_str(), material_b.c_str(), coefficient));
+  }
+  void restitution(const std::string& material_a, const std::string& material_b, double coefficient) {
+    check(tactum_set_restitution(handle(), material_a.c_str(), material_b.c_str(), coefficient));
+  }
+  /// A scene of the world as it is now, with a hand for each tool. Slow.
+  Scene simulate(const std::vector<tactum_tool>& tools, double rate_Hz = 0.0) const {
+    tactum_simulation* scene = nullptr;
+    check(tactum_open_world(handle(), sizeof(tactum_tool), tools.data(), tools.size(), rate_Hz, &scene));
+    return Scene(scene);
+  }
+  tactum_world* handle() const noexcept { return world_.get(); }
+
+ private:
+  struct Release {
+    void operator()(tactum_world* world) const noexcept { tactum_release_world(world); }
+  };
+  std::unique_ptr<tactum_world, Release> world_;
 };
 
 /// The hand of a scene as the device of a host: a host asks in each cycle where the handle is, and then sets

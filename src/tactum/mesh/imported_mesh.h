@@ -28,7 +28,7 @@ struct MeshGroup {
 /// The differences between the mesh and the file.
 struct ImportReport {
   std::string format;                ///< "OBJ", "STL (binary)", ...
-  bool in_metres = false;            ///< by the standard of the format
+  bool in_metres = false;            ///< by the standard of the format, or by the unit that the file says
   int polygons_split = 0;            ///< faces of more than three corners, cut into triangles
   int concave_polygons = 0;          ///< ... of which not convex
   int points_dropped = 0;            ///< point elements

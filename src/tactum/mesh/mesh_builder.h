@@ -57,5 +57,6 @@ Result<void> read_stl(std::string_view bytes, MeshBuilder& builder);
 Result<void> read_ply(std::string_view bytes, MeshBuilder& builder);
 Result<void> read_off(std::string_view text, MeshBuilder& builder);
 Result<void> read_gltf(std::string_view bytes, MeshBuilder& builder);
+Result<void> read_collada(std::string_view text, MeshBuilder& builder);
 
 }  // namespace tactum::inline v0_1::detail

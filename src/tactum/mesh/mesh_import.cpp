@@ -18,9 +18,12 @@ struct Format {
   std::string_view ending;
   Reader read;
 };
-constexpr Format kFormats[] = {{"obj", detail::read_obj},   {"stl", detail::read_stl},
-                               {"ply", detail::read_ply},   {"off", detail::read_off},
-                               {"gltf", detail::read_gltf}, {"glb", detail::read_gltf}};
+constexpr Format kFormats[] = {{"obj", detail::read_obj},    {"stl", detail::read_stl},
+                               {"ply", detail::read_ply},    {"off", detail::read_off},
+                               {"gltf", detail::read_gltf},  {"glb", detail::read_gltf},
+                               {"dae", detail::read_collada}};
+
+constexpr std::size_t kRootWithin = 4096;  // of an XML file, behind its comments
 
 std::string ending_of(const std::string& name) {
   std::string ending = std::filesystem::path(name).extension().string();
@@ -37,6 +40,8 @@ std::string_view sniffed(std::string_view bytes) {
   if (first == "ply") return "ply";
   if (first == "OFF") return "off";
   if (!first.empty() && first.front() == '{') return "gltf";
+  if (first.starts_with('<') && bytes.substr(0, kRootWithin).find("<COLLADA") != std::string_view::npos)
+    return "dae";
   return {};
 }
 
@@ -45,7 +50,7 @@ Result<Format> format_of(std::string_view bytes, const std::string& name) {
   const std::string ending = ending_of(name);
   const std::string_view content = sniffed(bytes);
   const std::string_view wanted = content.empty() ? std::string_view(ending) : content;
-  const bool is_text_format = wanted == "obj" || wanted == "off" || wanted == "gltf";
+  const bool is_text_format = wanted == "obj" || wanted == "off" || wanted == "gltf" || wanted == "dae";
   if (is_text_format && bytes.find('\0') != std::string_view::npos) {
     return Error{"the file is not a text", "a zero byte", "the text of an ." + std::string(wanted) + " file",
                  name};
@@ -57,7 +62,7 @@ Result<Format> format_of(std::string_view bytes, const std::string& name) {
     return Error{"exact surfaces cannot be felt as they are", "a STEP file",
                  "its triangles: tactum prepare " + name + " -o PART.tactum makes them", name};
   return Error{"the format is not known", ending.empty() ? "a name without ending" : "." + ending,
-               ".obj, .stl, .ply, .off, .gltf or .glb", name};
+               ".obj, .stl, .ply, .off, .gltf, .glb or .dae", name};
 }
 
 Result<ImportedMesh> import_checked(std::string_view bytes, const std::string& name,
@@ -127,6 +132,8 @@ Result<ImportedMesh> import_mesh(const std::string& path, const ImportOptions& o
 }
 
 UnitGuess unit_of(const ImportReport& report, const Aabb& box) {
+  if (report.in_metres && report.format == "COLLADA")
+    return {"metres", 1.0, "COLLADA says its unit, by which it was read in metres."};
   if (report.in_metres) return {"metres", 1.0, "glTF is in metres by its standard."};
   return guess_unit(box);
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// Meshes from files: OBJ, STL and PLY (text and binary), OFF, glTF and GLB.
+/// Meshes from files: OBJ, STL and PLY (text and binary), OFF, glTF and GLB, COLLADA.
 ///
 /// Text and the simple binary formats are read by our own readers: they keep the file's doubles (assimp
 /// stores single precision), split concave polygons correctly (a fan would fold over), give the line or byte

@@ -15,6 +15,8 @@ using tactum_client::Error;
 using tactum_client::Part;
 using tactum_client::Scene;
 using tactum_client::SceneDevice;
+using tactum_client::sized;
+using tactum_client::World;
 
 int wrongs = 0;
 
@@ -119,6 +121,38 @@ void moves_by_the_forces_of_its_host() {
   demand(height_m[1] > height_m[0] + 1e-4, "the host's force does not move the hand");
 }
 
+/// The peg in one hand, its hole in the other, and a world of two cubes, each in a hand.
+void takes_worlds_and_several_hands() {
+  Scene scene = Scene::open("peg-two-hands");
+  auto still = sized<tactum_sample>();
+  still.X_DH = {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}};
+  demand(scene.hands() == 2 && scene.step(std::vector{still, still}).size() == 2, "two hands");
+  const Part block = cube(0.01);
+  World world;
+  auto options = sized<tactum_body_options>();
+  std::vector<tactum_tool> tools(2, sized<tactum_tool>());
+  const char* names[] = {"lower", "upper"};
+  for (std::size_t i = 0; i < 2; ++i) {
+    options.name = tools[i].body = names[i];
+    const tactum_pose X_WP = {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0.021 * static_cast<double>(i)}};
+    demand(world.add(block, X_WP, &options) == static_cast<int>(i), "a body is added");
+  }
+  Scene both = world.simulate(tools);
+  std::vector samples(2, still);
+  std::vector<tactum_wrench> F_D;
+  for (int i = 0; i < 500; ++i) {
+    samples[1].X_DH.p[2] = -0.01 * i / 500.0;
+    F_D = both.step(samples);
+  }
+  demand(F_D[1].f[2] > 0.1 && F_D[0].f[2] < -0.1, "the cubes do not press each other");
+  try {
+    world.add(block, still.X_DH, &options);
+    demand(false, "a name that is taken");
+  } catch (const Error& error) {
+    demand(error.status() == TACTUM_REFUSED, "a name that is taken is refused");
+  }
+}
+
 }  // namespace
 
 int main() {
@@ -127,6 +161,7 @@ int main() {
     refuses_with_sentences();
     feels_a_scene_as_a_device();
     moves_by_the_forces_of_its_host();
+    takes_worlds_and_several_hands();
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;
