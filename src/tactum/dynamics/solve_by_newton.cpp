@@ -39,6 +39,11 @@ constexpr double kInnerShare = 0.25;
 /// and the friction of its neighbours do; it is no error where it is less than this part of what is harmless.
 constexpr double kStill = 0.5, kUnfit = 1.0 / 1000.0;
 
+/// A light body that carries heavy ones passes their load on, so a row's compliance is that of the heaviest
+/// body of the island where this is lower: so many times what a force at the centre of mass moves that one,
+/// several times what a force at a corner does, but not below the given part of the row's own.
+constexpr double kCornerMobility = 60.0, kLeastOfOwn = 1.0 / 100.0;
+
 /// What a round without a step takes, in sweeps.
 constexpr double kSweepsWithoutStep = 2.0;
 
@@ -84,6 +89,14 @@ QpRow direction_of(const FrictionPatch& patch, const std::array<double, 3>& want
       along.runs[side].g[i] = sum;
     }
   return along;
+}
+
+/// How far a unit of force moves the heaviest of the free bodies [m/N].
+double least_mobility(const ContactProblem& problem) {
+  double least = kUnbounded;
+  for (const ProblemBody& body : problem.bodies())
+    if (body.rank == 6) least = std::min(least, body.per_displacement * body.per_displacement);
+  return least;
 }
 
 /// The row of a term: those of joints' friction follow those of the problem.
@@ -135,12 +148,14 @@ bool NewtonSolver::begin(const IslandForces& forces, const ContactProblem& probl
 void NewtonSolver::set_multipliers(const Compliances& compliances, IslandForces& forces,
                                    const ContactProblem& problem) noexcept {
   forces.set_loads();
+  const double of_heaviest = kCornerMobility * least_mobility(problem);
+  const auto scale = [&](double own) { return std::clamp(of_heaviest, kLeastOfOwn * own, own); };
   for (Index i = 0; i < terms_.size(); ++i) {
     Term& term = terms_[i];
     if (i < problem.rows()) {
       const IslandForces::Row& row = forces.rows()[i];
       term.multiplier = row.force.now;
-      term.compliance = compliances.rows * row.mobility;
+      term.compliance = compliances.rows * scale(row.mobility);
       term.least = i < problem.equalities() ? -kUnbounded : 0.0;
       term.most = kUnbounded;
     } else {
@@ -158,7 +173,7 @@ void NewtonSolver::set_multipliers(const Compliances& compliances, IslandForces&
       Term& part = patches_[i].parts[d];
       const double arm = arm_of(forces.patches()[i], d);
       part.multiplier = friction.now()[d];
-      part.compliance = arm > 0.0 ? compliances.friction * friction.mobility / (arm * arm) : 0.0;
+      part.compliance = arm > 0.0 ? compliances.friction * scale(friction.mobility) / (arm * arm) : 0.0;
     }
     patches_[i].most = forces.most_friction(i);
   }
