@@ -14,8 +14,11 @@ namespace {
 
 using Index = std::size_t;
 
-/// For so long rows that were found wedged need not open again.
+/// For so long rows that were found wedged need not open again. At first they are asked again in the next
+/// frame, so many times: where a pile begins, forces that have not converged look the same, and bodies that
+/// lie flush cannot move before their gaps open.
 constexpr double kClosed_s = 0.016;
+constexpr int kAskedAgain = 2;
 
 auto key(const ContactRow& row) {
   const SurfacePair& on = row.friction_surfaces();
@@ -100,7 +103,8 @@ void IslandForces::begin(const RowsInProblem& contacts, std::span<const Pose> X_
     Row& row = rows_[contacts.first + i];
     row.force.now = state.force_N;
     row.opening = std::max(0.0, contacts.rows[i].asked);
-    if (state.closed_frames == 0) continue;
+    row.asked = state.closed_frames == 0;
+    if (row.asked) continue;
     // A row that need not open for some time may still close no further. What a trial has added to it is what
     // it needs for that.
     const double not_now = std::min(row.opening, asked_of(contacts.rows[i], opening_share(h)));
@@ -243,7 +247,12 @@ void IslandForces::end(std::span<ContactRow> rows, RowMemory& memory) const noex
     if (rows[i].state < 0) continue;
     RowState& state = memory[rows[i].state];
     state.force_N = row.force.now;
-    if (row.wedged) state.closed_frames = frames_in(kClosed_s, h_);
+    if (row.wedged) {
+      state.closed_frames = state.times_wedged < kAskedAgain ? 1 : frames_in(kClosed_s, h_);
+      state.times_wedged = std::min(kAskedAgain, state.times_wedged + 1);
+    } else if (row.asked) {
+      state.times_wedged = 0;
+    }
   }
 }
 

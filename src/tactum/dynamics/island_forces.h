@@ -24,6 +24,7 @@ struct RowState {
   std::uint64_t name = 0;  ///< given by the caller; 0 is that of no row
   double force_N = 0.0;    ///< along the normal; not negative [N]
   int closed_frames = 0;   ///< in so many more frames its gap need not open
+  int times_wedged = 0;    ///< how often in a row it had no room to open when that was asked of it
 };
 
 /// The memory of contact rows from frame to frame, by the rows' names: the last force of each in an island
@@ -107,7 +108,8 @@ class IslandForces {
     Force force;
     double mobility = 0.0;  ///< |g|^2 [m/N]
     double opening = 0.0;   ///< how much of the row's offset is there to open a gap [m]
-    bool wedged = false;    ///< it had to open, and had no room to
+    bool asked = true;      ///< its gap has to open in this frame
+    bool wedged = false;    ///< ... and had no room to
     int patch = -1;         ///< of friction
   };
   /// The friction of a patch.

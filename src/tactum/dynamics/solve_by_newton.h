@@ -10,6 +10,12 @@
 /// function that is quadratic while the same rows push, found by Newton's method with a search along each
 /// step; then every multiplier becomes its force, and what is missed falls by the ratio of the compliances.
 ///
+/// From the first answer to the stiff problem on, the bounds of friction are those of the loads at the point
+/// itself, as the bounds of a round before would leave a row of bodies that is pushed with friction beyond
+/// its bound, and what takes it away turns the bodies. The step then contains what a patch that slides
+/// changes with its load [Alart and Curnier 1991], which is not symmetric (math/envelope_lu.h). It is taken
+/// while it reduces what is left of the gradient; else a step with the bounds as they are.
+///
 /// A step takes a factor of  I + sum g g^T / R,  whose size is the freedom of the bodies. Bodies are put in
 /// an order that keeps those that touch together (math/unknowns_order.h), so that a tower of n bodies takes
 /// work in proportion to n. What a wide heap would take is known beforehand: the caller compares it with
@@ -17,6 +23,7 @@
 
 #include "tactum/dynamics/island_forces.h"
 #include "tactum/math/envelope_cholesky.h"
+#include "tactum/math/envelope_lu.h"
 #include "tactum/math/unknowns_order.h"
 
 namespace tactum::inline v0_1 {
@@ -66,17 +73,25 @@ class NewtonSolver {
   void set_multipliers(const Compliances& compliances, IslandForces& forces,
                        const ContactProblem& problem) noexcept;
   void measure(const IslandForces& forces, const ContactProblem& problem) noexcept;
-  void apply_forces(IslandForces& forces, ContactProblem& problem) const noexcept;
+  void apply_forces(IslandForces& forces, ContactProblem& problem) noexcept;
   double set_gradient(const IslandForces& forces, const ContactProblem& problem) noexcept;
+  double residual() const noexcept;
   void add_to_matrix(const QpRow& row, double weight) noexcept;
   void add_to_matrix(const FrictionPatch& patch, const PatchTerm& term) noexcept;
-  bool find_step(const IslandForces& forces, const ContactProblem& problem) noexcept;
+  bool add_slope_of_bounds(const IslandForces& forces, const ContactProblem& problem) noexcept;
+  void set_matrix(const IslandForces& forces, const ContactProblem& problem) noexcept;
+  template <class Factor>
+  void find_step(const Factor& factor, const IslandForces& forces, const ContactProblem& problem) noexcept;
+  bool go_with_bounds(double& left, IslandForces& forces, ContactProblem& problem) noexcept;
+  bool go_to_least(const IslandForces& forces, const ContactProblem& problem) noexcept;
   double length_of_step(const IslandForces& forces) const noexcept;
   double slope_at(double t, const IslandForces& forces) const noexcept;
   void go(double t) noexcept;
 
   UnknownsOrder order_;
   EnvelopeCholesky factor_;
+  EnvelopeLu factor_with_bounds_;
+  bool bounds_follow_ = false;  // the bounds of friction are those of the loads at the point
   double sweeps_per_round_ = 0.0;
   ReservedVector<Term> terms_;  // of the rows, then of the joints' friction
   ReservedVector<PatchTerm> patches_;

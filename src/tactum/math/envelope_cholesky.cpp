@@ -3,28 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tactum/math/lane_sum.h"
+
 namespace tactum::inline v0_1 {
 namespace {
 
 using Index = std::size_t;
-
-/// The scalar product of n numbers, by four sums that a compiler may keep in lanes.
-double dot(const double* x, const double* y, Index n) noexcept {
-  double s0 = 0.0;
-  double s1 = 0.0;
-  double s2 = 0.0;
-  double s3 = 0.0;
-  Index i = 0;
-  for (; i + 4 <= n; i += 4) {
-    s0 += x[i] * y[i];
-    s1 += x[i + 1] * y[i + 1];
-    s2 += x[i + 2] * y[i + 2];
-    s3 += x[i + 3] * y[i + 3];
-  }
-  double sum = (s0 + s2) + (s1 + s3);
-  for (; i < n; ++i) sum += x[i] * y[i];
-  return sum;
-}
 
 }  // namespace
 
@@ -67,7 +51,7 @@ bool EnvelopeCholesky::factor() noexcept {
       const Index common = std::max<Index>(from, first_[j]);
       const double* const other = &entries_[starts_[j] + common];
       double& value = row[j - from];
-      value = (value - dot(row + (common - from), other, j - common)) * inverse_[j];
+      value = (value - lane_sum(row + (common - from), other, j - common)) * inverse_[j];
       diagonal -= value * value;
     }
     if (!(diagonal > 0.0)) return false;
@@ -79,7 +63,7 @@ bool EnvelopeCholesky::factor() noexcept {
 void EnvelopeCholesky::solve(std::span<double> x) const noexcept {
   for (Index i = 0; i < first_.size(); ++i) {
     const Index from = first_[i];
-    x[i] = (x[i] - dot(&entries_[starts_[i] + from], &x[from], i - from)) * inverse_[i];
+    x[i] = (x[i] - lane_sum(&entries_[starts_[i] + from], &x[from], i - from)) * inverse_[i];
   }
   for (Index i = first_.size(); i-- > 0;) {
     const Index from = first_[i];

@@ -31,6 +31,11 @@ class EnvelopeCholesky {
   /// The entry of row i and column j <= i, which is inside of the envelope.
   double& entry(std::size_t i, std::size_t j) noexcept { return entries_[starts_[i] + j]; }
 
+  /// The first column of each row, where each row stands among the entries, and the entries.
+  std::span<const std::uint32_t> first() const noexcept { return first_; }
+  std::span<const std::size_t> starts() const noexcept { return starts_; }
+  std::span<const double> entries() const noexcept { return entries_; }
+
   /// Replaces the matrix by its factor. False when the matrix is not positive definite.
   bool factor() noexcept;
   /// Replaces x by the solution of  matrix * solution = x.
