@@ -88,8 +88,8 @@ class ContactFinder final : public GapOracle {
   double depth_along(int patch, std::span<const Pose> X_WB, const Vec3& direction_W) noexcept override;
   FirstImpact first_impact(std::span<const Pose> X_WB, std::span<const Twist> V_WB,
                            double dt_s) noexcept override;
-  bool passes(int patch, std::span<const Pose> X_WB, std::span<const Twist> V_WB, double dt_s,
-              double gap_m) noexcept override;
+  Passing passes(int patch, std::span<const Pose> X_WB, std::span<const Twist> V_WB, double dt_s,
+                 double gap_m) noexcept override;
   PathWork prove_paths(std::span<const Pose> X_WB, std::span<const BodyTurn> turn,
                        std::span<const char> asked, int most_tests, std::span<double> free) noexcept override;
   const ContactWork& work() const noexcept { return work_; }
@@ -193,6 +193,8 @@ class ContactFinder final : public GapOracle {
   void surface_distances_at(std::span<const ContactPatch> patches, std::span<const Pose> X_WB,
                             std::span<double> distance, std::span<GapAnswer> asked, int keep_back) noexcept;
   BodyPath path_of(int body, const RelativeMotion& motion, const Pose& to) const noexcept;
+  bool slides(const ContactPatch& at, std::span<const Pose> X_WB, std::span<const Twist> V_WB,
+              double dt_s) noexcept;
   double path_free(const Pair& pair, const BodyPath& a, const BodyPath& b) const noexcept;
   double path_free(const SweepAndPrune::Pair& near, int most_tests, PathWork& work) noexcept;
   void remember(const MetTriangles& met) noexcept;
