@@ -184,6 +184,8 @@ class ContactFinder final : public GapOracle {
     return bodies_[std::size_t(a)].part->is_surface() || bodies_[std::size_t(b)].part->is_surface();
   }
   void test_surfaces(const SweepAndPrune::Pair& near, std::span<const Pose> X_WB) noexcept;
+  bool find_minima(int a, int b, const Pose& X_AB, const MinimaQuery& query) noexcept;
+  void add_minima(int a, int b, double margin) noexcept;
   std::size_t reduce_minima(int a, int b, double margin) noexcept;
   bool test_ball(int a, int b, const Pose& X_AB, double margin) noexcept;
   ContactPatch* add_surface_patch(int a, int b, const SurfaceMinimum& minimum, bool second_end,
