@@ -85,7 +85,13 @@ nlohmann::ordered_json summary_us(const Summary& summary) {
 
 std::string hash_text(std::uint64_t hash) { return fmt::format("{:016x}", hash); }
 
-void print_summary(std::FILE* out, const Session& session, const Summary& times, const StageClock& stages) {
+OverlapVerdict overlaps_by_gaps(const Session& session) {
+  const RunRecord& record = session.record();
+  return {record.penetrating_frames, record.frames, false};
+}
+
+void print_summary(std::FILE* out, const Session& session, const OverlapVerdict& overlaps,
+                   const Summary& times, const StageClock& stages) {
   const RunRecord& record = session.record();
   fmt::print(out, "\nforce            mean {:8.3f} N     max {:8.3f} N     largest step {:.3f} N\n",
              mean(record.sum_force_N, record.frames), record.max_force_N, record.max_force_step_N);
@@ -98,9 +104,11 @@ void print_summary(std::FILE* out, const Session& session, const Summary& times,
                hand.max_force_N, hand.max_torque_Nm * 1e3, hand.max_force_step_N,
                session.device_of(i + 1).name);
   }
-  fmt::print(out, "contact          {} of {} frames; penetrating {} frames, at most {:.4f} mm\n",
-             record.colliding_frames, record.frames, record.penetrating_frames,
-             record.max_penetration_m * 1e3);
+  fmt::print(out,
+             "contact          {} of {} frames; penetrating in {} of {} frames judged by {}; deepest overlap "
+             "of a pair {:.4f} mm\n",
+             record.colliding_frames, record.frames, overlaps.frames, overlaps.judged_frames,
+             overlaps.judge(), record.max_penetration_m * 1e3);
   if (record.max_momentum_off_Ns > 0.0)
     fmt::print(out, "momentum         of free bodies kept to {:.1e} N s; {} frames with a step cut short\n",
                record.max_momentum_off_Ns, record.forced_short_frames);
@@ -143,7 +151,8 @@ void print_summary(std::FILE* out, const Session& session, const Summary& times,
     fmt::print(out, "frames' hash     {}\n", hash_text(record.hash()));  // of a virtual run
 }
 
-nlohmann::ordered_json summary_json(const Session& session, const Summary& times, const StageClock& stages) {
+nlohmann::ordered_json summary_json(const Session& session, const OverlapVerdict& overlaps,
+                                    const Summary& times, const StageClock& stages) {
   const RunRecord& record = session.record();
   nlohmann::ordered_json goals = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < session.scene().goals.size(); ++i)
@@ -157,7 +166,9 @@ nlohmann::ordered_json summary_json(const Session& session, const Summary& times
                                  {"rate_Hz", session.rate_Hz()},
                                  {"frames", record.frames},
                                  {"colliding_frames", record.colliding_frames},
-                                 {"penetrating_frames", record.penetrating_frames},
+                                 {"penetrating_frames", overlaps.frames},
+                                 {"penetrating_judge", overlaps.judge()},
+                                 {"penetrating_judged_frames", overlaps.judged_frames},
                                  {"max_penetration_m", record.max_penetration_m},
                                  {"mean_force_N", mean(record.sum_force_N, record.frames)},
                                  {"max_force_N", record.max_force_N},

@@ -1,6 +1,7 @@
 #pragma once
 /// Output functions common to several subcommands.
 
+#include <cstdint>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -16,12 +17,25 @@ nlohmann::ordered_json summary_us(const Summary& summary);
 /// Sixteen hexadecimal digits.
 std::string hash_text(std::uint64_t hash);
 
+/// In how many frames of a run bodies overlapped, and who says so.
+struct OverlapVerdict {
+  std::uint64_t frames = 0;
+  std::uint64_t judged_frames = 0;
+  bool by_referee = false;  ///< else by the gaps that the response found at the ends of its steps
+
+  /// "the referee", or "the gaps at the ends of steps".
+  const char* judge() const { return by_referee ? "the referee" : "the gaps at the ends of steps"; }
+};
+
+/// The verdict of the gaps of the run.
+OverlapVerdict overlaps_by_gaps(const Session& session);
+
 /// The run for a person: wrench, contact, times, goals.
-void print_summary(std::FILE* out, const Session& session, const Summary& frame_times,
-                   const StageClock& stages);
+void print_summary(std::FILE* out, const Session& session, const OverlapVerdict& overlaps,
+                   const Summary& frame_times, const StageClock& stages);
 
 /// The same for machines.
-nlohmann::ordered_json summary_json(const Session& session, const Summary& frame_times,
-                                    const StageClock& stages);
+nlohmann::ordered_json summary_json(const Session& session, const OverlapVerdict& overlaps,
+                                    const Summary& frame_times, const StageClock& stages);
 
 }  // namespace tactum

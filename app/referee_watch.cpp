@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <vector>
 
 namespace tactum {
@@ -22,11 +23,19 @@ const char* what_is_wrong(const Crossing& crossing) {
 
 }  // namespace
 
-RefereeWatch::RefereeWatch(const Session& session)
-    : session_(session), referee_(bodies_of(session.scene().world), session.state().world.X_WB) {}
+RefereeWatch::RefereeWatch(const Session& session, std::uint64_t stride)
+    : session_(session),
+      stride_(stride),
+      referee_(bodies_of(session.scene().world), session.state().world.X_WB) {}
 
-void RefereeWatch::look(std::uint64_t frame) {
+void RefereeWatch::look_at_end() {
+  const std::uint64_t frames = session_.record().frames;
+  if (frames > next_frame_) judge(frames - 1);
+}
+
+void RefereeWatch::judge(std::uint64_t frame) {
   ++judged_;
+  next_frame_ = frame + 1;
   const std::vector<Crossing> faults = referee_.judge(session_.state().world.X_WB);
   if (faults.empty()) return;
   if (crossing_++ > 0) return;
@@ -47,6 +56,11 @@ std::string RefereeWatch::sentence() const {
   return fmt::format("{} of {} frames are wrong, the first at {:.4f} s: '{}' and '{}' {}{}", crossing_,
                      judged_, static_cast<double>(first_frame_) / session_.rate_Hz(), name(first_.body_a),
                      name(first_.body_b), what_is_wrong(first_), start);
+}
+
+bool some_surface(const Scene& scene) {
+  const std::vector<Body>& bodies = scene.world.bodies;
+  return std::any_of(bodies.begin(), bodies.end(), [](const Body& body) { return body.part->is_surface(); });
 }
 
 }  // namespace tactum

@@ -58,7 +58,7 @@ class ContactFigures final : public FigureMaker {
       numbers.push_back({section, key, label, static_cast<double>(value), ""});
     };
     count("contact_frames", "frames in which something pushed the grasped part", touching_);
-    count("penetrating_frames", "frames with an overlap", impossible_);
+    count("penetrating_frames", "frames with an overlap, by the gaps at the ends of steps", impossible_);
     numbers.push_back({section, "deepest_overlap_m", "deepest overlap", deepest_m_, "um", 1e6});
     count("contact_points", "contact points recorded", recorded_);
     count("contact_points_left_out", "contact points beyond those of a frame that are recorded", left_out_);

@@ -120,6 +120,34 @@ TEST(FeelCommand, TheResponseCanBeChosen) {
   EXPECT_EQ(run_tactum(feel + " --response rubber").exit_code, 2);
 }
 
+/// Of surfaces the referee says in how many frames bodies overlapped, of pieces the gaps do; the line for a
+/// person and the summary for machines have one number.
+TEST(FeelCommand, TheVerdictOnOverlapsIsOneAndHasItsJudge) {
+  struct Judging {
+    const char* run;
+    const char* judge;
+    int judged;
+  };
+  for (const auto& [what, judge, judged] :
+       {Judging{"gears-involute --updates 230", "the referee", 6},
+        {"gears-involute --updates 230 --referee", "the referee", 230},
+        {"gears-involute --updates 201 --response penalty", "the referee", 5},
+        {"block-on-plate --updates 2000 --response penalty", "the gaps at the ends of steps", 2000},
+        {"block-on-plate --updates 2000 --response penalty --referee", "the referee", 2000}}) {
+    const ProgramRun run = run_tactum(std::string("feel --virtual-clock --json - ") + what);
+    ASSERT_TRUE(ended(run)) << run.err;
+    const Json summary = Json::parse(run.out);
+    EXPECT_EQ(summary["penetrating_judge"], judge) << what;
+    EXPECT_EQ(summary["penetrating_judged_frames"], judged) << what;
+    const std::string verdict = "penetrating in " + summary["penetrating_frames"].dump() + " of " +
+                                std::to_string(judged) + " frames judged by " + judge;
+    EXPECT_NE(run.err.find(verdict), std::string::npos) << verdict << '\n' << run.err;
+    if (std::string(what).starts_with("block")) {
+      EXPECT_GT(summary["penetrating_frames"], 100) << what;
+    }
+  }
+}
+
 /// Scenes whose hand goes 80 mm, or turns by a radian, in `duration_s`.
 std::string free_block(const char* response, const char* motion, double duration_s) {
   return std::string("schema = 1\nresponse = \"") + response +

@@ -92,8 +92,8 @@ class OverPlane final : public GapOracle {
                            double dt_s) noexcept override {
     return {dt_s, true};
   }
-  bool passes(int, std::span<const Pose>, std::span<const Twist>, double, double) noexcept override {
-    return false;
+  Passing passes(int, std::span<const Pose>, std::span<const Twist>, double, double) noexcept override {
+    return Passing::kNot;
   }
   PathWork prove_paths(std::span<const Pose>, std::span<const BodyTurn>, std::span<const char>, int,
                        std::span<double> free) noexcept override {

@@ -88,8 +88,8 @@ class ContactFinder final : public GapOracle {
   double depth_along(int patch, std::span<const Pose> X_WB, const Vec3& direction_W) noexcept override;
   FirstImpact first_impact(std::span<const Pose> X_WB, std::span<const Twist> V_WB,
                            double dt_s) noexcept override;
-  bool passes(int patch, std::span<const Pose> X_WB, std::span<const Twist> V_WB, double dt_s,
-              double gap_m) noexcept override;
+  Passing passes(int patch, std::span<const Pose> X_WB, std::span<const Twist> V_WB, double dt_s,
+                 double gap_m) noexcept override;
   PathWork prove_paths(std::span<const Pose> X_WB, std::span<const BodyTurn> turn,
                        std::span<const char> asked, int most_tests, std::span<double> free) noexcept override;
   const ContactWork& work() const noexcept { return work_; }
@@ -184,6 +184,8 @@ class ContactFinder final : public GapOracle {
     return bodies_[std::size_t(a)].part->is_surface() || bodies_[std::size_t(b)].part->is_surface();
   }
   void test_surfaces(const SweepAndPrune::Pair& near, std::span<const Pose> X_WB) noexcept;
+  bool find_minima(int a, int b, const Pose& X_AB, const MinimaQuery& query) noexcept;
+  void add_minima(int a, int b, double margin) noexcept;
   std::size_t reduce_minima(int a, int b, double margin) noexcept;
   bool test_ball(int a, int b, const Pose& X_AB, double margin) noexcept;
   ContactPatch* add_surface_patch(int a, int b, const SurfaceMinimum& minimum, bool second_end,
@@ -193,6 +195,8 @@ class ContactFinder final : public GapOracle {
   void surface_distances_at(std::span<const ContactPatch> patches, std::span<const Pose> X_WB,
                             std::span<double> distance, std::span<GapAnswer> asked, int keep_back) noexcept;
   BodyPath path_of(int body, const RelativeMotion& motion, const Pose& to) const noexcept;
+  bool slides(const ContactPatch& at, std::span<const Pose> X_WB, std::span<const Twist> V_WB,
+              double dt_s) noexcept;
   double path_free(const Pair& pair, const BodyPath& a, const BodyPath& b) const noexcept;
   double path_free(const SweepAndPrune::Pair& near, int most_tests, PathWork& work) noexcept;
   void remember(const MetTriangles& met) noexcept;

@@ -46,6 +46,13 @@ struct PathWork {
   int unproven = 0;  ///< pairs of surfaces whose path was tested at its end only
 };
 
+/// How two pieces pass each other.
+enum class Passing : std::uint8_t {
+  kNot,    ///< they meet, or it is not known
+  kApart,  ///< with the gap that was asked for
+  kSlides  ///< by sliding along each other, through a gap as narrow as one likes
+};
+
 class GapOracle {
  public:
   virtual ~GapOracle() = default;
@@ -77,11 +84,11 @@ class GapOracle {
   /// the tests of time_of_impact.h for pairs that may touch in that time, and nothing for others.
   virtual FirstImpact first_impact(std::span<const Pose> X_WB, std::span<const Twist> V_WB,
                                    double dt_s) noexcept = 0;
-  /// Whether the two pieces of a patch stay apart, curved ones by more than `gap_m`, while their bodies move
-  /// for `dt_s` as advanced(X_WB, V_WB, t), from the poses where the patch was found; false where that is not
-  /// known, as of surfaces without pieces, or where no test is left. Costs the tests of time_of_impact.h.
-  virtual bool passes(int patch, std::span<const Pose> X_WB, std::span<const Twist> V_WB, double dt_s,
-                      double gap_m) noexcept = 0;
+  /// Whether the two pieces of a patch stay apart, by more than `gap_m`, or slide along each other, while
+  /// their bodies move for `dt_s` as advanced(X_WB, V_WB, t), from the poses where the patch was found. Not
+  /// known is it of surfaces without pieces, and where no test is left. Costs the tests of time_of_impact.h.
+  virtual Passing passes(int patch, std::span<const Pose> X_WB, std::span<const Twist> V_WB, double dt_s,
+                         double gap_m) noexcept = 0;
   /// How far bodies may go on their paths from where the frame found them to other poses without touching:
   /// the path is proven, not its end, with any turn. `turn` has an entry per body, and `asked` whether it is
   /// asked for. `free[i]` becomes the fraction of the path of body i that is proven, 1 for the others. Pairs

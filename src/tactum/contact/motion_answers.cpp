@@ -147,12 +147,38 @@ FirstImpact ContactFinder::first_impact(std::span<const Pose> X_WB, std::span<co
   return first;
 }
 
-bool ContactFinder::passes(int patch, std::span<const Pose> X_WB, std::span<const Twist> V_WB, double dt_s,
-                           double gap_m) noexcept {
-  const ContactPatch& at = patches_[Index(patch)];
-  if (at.of_surfaces || tests_left_ <= 0) return false;
+/// Whether two pieces slide along each other, on lines or while they turn about the normal, as a body passes
+/// through a gap as narrow as one likes.
+bool ContactFinder::slides(const ContactPatch& at, std::span<const Pose> X_WB, std::span<const Twist> V_WB,
+                           double dt_s) noexcept {
+  if (tests_left_ <= 0) return false;
   const Index a = Index(at.body_a);
   const Index b = Index(at.body_b);
+  const auto path = [&](Index body) {
+    const RelativeMotion motion{X_WB[body], V_WB[body] * dt_s, X_WB[body].p};
+    return path_of(static_cast<int>(body), motion, motion.at(1.0));
+  };
+  --tests_left_;
+  const Pair& pair = pairs_[Index(at.pair)];
+  if (path_free(pair, path(a), path(b)) < 1.0) return false;
+  const Pose X_WA = advanced(X_WB[a], V_WB[a], dt_s);
+  PairCache cache = pair.cache;
+  const PairDistance end =
+      closest_features(bodies_[a].part->pieces[Index(at.piece_a)], bodies_[b].part->pieces[Index(at.piece_b)],
+                       relative_pose(X_WA, advanced(X_WB[b], V_WB[b], dt_s)), cache);
+  const Vec3 n = rotated(X_WA.R, end.normal);
+  double closing = n.dot(V_WB[b].v - V_WB[a].v);
+  for (const Index body : {a, b}) closing += n.cross(V_WB[body].w).norm() * radius_[body];
+  return end.certified() && end.distance > 0.0 && closing * dt_s < kSlides * end.distance;
+}
+
+Passing ContactFinder::passes(int patch, std::span<const Pose> X_WB, std::span<const Twist> V_WB, double dt_s,
+                              double gap_m) noexcept {
+  const ContactPatch& at = patches_[Index(patch)];
+  if (at.of_surfaces || tests_left_ <= 0) return Passing::kNot;
+  const Index a = Index(at.body_a);
+  const Index b = Index(at.body_b);
+  const bool turns = !V_WB[a].w.isZero(0.0) || !V_WB[b].w.isZero(0.0);
   const RoundPiece* const round_a = bodies_[a].round(at.piece_a);
   const RoundPiece* const round_b = bodies_[b].round(at.piece_b);
   if (at.round && only_moves_along(bodies_[a], round_a, V_WB[a]) &&
@@ -167,31 +193,16 @@ bool ContactFinder::passes(int patch, std::span<const Pose> X_WB, std::span<cons
     int steps = 0;
     const bool open = passage.stays_open(dt_s, gap_m, std::min(tests_left_, kMostSteps), steps);
     tests_left_ -= steps;
-    return open;
+    return !open ? Passing::kNot : turns ? Passing::kApart : Passing::kSlides;
   }
-  // A body that only slides along another passes through a gap as narrow as one likes.
-  if (!at.round && V_WB[a].w.isZero(0.0) && V_WB[b].w.isZero(0.0)) {
-    const auto path = [&](Index body) {
-      const RelativeMotion motion{X_WB[body], V_WB[body] * dt_s, X_WB[body].p};
-      return path_of(static_cast<int>(body), motion, motion.at(1.0));
-    };
-    --tests_left_;
-    const Pair& pair = pairs_[Index(at.pair)];
-    if (path_free(pair, path(a), path(b)) < 1.0) return false;
-    const Pose X_WA = advanced(X_WB[a], V_WB[a], dt_s);
-    PairCache cache = pair.cache;
-    const PairDistance end = closest_features(bodies_[a].part->pieces[Index(at.piece_a)],
-                                              bodies_[b].part->pieces[Index(at.piece_b)],
-                                              relative_pose(X_WA, advanced(X_WB[b], V_WB[b], dt_s)), cache);
-    const double closing_m = rotated(X_WA.R, end.normal).dot(V_WB[b].v - V_WB[a].v) * dt_s;
-    return end.certified() && end.distance > 0.0 && closing_m < kSlides * end.distance;
-  }
+  if (!at.round && !turns) return slides(at, X_WB, V_WB, dt_s) ? Passing::kSlides : Passing::kNot;
   const TimeOfImpact impact = time_of_impact(bodies_[a].part->pieces[Index(at.piece_a)], X_WB[a], V_WB[a],
                                              bodies_[b].part->pieces[Index(at.piece_b)], X_WB[b], V_WB[b],
                                              dt_s, gap_m + (at.round ? bulge(at.body_a, at.body_b) : 0.0),
                                              pairs_[Index(at.pair)].cache, std::min(tests_left_, kMostSteps));
   tests_left_ -= impact.steps;
-  return impact.status == ImpactStatus::kMiss;
+  if (impact.status == ImpactStatus::kMiss) return turns ? Passing::kApart : Passing::kSlides;
+  return !at.round && slides(at, X_WB, V_WB, dt_s) ? Passing::kSlides : Passing::kNot;
 }
 
 }  // namespace tactum::inline v0_1

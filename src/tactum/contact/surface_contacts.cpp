@@ -27,6 +27,12 @@ constexpr double kCoreSize = 1e3 * tolerances::kSameNormal;
 /// far they need no other query.
 constexpr double kFarther = 8.0;
 
+/// Where the path of a step of the grasped part cannot be proven, poses on it are tested for crossings
+/// (constraint.cpp). So only minima nearer than this fraction of the larger part's size are contacts, if
+/// there are some: on a thread, where all flanks face each other, several times as many are within the length
+/// of a fast step.
+constexpr double kUnprovenMargin = 1e-3;
+
 /// Whether two minima are on one face of B, or on one edge or corner of it.
 bool same_on_b(const SurfaceMinimum& one, const SurfaceMinimum& other, const SurfaceTree& b) noexcept {
   if (one.b.kind != other.b.kind) return false;
@@ -113,7 +119,7 @@ void ContactFinder::test_surfaces(const SweepAndPrune::Pair& near, std::span<con
   const int a = near.a;
   const int b = near.b;
   if (!bodies_[Index(a)].moves && !bodies_[Index(b)].moves) return;
-  const double margin = tolerance(a, b);
+  double margin = tolerance(a, b);
   BodyPair& list = list_of(near);
   list.nearest = 0.0;  // until this frame has found it
   if (list.free_until - accumulated_motion(a, b) > margin) return;
@@ -124,7 +130,7 @@ void ContactFinder::test_surfaces(const SweepAndPrune::Pair& near, std::span<con
   const Part& part_b = *bodies_[Index(b)].part;
   // Where nothing may cross, a distance below zero is rounding.
   const bool may_cross = over_areas(a, b);
-  const MinimaQuery query{
+  MinimaQuery query{
       .max_distance = margin,
       .depth = may_cross ? kSurfaceDepth * std::min(part_a.size, part_b.size) : kWatched * margin,
       .cone_inflation = tolerances::kConeInflation};
@@ -143,16 +149,40 @@ void ContactFinder::test_surfaces(const SweepAndPrune::Pair& near, std::span<con
     list.free_until = accumulated_motion(a, b) + clearance;
     if (clearance > margin) return add_met_triangles(a, b, X_AB, margin);
   }
-  const MinimaWork found = surface_minima(part_a.tree, part_b.tree, X_AB, query, minima_);
-  ++work_.surface_queries;
-  work_.minima += found.minima;
-  work_.feature_steps += found.feature_pairs;
-  if (found.full) drop(a, b);
+  bool full = false;
+  if (!may_cross && of_grasped(a, b) && frame_ < list.unproven_until) {
+    query.max_distance = std::min(margin, kUnprovenMargin * std::max(part_a.size, part_b.size));
+    full = find_minima(a, b, X_AB, query);
+    if (minima_.empty() && query.max_distance < margin) {
+      query.max_distance = margin;
+      full = find_minima(a, b, X_AB, query);
+    }
+    margin = query.max_distance;
+  } else {
+    full = find_minima(a, b, X_AB, query);
+  }
+  if (full) drop(a, b);
   list.apart = minima_.empty();
   list.free_until = accumulated_motion(a, b) + (list.apart ? margin : 0.0);
   list.nearest = margin;
   for (const SurfaceMinimum& minimum : minima_) list.nearest = std::min(list.nearest, minimum.distance);
-  if (found.full) list.nearest = 0.0;
+  if (full) list.nearest = 0.0;
+  add_minima(a, b, margin);
+  if (!may_cross) add_met_triangles(a, b, X_AB, margin);
+}
+
+/// The minima of two surfaces, into minima_; true where it has no room for them.
+bool ContactFinder::find_minima(int a, int b, const Pose& X_AB, const MinimaQuery& query) noexcept {
+  const MinimaWork found =
+      surface_minima(bodies_[Index(a)].part->tree, bodies_[Index(b)].part->tree, X_AB, query, minima_);
+  ++work_.surface_queries;
+  work_.minima += found.minima;
+  work_.feature_steps += found.feature_pairs;
+  return found.full;
+}
+
+/// Makes patches of the minima.
+void ContactFinder::add_minima(int a, int b, double margin) noexcept {
   const Index kept = reduce_minima(a, b, margin);
   for (Index i = 0; i < kept; ++i) {
     // Outside their true cones two edges may seem to have crossed that have not. Apart they count, however
@@ -163,7 +193,6 @@ void ContactFinder::test_surfaces(const SweepAndPrune::Pair& near, std::span<con
     const bool second_end = i > 0 && minima_[i - 1].a == minima_[i].a && minima_[i - 1].b == minima_[i].b;
     add_surface_patch(a, b, minima_[i], second_end, margin);
   }
-  if (!may_cross) add_met_triangles(a, b, X_AB, margin);
 }
 
 /// Null where there is no room for it.
@@ -204,8 +233,9 @@ void ContactFinder::surface_distances_at(std::span<const ContactPatch> patches, 
   const ContactPatch& first = patches.front();
   const Part& part_a = *bodies_[Index(first.body_a)].part;
   const Part& part_b = *bodies_[Index(first.body_b)].part;
-  const MinimaQuery query{
-      .max_distance = kWatched * first.tolerance, .depth = first.tolerance, .cone_inflation = 0.0};
+  const MinimaQuery query{.max_distance = kWatched * first.tolerance,
+                          .depth = std::max(first.tolerance, tolerance(first.body_a, first.body_b)),
+                          .cone_inflation = 0.0};
   const Pose X_AB = relative_pose(X_WB[Index(first.body_a)], X_WB[Index(first.body_b)]);
   if (surface_minima(part_a.tree, part_b.tree, X_AB, query, minima_).full) {
     work_.capacity_reached = true;

@@ -1,6 +1,7 @@
 #include "tactum/response/constraint.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "tactum/base/frame_rate.h"
 #include "tactum/base/tolerances.h"
@@ -26,9 +27,11 @@ constexpr double kBoundMargin = 4.0;
 /// not where the forces would have it: that one would be the same however far the hand goes away.
 constexpr double kStands_s = 0.002;
 
-/// The longest step while a path between two surfaces takes too many tests to be proven, in a scene of a
-/// hand's size: their minima at its end then show a crossing.
+/// While a path between two surfaces takes too many tests to be proven, poses on it that lie no farther apart
+/// are tested, in a scene of a hand's size: minima of the distance there then show a crossing.
 constexpr double kUnprovenStep_m = 3e-5;
+/// ... and so many of them in a frame, the last at its end. As many times as long may a step be.
+constexpr int kMostLooks = 4;
 
 /// Adds the bodies of the island and their targets: that of a grasped part leads to its hand, the others' on
 /// along their motion; `at_rest` all targets are where the bodies are.
@@ -180,9 +183,31 @@ struct Trial {
   bool passed() const { return open && path_free == 1.0; }
 };
 
+/// Where something has crossed on the way to the end of a step, so much of it is tried next.
+constexpr double kCutBetween = 0.5;
+
+/// Whether nothing has crossed on the way to the end of a step whose path cannot be proven.
+bool open_between(double share, ConstraintStep& step) {
+  ConstraintState& c = step.own.constraint;
+  if (!c.trust.looks_between) return true;
+  double travel_m = 0.0;
+  for (const ProblemBody& body : c.step_problem().bodies())
+    travel_m = std::max(travel_m, share * extent_of(step, body).travel_m);
+  const int looks = std::min(kMostLooks, 1 + static_cast<int>(travel_m / (kUnprovenStep_m * step.scale)));
+  for (int look = 1; look < looks; ++look) {
+    if (!try_step(share * look / looks, step)) return false;
+    join_trial(step);
+    look_at_trial(0, step);
+    for (Index p = 0; p < c.trial.gap_now.size(); ++p)
+      if (step.patches[p].of_surfaces && crossed_at_trial(p, step)) return false;
+  }
+  return true;
+}
+
 /// Tries a step, with the bodies on their joints: every gap at its end is tested, and then the path there.
 Trial look_after(double share, ConstraintStep& step) {
   ConstraintState& c = step.own.constraint;
+  if (!open_between(share, step)) return {true, kCutBetween};
   if (!try_step(share, step)) return {};
   join_trial(step);
   look_at_trial(0, step);
@@ -343,9 +368,10 @@ void update_trust_length(ConstraintStep& step) {
         return patch.of_surfaces && (near(patch.body_a) || near(patch.body_b));
       });
   StepTrust& trust = step.own.constraint.trust;
-  const double most =
-      trust.unproven ? std::min(step.limits.step_m, kUnprovenStep_m * step.scale) : step.limits.step_m;
-  trust.unproven = false;
+  trust.looks_between = std::exchange(trust.unproven, false);
+  const int looks = step.own.free.grasped_here ? 1 : kMostLooks;  // an island moved as a free one has one
+  const double unproven_m = looks * kUnprovenStep_m * step.scale;
+  const double most = trust.looks_between ? std::min(step.limits.step_m, unproven_m) : step.limits.step_m;
   const double least = step.limits.least_step_m * (on_surfaces ? Constraint::kLeastOnSurfaces : 1.0);
   trust.length_m = std::clamp(kTrustGrowth * travel, std::min(least, most), most);
   trust.limit = trust.length_m < most ? 0 : frame_flag::kStepLimited;

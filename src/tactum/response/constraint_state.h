@@ -80,6 +80,7 @@ struct StepTrust {
   double length_m = 0.0;           ///< the trust region radius of the next frame [m]
   std::uint32_t limit = 0;         ///< frame_flag of the limit that it has reached; 0: it may grow
   bool unproven = false;           ///< a path of this frame was tested at its end only
+  bool looks_between = false;      ///< one of the last frame was: steps are tested on the way as well
   int consecutive_rejections = 0;  ///< frames in a row in which no step could be taken [-]
 };
 

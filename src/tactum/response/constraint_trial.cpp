@@ -44,6 +44,13 @@ bool closed_at_trial(std::size_t patch, const ConstraintStep& step) noexcept {
   return trial.gap_answer[patch] != GapAnswer::kProven;
 }
 
+bool crossed_at_trial(std::size_t patch, const ConstraintStep& step) noexcept {
+  const TrialPose& trial = step.own.constraint.trial;
+  if (!step.own.free.patch_asked[patch]) return false;
+  if (trial.gap_answer[patch] == GapAnswer::kExact) return !(trial.gap[patch] > 0.0);
+  return trial.gap_answer[patch] != GapAnswer::kProven;
+}
+
 BodyTurn turn_of(const Body& body, const Pose& X_WB, const Vec3& turn) noexcept {
   const JointKind kind = body.joint.kind;
   const bool about_anchor = kind == JointKind::kHinge || kind == JointKind::kBall;

@@ -16,6 +16,9 @@ void look_at_trial(int keep_back, ConstraintStep& step) noexcept;
 /// budget left unknown is not open.
 bool closed_at_trial(std::size_t patch, const ConstraintStep& step) noexcept;
 
+/// Whether the bodies of a patch have crossed at the trial, or that is unknown.
+bool crossed_at_trial(std::size_t patch, const ConstraintStep& step) noexcept;
+
 /// How a body at a pose turns, on its joint, when it turns by `turn` [rad].
 BodyTurn turn_of(const Body& body, const Pose& X_WB, const Vec3& turn) noexcept;
 /// The least fraction of a body's path to the trial that is proven to be free, of those that TrialPose::goes

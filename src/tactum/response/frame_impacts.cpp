@@ -150,9 +150,10 @@ void leave_out_passed(ConstraintStep& step) {
     const bool free = (f.struck[a] || f.struck[b]) && !is_grasped(step, a) && !is_grasped(step, b);
     if (!free || own[0].idle || std::none_of(own.begin(), own.end(), meets)) continue;
     for (const Index i : {a, b}) f.V_free[i] = f.V_seen[i] + f.A_free[i] * (0.5 * h);
-    if (!step.gaps.passes(own[0].patch, step.bodies.X_WB, f.V_free, h, 0.5 * own[0].skin_m)) continue;
-    const bool slides = f.V_free[a].w.isZero(0.0) && f.V_free[b].w.isZero(0.0);
-    f.patch_passed[Index(own[0].patch)] = slides ? 1 : 0;
+    const Passing passing =
+        step.gaps.passes(own[0].patch, step.bodies.X_WB, f.V_free, h, 0.5 * own[0].skin_m);
+    if (passing == Passing::kNot) continue;
+    f.patch_passed[Index(own[0].patch)] = passing == Passing::kSlides ? 1 : 0;
     for (ContactRow& row : own) {
       row.idle = true;
       row.asked = kAsksNothing_m;
