@@ -32,6 +32,7 @@ std::string abilities_of(const DeviceInfo& info) {
   std::string text = info.actuates_force ? fmt::format("{:.3g} N", info.max_force_N) : "pushes nothing";
   if (info.actuates_torque) text += fmt::format(", {:.3g} N m", info.max_torque_Nm);
   text += fmt::format(", reach {:.3g} m", info.workspace_radius_m);
+  if (info.handle.mass_kg > 0.0) text += fmt::format(", handle of {:.3g} kg", info.handle.mass_kg);
   text += info.senses_rotation ? ", senses rotation" : ", senses no rotation";
   return text + (info.actuates_force && !info.actuates_torque ? ", cannot turn the handle" : "");
 }

@@ -78,6 +78,7 @@ TEST_P(DriverContract, AWrenchAlongEachAxisArrivesWithItsSignAndUnit) {
       if (device->info().actuates_torque) F.t[axis] = sign * 0.05;
       ASSERT_TRUE(device->write(F));
       ASSERT_TRUE(comes_true([&] {
+        device->read(now_s += 0.001, sample);  // as a loop does
         const Wrench motors = rig->motors_in_D();
         return (motors.f - F.f).norm() < 1e-9 && (motors.t - F.t).norm() < 1e-9;
       })) << "axis "
@@ -193,9 +194,7 @@ TEST_P(DriverContract, TheSurveyFindsIt) {
 
 INSTANTIATE_TEST_SUITE_P(EveryDriver, DriverContract, ::testing::ValuesIn(every_rig()),
                          [](const ::testing::TestParamInfo<RigMaker>& info) {
-                           std::string name = "Of_" + info.param.name;  // a digit may not be the first
-                           std::replace(name.begin(), name.end(), '-', '_');
-                           return name;
+                           return info.param.test_name();
                          });
 
 }  // namespace tactum::contract_test

@@ -46,6 +46,22 @@ TEST_F(ForceDimension, TheMakersOwnLimitsAndWatchdogAreSetBeforeForcesAreOn) {
   EXPECT_TRUE(standin().broken_rules.empty()) << standin().broken_rules.front();
 }
 
+TEST_F(ForceDimension, TheInertiaAtTheHandleIsAskedForInExpertMode) {
+  const double masses[] = {0.31, 0.27, 0.35, 0.0004, 0.0005, 0.0003};
+  for (std::size_t i = 0; i < 6; ++i) standin().inertia[7 * i] = masses[i];
+  Result<std::unique_ptr<Device>> device = connect();
+  ASSERT_TRUE(device);
+  EXPECT_NEAR((*device)->info().handle.mass_kg, 0.27, 1e-12);
+  EXPECT_NEAR((*device)->info().handle.inertia_kg_m2, 0.0003, 1e-12);
+  EXPECT_FALSE(standin().expert) << "expert mode is left again";
+  EXPECT_TRUE(standin().broken_rules.empty()) << standin().broken_rules.front();
+  (*device)->close();
+  standin().inertia = {};
+  Result<std::unique_ptr<Device>> silent = connect();
+  ASSERT_TRUE(silent);
+  EXPECT_EQ((*silent)->info().handle.mass_kg, 0.0) << "unknown";
+}
+
 TEST_F(ForceDimension, OneThatIsNotCalibratedIsRefusedAndDoesNotMove) {
   standin().calibrated = false;
   EXPECT_TRUE(holds(refusal(), "not calibrated")) << refusal();

@@ -1,6 +1,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <mutex>
 #include <thread>
 
@@ -10,15 +11,139 @@
 #include "tactum/drivers/network_device.h"
 #include "tactum/drivers/registry.h"
 #include "tactum/drivers/tactum_device.h"
+#include "web_peer.h"
 
 namespace tactum {
 namespace {
+
+/// The device's end of the protocol.
+class DeviceEnd {
+ public:
+  virtual ~DeviceEnd() = default;
+  /// Says hello, for 50 ms.
+  virtual bool connect(int port, const tactum_device_info& info) = 0;
+  /// Takes commands, and sends the state if there is one. False after a goodbye.
+  virtual bool exchange(const tactum_device_state* state) = 0;
+  /// What is to be exerted: zero when it is stale.
+  virtual Wrench exerted() = 0;
+  virtual void disconnect() = 0;
+  /// The last command, and its sequence.
+  Wrench command() const { return command_; }
+  std::uint32_t sequence() const { return sequence_; }
+
+ protected:
+  static Wrench wrench_of(const double* F) { return {{F[0], F[1], F[2]}, {F[3], F[4], F[5]}}; }
+  Wrench command_;
+  std::uint32_t sequence_ = 0;
+};
+
+/// Over UDP, by the header that devices use.
+class DatagramEnd final : public DeviceEnd {
+ public:
+  bool connect(int port, const tactum_device_info& info) override {
+    return tactum_device_connect(&link_, "127.0.0.1", port, &info, 50) == 0;
+  }
+  bool exchange(const tactum_device_state* state) override {
+    const bool goes_on = state == nullptr || tactum_device_send(&link_, state) == 0;
+    exerted();
+    return goes_on;
+  }
+  Wrench exerted() override {
+    double F[6];
+    tactum_device_receive(&link_, F);
+    command_ = wrench_of(link_.wrench);
+    sequence_ = link_.last_command;
+    return wrench_of(F);
+  }
+  void disconnect() override { tactum_device_disconnect(&link_); }
+
+ private:
+  tactum_device_link link_{};
+};
+
+/// Over WebSocket, message by message.
+class WebEnd final : public DeviceEnd {
+ public:
+  bool connect(int port, const tactum_device_info& info) override {
+    if (!peer_.connect(port)) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+      return false;
+    }
+    sequence_ = 0;
+    welcome_ = said_goodbye_ = false;
+    const double begin_s = tactum_clock_s();
+    for (double hello_s = 0.0; !welcome_ && tactum_clock_s() - begin_s < 0.5;) {
+      if (tactum_clock_s() - hello_s > 0.1) {
+        const tactum_wire_hello hello = {head(TACTUM_WIRE_HELLO), info};
+        send(hello);
+        hello_s = tactum_clock_s();
+      }
+      drain();
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    if (!welcome_) peer_.close();
+    return welcome_;
+  }
+  bool exchange(const tactum_device_state* state) override {
+    drain();
+    if (state == nullptr) return true;
+    if (said_goodbye_ || !peer_.is_open()) return false;
+    tactum_wire_state out{};
+    out.header = head(TACTUM_WIRE_STATE);
+    out.time_s = tactum_clock_s();
+    out.last_command = sequence_;
+    out.since_command_s = sequence_ == 0 ? 0.0 : out.time_s - command_s_;
+    out.state = *state;
+    send(out);
+    return true;
+  }
+  Wrench exerted() override {
+    const bool fresh = sequence_ != 0 && !said_goodbye_ && peer_.is_open() &&
+                       tactum_clock_s() - command_s_ <= TACTUM_DEVICE_STALE_S;
+    return fresh ? command_ : Wrench{};
+  }
+  void disconnect() override {
+    send(head(TACTUM_WIRE_BYE));
+    peer_.close();
+  }
+
+ private:
+  tactum_wire_header head(int kind) {
+    return {TACTUM_DEVICE_MAGIC, TACTUM_DEVICE_VERSION, static_cast<std::uint16_t>(kind), 4242, ++sent_};
+  }
+  template <class Packet>
+  void send(const Packet& packet) {
+    std::vector<unsigned char> bytes(sizeof packet);
+    std::memcpy(bytes.data(), &packet, sizeof packet);
+    peer_.send(bytes);
+  }
+  void drain() {
+    while (const auto bytes = peer_.take()) {
+      tactum_wire_command got{};
+      std::memcpy(&got, bytes->data(), std::min(bytes->size(), sizeof got));
+      if (got.header.kind == TACTUM_WIRE_WELCOME) welcome_ = true;
+      if (got.header.kind == TACTUM_WIRE_BYE) said_goodbye_ = true;
+      if (got.header.kind != TACTUM_WIRE_COMMAND) continue;
+      sequence_ = got.header.sequence;
+      command_s_ = tactum_clock_s();
+      command_ = wrench_of(got.wrench);
+    }
+  }
+
+  WebPeer peer_;
+  std::uint32_t sent_ = 0;
+  double command_s_ = 0.0;
+  bool welcome_ = false, said_goodbye_ = false;
+};
 
 /// A device in a thread of its own, as it would be in a process: it says hello, again after each goodbye, and
 /// moves only when it is told to.
 class NetworkRig final : public DriverRig {
  public:
-  NetworkRig() : port_(free_port()), place_("TACTUM_NETWORK_DEVICE", std::to_string(port_)) {
+  explicit NetworkRig(std::unique_ptr<DeviceEnd> end)
+      : end_(std::move(end)),
+        port_(free_network_port()),
+        place_("TACTUM_NETWORK_DEVICE", std::to_string(port_)) {
     state_.orientation_wxyz[0] = 1.0;
     state_.flags = TACTUM_HAS_VELOCITY;
     thread_ = std::thread([this] { run(); });
@@ -76,18 +201,6 @@ class NetworkRig final : public DriverRig {
   }
 
  private:
-  static int free_port() {
-    const int probe = ::socket(AF_INET, SOCK_DGRAM, 0);
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    ::bind(probe, reinterpret_cast<sockaddr*>(&address), sizeof address);
-    socklen_t size = sizeof address;
-    ::getsockname(probe, reinterpret_cast<sockaddr*>(&address), &size);
-    ::close(probe);
-    return ntohs(address.sin_port);
-  }
-
   /// What came before the device was handed out was zero, and measured the way.
   Result<std::unique_ptr<Device>> remembered(Result<std::unique_ptr<Device>> made) {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -104,30 +217,26 @@ class NetworkRig final : public DriverRig {
     info.workspace_radius_m = 0.08, info.rate_Hz = 1000.0;
     std::snprintf(info.name, sizeof info.name, "rig");
     std::snprintf(info.serial, sizeof info.serial, "7");
-    tactum_device_link link;
     while (!ends_) {
-      if (tactum_device_connect(&link, "127.0.0.1", port_, &info, 50) != 0) continue;
+      if (!end_->connect(port_, info)) continue;
       linked_ = true;
-      while (!ends_ && step(link)) std::this_thread::sleep_for(std::chrono::microseconds(300));
+      while (!ends_ && step()) std::this_thread::sleep_for(std::chrono::microseconds(300));
       linked_ = false;
-      tactum_device_disconnect(&link);
+      end_->disconnect();
     }
   }
 
   /// False after a goodbye.
-  bool step(tactum_device_link& link) {
+  bool step() {
     const std::lock_guard<std::mutex> lock(mutex_);
-    const std::uint32_t last = link.last_command;
-    const bool goes_on = unplugged_ || tactum_device_send(&link, &state_) == 0;
-    double F[6];
-    tactum_device_receive(&link, F);
-    motors_ = {{F[0], F[1], F[2]}, {F[3], F[4], F[5]}};
-    const double* sent = link.wrench;
-    if (remembers_ && link.last_command != last)
-      commands_.push_back({{sent[0], sent[1], sent[2]}, {sent[3], sent[4], sent[5]}});
+    const std::uint32_t last = end_->sequence();
+    const bool goes_on = end_->exchange(unplugged_ ? nullptr : &state_);
+    motors_ = end_->exerted();
+    if (remembers_ && end_->sequence() != last) commands_.push_back(end_->command());
     return goes_on;
   }
 
+  std::unique_ptr<DeviceEnd> end_;
   const int port_;
   SetVariable place_;
   std::mutex mutex_;
@@ -141,6 +250,11 @@ class NetworkRig final : public DriverRig {
 
 }  // namespace
 
-std::unique_ptr<DriverRig> make_network_rig() { return std::make_unique<NetworkRig>(); }
+std::unique_ptr<DriverRig> make_network_rig() {
+  return std::make_unique<NetworkRig>(std::make_unique<DatagramEnd>());
+}
+std::unique_ptr<DriverRig> make_web_network_rig() {
+  return std::make_unique<NetworkRig>(std::make_unique<WebEnd>());
+}
 
 }  // namespace tactum

@@ -3,6 +3,7 @@
 /// that is stated in the device's own units and axes, and states, as numbers written down by hand, what that
 /// is in D.
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <ostream>
@@ -52,13 +53,21 @@ class DriverRig {
   virtual std::string lacking_function() const { return {}; }
 };
 
-/// A driver's name, and how its rig is made.
+/// A driver's name, how its rig is made, and what tells two rigs of one driver apart.
 struct RigMaker {
   std::string name;
   std::function<std::unique_ptr<DriverRig>()> make;
+  std::string variant = {};
+
+  /// As the name of a test: a digit may not be the first.
+  std::string test_name() const {
+    std::string test = "Of_" + name + variant;
+    std::replace(test.begin(), test.end(), '-', '_');
+    return test;
+  }
 
   /// In a list of tests.
-  friend void PrintTo(const RigMaker& maker, std::ostream* out) { *out << maker.name; }
+  friend void PrintTo(const RigMaker& maker, std::ostream* out) { *out << maker.name << maker.variant; }
 };
 
 std::unique_ptr<DriverRig> make_force_dimension_rig();
@@ -67,6 +76,7 @@ std::unique_ptr<DriverRig> make_virtuose_rig();
 std::unique_ptr<DriverRig> make_haply_rig();
 std::unique_ptr<DriverRig> make_spacemouse_rig();
 std::unique_ptr<DriverRig> make_network_rig();
+std::unique_ptr<DriverRig> make_web_network_rig();
 
 inline std::vector<RigMaker> every_rig() {
   return {{"force-dimension", make_force_dimension_rig},
@@ -74,7 +84,8 @@ inline std::vector<RigMaker> every_rig() {
           {"virtuose", make_virtuose_rig},
           {"haply", make_haply_rig},
           {"spacemouse", make_spacemouse_rig},
-          {"network", make_network_rig}};
+          {"network", make_network_rig},
+          {"network", make_web_network_rig, "-over-web-socket"}};
 }
 
 }  // namespace tactum

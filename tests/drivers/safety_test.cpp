@@ -147,9 +147,7 @@ TEST_P(DriverSafetyLoop, UnpluggedItEndsTheLoop) {
 
 INSTANTIATE_TEST_SUITE_P(EveryDriver, DriverSafetyLoop, ::testing::ValuesIn(every_rig()),
                          [](const ::testing::TestParamInfo<RigMaker>& info) {
-                           std::string name = "Of_" + info.param.name;  // a digit may not be the first
-                           std::replace(name.begin(), name.end(), '-', '_');
-                           return name;
+                           return info.param.test_name();
                          });
 
 }  // namespace tactum::driver_safety_test

@@ -9,6 +9,8 @@
 #include <functional>
 #include <thread>
 
+#include "tactum/drivers/web_socket_protocol.h"
+
 namespace tactum::web_socket_test {
 
 /// A server of bytes: what is written is what the client gets, protocol or not.

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <complex>
+#include <vector>
 
 #include "tactum/devices/simulated_device.h"
 
@@ -85,6 +86,73 @@ TEST(CouplingGains, DelayCostsStiffness) {
   EXPECT_NEAR(prompt.coupling.stiffness_Nm_per_rad, 2 * delayed.coupling.stiffness_Nm_per_rad, 1e-9);
 }
 
+/// How a free handle of a mass swings on a coupling whose other end is fixed, in steps of a period: the
+/// motors' force stands still meanwhile and is that of some periods before. Its size in the last tenth of the
+/// run beside that in the first; above 1 it grows.
+double growth_of_free_handle(double mass, double K, double B, double T, int delay_periods) {
+  std::vector<double> forces(static_cast<std::size_t>(delay_periods) + 1, 0.0);
+  double x = 0.0, v = 1.0, first = 0.0, last = 0.0;
+  constexpr int kSteps = 20000;
+  for (int i = 0; i < kSteps; ++i) {
+    forces[static_cast<std::size_t>(i) % forces.size()] = -K * x - B * v;
+    const double a = forces[static_cast<std::size_t>(i + 1) % forces.size()] / mass;  // the oldest
+    x += v * T + 0.5 * a * T * T;
+    v += a * T;
+    const double size = K * x * x + mass * v * v;
+    if (i < kSteps / 10) first = std::max(first, size);
+    if (i >= kSteps - kSteps / 10) last = std::max(last, size);
+    if (!(size < 1e100)) return size;
+  }
+  return last / first;
+}
+
+TEST(CouplingGains, TheDamperIsWhatTheMassOfAFreeHandleAllows) {
+  for (const double mass : {0.001, 0.05, 0.8})
+    for (const double T : {1e-3, 2.5e-4})
+      for (const int delay : {0, 1, 2, 5, 20}) {
+        const double most = damper_allowed(mass, T, delay * T);
+        EXPECT_LT(growth_of_free_handle(mass, 0.0, 0.98 * most, T, delay), 1.0) << mass << " " << delay;
+        EXPECT_GT(growth_of_free_handle(mass, 0.0, 1.02 * most, T, delay), 1.0) << mass << " " << delay;
+      }
+  EXPECT_TRUE(std::isinf(damper_allowed(0.0, 1e-3, 0.0))) << "an unknown mass bounds nothing";
+}
+
+TEST(CouplingGains, TheDamperChosenForALightHandleIsWeaker) {
+  DeviceInfo info = info_of("virtuose-6d");
+  const Coupling heavy = coupling_gains(info, 1000.0).coupling;
+  EXPECT_DOUBLE_EQ(heavy.damping_Ns_per_m, 0.1 * hand_model("loose")->damping_Ns_per_m);
+  for (const double delay_s : {0.0, 0.002, 0.020})
+    for (const double mass_kg : {0.001, 0.003, 0.010}) {
+      info.handle.delay_s = delay_s;
+      info.handle.mass_kg = mass_kg;
+      info.handle.inertia_kg_m2 = 0.001 * mass_kg;
+      const CouplingGains gains = coupling_gains(info, 1000.0);
+      const Coupling& light = gains.coupling;
+      EXPECT_LE(light.damping_Ns_per_m, 0.5 * gains.translation.damper * (1 + 1e-12));
+      EXPECT_LE(light.damping_Nms_per_rad, 0.5 * gains.rotation.damper * (1 + 1e-12));
+      const int delay = static_cast<int>(std::lround(1000.0 * delay_s));
+      EXPECT_LT(growth_of_free_handle(mass_kg, 0.0, light.damping_Ns_per_m, 1e-3, delay), 1.0);
+      EXPECT_LT(growth_of_free_handle(info.handle.inertia_kg_m2, 0.0, light.damping_Nms_per_rad, 1e-3, delay),
+                1.0);
+    }
+  EXPECT_LT(coupling_gains(info, 1000.0).coupling.damping_Nms_per_rad, heavy.damping_Nms_per_rad);
+}
+
+TEST(CouplingGains, ADamperThatSwingsIsTold) {
+  DeviceInfo info = info_of("virtuose-6d");
+  const Coupling coupling{.damping_Ns_per_m = 1.0};
+  EXPECT_NE(stability_of(coupling, info, 1000.0), Stability::kUncertain);
+  info.handle.mass_kg = 0.0004;
+  EXPECT_EQ(stability_of(coupling, info, 1000.0), Stability::kUncertain);
+  const std::string sentence = margin_sentence(coupling, info, 1000.0);
+  EXPECT_NE(sentence.find("Its damper is not weak enough for the handle: 1 N s/m on 0.0004 kg (limit 0.8)"),
+            std::string::npos)
+      << sentence;
+  EXPECT_NE(sentence.find("may swing on this device when it is let go"), std::string::npos) << sentence;
+  info.handle.mass_kg = info.handle.inertia_kg_m2 = 0.0;
+  EXPECT_EQ(margin_sentence(coupling, info, 1000.0).find("damper"), std::string::npos);
+}
+
 TEST(CouplingGains, ADeviceNobodyKnowsAnythingOfGetsWhatTheHandAloneAllows) {
   DeviceInfo info;
   info.actuates_force = info.actuates_torque = true;
@@ -99,8 +167,9 @@ TEST(CouplingGains, TheMarginIsToldInWords) {
   EXPECT_EQ(
       premium,
       "The coupling of 600 N/m and 0.3 N m/rad is stable in any hand that holds the device; let go, it may "
-      "buzz (limit 100 N/m and 0.2 N m/rad); its stiffness is lowered where it does. See "
-      "docs/algorithms/stability.md.");
+      "buzz (limit 100 N/m and 0.2 N m/rad); its stiffness is lowered where it does. Its "
+      "damper is weak enough for the handle: 1 N s/m on 0.1 kg (limit 200) and 0.0005 N m s/rad on 0.0001 kg "
+      "m^2 (limit 0.2). See docs/algorithms/stability.md.");
   const std::string strong = margin_sentence(Coupling{}, info_of("virtuose-6d"), 1000.0);
   EXPECT_NE(strong.find("stable in any hand that holds the device, and when it is let go."),
             std::string::npos)

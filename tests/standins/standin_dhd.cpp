@@ -310,6 +310,21 @@ int dhdDisableExpertMode() {
   device->expert = false;
   return 0;
 }
+int dhdGetJointAngles(double* angles, char id) {
+  Locked device;
+  if (!answers(device.device, id)) return -1;
+  for (int i = 0; i < 8; ++i) angles[i] = 0.1 * i;
+  return 0;
+}
+int dhdJointAnglesToInertiaMatrix(double* angles, double inertia[6][6], char id) {
+  Locked device;
+  if (!answers(device.device, id)) return -1;
+  if (!device->expert) return fail(kErrorExpertDisabled);
+  if (angles[7] != 0.1 * 7) device->broken_rules.emplace_back("an inertia at angles that are none");
+  if (device->inertia[0] == 0.0) return fail(kErrorNotImplemented);
+  for (std::size_t i = 0; i < 36; ++i) inertia[i / 6][i % 6] = device->inertia[i];
+  return 0;
+}
 int dhdSetWatchdog(unsigned char ticks, char id) {
   Locked device;
   if (!answers(device.device, id)) return -1;

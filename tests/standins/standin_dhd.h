@@ -34,7 +34,8 @@ struct DhdDevice {
   bool calibrated = true;
   bool refuses_force = false;  // dhdEnableForce does nothing, as with a released dead-man switch
   bool unplugged = false;
-  bool old_firmware = false;  // no watchdog
+  bool old_firmware = false;         // no watchdog
+  std::array<double, 36> inertia{};  // at the handle, row by row; zeros: the library knows none
   DhdSample now;
   std::vector<DhdSample> script;  // one for each read, before `now`
   double grip_rad = 0.0;

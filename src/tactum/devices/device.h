@@ -50,8 +50,8 @@ inline bool plausible(const Pose& X_DH) noexcept {
 
 /// The dynamics of the handle, as far as known; 0: unknown.
 struct HandleDynamics {
-  double mass_kg = 0.0;              ///< apparent at the handle [kg]
-  double inertia_kg_m2 = 0.0;        ///< [kg m^2]
+  double mass_kg = 0.0;              ///< apparent at the handle, the least of all directions [kg]
+  double inertia_kg_m2 = 0.0;        ///< the same of turning [kg m^2]
   double damping_Ns_per_m = 0.0;     ///< viscous [N s/m]
   double damping_Nms_per_rad = 0.0;  ///< [N m s/rad]
   double friction_N = 0.0;           ///< Coulomb [N]

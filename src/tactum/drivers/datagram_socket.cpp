@@ -1,7 +1,6 @@
 #include "tactum/drivers/datagram_socket.h"
 
 #include <arpa/inet.h>
-#include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -58,11 +57,6 @@ long DatagramSocket::receive(void* bytes, std::size_t room) noexcept {
     last_ = from;
     return got;
   }
-}
-
-bool DatagramSocket::wait(int timeout_ms) const noexcept {
-  pollfd waiting{socket_, POLLIN, 0};
-  return ::poll(&waiting, 1, timeout_ms) > 0;
 }
 
 void DatagramSocket::answer_last() noexcept {

@@ -25,8 +25,8 @@ class DatagramSocket {
   /// Takes one datagram, without waiting, of the peer or, while there is none, of anybody; its size, which
   /// may be more than there was room for, or -1 when none is there. Others' are passed over.
   long receive(void* bytes, std::size_t room) noexcept;
-  /// Waits for a datagram; false when none came.
-  bool wait(int timeout_ms) const noexcept;
+  /// What can be waited for with poll; -1 when it is closed.
+  int number() const noexcept { return socket_; }
   /// Makes whoever sent the last datagram the peer.
   void answer_last() noexcept;
   /// Sends to the peer, without waiting; what cannot be sent now is lost. From any thread.

@@ -50,6 +50,8 @@ void find_functions(const VendorLibrary& library, DhdFunctions& call) {
   library.find("dhdEnableExpertMode", call.can_enable_expert);
   library.find("dhdDisableExpertMode", call.can_disable_expert);
   library.find("dhdSetWatchdog", call.can_set_watchdog);
+  library.find("dhdGetJointAngles", call.can_get_joint_angles);
+  library.find("dhdJointAnglesToInertiaMatrix", call.can_get_inertia);
 }
 
 }  // namespace

@@ -50,6 +50,9 @@ struct DhdFunctions {
   int (*can_enable_expert)() = nullptr;
   int (*can_disable_expert)() = nullptr;
   int (*can_set_watchdog)(unsigned char ticks, char id) = nullptr;
+  // In expert mode: the angles of the joints, and by them the inertia at the handle, forces before torques.
+  int (*can_get_joint_angles)(double angles[8], char id) = nullptr;
+  int (*can_get_inertia)(double angles[8], double inertia[6][6], char id) = nullptr;
 };
 
 struct DhdLibrary {

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "tactum/devices/apparent_inertia.h"
+
 namespace tactum::inline v0_1 {
 namespace {
 
@@ -120,7 +122,28 @@ void ForceDimensionDevice::ask_abilities() {
   info_.workspace_radius_m = family.radius_m;
   info_.handle.delay_s = kTransfer_s;
   has_gripper_ = call.has_gripper(id);
+  ask_inertia();
   gate_ = CommandGate(info_);
+}
+
+/// The handle's inertia where it is now; old libraries lack the functions.
+void ForceDimensionDevice::ask_inertia() {
+  const DhdFunctions& call = dhd_.call;
+  if (call.can_get_joint_angles == nullptr || call.can_get_inertia == nullptr ||
+      call.can_enable_expert == nullptr || call.can_enable_expert() < 0)
+    return;
+  const char id = static_cast<char>(id_);
+  double angles[8] = {}, rows[6][6] = {};
+  const bool stated =
+      call.can_get_joint_angles(angles, id) >= 0 && call.can_get_inertia(angles, rows, id) >= 0;
+  if (call.can_disable_expert != nullptr) call.can_disable_expert();
+  if (!stated) return;
+  Eigen::Matrix<double, 6, 6> M;
+  for (int row = 0; row < 6; ++row)
+    for (int column = 0; column < 6; ++column) M(row, column) = rows[row][column];
+  const ApparentInertia least = least_apparent(M);
+  info_.handle.mass_kg = least.mass_kg;
+  info_.handle.inertia_kg_m2 = least.inertia_kg_m2;
 }
 
 DriverSurvey ForceDimensionDevice::survey() {

@@ -51,6 +51,7 @@ class ForceDimensionDevice final : public Device {
   Result<void> connect_once();
   Result<void> open_by_serial();
   void ask_abilities();
+  void ask_inertia();
   void set_limits() const;
   Error failure(const std::string& what, const std::string& cure) const;
   bool send(const Wrench& F_D) const noexcept;

@@ -18,6 +18,7 @@ constexpr int kLeastAnswers = 10;       // of them
 constexpr double kFollowClock_s = 1.0;  // a second's least difference is kept for one more
 constexpr double kMuchLonger = 2.0;     // of the delay that the gains know
 constexpr double kLittle_s = 0.002;     // that is no matter [s]
+constexpr double kLook_s = 0.1;         // a WebSocket that says nothing gives way so soon [s]
 constexpr int kMostDatagramsPerRead = 64;
 
 double steady_s() noexcept {
@@ -114,13 +115,13 @@ DriverSurvey NetworkDevice::survey() {
 }
 
 Result<void> NetworkDevice::connect_once() {
-  if (socket_.is_listening()) return {};
-  if (Result<void> listening = socket_.listen(options_.address, options_.port); !listening) return listening;
+  if (link_.is_listening()) return {};
+  if (Result<void> listening = link_.listen(options_.address, options_.port); !listening) return listening;
   Result<void> met = wait_for_hello();
   if (met) met = measure_delay();
   if (!met) {
     say(TACTUM_WIRE_BYE);
-    socket_.close();
+    link_.close();
   }
   return met;
 }
@@ -132,9 +133,11 @@ Result<void> NetworkDevice::wait_for_hello() {
   for (;;) {
     const double left_s = until_s - steady_s();
     if (left_s <= 0.0) break;
-    if (!socket_.wait(static_cast<int>(1e3 * left_s) + 1)) continue;
+    link_.wait(static_cast<int>(1e3 * std::min(left_s, kLook_s)) + 1);
+    link_.serve();
+    if (!link_.last_refusal().empty()) heard = "a WebSocket that was refused: " + link_.last_refusal();
     bytes.resize(2048);
-    const long size = socket_.receive(bytes.data(), bytes.size());
+    const long size = link_.receive(bytes.data(), bytes.size());
     if (size < 0) continue;
     bytes.resize(static_cast<std::size_t>(size));
     if (Result<void> taken = take_hello(bytes); taken)
@@ -166,7 +169,7 @@ Result<void> NetworkDevice::take_hello(const std::vector<unsigned char>& bytes) 
   newest_ = {};
   info_ = info_of(hello.info);
   gate_ = CommandGate(info_);
-  socket_.answer_last();
+  link_.answer_last();
   say(TACTUM_WIRE_WELCOME);
   return {};
 }
@@ -177,7 +180,7 @@ Result<void> NetworkDevice::measure_delay() {
   std::uint32_t answered = 0;
   for (const double until_s = steady_s() + kPings_s; steady_s() < until_s;) {
     send({});
-    socket_.wait(1);
+    link_.wait(1);
     drain(steady_s());
     if (last_answered_ != answered) ++answers;
     answered = last_answered_;
@@ -201,7 +204,7 @@ Result<void> NetworkDevice::open() {
   has_offset_ = false;  // the loop's clock begins now
   newest_.time_s = 0.0;
   heard_s_ = steady_s();
-  if (Result<void> guarded = guard_.start(options_.stale_after_s, [this] { send({}); }); !guarded)
+  if (Result<void> guarded = guard_.start(options_.stale_after_s, [this] { rest(); }); !guarded)
     return guarded;
   send({});
   is_open_ = true;
@@ -210,18 +213,18 @@ Result<void> NetworkDevice::open() {
 
 void NetworkDevice::close() noexcept {
   guard_.stop();
-  if (socket_.is_listening()) {
+  if (link_.is_listening()) {
     if (is_open_) send({});
     say(TACTUM_WIRE_BYE);
   }
-  socket_.close();
+  link_.close();
   is_open_ = false;
 }
 
 void NetworkDevice::say(int kind) noexcept {
   const tactum_wire_header header{TACTUM_DEVICE_MAGIC, TACTUM_DEVICE_VERSION,
                                   static_cast<std::uint16_t>(kind), session_, 0};
-  socket_.send(&header, sizeof header);
+  link_.send(&header, sizeof header);
 }
 
 /// From the loop's thread and the guard's.
@@ -235,14 +238,20 @@ void NetworkDevice::send(const Wrench& F_D) noexcept {
     command.wrench[3 + i] = F_D.t[i];
   }
   sent_s_[sequence % kRemembered].store(command.time_s, std::memory_order_relaxed);
-  socket_.send(&command, sizeof command);
+  link_.send(&command, sizeof command);
+}
+
+/// While the loop is silent. A device that waits until its states are taken would not see that it is to rest.
+void NetworkDevice::rest() noexcept {
+  send({});
+  if (link_.discard()) heard_s_ = steady_s();
 }
 
 /// Takes what has come; false when the device has said goodbye.
 bool NetworkDevice::drain(double now_s) noexcept {
   for (int n = 0; n < kMostDatagramsPerRead; ++n) {
     tactum_wire_state state;
-    const long size = socket_.receive(&state, sizeof state);
+    const long size = link_.receive(&state, sizeof state);
     if (size < 0) break;
     if (size < static_cast<long>(sizeof state.header) || state.header.magic != TACTUM_DEVICE_MAGIC ||
         state.header.version != TACTUM_DEVICE_VERSION || state.header.session != session_)
@@ -252,6 +261,7 @@ bool NetworkDevice::drain(double now_s) noexcept {
     if (state.header.kind == TACTUM_WIRE_STATE && size == static_cast<long>(sizeof state))
       take_state(state, now_s);
   }
+  if (link_.has_ended()) gone_ = true;
   return !gone_;
 }
 

@@ -1,14 +1,15 @@
 #pragma once
-/// A device in another process or on another machine, which speaks the protocol of tactum_device.h over UDP
-/// and says hello to us:
+/// A device in another process or on another machine, which speaks the protocol of tactum_device.h, over UDP
+/// or WebSocket, and says hello to us:
 ///
 ///   device  STATE at its own rate  -->   read: the newest, with the time it was measured
 ///           <--  COMMAND                 write, in each frame
 ///
-/// Datagrams are lost, late and out of order: one that is older than the last is dropped. When no state comes
-/// for kSilent_s the sample is not valid, so the safety stage leads the wrench to zero; when none comes for
-/// kDead_s writes are refused, and the loop ends as for a device that was unplugged. The device itself exerts
-/// nothing when no command comes (tactum_device.h).
+/// Datagrams are lost, late and out of order: one that is older than the last is dropped. Over WebSocket
+/// none is lost, and a delay on the way holds up all that follow: the same is done with it. When no state
+/// comes for kSilent_s the sample is not valid, so the safety stage leads the wrench to zero; when none comes
+/// for kDead_s writes are refused, and the loop ends as for a device that was unplugged. The device itself
+/// exerts nothing when no command comes (tactum_device.h).
 ///
 /// The delay of the way is measured before the device is opened, with commands of zero, and is part of
 /// `handle.delay_s`: the gains know it. Growing much longer later is told by trouble().
@@ -25,7 +26,7 @@
 
 #include "tactum/devices/device.h"
 #include "tactum/drivers/command_guard.h"
-#include "tactum/drivers/datagram_socket.h"
+#include "tactum/drivers/network_link.h"
 #include "tactum/drivers/survey.h"
 
 struct tactum_wire_state;
@@ -74,10 +75,11 @@ class NetworkDevice final : public Device {
   double silence_s() noexcept;
   double dated(double device_s, double now_s) noexcept;
   void send(const Wrench& F_D) noexcept;
+  void rest() noexcept;
   void say(int kind) noexcept;
 
   NetworkDeviceOptions options_;
-  DatagramSocket socket_;
+  NetworkLink link_;
   DeviceInfo info_;
   CommandGate gate_;
   StaleGuard guard_;
@@ -96,7 +98,7 @@ class NetworkDevice final : public Device {
   // Least difference of the loop's clock and the device's, of this second and the last.
   double offset_s_ = 0.0, offset_before_s_ = 0.0, offset_from_s_ = 0.0;
   bool has_offset_ = false;
-  double heard_s_ = 0.0;  // when the last state came, on the steady clock
+  std::atomic<double> heard_s_{0.0};  // when the last state came, on the steady clock
   DeviceSample newest_;
 };
 

@@ -17,6 +17,7 @@
  * the middle of the workspace. The wrench acts on the hand, at the handle's origin, with axes of D.
  *
  * The protocol: datagrams of UDP, numbers of little-endian machines, one of the structs tactum_wire_... each.
+ * The same port takes them as binary messages of a WebSocket, one each (examples/network_device.mjs).
  *
  *   device  HELLO every 100 ms ->             WELCOME          <- Tactum
  *   device  STATE at its own rate ->          COMMAND          <- Tactum, in each of its frames

@@ -12,10 +12,6 @@
 
 namespace tactum::inline v0_1 {
 
-/// What a server answers to a client's key, so that both know the other speaks the protocol: the key and a
-/// fixed text, through SHA-1, in base 64 [RFC 6455, 1.3].
-std::string web_socket_accept(const std::string& key);
-
 class WebSocket {
  public:
   static constexpr std::size_t kMostBytes = 1 << 20;  ///< of a message that is taken [bytes]

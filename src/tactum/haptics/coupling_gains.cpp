@@ -21,13 +21,18 @@ constexpr double kLever_m = 0.2;
 
 /// Everything that bounds one half of the coupling, translation or rotation.
 struct Half {
-  double device_damping, hand_damping, friction, encoder_step, stiffest;
+  double device_damping, hand_damping, mass, friction, encoder_step, stiffest;
 };
+
+double damper_of(const Half& half, double period_s, double delay_s) {
+  return std::min(kDamperShare * half.hand_damping, kUsed * damper_allowed(half.mass, period_s, delay_s));
+}
 
 GainBounds bounds_of(const Half& half, double damper, double period_s, double delay_s) {
   GainBounds bounds;
   bounds.alone = stiffness_allowed(half.device_damping, 0.0, period_s, delay_s);
   bounds.loose_hand = stiffness_allowed(half.device_damping + half.hand_damping, damper, period_s, delay_s);
+  bounds.damper = damper_allowed(half.mass, period_s, delay_s);
   bounds.encoder = half.friction > 0.0 && half.encoder_step > 0.0 ? 2.0 * half.friction / half.encoder_step
                                                                   : std::numeric_limits<double>::infinity();
   return bounds;
@@ -46,13 +51,18 @@ std::string digits(double value) {
   return unit > 0.0 ? fmt::format("{:.0f}", unit * std::round(value / unit)) : fmt::format("{:.3g}", value);
 }
 
-/// One half of the coupling beside its bounds: what a loose hand allows, and the device alone.
+/// One half of the coupling beside its bounds: what a loose hand allows, the device alone, and the mass of
+/// its handle.
 struct Margin {
   double used, in_hand, alone;
   const char* unit;
+  double damper, most_damper, mass;
+  const char *damper_unit, *mass_unit;
 
   bool in_loose_hand() const { return used <= in_hand; }
+  bool damps() const { return damper <= most_damper; }
   bool released() const { return used <= alone; }
+  bool has_mass() const { return mass > 0.0; }
   std::string text() const { return digits(used) + " " + unit; }
   std::string limit_in_hand() const { return digits(in_hand) + " " + unit; }
   std::string limit_alone() const { return digits(alone) + " " + unit; }
@@ -72,17 +82,23 @@ double stiffness_allowed(double device_damping, double damping, double period_s,
   return std::max(0.0, device_damping - std::abs(damping)) / (0.5 * period_s + delay_s);
 }
 
+double damper_allowed(double mass, double period_s, double delay_s) noexcept {
+  if (!(mass > 0.0)) return std::numeric_limits<double>::infinity();
+  const double periods = std::ceil(delay_s / period_s);
+  return mass / period_s * 2.0 * std::sin(kPi / (4.0 * periods + 2.0));
+}
+
 CouplingGains coupling_gains(const DeviceInfo& info, double rate_Hz) {
   const HandleDynamics& handle = info.handle;
   const HandModel hand = loose_hand();
   const double period_s = 1.0 / rate_Hz;
-  const Half linear{handle.damping_Ns_per_m, hand.damping_Ns_per_m, handle.friction_N, handle.encoder_step_m,
-                    info.max_stiffness_N_per_m};
-  const Half turning{handle.damping_Nms_per_rad, hand.damping_Nms_per_rad, handle.friction_Nm,
-                     handle.encoder_step_rad, info.max_stiffness_Nm_per_rad};
+  const Half linear{handle.damping_Ns_per_m, hand.damping_Ns_per_m, handle.mass_kg,
+                    handle.friction_N,       handle.encoder_step_m, info.max_stiffness_N_per_m};
+  const Half turning{handle.damping_Nms_per_rad, hand.damping_Nms_per_rad, handle.inertia_kg_m2,
+                     handle.friction_Nm,         handle.encoder_step_rad,  info.max_stiffness_Nm_per_rad};
   CouplingGains gains;
-  gains.coupling.damping_Ns_per_m = kDamperShare * hand.damping_Ns_per_m;
-  gains.coupling.damping_Nms_per_rad = kDamperShare * hand.damping_Nms_per_rad;
+  gains.coupling.damping_Ns_per_m = damper_of(linear, period_s, handle.delay_s);
+  gains.coupling.damping_Nms_per_rad = damper_of(turning, period_s, handle.delay_s);
   gains.translation = bounds_of(linear, gains.coupling.damping_Ns_per_m, period_s, handle.delay_s);
   gains.coupling.stiffness_N_per_m = chosen(gains.translation, linear.stiffest);
   if (info.actuates_torque) {
@@ -90,7 +106,7 @@ CouplingGains coupling_gains(const DeviceInfo& info, double rate_Hz) {
     gains.coupling.stiffness_Nm_per_rad = chosen(gains.rotation, turning.stiffest);
   } else {
     constexpr double kInfinite = std::numeric_limits<double>::infinity();
-    gains.rotation = {kInfinite, kInfinite, kInfinite};
+    gains.rotation = {kInfinite, kInfinite, kInfinite, kInfinite};
     gains.coupling.stiffness_Nm_per_rad = gains.coupling.stiffness_N_per_m * kLever_m * kLever_m;
     gains.coupling.damping_Nms_per_rad = 0.0;
   }
@@ -135,17 +151,44 @@ Margins margins_of(const Coupling& coupling, const DeviceInfo& info, double rate
   };
   return {{coupling.stiffness_N_per_m,
            allowed(handle.damping_Ns_per_m + hand.damping_Ns_per_m, coupling.damping_Ns_per_m),
-           allowed(handle.damping_Ns_per_m, 0.0), "N/m"},
+           allowed(handle.damping_Ns_per_m, 0.0), "N/m", coupling.damping_Ns_per_m,
+           damper_allowed(handle.mass_kg, period_s, handle.delay_s), handle.mass_kg, "N s/m", "kg"},
           {coupling.stiffness_Nm_per_rad,
            allowed(handle.damping_Nms_per_rad + hand.damping_Nms_per_rad, coupling.damping_Nms_per_rad),
-           allowed(handle.damping_Nms_per_rad, 0.0), "N m/rad"},
+           allowed(handle.damping_Nms_per_rad, 0.0), "N m/rad", coupling.damping_Nms_per_rad,
+           damper_allowed(handle.inertia_kg_m2, period_s, handle.delay_s), handle.inertia_kg_m2, "N m s/rad",
+           "kg m^2"},
           info.actuates_torque};
+}
+
+bool is_too_stiff(const Margins& margins) {
+  return !margins.push.in_loose_hand() || (margins.turns && !margins.turn.in_loose_hand());
 }
 
 Stability stability_of(const Margins& margins) {
   const auto& [push, turn, turns] = margins;
-  if (!push.in_loose_hand() || (turns && !turn.in_loose_hand())) return Stability::kUncertain;
+  if (is_too_stiff(margins) || !push.damps() || (turns && !turn.damps())) return Stability::kUncertain;
   return push.released() && (!turns || turn.released()) ? Stability::kAlways : Stability::kInHand;
+}
+
+}  // namespace
+
+namespace {
+
+/// What the mass of the handle allows of the damper, in a sentence; empty where it is unknown.
+std::string damper_sentence(const Margins& margins) {
+  const auto part = [](const Margin& margin) {
+    return fmt::format("{} {} on {:.3g} {} (limit {})", digits(margin.damper), margin.damper_unit,
+                       margin.mass, margin.mass_unit, digits(margin.most_damper));
+  };
+  const Margin &push = margins.push, &turn = margins.turn;
+  const bool turns = margins.turns && turn.has_mass();
+  if (!push.has_mass() && !turns) return "";
+  const bool good = push.damps() && (!turns || turn.damps());
+  return std::string(" Its damper is ") + (good ? "weak" : "not weak") + " enough for the handle: " +
+         joined(push.has_mass() ? part(push) : part(turn), " and ",
+                push.has_mass() && turns ? part(turn) : "") +
+         ".";
 }
 
 }  // namespace
@@ -161,7 +204,9 @@ std::string margin_sentence(const Coupling& coupling, const DeviceInfo& info, do
     return joined((margins.push.*text)(), " and ", margins.turns ? (margins.turn.*text)() : "");
   };
   std::string text = "The coupling of " + both(&Margin::text);
-  if (stability == Stability::kUncertain)
+  if (stability == Stability::kUncertain && !is_too_stiff(margins))
+    text += " may swing on this device when it is let go, since its damper is too strong";
+  else if (stability == Stability::kUncertain)
     text += fmt::format(
         " is too stiff for this device: in a loose hand it may buzz (limit {}), and let go (limit {}) as "
         "well",
@@ -172,6 +217,7 @@ std::string margin_sentence(const Coupling& coupling, const DeviceInfo& info, do
   else
     text += " is stable in any hand that holds the device, and when it is let go";
   text += stability == Stability::kAlways ? "." : "; its stiffness is lowered where it does.";
+  text += damper_sentence(margins);
   if (!margins.turns) text += " The device sends no torque: turns of the hand are followed.";
   return text + " See docs/algorithms/stability.md.";
 }

@@ -11,6 +11,13 @@
 /// bounds the stiffness that does not buzz in a hand. Both bounds are given; the gains are chosen for the
 /// hand, and the observer (passivity.h) watches for the rest.
 ///
+/// The mass of the handle is in neither: a mass is passive. It bounds the coupling's damper, which acts late
+/// as the spring does, and turns a light handle around faster than it measures it:
+///
+///   B T / m < 2 sin(pi / (4 n + 2)),     n T the delay      [Levin and May 1976]
+///
+/// The smaller m counts, that of the device alone; where it is unknown nothing is bounded by it.
+///
 /// A coarse encoder makes a stiff spring chatter by one step and back, which friction stops when
 ///
 ///   friction > K step / 2                [Abbott and Okamura 2005]
@@ -35,10 +42,15 @@ double damping_needed(double stiffness, double damping, double period_s, double 
 /// The stiffest spring that `device_damping` allows beside a damper B; 0 when B alone is too much.
 double stiffness_allowed(double device_damping, double damping, double period_s, double delay_s) noexcept;
 
+/// The strongest damper that does not swing on a free handle of this mass; infinite where the mass is unknown
+/// (0). The same for rotation, with the moment of inertia.
+double damper_allowed(double mass, double period_s, double delay_s) noexcept;
+
 /// The bounds of the coupling in one of its halves, translation or rotation (then N m/rad).
 struct GainBounds {
   double alone = 0.0;       ///< nobody holds the handle: passive [N/m]
   double loose_hand = 0.0;  ///< in a loose hand [N/m]
+  double damper = 0.0;      ///< on a free handle; infinite where its mass is unknown [N s/m]
   double encoder = 0.0;     ///< friction stops the chatter; infinite where friction or step is unknown [N/m]
 };
 
@@ -48,7 +60,8 @@ struct CouplingGains {
 };
 
 /// The gains for a device served at `rate_Hz`: half of what a loose hand allows, no more than the encoder and
-/// the device's makers allow, with a tenth of that hand's damping as its damper.
+/// the device's makers allow, with a tenth of that hand's damping as its damper, but no more than half of
+/// what the handle's mass allows.
 CouplingGains coupling_gains(const DeviceInfo& info, double rate_Hz);
 
 /// The settings of the passivity stage for this device.

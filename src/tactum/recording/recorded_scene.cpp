@@ -136,7 +136,8 @@ Result<RecordedScene> build_recorded(const RunHead& head, const std::map<std::st
   if (devices.size() != scene->settings.hands())
     return Error{"the recording has devices for another number of hands than its scene",
                  std::to_string(devices.size()), std::to_string(scene->settings.hands()), where};
-  for (const DeviceInfo& device : devices) recorded.device_limits.push_back(safety_limits(device));
+  for (std::size_t hand = 0; hand < devices.size(); ++hand)
+    recorded.device_limits.push_back(device_limits(*scene, hand, devices[hand]));
   FrameSettings settings = settings_for(*scene, devices);
   if (Result<void> restored = restore_settings(head, options, where, settings, recorded); !restored)
     return restored.error();

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "tactum/devices/simulated_device.h"
+#include "tactum/haptics/setting_table.h"
 #include "tactum/scene/scene_builder.h"
 
 namespace tactum::inline v0_1 {
@@ -121,14 +122,30 @@ SceneHand made_hand(SceneBuilder& builder, const HandDescription& hand, const st
 
 }  // namespace
 
+namespace {
+
+/// What of a hand's own settings is no part of the frame's.
+void keep_own(const std::vector<OwnSetting>& own, SceneHand& hand) {
+  FrameSettings elsewhere;
+  for (const OwnSetting& each : own) {
+    setting_table()[static_cast<std::size_t>(setting_called(each.setting))].set(elsewhere, hand.own_safety,
+                                                                                each.value);
+    hand.has_own_coupling = hand.has_own_coupling || each.setting.starts_with("coupling.");
+  }
+}
+
+}  // namespace
+
 void build_hand(SceneBuilder& builder, Scene& scene) {
   const SceneDescription& description = builder.description();
   static_cast<SceneHand&>(scene) =
       made_hand(builder, description.hand, "hand", "device", scene, scene.settings);
+  keep_own(description.hand.own, scene);
   for (std::size_t i = 0; i < description.other_hands.size() && !builder.errors(); ++i) {
     const std::string path = item_path("", "tool", i + 1);
     scene.other_hands.push_back(made_hand(builder, description.other_hands[i].hand, path + ".hand",
                                           path + ".device", scene, scene.settings.other_hands[i]));
+    keep_own(description.other_hands[i].hand.own, scene.other_hands.back());
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "tactum/haptics/setting_table.h"
 #include "tactum/scene/scene_builder.h"
 
 namespace tactum::inline v0_1 {
@@ -91,6 +92,16 @@ void set_hand(SceneBuilder& builder, const DescribedHand& described, const Scene
   X_WD.p = described.workspace.pos_m.value_or(handle_W);
 }
 
+/// Puts what a hand has of its own over the settings of all hands.
+void set_own(const std::vector<OwnSetting>& own, FrameSettings& scratch, HandSettings& hand) {
+  SafetySettings elsewhere;  // build_hand() keeps those of the hand
+  static_cast<HandSettings&>(scratch) = hand;
+  for (const OwnSetting& each : own)
+    setting_table()[static_cast<std::size_t>(setting_called(each.setting))].set(scratch, elsewhere,
+                                                                                each.value);
+  hand = scratch;
+}
+
 }  // namespace
 
 void build_settings(SceneBuilder& builder, Scene& scene) {
@@ -108,12 +119,14 @@ void build_settings(SceneBuilder& builder, Scene& scene) {
     builder.fail("tool[1]", "the penalty response knows one hand only",
                  fmt::format("{} tools", 1 + others.size()), "response = \"constraint\", or one [tool]");
   const HandSettings usual = scene.settings;
+  FrameSettings scratch;
   set_hand(builder,
            {others.empty() ? "tool" : "tool[0]", description.tool ? &*description.tool : nullptr,
             description.workspace},
            scene, scene.settings);
   for (std::size_t i = 0; i < others.size(); ++i) {
     HandSettings& hand = scene.settings.other_hands.emplace_back(usual);
+    set_own(others[i].hand.own, scratch, hand);
     set_hand(builder, {item_path("", "tool", i + 1), &others[i].tool, others[i].workspace}, scene, hand);
   }
 }

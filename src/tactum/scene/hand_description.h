@@ -82,6 +82,14 @@ struct TremorDescription {
   int seed = 1;                ///< [-]
 };
 
+/// A setting of one hand that is another than that of the whole scene. Those of `coupling`, `smoothing` and
+/// `workspace` count instead of the scene's; with one of the coupling, the device chooses none for this hand.
+/// Those of `safety` tighten the device's limits, and the scene's tighten them further.
+struct OwnSetting {
+  std::string setting = {};  ///< section and key of setting_table.h: "coupling.stiffness_N_per_m"
+  double value = 0.0;        ///< in the unit of that table
+};
+
 /// The simulated hand and the device it was made for.
 struct HandDescription {
   std::string device = "premium-1.5-6dof";  ///< preset of the simulated device (simulated_device.h)
@@ -89,10 +97,12 @@ struct HandDescription {
   std::optional<TremorDescription> tremor = {};
   int repeat = 1;  ///< the steps are played so many times, 1 to 1000 [-]
   std::vector<HandStep> steps = {};
+  /// Of coupling, smoothing, safety and workspace; of the first hand, of safety where there are several.
+  std::vector<OwnSetting> own = {};
 };
 
-/// A hand beside the first: its tool, the place of its device, and its motion. Scale, clutch, coupling and
-/// all other settings are those of the first, but for a coupling that the device chooses.
+/// A hand beside the first: its tool, the place of its device, and its motion. All settings that it has not
+/// of its own are those of the first, but for a coupling that the device chooses.
 struct OtherHandDescription {
   ToolDescription tool = {};
   WorkspaceDescription workspace = {};

@@ -10,6 +10,7 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <variant>
@@ -235,6 +236,11 @@ void visit_items(ItemVisitor& visitor, HandDescription& hand);
 
 /// A [[tool]] behind the first, with what belongs to its hand.
 void visit_items(ItemVisitor& visitor, OtherHandDescription& other);
+/// The table of a section of settings that a hand has of its own.
+void visit_own_section(ItemVisitor& visitor, const char* section, std::vector<OwnSetting>& own);
+/// An error where code gives a hand a setting of another section.
+void check_own(ItemVisitor& visitor, std::span<const char* const> sections,
+               const std::vector<OwnSetting>& own);
 
 // The whole: visit_scene.cpp.
 void visit_items(ItemVisitor& visitor, SceneDescription& scene);

@@ -23,6 +23,8 @@ struct SceneHand {
   std::string device;                      ///< preset of the simulated device the motion was made for
   std::string grip;                        ///< hand model of the simulated hand
   std::shared_ptr<const HandMotion> hand;  ///< from the handle's pose on; may be null
+  SafetySettings own_safety;      ///< of this hand alone, beside those of the scene; they tighten as well
+  bool has_own_coupling = false;  ///< the scene states the coupling of this hand; no device chooses it
 };
 
 /// The inherited members are those of the first hand.
@@ -51,6 +53,9 @@ inline long frames_of_motion(const Scene& scene) {
   if (!scene.hand) return 0;
   return static_cast<long>(scene.hand->duration_s() / scene.settings.dt_s);
 }
+
+/// The limits of a hand's device, tightened by those that the scene gives this hand alone.
+SafetyLimits device_limits(const Scene& scene, std::size_t hand, const DeviceInfo& info);
 
 /// The scene's settings with those that depend on the device: the limits of safety, tightened by the scene's,
 /// the device's properties for the passivity stage, and the coupling where the scene leaves that to the

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "tactum/scene/item_visitor.h"
 
 namespace tactum::inline v0_1 {
@@ -94,10 +96,68 @@ void visit_items(ItemVisitor& visitor, HandDescription& hand) {
   visitor.tables("step", hand.steps);
 }
 
+namespace {
+
+std::string own_name(const SettingInfo& info) { return std::string(info.section) + "." + info.key; }
+
+void visit_own(ItemVisitor& visitor, const SettingInfo& info, std::vector<OwnSetting>& own) {
+  const auto at = std::find_if(own.begin(), own.end(),
+                               [&](const OwnSetting& each) { return each.setting == own_name(info); });
+  if (!visitor.present(info.key, at != own.end())) return;
+  FrameSettings frame;
+  SafetySettings safety;
+  if (at != own.end()) info.set(frame, safety, at->value);
+  visitor.setting(info, frame, safety);
+  const double value = info.get(frame, safety);
+  if (at != own.end())
+    at->value = value;
+  else
+    own.push_back({own_name(info), value});
+}
+
+KeyList keys_of_section(std::string_view section) {
+  KeyList keys;
+  for (const SettingInfo& info : setting_table())
+    if (section == info.section) keys.push_back(info.key);
+  return keys;
+}
+
+void visit_settings_of(ItemVisitor& visitor, std::string_view section, std::vector<OwnSetting>& own) {
+  for (const SettingInfo& info : setting_table())
+    if (section == info.section) visit_own(visitor, info, own);
+}
+
+}  // namespace
+
+void visit_own_section(ItemVisitor& visitor, const char* section, std::vector<OwnSetting>& own) {
+  visitor.table(section, keys_of_section(section),
+                [&](ItemVisitor& inside) { visit_settings_of(inside, section, own); });
+}
+
+void check_own(ItemVisitor& visitor, std::span<const char* const> sections,
+               const std::vector<OwnSetting>& own) {
+  for (const OwnSetting& each : own) {
+    const std::string section = each.setting.substr(0, each.setting.find('.'));
+    const bool is_own = std::find(sections.begin(), sections.end(), section) != sections.end();
+    if (!is_own || setting_called(each.setting) < 0)
+      visitor.fail(nullptr, "a hand has no such setting of its own", "'" + each.setting + "'",
+                   std::string("one of ") + sections.front() + (sections.size() > 1 ? ", ..." : ""));
+  }
+}
+
 void visit_items(ItemVisitor& visitor, OtherHandDescription& other) {
+  static constexpr const char* kOwnSections[] = {"coupling", "smoothing", "safety", "workspace"};
   visit_items(visitor, other.tool);
   visitor.text("device", other.hand.device);
-  visitor.table("workspace", other.workspace);
+  KeyList place = known_keys<WorkspaceDescription>();
+  for (const char* key : keys_of_section("workspace")) place.push_back(key);
+  visitor.table("workspace", place, [&](ItemVisitor& inside) {
+    visit_items(inside, other.workspace);
+    visit_settings_of(inside, "workspace", other.hand.own);
+  });
+  for (const char* section : {"coupling", "smoothing", "safety"})
+    visit_own_section(visitor, section, other.hand.own);
+  check_own(visitor, kOwnSections, other.hand.own);
   visitor.table("hand", other.hand);
 }
 

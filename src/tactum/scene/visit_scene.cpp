@@ -81,8 +81,10 @@ void visit_settings(ItemVisitor& visitor, SettingsDescription& settings, Workspa
 }
 
 /// [tool], or several [[tool]]: the first is the hand of the tables [workspace] and [hand] and of the key
-/// `device`, each after it has its own.
+/// `device`, each after it has its own. All may have limits of their own.
 void visit_tools(ItemVisitor& visitor, SceneDescription& scene) {
+  static constexpr const char* kFirstSections[] = {"safety"};
+  check_own(visitor, kFirstSections, scene.hand.own);
   if (!visitor.several("tool", !scene.other_hands.empty()))
     return visitor.optional("tool", scene.tool, [&](ToolDescription& tool) { visitor.table("tool", tool); });
   const std::size_t tools = visitor.size("tool", 1 + scene.other_hands.size());
@@ -91,8 +93,12 @@ void visit_tools(ItemVisitor& visitor, SceneDescription& scene) {
                  "SceneDescription::tool with them");
   if (tools == 0) return;
   ToolDescription& first = scene.tool ? *scene.tool : scene.tool.emplace();
-  visitor.element("tool", 0, known_keys<ToolDescription>(),
-                  [&](ItemVisitor& inside) { visit_items(inside, first); });
+  KeyList keys = known_keys<ToolDescription>();
+  keys.push_back("safety");
+  visitor.element("tool", 0, keys, [&](ItemVisitor& inside) {
+    visit_items(inside, first);
+    visit_own_section(inside, "safety", scene.hand.own);
+  });
   scene.other_hands.resize(tools - 1);
   for (std::size_t i = 1; i < tools; ++i)
     visitor.element("tool", i, known_keys<OtherHandDescription>(),

@@ -117,7 +117,7 @@ Session::Session(Scene scene, std::unique_ptr<Device> device)
       glances_(kGlances) {
   scene_.settings = settings_on(scene_, *device_, several_);
   for (std::size_t h = 0; h < hands(); ++h) {
-    device_limits_.push_back(safety_limits(device_of(h)));
+    device_limits_.push_back(device_limits(scene_, h, device_of(h)));
     pointers_.push_back(
         dynamic_cast<PointerDevice*>(several_ != nullptr ? &several_->device(h) : device_.get()));
   }
