@@ -120,10 +120,6 @@ SceneHand made_hand(SceneBuilder& builder, const HandDescription& hand, const st
   return made;
 }
 
-}  // namespace
-
-namespace {
-
 /// What of a hand's own settings is no part of the frame's.
 void keep_own(const std::vector<OwnSetting>& own, SceneHand& hand) {
   FrameSettings elsewhere;
