@@ -132,6 +132,10 @@ class SweptReading final : public RecordingVisitor {
     if (input.tick.index == read.inputs.size()) read.inputs.push_back(input);
     return {};
   }
+  Result<void> hand(const RecordedHand& hand) override {
+    if (hand.index + 1 == read.inputs.size()) read.others.push_back(hand.sample);
+    return {};
+  }
 };
 
 Result<void> read_recorded(const std::string& path, SweepPlan& plan) {
@@ -142,9 +146,12 @@ Result<void> read_recorded(const std::string& path, SweepPlan& plan) {
   if (!reading.begun() || reading.read.inputs.empty() || !reading.read.files.contains(kSceneAttachment))
     return end.wrong ? *end.wrong
                      : Error{"the recording has no frames", path, "a run with its scene", plan.file};
-  if (!reading.read.head.other_devices.empty())
-    return Error{"a sweep plays the recording of one hand only",
-                 std::to_string(1 + reading.read.head.other_devices.size()) + " hands", "one", path};
+  const std::size_t others = reading.read.head.other_devices.size();
+  if (others > 0) {  // the last frame may lack the hands that stood in a chunk that is cut off
+    const std::size_t whole = std::min(reading.read.inputs.size(), reading.read.others.size() / others);
+    reading.read.inputs.resize(whole);
+    reading.read.others.resize(whole * others);
+  }
   plan.scene_name = reading.read.head.scene;
   plan.scene_text = reading.read.files[kSceneAttachment];
   plan.source.file = reading.read.head.scene_file;

@@ -35,6 +35,7 @@ struct SweptRecording {
   RunHead head;
   std::map<std::string, std::string> files;  ///< by their attachments
   std::vector<RecordedInput> inputs;         ///< up to the first frame that is missing
+  std::vector<HandSample> others;            ///< of the second hand and all after it, frame by frame
   std::vector<RecordedCommand> commands;     ///< settings that were changed, in order
 };
 

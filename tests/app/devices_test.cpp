@@ -181,6 +181,28 @@ TEST(Devices, APlateIsFeltOnADeviceInAnotherProcess) {
   EXPECT_GT(largest_N, 0.1);
 }
 
+/// The example in JavaScript, over WebSocket, where this machine's node has WebSockets.
+TEST(Devices, APlateIsFeltOnADeviceInJavaScript) {
+  const std::string node = "node --no-warnings --experimental-websocket ";
+  if (std::system((node + "-e 'process.exit(globalThis.WebSocket ? 0 : 1)' 2>/dev/null").c_str()) != 0)
+    GTEST_SKIP() << "no node with WebSockets";
+  const std::string port = std::to_string(20000 + getpid() % 20000);
+  std::string said;
+  std::thread process([&] {
+    FILE* device = popen((node + "examples/network_device.mjs 30 " + port + " 2>&1").c_str(), "r");
+    char line[256];
+    while (std::fgets(line, sizeof line, device) != nullptr) said += line;
+    pclose(device);
+  });
+  const ProgramRun run = run_tactum("feel block-on-plate --duration 2 --device network:" + port);
+  process.join();
+  EXPECT_TRUE(ended(run)) << run.err;
+  EXPECT_TRUE(holds(run.out, "network example in JavaScript")) << run.out;
+  double largest_N = 0.0;
+  ASSERT_EQ(std::sscanf(said.c_str(), "largest force %lf N", &largest_N), 1) << said;
+  EXPECT_GT(largest_N, 0.1);
+}
+
 TEST(Devices, ARealOneHasNoVirtualClock) {
   const SetVariable dhd("TACTUM_FORCE_DIMENSION_LIBRARY", standin_file("standin_dhd"));
   const ProgramRun run = run_tactum("feel gears --device force-dimension --virtual-clock --updates 10");

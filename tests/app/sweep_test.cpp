@@ -153,5 +153,76 @@ TEST(Sweep, AJournalThatWasCutAnywhereGoesOn) {
   EXPECT_NE(refused.error().message().find("another sweep"), std::string::npos);
 }
 
+/// Two hands that press their blocks onto each other, the upper one `first` or the lower one.
+std::string two_hands(bool upper_first, double up_m) {
+  const auto hand = [up_m](bool upper, const std::string& table) {
+    return "[" + table + "]\ngrip = \"firm\"\nstep = [{ offset_m = [0, 0, " +
+           std::to_string(upper ? -0.004 : up_m) + "], duration_s = 0.15 }, { hold_s = 0.05 }]\n";
+  };
+  const std::string body[] = {"body = \"lower\"\n", "body = \"upper\"\n"};
+  return R"(schema = 1
+[[body]]
+name = "lower"
+part = { box = { size_m = [0.02, 0.02, 0.02] } }
+[[body]]
+name = "upper"
+part = { box = { size_m = [0.02, 0.02, 0.02] } }
+pos_m = [0, 0, 0.023]
+[[tool]]
+)" + body[upper_first] +
+         hand(upper_first, "hand") + "[[tool]]\n" + body[!upper_first] + hand(!upper_first, "tool.hand");
+}
+
+SweepPlan swept(const ScratchFolder& folder, const std::string& source) {
+  testing::write(folder / "sweep.toml", "schema = 1\n" + source + R"(
+duration_s = 0.2
+jam = { force_N = 0.5, speed_m_per_s = 0.02 }
+[[axis]]
+name = "stiffness_N_per_m"
+path = "coupling.stiffness_N_per_m"
+values = [400.0]
+)");
+  Result<SweepPlan> plan = read_sweep(folder / "sweep.toml");
+  EXPECT_TRUE(plan) << plan.error().message();
+  return plan ? std::move(*plan) : SweepPlan{};
+}
+
+/// The numbers of a run are those of all hands: they do not depend on which hand is the first.
+TEST(Sweep, TwoHandsMayBeSwapped) {
+  const ScratchFolder folder;
+  for (const double up_m : {0.0, 0.001, 0.002, 0.004, 0.006}) {
+    SweepResult results[2];
+    for (const bool upper_first : {false, true}) {
+      testing::write(folder / "two.toml", two_hands(upper_first, up_m));
+      results[upper_first] = run_of_sweep(swept(folder, "scene = \"two.toml\""), 0);
+      ASSERT_EQ(results[upper_first].error, "");
+    }
+    for (std::size_t i = 0; i < kSweepMetrics.size(); ++i) {
+      const double a = results[0].numbers[i], b = results[1].numbers[i];
+      if (std::string(kSweepMetrics[i].name).starts_with("jam_p") || std::isnan(a))
+        continue;  // a hand's place
+      EXPECT_NEAR(a, b, 0.01 * std::abs(a) + 1e-4) << kSweepMetrics[i].name << " " << up_m;
+    }
+    EXPECT_GT(results[0].numbers[2], up_m > 0.0 ? 0.5 : 0.1) << "they do press";
+  }
+}
+
+/// A recording of two hands gives the run that was recorded, to the bit.
+TEST(Sweep, ARecordingOfTwoHandsIsPlayed) {
+  const ScratchFolder folder;
+  testing::write(folder / "two.toml", "coupling.stiffness_N_per_m = 400.0\n" + two_hands(true, 0.004));
+  const testing::ProgramRun run = testing::run_tactum("feel " + (folder / "two.toml") +
+                                                      " --virtual-clock --record " + (folder / "two.mcap"));
+  ASSERT_LE(run.exit_code, 2) << run.err;
+  const SweepResult recorded = run_of_sweep(swept(folder, "recording = \"two.mcap\""), 0);
+  const SweepResult scene = run_of_sweep(swept(folder, "scene = \"two.toml\""), 0);
+  ASSERT_EQ(recorded.error, "");
+  EXPECT_EQ(recorded.hash, scene.hash);
+  for (std::size_t i = 0; i < kSweepMetrics.size(); ++i)
+    if (!std::isnan(scene.numbers[i])) {
+      EXPECT_EQ(recorded.numbers[i], scene.numbers[i]) << kSweepMetrics[i].name;
+    }
+}
+
 }  // namespace
 }  // namespace tactum::sweep_test

@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "tactum/drivers/registry.h"
+#include "tactum/haptics/setting_table.h"
 #include "tactum/scene/builtin_scenes.h"
 #include "tactum/scene/scene_file.h"
 #include "tactum/session/session.h"
@@ -195,6 +197,28 @@ TEST(TwoDevices, AreAsManyAsThereAreTools) {
   session = Session::open_with(std::move(scene), simulated(second));
   ASSERT_FALSE(session);
   EXPECT_NE(session.error().message().find("1 devices"), std::string::npos);
+}
+
+/// A change while it runs, of whatever setting, leaves every hand the limits of its own.
+TEST(TwoDevices, ALiveChangeKeepsTheLimitsOfEachHand) {
+  for (const auto& [changed, first_N, second_N] :
+       {std::tuple{"coupling.stiffness_N_per_m", 3.0, 1.5}, std::tuple{"safety.max_force_N", 2.0, 1.5}}) {
+    Scene scene = two_hands();
+    scene.own_safety.max_force_N = 3.0;
+    scene.other_hands[0].own_safety.max_force_N = 1.5;
+    auto session = Session::open(std::move(scene), {});
+    ASSERT_TRUE(session) << session.error().message();
+    EXPECT_EQ((*session)->scene().settings.hand(0).safety.max_force_N, 3.0);
+    EXPECT_EQ((*session)->scene().settings.hand(1).safety.max_force_N, 1.5);
+    SessionCommand set;
+    set.kind = SessionCommand::Kind::kSet;
+    set.setting = setting_called(changed);
+    set.value = 2.0;
+    EXPECT_TRUE((*session)->ask(set));
+    ASSERT_TRUE((*session)->run_virtual(10, nullptr));
+    EXPECT_EQ((*session)->scene().settings.hand(0).safety.max_force_N, first_N) << changed;
+    EXPECT_EQ((*session)->scene().settings.hand(1).safety.max_force_N, second_N) << changed;
+  }
 }
 
 TEST(TwoDevices, EachHandIsLedOnItsOwn) {
