@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <string>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -197,6 +198,55 @@ TEST(TwoDevices, AreAsManyAsThereAreTools) {
   session = Session::open_with(std::move(scene), simulated(second));
   ASSERT_FALSE(session);
   EXPECT_NE(session.error().message().find("1 devices"), std::string::npos);
+}
+
+/// Two hands press their blocks onto each other: each feels the stretch of its own coupling, and both feel one
+/// force. Of a limit that one hand has, the other feels nothing.
+TEST(TwoDevices, EachHandFeelsItsOwnCouplingAndLimit) {
+  const auto pressed = [](double first_N_per_m, const std::string& second) {
+    const Result<Scene> scene =
+        parse_scene("schema = 1\ngravity_m_per_s2 = [0, 0, 0]\ncoupling.stiffness_N_per_m = " +
+                        std::to_string(first_N_per_m) + R"(
+[[body]]
+name = "lower"
+part = { box = { size_m = [0.02, 0.02, 0.02] } }
+[[body]]
+name = "upper"
+part = { box = { size_m = [0.02, 0.02, 0.02] } }
+pos_m = [0, 0, 0.021]
+[[tool]]
+body = "upper"
+[hand]
+step = [{ offset_m = [0, 0, -0.004], duration_s = 0.3 }, { hold_s = 1.2 }]
+[[tool]]
+body = "lower"
+)" + second + R"(
+[tool.hand]
+step = [{ offset_m = [0, 0, 0.004], duration_s = 0.3 }, { hold_s = 1.2 }]
+)",
+                    "two", "two.toml", {});
+    EXPECT_TRUE(scene) << scene.error().message();
+    auto session = Session::open(*scene, {});
+    EXPECT_TRUE(session) << session.error().message();
+    EXPECT_TRUE((*session)->run_virtual(1500, nullptr));
+    return std::move(*session);
+  };
+  for (const double first : {150.0, 400.0})
+    for (const double second : {100.0, 250.0, 400.0, 700.0}) {
+      const auto session = pressed(first, "coupling.stiffness_N_per_m = " + std::to_string(second));
+      const HandReport& one = session->last_report();
+      const HandReport& other = session->state().other_reports[0];
+      const double force_N = one.coupling.f.norm();
+      EXPECT_GT(force_N, 0.2);
+      EXPECT_NEAR(other.coupling.f.norm(), force_N, 0.005 * force_N) << first << " " << second;
+      EXPECT_NEAR(first * (one.X_WH.p - one.X_WH_proxy.p).norm(), force_N, 0.01 * force_N) << second;
+      EXPECT_NEAR(second * (other.X_WH.p - other.X_WH_proxy.p).norm(), force_N, 0.01 * force_N) << first;
+    }
+  for (const double limit_N : {0.1, 0.2, 0.3}) {
+    const auto session = pressed(400.0, "safety.max_force_N = " + std::to_string(limit_N));
+    EXPECT_NEAR(session->state().other_reports[0].shown.f.norm(), limit_N, 1e-9);
+    EXPECT_GT(session->last_report().shown.f.norm(), 2.0 * limit_N);
+  }
 }
 
 /// A change while it runs, of whatever setting, leaves every hand the limits of its own.
