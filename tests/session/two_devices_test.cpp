@@ -200,8 +200,8 @@ TEST(TwoDevices, AreAsManyAsThereAreTools) {
   EXPECT_NE(session.error().message().find("1 devices"), std::string::npos);
 }
 
-/// Two hands press their blocks onto each other: each feels the stretch of its own coupling, and both feel one
-/// force. Of a limit that one hand has, the other feels nothing.
+/// Two hands press their blocks onto each other: each feels the stretch of its own coupling, and both feel
+/// one force. Of a limit that one hand has, the other feels nothing.
 TEST(TwoDevices, EachHandFeelsItsOwnCouplingAndLimit) {
   const auto pressed = [](double first_N_per_m, const std::string& second) {
     const Result<Scene> scene =
