@@ -12,7 +12,8 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace tactum;
-  constexpr std::array<const char*, 7> kNames = {"a.obj", "a.stl", "a.ply", "a.off", "a.gltf", "a.glb", "a.dae"};
+  constexpr std::array<const char*, 7> kNames = {"a.obj",  "a.stl", "a.ply", "a.off",
+                                                 "a.gltf", "a.glb", "a.dae"};
   if (size == 0) return 0;
   const std::string_view bytes(reinterpret_cast<const char*>(data) + 1, size - 1);
   const Result<ImportedMesh> mesh = import_mesh_bytes(bytes, kNames[data[0] % kNames.size()]);
