@@ -38,6 +38,30 @@ TEST(Deviation, NearestPointsAgreeWithEveryTriangleTried) {
   }
 }
 
+TEST(Deviation, ADistanceIsExactWhereItIsNotNearEnough) {
+  constexpr std::uint64_t kSeed = 6;
+  SCOPED_TRACE(kSeed);
+  Random random(kSeed);
+  const TriangleMesh mesh = icosphere(2);
+  const NearestOnMesh nearest(mesh);
+  int ended_early = 0;
+  for (int i = 0; i < 500; ++i) {
+    const Vec3 p(random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(-2, 2));
+    const double near_enough = random.uniform(0.0, 2.0);
+    int triangle = i % static_cast<int>(mesh.triangles.size());
+    int early_triangle = triangle;
+    const double exact = nearest.distance(p, triangle);
+    const double early = nearest.distance(p, early_triangle, near_enough);
+    EXPECT_GE(early, exact);
+    EXPECT_EQ(early > near_enough, exact > near_enough);
+    if (exact > near_enough) {
+      EXPECT_EQ(early, exact);
+    }
+    ended_early += early > exact ? 1 : 0;
+  }
+  EXPECT_GT(ended_early, 50);  // the early end is met
+}
+
 TEST(Deviation, IsNothingForAPartOfTheMeshItself) {
   TriangleMesh dented = icosphere(3);
   dented.vertices[40] *= 0.8;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 
 #include "tactum/base/tolerances.h"
@@ -12,6 +13,19 @@ namespace tactum::inline v0_1 {
 namespace {
 
 double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
+
+/// The largest angle from the unit vector to one of the rays [rad]. Cosines choose the rays whose angles
+/// are computed: where thousands of triangles meet in one vertex, this is called for each with as many rays.
+double largest_angle(const Vec3& from, const std::vector<Vec3>& rays) {
+  constexpr double kRounding = 8.0 * std::numeric_limits<double>::epsilon();  // of a dot product
+  double smallest_cosine = 1.0;
+  for (const Vec3& ray : rays) smallest_cosine = std::min(smallest_cosine, from.dot(ray));
+  double largest = 0.0;
+  for (const Vec3& ray : rays) {
+    if (from.dot(ray) <= smallest_cosine + kRounding) largest = std::max(largest, angle_between(from, ray));
+  }
+  return largest;
+}
 
 /// The part of the hull of `rays` (in turn around it) where e . u <= 0.
 std::vector<Vec3> clipped(const std::vector<Vec3>& rays, const Vec3& e) {
@@ -152,8 +166,7 @@ class Finder {
     int best = -1;
     double best_lean = 0.0;
     for (int corner : corners) {
-      double lean = 0.0;
-      for (const Vec3& ray : rays) lean = std::max(lean, angle_between(cones_.normal[corner / 3], ray));
+      const double lean = largest_angle(cones_.normal[corner / 3], rays);
       if (best < 0 || lean < best_lean) {
         best = corner;
         best_lean = lean;
@@ -162,8 +175,7 @@ class Finder {
     Vec3 axis = Vec3::Zero();
     for (const Vec3& ray : rays) axis += ray;
     axis.normalize();
-    double width = 0.0;
-    for (const Vec3& ray : rays) width = std::max(width, angle_between(axis, ray));
+    const double width = largest_angle(axis, rays);
     // Beyond a right angle the hull of rays may extend farther than its rays.
     own(SurfaceLayout::kVertices, best / 3, best % 3, axis, width < 0.5 * kPi ? width : kPi, best_lean);
   }

@@ -87,7 +87,7 @@ Farthest farthest_sample(const TriangleMesh& from, const TriangleMesh& to, int a
     for (std::size_t t = first; t < last; ++t) {
       samples.on(static_cast<int>(t), [&](const Vec3& point) {
         ++found.samples;
-        const double distance = surface.distance(point, nearest);
+        const double distance = surface.distance(point, nearest, found.distance);
         if (distance <= found.distance) return;
         if (on_cut(static_cast<int>(t), point, distance)) {
           ++found.inner;
@@ -161,9 +161,18 @@ double NearestOnMesh::to_triangle_sq(int triangle, const Vec3& point) const {
   return std::min(best, to_segment_sq(p[2], p[0], point));
 }
 
-double NearestOnMesh::distance(const Vec3& point, int& nearest) const {
+double NearestOnMesh::distance(const Vec3& point, int& nearest, double near_enough) const {
   if (tree_.empty()) return 1e300;
+  const double enough_sq = near_enough * near_enough;
   double best = to_triangle_sq(nearest, point);
+  // Points that follow a surface go from one triangle to the next of the file.
+  if (const int following = nearest + 1;
+      best > enough_sq && following < static_cast<int>(mesh_.triangles.size())) {
+    if (const double found = to_triangle_sq(following, point); found < best) {
+      best = found;
+      nearest = following;
+    }
+  }
   const auto box_sq = [&](int node) {
     const Bvh::Node& box = tree_.nodes()[node];
     return ((point - box.center).cwiseAbs() - box.half).cwiseMax(0.0).squaredNorm();
@@ -171,7 +180,7 @@ double NearestOnMesh::distance(const Vec3& point, int& nearest) const {
   std::array<int, 2 * Bvh::kMaxDepth> stack{};
   int size = 0;
   stack[size++] = 0;
-  while (size > 0) {
+  while (size > 0 && best > enough_sq) {
     const int at = stack[--size];
     if (box_sq(at) >= best) continue;
     const Bvh::Node& node = tree_.nodes()[at];

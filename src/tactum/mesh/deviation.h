@@ -8,9 +8,9 @@
 ///                  cut of ours inside the solid, not on the surface, and is only counted
 ///
 /// The grid is finer on larger triangles. A part without pieces is
-/// judged by its surface. Under trees of boxes: n log n, about two microseconds a sample;
-/// where thousands of long triangles lie across all axes about one place, a sample costs as many of their
-/// boxes as hold it.
+/// judged by its surface. Under trees of boxes: n log n, about two microseconds a sample. The search for a
+/// sample ends as soon as it is known to be no farther than another: samples on the other surface, which are
+/// nearly all, end at the first triangle that holds them.
 
 #include <vector>
 
@@ -27,9 +27,10 @@ class NearestOnMesh {
  public:
   explicit NearestOnMesh(const TriangleMesh& mesh, int threads = 1);
 
-  /// Distance from the point [m]; 1e300 from no triangle. The triangle `nearest`, which may be any, is tested
-  /// first; it becomes the one found.
-  double distance(const Vec3& point, int& nearest) const;
+  /// Distance from the point [m]; 1e300 from no triangle. The triangle `nearest`, which may be any, and the
+  /// one after it are tested first; it becomes the one found. The search ends at a distance of at most
+  /// `near_enough` [m]: such a distance is an upper bound, a larger one is exact.
+  double distance(const Vec3& point, int& nearest, double near_enough = 0.0) const;
 
  private:
   double to_triangle_sq(int triangle, const Vec3& point) const;
