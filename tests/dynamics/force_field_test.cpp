@@ -9,6 +9,7 @@
 #include <cmath>
 #include <functional>
 
+#include "support/effort.h"
 #include "support/solid_box.h"
 #include "tactum/base/random.h"
 #include "tactum/math/screw.h"
@@ -333,9 +334,10 @@ TEST(FieldLoad, OfAGridIsExactAtNodesForAnyPlaceOfTheField) {
 
 TEST(FieldLoad, OfAGridConvergesWithTheSquareOfItsSpacing) {
   const std::vector<FieldPoint> points = block_points(100);
+  const int levels = testing::effort(4, 3);
   const auto check = [&](const auto& field, const char* name) {
     double force_error[4], torque_error[4];
-    for (int level = 0; level < 4; ++level) {
+    for (int level = 0; level < levels; ++level) {
       const auto grid = grid_of(field, shape_of((16 << level) + 1));
       Random random(19);
       double force_sum = 0.0, torque_sum = 0.0;
@@ -350,7 +352,7 @@ TEST(FieldLoad, OfAGridConvergesWithTheSquareOfItsSpacing) {
       force_error[level] = std::sqrt(force_sum / 200.0);
       torque_error[level] = std::sqrt(torque_sum / 200.0);
     }
-    for (int level = 1; level < 4; ++level) {
+    for (int level = 1; level < levels; ++level) {
       const double force_order = std::log2(force_error[level - 1] / force_error[level]);
       const double torque_order = std::log2(torque_error[level - 1] / torque_error[level]);
       std::cout << name << " " << (16 << level) << " cells: force " << force_error[level] << " N, order "

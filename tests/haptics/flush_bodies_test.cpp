@@ -212,6 +212,27 @@ TEST(FlushBodies, SurfacesAreFeltAsOneFloor) {
   }
 }
 
+TEST(FlushBodies, SurfacesRideOverStepsBelowTheToldHeight) {
+  const double k = FrameSettings{}.coupling.stiffness_N_per_m;
+  for (Case c : by_surfaces({{},
+                             {.size_m = 0.2},
+                             {.rate_Hz = 4000.0},
+                             {.yaw_rad = 0.3},
+                             {.rate_Hz = 500.0, .block_last = true}})) {
+    SCOPED_TRACE(::testing::Message()
+                 << c.size_m << " m, " << c.rate_Hz << " Hz, yaw " << c.yaw_rad << ", last " << c.block_last
+                 << ", surfaces " << c.surface_block << c.surface_floor);
+    const std::vector<Wrench> level = drawn(c, true);
+    c.step = 0.9 * kRiddenStep;
+    const std::vector<Wrench> stepped = drawn(c, false);
+    double most = 0.0;
+    for (std::size_t i = 0; i < level.size(); ++i) {
+      most = std::max(most, (level[i].f - stepped[i].f).head<2>().norm());
+    }
+    EXPECT_LT(most, 2.0 * k * c.step * c.size_m);
+  }
+}
+
 TEST(FlushBodies, AFreeBlockOverSurfacesStopsWhereFrictionSays) {
   for (const Case& c : by_surfaces({{.mu = 0.2},
                                     {.mu = 0.2, .block_last = true},
@@ -223,6 +244,23 @@ TEST(FlushBodies, AFreeBlockOverSurfacesStopsWhereFrictionSays) {
     const double length = 0.5 * kBoards * c.size_m * (1.0 + 0.5 * 0.03 * 0.03);
     const double speed = std::sqrt(2.0 * c.mu * kGravity * 0.5 * kBoards * c.size_m);
     EXPECT_NEAR(slides(c, speed, false), length, 1e-3 * length);
+  }
+}
+
+TEST(FlushBodies, AFreeBlockRidesOverStepsAsOverALevelFloor) {
+  std::vector<Case> cases =
+      by_surfaces({{.mu = 0.2}, {.mu = 0.5, .yaw_rad = 0.4}, {.size_m = 0.3, .mu = 0.2}});
+  cases.push_back({.mu = 0.2});  // of pieces
+  cases.push_back({.size_m = 0.3, .mu = 0.2});
+  cases.push_back({.size_m = 0.3, .rate_Hz = 4000.0, .mu = 0.2});
+  cases.push_back({.rate_Hz = 4000.0, .mu = 0.3, .block_last = true});
+  for (Case c : cases) {
+    SCOPED_TRACE(::testing::Message() << c.size_m << " m, " << c.rate_Hz << " Hz, mu " << c.mu
+                                      << ", surfaces " << c.surface_block << c.surface_floor);
+    c.step = 0.9 * kRiddenStep;
+    const double length = 0.5 * kBoards * c.size_m * (1.0 + 0.5 * 0.03 * 0.03);
+    const double speed = std::sqrt(2.0 * c.mu * kGravity * 0.5 * kBoards * c.size_m);
+    EXPECT_NEAR(slides(c, speed, false), length, 0.01 * length);
   }
 }
 

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "support/effort.h"
 #include "support/sample_meshes.h"
 #include "support/surface_shapes.h"
@@ -128,6 +130,31 @@ TEST(SurfacePath, OfSurfacesThatTouch) {
   const Pose crossed{Mat3::Identity(),
                      {0.1, 0.05, 0.4}};  // what has crossed already is no crossing of this motion
   EXPECT_EQ(surface_path(floor, block, {crossed, {{0.001, 0, -0.001}, Vec3::Zero()}}, kAmple).free, 1.0);
+}
+
+/// A block whose bottom is a little below the top of the board that it comes to.
+TEST(SurfacePath, RidesOverStepsOfTheHeightGiven) {
+  const SurfaceTree board(box_mesh({0.02, 0.02, 0.01}));
+  const SurfaceTree block(box_mesh({0.01, 0.01, 0.01}));
+  for (const double step : {1e-7, 1e-6, 1e-5}) {
+    const Vec3 from(0.03 + 1e-4, 0, 0.02 - step);
+    const Vec3 move(-1e-3, 1e-4, 0);
+    const std::array<Vec3, 1> from_block = {-Vec3::UnitZ()};
+    const std::array<Vec3, 1> from_board = {Vec3::UnitZ()};
+    const std::array<Vec3, 1> aside = {Vec3::UnitY()};
+    const auto free = [&](const std::array<Vec3, 1>& normals, double height) {
+      return surface_path(board, block, {{Mat3::Identity(), from}, {move, Vec3::Zero()}}, kAmple,
+                          {normals, height})
+          .free;
+    };
+    EXPECT_EQ(free(from_block, 1.1 * step), 1.0) << step;
+    EXPECT_NEAR(free(from_block, 0.9 * step), 0.1, 0.01) << step;
+    EXPECT_NEAR(free(aside, 1.1 * step), 0.1, 0.01) << step;
+    EXPECT_NEAR(free(from_board, 1.1 * step), 0.1, 0.01) << step;
+    const RelativeMotion seen_from_block{{Mat3::Identity(), -from}, {-move, Vec3::Zero()}};
+    EXPECT_EQ(surface_path(block, board, seen_from_block, kAmple, {from_board, 1.1 * step}).free, 1.0)
+        << step;
+  }
 }
 
 TEST(SurfacePath, SaysWhenItsTestsRunOut) {

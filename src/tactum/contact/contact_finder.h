@@ -199,6 +199,8 @@ class ContactFinder final : public GapOracle {
               double dt_s) noexcept;
   double path_free(const Pair& pair, const BodyPath& a, const BodyPath& b) const noexcept;
   double path_free(const SweepAndPrune::Pair& near, int most_tests, PathWork& work) noexcept;
+  StaticVector<Vec3, 4> ridden_planes(int a, int b) const noexcept;
+  double ridden_height(int a, int b) const noexcept;
   void remember(const MetTriangles& met) noexcept;
   void add_met_triangles(int a, int b, const Pose& X_AB, double margin) noexcept;
   double distance_of_met(const ContactPatch& patch, const Pose& X_AB) const noexcept;

@@ -121,7 +121,8 @@ struct Step {
 };
 
 /// Gives an implied contact the normal of the plane, and the points at which its body would meet the step:
-/// where it is nearest, and the lowest vertices that are no farther from there than the motion may lead.
+/// where it is nearest, the lowest vertices that are no farther from there than the motion may lead, and
+/// where the lines from the lowest of these to the others are as far.
 void take_step(const Resting& implied, const Step& step, const TouchedShape& own, const Pose& X_WA,
                ContactPatch& patch) {
   const Vec3& n = step.normal_W;
@@ -137,12 +138,21 @@ void take_step(const Resting& implied, const Step& step, const TouchedShape& own
   if (!patch.of_surfaces) patch.manifold.a.kind = patch.manifold.b.kind = FeatureKind::kVertex;
   patch.manifold.points.clear();
   add(implied.p_W);
-  const Vec3 away = implied.normal_W - n * n.dot(implied.normal_W);
+  const Vec3 away = (implied.normal_W - n * n.dot(implied.normal_W)).normalized();
+  const auto farther = [&](const Vec3& p_W) { return away.dot(p_W - implied.p_W); };
+  Vec3 lowest_W = implied.p_W;
   own.for_each_vertex([&](const Vec3& vertex) {
     const Vec3 p_W = own.X_WB * vertex;
-    if (n.dot(p_W) > step.lowest + step.ridden_m) return;
-    if (away.dot(p_W - implied.p_W) > patch.tolerance * away.norm()) return;
+    if (farther(p_W) > patch.tolerance || n.dot(p_W) > step.lowest + step.ridden_m) return;
+    if (n.dot(p_W) < n.dot(lowest_W)) lowest_W = p_W;
     if (patch.manifold.points.size() < Manifold::kMostPoints) add(p_W);
+  });
+  // Of what is farther away the motion may lead so much over the step.
+  own.for_each_vertex([&](const Vec3& vertex) {
+    const Vec3 p_W = own.X_WB * vertex;
+    if (!(farther(p_W) > patch.tolerance) || n.dot(p_W) > step.lowest + step.ridden_m) return;
+    const double part = (patch.tolerance - farther(lowest_W)) / (farther(p_W) - farther(lowest_W));
+    if (patch.manifold.points.size() < Manifold::kMostPoints) add(lowest_W + part * (p_W - lowest_W));
   });
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "tactum/collision/convex_path.h"
 #include "tactum/contact/contact_finder.h"
@@ -86,6 +87,27 @@ double ContactFinder::path_free(const Pair& pair, const BodyPath& a, const BodyP
       a, b, [&](const RelativeMotion& motion) { return convex_path_free(A, B, motion, pair.cache); });
 }
 
+/// The normals of the planes along which the part rides over steps between two bodies, as RiddenSteps has
+/// them. Contacts without room here are met as others are.
+StaticVector<Vec3, 4> ContactFinder::ridden_planes(int a, int b) const noexcept {
+  StaticVector<Vec3, 4> normals;
+  for (const ContactPatch& patch : patches_) {
+    const Vec3& n = patch.manifold.normal;
+    if (!patch.implied || patch.body_a != a || patch.body_b != b) continue;
+    if (std::find(normals.begin(), normals.end(), n) == normals.end() && normals.size() < normals.capacity())
+      normals.push_back(n);
+  }
+  return normals;
+}
+
+/// The height of a step that one of the two rides over: it is the one that moves, the smaller if both do.
+double ContactFinder::ridden_height(int a, int b) const noexcept {
+  double size = std::numeric_limits<double>::infinity();
+  for (const CollisionBody* body : {&bodies_[Index(a)], &bodies_[Index(b)]})
+    if (body->moves) size = std::min(size, body->part->size);
+  return kRiddenStep * size;
+}
+
 /// Of two surfaces. The triangles that end it are contacts from the next frame on.
 double ContactFinder::path_free(const SweepAndPrune::Pair& near, int most_tests, PathWork& work) noexcept {
   const BodyPath& a = paths_[Index(near.a)];
@@ -98,10 +120,12 @@ double ContactFinder::path_free(const SweepAndPrune::Pair& near, int most_tests,
   double free = 1.0;
   bool complete = frame_ >= list.unproven_until;
   if (complete) {
+    const StaticVector<Vec3, 4> planes = ridden_planes(near.a, near.b);
+    const RiddenSteps ridden{{planes.begin(), planes.end()}, ridden_height(near.a, near.b)};
     free = free_in_stretches(a, b, [&](const RelativeMotion& motion) {
       const SurfacePath path =
           surface_path(bodies_[Index(near.a)].part->tree, bodies_[Index(near.b)].part->tree, motion,
-                       most_tests - work.tests);
+                       most_tests - work.tests, ridden);
       if (path.triangle_a >= 0) remember({near.a, near.b, path.triangle_a, path.triangle_b});
       work.tests += path.tests;
       complete &= path.complete;

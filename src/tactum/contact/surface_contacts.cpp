@@ -1,6 +1,7 @@
 /// The half of the contact finder (contact_finder.h) for bodies that are tested by their surfaces.
 
 #include <algorithm>
+#include <limits>
 
 #include "tactum/base/tolerances.h"
 #include "tactum/contact/contact_finder.h"
@@ -224,6 +225,24 @@ ContactPatch* ContactFinder::add_surface_patch(int a, int b, const SurfaceMinimu
   return &patch;
 }
 
+namespace {
+
+/// Gives all implied contacts of two surfaces the least distance of any: each has only the vertices at its
+/// own features, and a part that meets a step is lifted over it by all of them.
+void share_step(std::span<const ContactPatch> patches, std::span<double> distance,
+                std::span<GapAnswer> asked) noexcept {
+  double least = std::numeric_limits<double>::infinity();
+  for (Index i = 0; i < patches.size(); ++i)
+    if (patches[i].implied && asked[i] == GapAnswer::kExact) least = std::min(least, distance[i]);
+  for (Index i = 0; i < patches.size(); ++i) {
+    if (!patches[i].implied || !(least < distance[i])) continue;
+    distance[i] = least;
+    asked[i] = GapAnswer::kExact;
+  }
+}
+
+}  // namespace
+
 void ContactFinder::surface_distances_at(std::span<const ContactPatch> patches, std::span<const Pose> X_WB,
                                          std::span<double> distance, std::span<GapAnswer> asked,
                                          int keep_back) noexcept {
@@ -260,6 +279,7 @@ void ContactFinder::surface_distances_at(std::span<const ContactPatch> patches, 
     double& d = distance[number];
     d = std::min(d, minimum.distance);
   }
+  share_step(patches, distance, asked);
 }
 
 }  // namespace tactum::inline v0_1

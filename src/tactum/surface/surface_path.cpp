@@ -59,12 +59,13 @@ struct FloatPose {
 
 class PathWalk {
  public:
-  PathWalk(const Tree& a, const Tree& b, const RelativeMotion& motion, int most,
+  PathWalk(const Tree& a, const Tree& b, const RelativeMotion& motion, int most, const RiddenSteps& ridden,
            const lanes::PathKernels& kernels) noexcept
       : a_(a),
         b_(b),
         motion_(motion),
         most_(most),
+        ridden_(ridden),
         kernels_(kernels),
         touching_(tolerances::kTouching * std::max(a.size(), b.size())),
         grown_(float(tolerances::kSingle * (a.size() + b.size()))),
@@ -308,7 +309,15 @@ class PathWalk {
     const double free = path_free_until(pair, path_.free, kIntervalTests);
     if (free < path_.free) stop(free, a, b);
   }
+  /// Whether the step between the two is one that is ridden over.
+  bool rides(const PathTriangle& a, const PathTriangle& b) const noexcept {
+    return std::any_of(ridden_.normals.begin(), ridden_.normals.end(), [&](const Vec3& n) {
+      return std::min({n.dot(a.from[0]), n.dot(a.from[1]), n.dot(a.from[2])}) >=
+             std::max({n.dot(b.from[0]), n.dot(b.from[1]), n.dot(b.from[2])}) - ridden_.height_m;
+    });
+  }
   void stop(double free, const PathTriangle& a, const PathTriangle& b) noexcept {
+    if (rides(a, b)) return;
     path_.free = free;
     path_.triangle_a = a.number;
     path_.triangle_b = b.number;
@@ -318,6 +327,7 @@ class PathWalk {
   const Tree& b_;
   const RelativeMotion& motion_;
   int most_;
+  const RiddenSteps& ridden_;
   const lanes::PathKernels& kernels_;
   double touching_;
   float grown_;
@@ -332,9 +342,9 @@ class PathWalk {
 
 }  // namespace
 
-SurfacePath surface_path(const SurfaceTree& a, const SurfaceTree& b, const RelativeMotion& motion,
-                         int most) noexcept {
-  return PathWalk(a, b, motion, most, lanes::path_builds().best()).run();
+SurfacePath surface_path(const SurfaceTree& a, const SurfaceTree& b, const RelativeMotion& motion, int most,
+                         const RiddenSteps& ridden) noexcept {
+  return PathWalk(a, b, motion, most, ridden, lanes::path_builds().best()).run();
 }
 
 }  // namespace tactum::inline v0_1

@@ -13,6 +13,8 @@
 /// come nearer. Noexcept, no allocation, the same bits for the same input. Cost: that of the pairs of
 /// triangles that could touch in the motion, 0.1 us each as a rule.
 
+#include <span>
+
 #include "tactum/geometry/surface_tree.h"
 #include "tactum/math/relative_motion.h"
 
@@ -26,8 +28,15 @@ struct SurfacePath {
   bool complete = true;                  ///< false: the tests ran out, and `free` proves nothing
 };
 
+/// Steps between surfaces that lie along one plane, as boards of a floor do, over which one of the two rides:
+/// triangles that the plane keeps apart at the start, but for the height of the step, do not end a path.
+struct RiddenSteps {
+  std::span<const Vec3> normals;  ///< of the planes, unit, from B toward A, in A's frame
+  double height_m = 0.0;          ///< of the highest step [m]
+};
+
 /// How far two surfaces stay apart, in at most `most` tests of nodes and pairs of leaves.
-SurfacePath surface_path(const SurfaceTree& a, const SurfaceTree& b, const RelativeMotion& motion,
-                         int most) noexcept;
+SurfacePath surface_path(const SurfaceTree& a, const SurfaceTree& b, const RelativeMotion& motion, int most,
+                         const RiddenSteps& ridden = {}) noexcept;
 
 }  // namespace tactum::inline v0_1
