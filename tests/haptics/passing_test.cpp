@@ -5,11 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "support/add_body.h"
-#include "support/solid_box.h"
-#include "tactum/geometry/primitives.h"
+#include "support/effort.h"
+#include "support/sample_meshes.h"
 #include "tactum/haptics/simulation.h"
 #include "tactum/mesh/make_part.h"
 
@@ -18,6 +19,8 @@ namespace {
 
 constexpr double kGravity = 9.81;  // [m/s^2]
 
+enum class Shape { kBall, kOctahedron, kCube };
+
 struct Passing {
   double radius_m = 0.0135;
   double gap = 4e-4;  // of the radius
@@ -25,20 +28,47 @@ struct Passing {
   double restitution = 0.0;
   bool wall_first = true;
   Vec3 spin = Vec3::Zero();  // [rad/s]
+  Shape shape = Shape::kBall;
+  bool by_surface = false, wall_by_surface = false;  // felt by their surfaces, not as convex pieces
 };
 
-/// Drops a ball from five radii above the edge of a wall beside it, and expects it to fall straight.
+TriangleMesh mesh_of(const Passing& c) {
+  TriangleMesh mesh;
+  switch (c.shape) {
+    case Shape::kBall:
+      mesh = testing::icosphere(2);
+      break;
+    case Shape::kCube:
+      mesh = testing::box_mesh({1, 1, 1});
+      break;
+    case Shape::kOctahedron:
+      mesh.vertices = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+      mesh.triangles = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4},
+                        {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
+      break;
+  }
+  for (Vec3& vertex : mesh.vertices) vertex *= c.radius_m;
+  return mesh;
+}
+
+std::shared_ptr<const Part> part_of(const TriangleMesh& mesh, bool by_surface) {
+  Result<Part> part =
+      part_from_mesh(mesh, {.pieces = by_surface ? PieceSource::kSurface : PieceSource::kSolid});
+  EXPECT_TRUE(part);
+  return std::make_shared<const Part>(std::move(*part));
+}
+
+/// Drops a body from five radii above the edge of a wall beside it, and expects it to fall straight.
 void expect_straight(const Passing& c) {
   World world;
   world.gravity_W = {0, 0, -kGravity};
-  const Polytope sphere = make_icosphere(2, c.radius_m);
-  const auto ball = std::make_shared<const Part>(
-      *part_from_clouds({std::vector<Vec3>(sphere.vertices.begin(), sphere.vertices.end())}));
+  const TriangleMesh mesh = mesh_of(c);
+  const auto ball = part_of(mesh, c.by_surface);
   double side_m = c.spin.isZero(0.0) ? 0.0 : c.radius_m;  // how far the ball's facets reach to the wall
-  for (const Vec3& vertex : ball->pieces[0].vertices) side_m = std::max(side_m, vertex.x());
+  for (const Vec3& vertex : mesh.vertices) side_m = std::max(side_m, vertex.x());
   const Vec3 start(-side_m - c.gap * c.radius_m, 0, 5.0 * c.radius_m);
   const auto add_wall = [&] {
-    add_body(world, {.part = solid_box(c.radius_m * Vec3(1, 8, 5)),
+    add_body(world, {.part = part_of(testing::box_mesh(c.radius_m * Vec3(1, 8, 5)), c.wall_by_surface),
                      .X_WP = {Mat3::Identity(), c.radius_m * Vec3(1, 0, -5)},
                      .joint = {.kind = JointKind::kFixed}});
   };
@@ -68,6 +98,33 @@ TEST(Passing, AnEdgeThatIsNotTouchedDoesNothing) {
         Passing{.radius_m = 0.001}, Passing{.radius_m = 0.5}, Passing{.spin = {0, 0, 20}}}) {
     SCOPED_TRACE(::testing::Message() << c.radius_m << " m, gap " << c.gap << ", " << c.rate_Hz << " Hz, e "
                                       << c.restitution << ", spin " << c.spin.norm());
+    expect_straight(c);
+  }
+}
+
+TEST(Passing, AnEdgeOfASurfaceThatIsNotTouchedDoesNothing) {
+  std::vector<Passing> cases;
+  for (const Passing& c :
+       {Passing{}, Passing{.gap = 1e-4, .restitution = 0.5, .shape = Shape::kOctahedron},
+        Passing{.gap = 4e-3, .rate_Hz = 500.0, .shape = Shape::kOctahedron},
+        Passing{.restitution = 0.5, .shape = Shape::kCube}, Passing{.gap = 1e-2, .shape = Shape::kCube},
+        Passing{.radius_m = 0.2,
+        .rate_Hz = 4000.0,
+        .restitution = 1.0,
+        .wall_first = false,
+        .shape = Shape::kCube},
+        Passing{.radius_m = 0.001, .gap = 4e-3}, Passing{.gap = 4e-3, .spin = {0, 0, 20}}}) {
+    for (const auto& [body, wall] : {std::pair(true, true), std::pair(true, false), std::pair(false, true)}) {
+      cases.push_back(c);
+      cases.back().by_surface = body;
+      cases.back().wall_by_surface = wall;
+    }
+  }
+  for (const Passing& c : testing::sampled(cases, 5)) {
+    SCOPED_TRACE(::testing::Message()
+                 << "shape " << static_cast<int>(c.shape) << ", " << c.radius_m << " m, gap " << c.gap << ", "
+                 << c.rate_Hz << " Hz, e " << c.restitution << ", spin " << c.spin.norm() << ", surfaces "
+                 << c.by_surface << c.wall_by_surface);
     expect_straight(c);
   }
 }

@@ -145,6 +145,14 @@ class ContactFinder final : public GapOracle {
     std::int32_t body_a = -1, body_b = -1, triangle_a = -1, triangle_b = -1;
   };
 
+  /// The answer of surfaces_pass() for two bodies with these twists.
+  struct SurfacesPassed {
+    std::int32_t body_a = -1, body_b = -1;
+    std::int64_t frame = -1;
+    Twist V_a, V_b;
+    Passing passing = Passing::kNot;
+  };
+
   /// The path of a body from the frame's start to another pose.
   struct BodyPath {
     RelativeMotion motion;  ///< as the world sees it
@@ -195,8 +203,16 @@ class ContactFinder final : public GapOracle {
   void surface_distances_at(std::span<const ContactPatch> patches, std::span<const Pose> X_WB,
                             std::span<double> distance, std::span<GapAnswer> asked, int keep_back) noexcept;
   BodyPath path_of(int body, const RelativeMotion& motion, const Pose& to) const noexcept;
+  BodyPath path_for(int body, const Pose& X_WB, const Twist& V_WB, double dt_s) const noexcept;
+  bool stays_beside(const ContactPatch& at, const Vec3& n_W, double distance, std::span<const Twist> V_WB,
+                    double dt_s) const noexcept;
   bool slides(const ContactPatch& at, std::span<const Pose> X_WB, std::span<const Twist> V_WB,
               double dt_s) noexcept;
+  Passing surfaces_pass(const ContactPatch& at, std::span<const Pose> X_WB, std::span<const Twist> V_WB,
+                        double dt_s, double gap_m) noexcept;
+  Passing ball_passes(const ContactPatch& at, std::span<const Pose> X_WB, std::span<const Twist> V_WB,
+                      double dt_s, double gap_m) noexcept;
+  bool stay_apart(int a, int b, const BodyPath& of_a, const BodyPath& of_b) const noexcept;
   double path_free(const Pair& pair, const BodyPath& a, const BodyPath& b) const noexcept;
   double path_free(const SweepAndPrune::Pair& near, int most_tests, PathWork& work) noexcept;
   StaticVector<Vec3, 4> ridden_planes(int a, int b) const noexcept;
@@ -238,6 +254,7 @@ class ContactFinder final : public GapOracle {
   int unproven_frames_ = 0;           // kUnproven_s in frames
   std::vector<BodyPath> paths_;       // by body: see prove_paths()
   ReservedVector<MetTriangles> met_;  // those that may be contacts
+  SurfacesPassed surfaces_passed_;    // the last answer
   ReservedVector<Pair> pairs_, renewed_;
   ReservedVector<std::pair<std::int32_t, std::int32_t>> near_pieces_;  // of the two bodies being tested
   ReservedVector<DuePair> due_;

@@ -10,6 +10,7 @@
 #include "tactum/contact/round_contact.h"
 #include "tactum/contact/seams.h"
 #include "tactum/math/screw.h"
+#include "tactum/surface/triangle_pair.h"
 
 namespace tactum::inline v0_1 {
 namespace {
@@ -50,6 +51,34 @@ double time_to_close(const TimeOfImpact& impact, const MovingPiece& A, const Mov
   return closing > 0.0 ? impact.closest.distance / closing : 0.0;
 }
 
+/// The gap of two convex shapes that move without turning, at some time, and how fast it grows.
+struct MovingGap {
+  double distance = 0.0, rate = 0.0;  // [m, m/s]
+};
+
+/// Whether such a gap stays above `gap_m`: it is a convex function of time, so its tangents are below it, and
+/// the lowest place of two of them is where it is looked at next. `gap_at(t, gap)` is false where the gap is
+/// not known.
+template <class GapAt>
+bool stays_open(const GapAt& gap_at, double dt_s, double gap_m, int most_steps, int& steps) noexcept {
+  double from_s = 0.0;
+  double to_s = dt_s;
+  MovingGap from, to;
+  steps = 2;
+  if (!gap_at(from_s, from) || !gap_at(to_s, to)) return false;
+  for (; from.distance > gap_m && to.distance > gap_m && steps < most_steps; ++steps) {
+    if (from.rate >= 0.0 || to.rate <= 0.0) return true;
+    const double t =
+        (to.distance - from.distance + from.rate * from_s - to.rate * to_s) / (from.rate - to.rate);
+    if (from.distance + from.rate * (t - from_s) > gap_m) return true;
+    MovingGap between;
+    if (!gap_at(t, between)) return false;
+    (between.rate < 0.0 ? from : to) = between;
+    (between.rate < 0.0 ? from_s : to_s) = t;
+  }
+  return false;
+}
+
 /// Two pieces that move without turning, or turn about the centre of a ball, which changes nothing.
 struct Passage {
   RoundSide a, b;
@@ -57,11 +86,8 @@ struct Passage {
   Vec3 v_a, v_b;          // [m/s]
   PairDistance at_start;  // of the facets
 
-  struct Gap {
-    double distance = 0.0, rate = 0.0;  // [m, m/s]
-  };
   /// After `t` seconds; of curved surfaces. False where the facets are the contact.
-  bool gap_at(double t, Gap& gap) const noexcept {
+  bool operator()(double t, MovingGap& gap) const noexcept {
     const Pose X_AB = relative_pose({X_WA.R, X_WA.p + t * v_a}, {X_W_B.R, X_W_B.p + t * v_b});
     PairDistance found = at_start;
     StaticVector<ContactPoint, Manifold::kMostPoints> points;
@@ -69,27 +95,28 @@ struct Passage {
     gap = {found.distance, rotated(X_WA.R, found.normal).dot(v_a - v_b)};
     return true;
   }
-  /// Whether the gap stays above `gap_m`: it is a convex function of time, so its tangents are below it, and
-  /// the lowest place of two of them is where it is looked at next.
-  bool stays_open(double dt_s, double gap_m, int most_steps, int& steps) const noexcept {
-    double from_s = 0.0;
-    double to_s = dt_s;
-    Gap from, to;
-    steps = 2;
-    if (!gap_at(from_s, from) || !gap_at(to_s, to)) return false;
-    for (; from.distance > gap_m && to.distance > gap_m && steps < most_steps; ++steps) {
-      if (from.rate >= 0.0 || to.rate <= 0.0) return true;
-      const double t =
-          (to.distance - from.distance + from.rate * from_s - to.rate * to_s) / (from.rate - to.rate);
-      if (from.distance + from.rate * (t - from_s) > gap_m) return true;
-      Gap between;
-      if (!gap_at(t, between)) return false;
-      (between.rate < 0.0 ? from : to) = between;
-      (between.rate < 0.0 ? from_s : to_s) = t;
-    }
-    return false;
+};
+
+/// A ball that moves without turning past a triangle.
+struct PassageOfBall {
+  TrianglePoints triangle;
+  Vec3 center, v;  // of the ball as the triangle's body sees it [m, m/s]
+  double radius_m;
+
+  /// After `t` seconds. False where the centre is in the triangle.
+  bool operator()(double t, MovingGap& gap) const noexcept {
+    const Vec3 p = center + t * v;
+    const Vec3 apart = p - triangle_distance({p, p, p}, triangle).p_b;
+    const double distance = apart.norm();
+    if (!(distance > 0.0)) return false;
+    gap = {distance - radius_m, apart.dot(v) / distance};
+    return true;
   }
 };
+
+bool same_twist(const Twist& one, const Twist& other) noexcept {
+  return one.v == other.v && one.w == other.w;
+}
 
 /// Whether a body's motion is a translation for its gaps: it does not turn, or is a ball about its origin.
 bool only_moves_along(const CollisionBody& body, const RoundPiece* round, const Twist& V) noexcept {
@@ -147,6 +174,23 @@ FirstImpact ContactFinder::first_impact(std::span<const Pose> X_WB, std::span<co
   return first;
 }
 
+/// The path of a body that moves for `dt_s`.
+ContactFinder::BodyPath ContactFinder::path_for(int body, const Pose& X_WB, const Twist& V_WB,
+                                                double dt_s) const noexcept {
+  const RelativeMotion motion{X_WB, V_WB * dt_s, X_WB.p};
+  return path_of(body, motion, motion.at(1.0));
+}
+
+/// Whether two bodies that are at a distance along a normal after a motion come no nearer in the next frame,
+/// by what they slide along each other.
+bool ContactFinder::stays_beside(const ContactPatch& at, const Vec3& n_W, double distance,
+                                 std::span<const Twist> V_WB, double dt_s) const noexcept {
+  double closing = n_W.dot(V_WB[Index(at.body_b)].v - V_WB[Index(at.body_a)].v);
+  for (const Index body : {Index(at.body_a), Index(at.body_b)})
+    closing += n_W.cross(V_WB[body].w).norm() * radius_[body];
+  return distance > 0.0 && closing * dt_s < kSlides * distance;
+}
+
 /// Whether two pieces slide along each other, on lines or while they turn about the normal, as a body passes
 /// through a gap as narrow as one likes.
 bool ContactFinder::slides(const ContactPatch& at, std::span<const Pose> X_WB, std::span<const Twist> V_WB,
@@ -154,30 +198,82 @@ bool ContactFinder::slides(const ContactPatch& at, std::span<const Pose> X_WB, s
   if (tests_left_ <= 0) return false;
   const Index a = Index(at.body_a);
   const Index b = Index(at.body_b);
-  const auto path = [&](Index body) {
-    const RelativeMotion motion{X_WB[body], V_WB[body] * dt_s, X_WB[body].p};
-    return path_of(static_cast<int>(body), motion, motion.at(1.0));
-  };
   --tests_left_;
   const Pair& pair = pairs_[Index(at.pair)];
-  if (path_free(pair, path(a), path(b)) < 1.0) return false;
+  if (path_free(pair, path_for(at.body_a, X_WB[a], V_WB[a], dt_s),
+                path_for(at.body_b, X_WB[b], V_WB[b], dt_s)) < 1.0)
+    return false;
   const Pose X_WA = advanced(X_WB[a], V_WB[a], dt_s);
   PairCache cache = pair.cache;
   const PairDistance end =
       closest_features(bodies_[a].part->pieces[Index(at.piece_a)], bodies_[b].part->pieces[Index(at.piece_b)],
                        relative_pose(X_WA, advanced(X_WB[b], V_WB[b], dt_s)), cache);
-  const Vec3 n = rotated(X_WA.R, end.normal);
-  double closing = n.dot(V_WB[b].v - V_WB[a].v);
-  for (const Index body : {a, b}) closing += n.cross(V_WB[body].w).norm() * radius_[body];
-  return end.certified() && end.distance > 0.0 && closing * dt_s < kSlides * end.distance;
+  return end.certified() && stays_beside(at, rotated(X_WA.R, end.normal), end.distance, V_WB, dt_s);
+}
+
+/// The same of two surfaces: their whole paths are proven, and what is nearest at the end stays beside. All
+/// contacts of two bodies have one answer, which is found once a frame.
+Passing ContactFinder::surfaces_pass(const ContactPatch& at, std::span<const Pose> X_WB,
+                                     std::span<const Twist> V_WB, double dt_s, double gap_m) noexcept {
+  const Index a = Index(at.body_a);
+  const Index b = Index(at.body_b);
+  SurfacesPassed& known = surfaces_passed_;
+  if (known.frame == frame_ && known.body_a == at.body_a && known.body_b == at.body_b &&
+      same_twist(known.V_a, V_WB[a]) && same_twist(known.V_b, V_WB[b]))
+    return known.passing;
+  known = {at.body_a, at.body_b, frame_, V_WB[a], V_WB[b], Passing::kNot};
+  const BodyPath of_a = path_for(at.body_a, X_WB[a], V_WB[a], dt_s);
+  const BodyPath of_b = path_for(at.body_b, X_WB[b], V_WB[b], dt_s);
+  if (!stay_apart(at.body_a, at.body_b, of_a, of_b)) return known.passing;
+  const MinimaQuery query{
+      .max_distance = tolerance(at.body_a, at.body_b), .depth = 0.0, .cone_inflation = 0.0};
+  if (surface_minima(bodies_[a].part->tree, bodies_[b].part->tree, relative_pose(of_a.to, of_b.to), query,
+                     minima_)
+          .full)
+    return known.passing;
+  const bool turns = !V_WB[a].w.isZero(0.0) || !V_WB[b].w.isZero(0.0);
+  const auto nearest = std::min_element(
+      minima_.begin(), minima_.end(),
+      [](const SurfaceMinimum& p, const SurfaceMinimum& q) { return p.distance < q.distance; });
+  if (nearest == minima_.end() || (turns && nearest->distance > gap_m))
+    known.passing = turns ? Passing::kApart : Passing::kSlides;
+  else if (stays_beside(at, rotated(of_a.to.R, nearest->normal), nearest->distance, V_WB, dt_s))
+    known.passing = Passing::kSlides;
+  return known.passing;
+}
+
+/// The same of a ball and a surface, whose triangle at the contact stands for it.
+Passing ContactFinder::ball_passes(const ContactPatch& at, std::span<const Pose> X_WB,
+                                   std::span<const Twist> V_WB, double dt_s, double gap_m) noexcept {
+  const bool ball_is_a = !cores_[Index(at.body_a)].empty();
+  const Index ball = Index(ball_is_a ? at.body_a : at.body_b);
+  const Index surface = Index(ball_is_a ? at.body_b : at.body_a);
+  const RoundPiece& round = bodies_[ball].rounds[0];
+  if (!V_WB[surface].w.isZero(0.0) || !only_moves_along(bodies_[ball], &round, V_WB[ball]))
+    return Passing::kNot;
+  const Pose& X_WS = X_WB[surface];
+  const SurfaceTree& tree = bodies_[surface].part->tree;
+  const Triangle& corners = tree.triangle(ball_is_a ? at.piece_b : at.piece_a);
+  const PassageOfBall passage{
+      {tree.vertex(int(corners[0])), tree.vertex(int(corners[1])), tree.vertex(int(corners[2]))},
+      X_WS.inverse() * (X_WB[ball] * round.center),
+      rotated_back(X_WS.R, V_WB[ball].v - V_WB[surface].v),
+      round.radius_m};
+  int steps = 0;
+  const bool open = stays_open(passage, dt_s, gap_m, kMostSteps, steps);
+  return !open ? Passing::kNot : V_WB[ball].w.isZero(0.0) ? Passing::kSlides : Passing::kApart;
 }
 
 Passing ContactFinder::passes(int patch, std::span<const Pose> X_WB, std::span<const Twist> V_WB, double dt_s,
                               double gap_m) noexcept {
   const ContactPatch& at = patches_[Index(patch)];
-  if (at.of_surfaces || tests_left_ <= 0) return Passing::kNot;
+  if (tests_left_ <= 0) return Passing::kNot;
   const Index a = Index(at.body_a);
   const Index b = Index(at.body_b);
+  if (at.of_surfaces) {
+    --tests_left_;
+    return at.round ? ball_passes(at, X_WB, V_WB, dt_s, gap_m) : surfaces_pass(at, X_WB, V_WB, dt_s, gap_m);
+  }
   const bool turns = !V_WB[a].w.isZero(0.0) || !V_WB[b].w.isZero(0.0);
   const RoundPiece* const round_a = bodies_[a].round(at.piece_a);
   const RoundPiece* const round_b = bodies_[b].round(at.piece_b);
@@ -191,7 +287,7 @@ Passing ContactFinder::passes(int patch, std::span<const Pose> X_WB, std::span<c
                           V_WB[b].v,
                           pairs_[Index(at.pair)].last.found};
     int steps = 0;
-    const bool open = passage.stays_open(dt_s, gap_m, std::min(tests_left_, kMostSteps), steps);
+    const bool open = stays_open(passage, dt_s, gap_m, std::min(tests_left_, kMostSteps), steps);
     tests_left_ -= steps;
     return !open ? Passing::kNot : turns ? Passing::kApart : Passing::kSlides;
   }

@@ -137,6 +137,21 @@ double ContactFinder::path_free(const SweepAndPrune::Pair& near, int most_tests,
   return free;
 }
 
+/// Whether two surfaces stay apart on their paths, as far as a few tests prove it.
+bool ContactFinder::stay_apart(int a, int b, const BodyPath& of_a, const BodyPath& of_b) const noexcept {
+  constexpr int kMostTests = 512;
+  int tests = 0;
+  bool complete = true;
+  const double free = free_in_stretches(of_a, of_b, [&](const RelativeMotion& motion) {
+    const SurfacePath path =
+        surface_path(bodies_[Index(a)].part->tree, bodies_[Index(b)].part->tree, motion, kMostTests - tests);
+    tests += path.tests;
+    complete &= path.complete;
+    return path.free;
+  });
+  return complete && free == 1.0;
+}
+
 ContactFinder::BodyPath ContactFinder::path_of(int body, const RelativeMotion& motion,
                                                const Pose& to) const noexcept {
   const double arm = radius_[Index(body)] + (motion.X_AB.p - motion.pivot).norm();
