@@ -111,7 +111,7 @@ double number_after(const std::string& text, const std::string& key) {
 /// Its profile has the handle's law, and tactum feel says that it goes by it, with the same coupling where
 /// the driver does not measure the delay anew.
 void expect_profile_in_use(const ProgramRun& run, const std::string& folder, const std::string& device,
-                           const standin::HandleLaw& law, bool delay_is_steady) {
+                           const standin::HandleLaw& law, bool turns, bool delay_is_steady) {
   std::string path;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) path = entry.path().string();
   const std::string profile = testing::content(path);
@@ -121,6 +121,12 @@ void expect_profile_in_use(const ProgramRun& run, const std::string& folder, con
   EXPECT_GT(damping, 0.4 * law.damping_Ns_per_m) << profile;
   EXPECT_LT(damping, 1.1 * law.damping_Ns_per_m) << profile;
   EXPECT_LT(number_after(profile, "delay_s = "), 0.010) << profile;
+  if (turns) {
+    const double turning = number_after(profile, "damping_Nms_per_rad = ");
+    EXPECT_GT(turning, 0.6 * law.damping_Nms_per_rad) << profile;
+    EXPECT_LT(turning, 1.1 * law.damping_Nms_per_rad) << profile;
+    EXPECT_NEAR(number_after(profile, "inertia_kg_m2 = "), law.inertia_kg_m2, 0.1 * law.inertia_kg_m2);
+  }
   const ProgramRun felt = run_tactum("feel gears-involute --duration 0.5 --device " + device);
   EXPECT_TRUE(testing::ended(felt)) << felt.err;
   EXPECT_TRUE(holds(felt.out, "are those of " + path)) << felt.out;
@@ -151,7 +157,7 @@ TEST(TryDevice, OneOfForceDimensionPassesEveryStepAndItsProfileIsUsed) {
     EXPECT_TRUE(holds(run.out, words)) << words << "\n" << run.out;
   const std::string sent = testing::content(folder / "record");
   EXPECT_TRUE(holds(sent, "forces off at the end, 0 rules broken"));
-  expect_profile_in_use(run, folder / "profiles", "force-dimension", {}, true);
+  expect_profile_in_use(run, folder / "profiles", "force-dimension", {}, true, true);
 }
 
 /// A device in a thread of its own, which joins over UDP by the header for devices, again after each goodbye.
@@ -228,7 +234,7 @@ TEST(TryDevice, OneInAnotherProcessPassesEveryStepAndItsProfileIsUsed) {
   for (const char* words : {"network moved", "axes of turning: x is toward you",
                             "a force to the right (+y) moved the handle to the right (+y)"})
     EXPECT_TRUE(holds(run.out, words)) << words << "\n" << run.out;
-  expect_profile_in_use(run, folder / "profiles", device, law, false);
+  expect_profile_in_use(run, folder / "profiles", device, law, false, false);
 }
 
 }  // namespace
