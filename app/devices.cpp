@@ -34,6 +34,7 @@ std::string abilities_of(const DeviceInfo& info) {
   text += fmt::format(", reach {:.3g} m", info.workspace_radius_m);
   if (info.handle.mass_kg > 0.0) text += fmt::format(", handle of {:.3g} kg", info.handle.mass_kg);
   text += info.senses_rotation ? ", senses rotation" : ", senses no rotation";
+  if (!info.rotation_fill.empty()) text += " (" + info.rotation_fill + ")";
   return text + (info.actuates_force && !info.actuates_torque ? ", cannot turn the handle" : "");
 }
 

@@ -85,7 +85,7 @@ void keep_profile(const DeviceInfo& info, const TouchReport& report, const std::
     return say("Passed. This was a rehearsal: no profile is written without --profile FILE.");
   const std::string path = asked.empty() ? profile_path(info) : asked;
   if (path.empty()) fail({"there is no folder for the profile", "no HOME", "--profile FILE", ""});
-  const DeviceProfile profile = profile_of(info, *report.response);
+  const DeviceProfile profile = profile_of(info, *report.response, report.turning);
   if (const Result<void> written = write_profile(path, profile); !written) fail(written.error());
   const DeviceInfo known = with_profile(info, profile);
   say(fmt::format("Passed. {} is written{}. {}", path,

@@ -14,7 +14,10 @@ constexpr const char* kHaplyPlace = "TACTUM_HAPLY_SERVICE";
 
 class HaplyRig final : public DriverRig {
  public:
-  HaplyRig() : place_(kHaplyPlace, service_.place()) { service_.locked()->has_grip = true; }
+  HaplyRig() : place_(kHaplyPlace, service_.place()) {
+    service_.locked()->has_grip = true;
+    service_.locked()->grip_every_s = 0.0;  // a grip that tells its turn in each answer, as the pose is told
+  }
 
   Result<std::unique_ptr<Device>> make_by_name() override { return make_device("haply", {}); }
   Result<std::unique_ptr<Device>> make_unguarded() override {

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
+#include <random>
+#include <thread>
 
 #include "standins/standin_haply.h"
 #include "support/standin_files.h"
@@ -212,6 +215,43 @@ TEST_F(HaplyLoop, AGripThatFallsAsleepLeavesThePartAsItWas) {
   EXPECT_GT(sample.X_DH.R(1, 0), 0.99);
 }
 
+/// A grip that tells its orientation fifty times a second: what is read between is between, in services of
+/// both spellings, and said to be so.
+TEST_F(HaplyLoop, ATurnGoesOnBetweenTheReadingsOfTheGrip) {
+  struct Kind {
+    const char* version;
+    bool takes_vector;
+    double every_s, turning_rad_per_s;
+  };
+  for (const Kind& kind :
+       {Kind{"3.5.2", true, 0.02, 2.0}, Kind{"3.4.0", false, 0.02, -1.5}, Kind{"3.5.2", true, 0.03, 1.0},
+        Kind{"3.4.0", false, 0.015, 3.0}, Kind{"3.6.0", true, 0.02, -0.3}}) {
+    service.locked()->has_grip = true;
+    service.locked()->version = kind.version;
+    service.locked()->takes_vector = kind.takes_vector;
+    service.locked()->takes_values = !kind.takes_vector;
+    service.locked()->grip_every_s = kind.every_s;
+    service.locked()->turning_rad_per_s = kind.turning_rad_per_s;
+    const std::unique_ptr<Device> device = opened();
+    ASSERT_TRUE(device);
+    EXPECT_TRUE(holds(device->info().rotation_fill, "interpolated between readings"));
+    EXPECT_TRUE(pushes(*device)) << kind.version;
+    // Whenever the service's thread and ours had some time: three times as many turns as were read.
+    EXPECT_TRUE(comes_true([&] {
+      const int before = service.locked()->grip_readings;
+      int turns = 0;
+      Mat3 last = Mat3::Zero();
+      for (int n = 0; n < 100; ++n) {
+        if (device->read(now_s += 0.001, sample) && sample.X_DH.R != last) ++turns;
+        last = sample.X_DH.R;
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      }
+      return turns > 3 * (service.locked()->grip_readings - before + 1);
+    })) << kind.version;
+    EXPECT_EQ(sample.V_DH.w.z() > 0.0, kind.turning_rad_per_s > 0.0);
+  }
+}
+
 TEST_F(HaplyLoop, ButtonsHaveTwoNames) {
   service.locked()->has_grip = true;
   service.locked()->counts_buttons = true;
@@ -272,6 +312,60 @@ TEST(HaplyPlace, IsReadFromTheNameOrTheEnvironment) {
     const Result<HaplyOptions> read = haply_options(argument);
     ASSERT_FALSE(read) << argument;
     EXPECT_TRUE(holds(read.error().message(), "haply:HOST:PORT/ID")) << read.error().message();
+  }
+}
+
+/// In closed form: a steady turn read in every n-th sample is shown n - 1 samples late, and otherwise as it
+/// was.
+TEST(TurnFill, ASteadyTurnIsShownAsItWas) {
+  for (const int every : {1, 2, 5, 20, 33}) {
+    const Vec3 w = 1e-3 * Vec3(0.5 * every, -1.0, 2.0);  // in a sample [rad]
+    const auto turned = [&w](int n) {
+      return Mat3(Eigen::AngleAxisd(w.norm() * n, w.normalized()).toRotationMatrix());
+    };
+    TurnFill fill;
+    for (int n = 0; n < 400; ++n) {
+      const Mat3 shown = fill.show(turned(n - n % every));
+      if (n < 3 * every) continue;
+      EXPECT_NEAR((shown - turned(n - every + 1)).norm(), 0.0, 1e-12) << every << " " << n;
+    }
+  }
+}
+
+TEST(TurnFill, AReadingInEachSampleIsShownToTheBitAlsoAfterARest) {
+  TurnFill fill;
+  const auto turned = [](double angle) { return Mat3(Eigen::AngleAxisd(angle, Vec3::UnitZ())); };
+  for (int n = 0; n < 300; ++n) {
+    const Mat3 reading = turned(n < 200 ? 0.1 : 0.1 + 0.001 * (n - 200));
+    EXPECT_EQ(fill.show(reading), reading) << n;
+  }
+}
+
+/// Readings that come early or late, or after a sleep: nothing beyond them, and no step of one's size.
+TEST(TurnFill, ReadingsThatComeUnevenlyMakeNoStep) {
+  std::mt19937 random(34);
+  for (const double step_rad : {0.01, 0.05, 0.2, 0.4, 1.0}) {
+    const auto turned = [](double angle) { return Mat3(Eigen::AngleAxisd(angle, Vec3::UnitX())); };
+    TurnFill fill;
+    double reading = 0.0, shown = 0.0;
+    for (int read = 0, n = 0; read < 60; ++read) {
+      const int gap = read == 30 ? 900 : std::uniform_int_distribution<int>(15, 25)(random);
+      for (int k = 0; k < gap; ++k, ++n) {
+        const Mat3 R = fill.show(turned(reading));
+        const double now = std::atan2(R(2, 1), R(1, 1));
+        double moved = now - shown;
+        moved -= 2.0 * M_PI * std::round(moved / (2.0 * M_PI));
+        EXPECT_GE(moved, -1e-12);
+        if (read > 2) {
+          EXPECT_LE(moved, 1.7 * step_rad / 15.0) << read << " " << k;
+        }
+        shown = now;
+      }
+      double behind = reading - shown;
+      behind -= 2.0 * M_PI * std::round(behind / (2.0 * M_PI));
+      EXPECT_GE(behind, -1e-12) << "beyond the reading";
+      reading += step_rad;
+    }
   }
 }
 

@@ -99,6 +99,27 @@ TEST(DeviceProfile, TheCouplingIsThatOfTheMeasuredDelayAndDamping) {
   EXPECT_NE(profile_sentence(info).find("4.0 ms"), std::string::npos) << profile_sentence(info);
 }
 
+TEST(DeviceProfile, OfADeviceThatTurnsItsHandleTheDampingOfTurningCountsToo) {
+  const Profiles profiles;
+  DeviceInfo info = real_device();
+  info.actuates_torque = true;
+  info.max_torque_Nm = 0.2;
+  info.handle.damping_Nms_per_rad = 0.5;
+  TurnResponse turning;
+  turning.damping_Nms_per_rad = 0.004;
+  turning.damping_error_Nms_per_rad = 0.001;
+  turning.friction_Nm = 0.002;
+  turning.inertia_kg_m2 = 3e-4;
+  ASSERT_TRUE(write_profile(profile_path(info), profile_of(info, measured(), turning)));
+  const Result<std::unique_ptr<Device>> device = profiled(std::make_unique<Described>(info));
+  ASSERT_TRUE(device) << device.error().message();
+  EXPECT_NEAR((*device)->info().handle.damping_Nms_per_rad, 0.003, 1e-9) << "less its error";
+  EXPECT_NEAR((*device)->info().handle.inertia_kg_m2, 3e-4, 1e-9);
+  EXPECT_NEAR(coupling_gains((*device)->info(), 1000.0).rotation.alone, 0.003 / 0.0045, 1e-5);
+  ASSERT_TRUE(write_profile(profile_path(info), profile_of(info, measured())));  // one from before
+  EXPECT_EQ((*profiled(std::make_unique<Described>(info)))->info().handle.damping_Nms_per_rad, 0.5);
+}
+
 TEST(DeviceProfile, WithoutOneAndWithoutHardwareADeviceIsAsItIs) {
   const Profiles profiles;
   DeviceInfo info = real_device();

@@ -119,7 +119,7 @@ TEST(FirstTouch, ADeviceThatIsWiredRightPassesEveryStep) {
     Trial trial(preset(name));
     const TouchReport report = trial.run();
     EXPECT_TRUE(report.passed) << name << ": " << report.ended_by << "\n" << trial.person.reported;
-    EXPECT_EQ(trial.person.asked, preset(name).max_torque_Nm > 0.0 ? 16 : 13) << trial.person.reported;
+    EXPECT_EQ(trial.person.asked, preset(name).max_torque_Nm > 0.0 ? 17 : 13) << trial.person.reported;
     EXPECT_GT(report.largest_N, 0.8) << "the last floor is the stiff one";
     trial.expect_zero_and_closed();
   }
@@ -141,6 +141,27 @@ TEST(FirstTouch, DelayAndDampingAreThoseOfTheDevice) {
             << name << " " << delay_s;
         EXPECT_LT(report.response->damping_error_Ns_per_m, 0.11 + 0.18 * model.damping_Ns_per_m) << name;
         EXPECT_NEAR(report.response->mass_kg, model.mass_kg, 0.05 * model.mass_kg) << name;
+      }
+    }
+  }
+}
+
+TEST(FirstTouch, TheDampingOfTurningIsThatOfTheDevice) {
+  for (const char* name : {"premium-1.5-6dof", "sigma.7", "virtuose-6d"}) {
+    for (const double delay_s : {0.0, 0.002, 0.0075}) {
+      SimulatedDeviceModel model = preset(name);
+      model.command_delay_s = delay_s;
+      for (const double more : {0.0, 0.001, 0.004}) {
+        model.damping_Nms_per_rad = preset(name).damping_Nms_per_rad + more;
+        Trial trial(model);
+        const TouchReport report = trial.run();
+        ASSERT_TRUE(report.turning) << name << " " << delay_s << " " << trial.person.reported;
+        EXPECT_NEAR(report.turning->damping_Nms_per_rad, model.damping_Nms_per_rad,
+                    report.turning->damping_error_Nms_per_rad)
+            << name << " " << delay_s;
+        EXPECT_LT(report.turning->damping_error_Nms_per_rad, 1e-4 + 0.18 * model.damping_Nms_per_rad) << name;
+        EXPECT_NEAR(report.turning->inertia_kg_m2, model.inertia_kg_m2, 0.05 * model.inertia_kg_m2) << name;
+        EXPECT_NEAR(report.turning->friction_Nm, model.friction_Nm, 0.5 * model.friction_Nm + 1e-4) << name;
       }
     }
   }
@@ -189,7 +210,7 @@ TEST(FirstTouch, AHandThatHoldsOnIsNotMeasuredAsTheHandle) {
 }
 
 TEST(FirstTouch, AnUnpluggedDeviceIsOfferedZeroInEveryStep) {
-  for (int question = 1; question <= 16; ++question) {
+  for (int question = 1; question <= 17; ++question) {
     Trial trial(preset("sigma.7"));
     trial.person.at_question = question;
     trial.person.after_frames = question > 7 ? 650 : 30;  // in the middle of the step
@@ -202,7 +223,7 @@ TEST(FirstTouch, AnUnpluggedDeviceIsOfferedZeroInEveryStep) {
 }
 
 TEST(FirstTouch, StoppingLeadsToZeroInEveryStep) {
-  for (int question = 1; question <= 16; ++question) {
+  for (int question = 1; question <= 17; ++question) {
     Trial trial(preset("sigma.7"));
     trial.person.stops_at = question;
     trial.person.after_frames = question > 7 ? 650 : 30;

@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "standins/moved_handle.h"
+
 namespace tactum::standin {
 namespace {
 
@@ -76,6 +78,34 @@ void clamp_length(double* v, double limit) {
   for (int i = 0; i < 3; ++i) v[i] *= limit / length;
 }
 
+/// With the mutex held: what the motors exert now.
+std::array<double, 7> exerted(DhdDevice& device) {
+  look_at_watchdog(device);
+  if (!device.force_on || device.commands.empty()) return {};
+  std::array<double, 7> wrench = device.commands.back();
+  clamp_length(wrench.data(), device.max_force);
+  clamp_length(wrench.data() + 3, device.max_torque);
+  return wrench;
+}
+
+/// TACTUM_STANDIN_HAND names a file by which a test in another process leads the hand at the handle; the
+/// handle then moves under the motors, too. With the mutex held.
+void move_handle(DhdDevice& device) {
+  const char* path = std::getenv("TACTUM_STANDIN_HAND");
+  if (path == nullptr) return;
+  static AskedHand hand(path);
+  static MovedHandle handle;
+  if (!hand.is_mapped()) return;
+  handle.advance(exerted(device).data());
+  hand.pass_on(handle);
+  for (std::size_t i = 0; i < 3; ++i) {
+    device.now.p[i] = handle.x[i];
+    device.now.v[i] = handle.u[i];
+    device.now.w[i] = handle.u[i + 3];
+  }
+  device.now.frame = handle.frame();
+}
+
 }  // namespace
 
 DhdDevice& dhd_device() {
@@ -86,12 +116,7 @@ DhdDevice& dhd_device() {
 std::array<double, 7> dhd_motors() {
   DhdDevice& device = dhd_device();
   const std::lock_guard<std::mutex> lock(device.mutex);
-  look_at_watchdog(device);
-  if (!device.force_on || device.commands.empty()) return {};
-  std::array<double, 7> wrench = device.commands.back();
-  clamp_length(wrench.data(), device.max_force);
-  clamp_length(wrench.data() + 3, device.max_torque);
-  return wrench;
+  return exerted(device);
 }
 
 }  // namespace tactum::standin
@@ -205,6 +230,7 @@ int dhdGetPositionAndOrientationFrame(double* x, double* y, double* z, double fr
   if (!answers(device.device, id)) return -1;
   if (device->reads < device->script.size()) device->now = device->script[device->reads];
   if (std::getenv("TACTUM_STANDIN_SWEEP") != nullptr) device->now = swept();
+  move_handle(device.device);
   ++device->reads;
   *x = device->now.p[0];
   *y = device->now.p[1];
@@ -263,6 +289,7 @@ int dhdSetForceAndTorqueAndGripperForce(double fx, double fy, double fz, double 
       device->broken_rules.emplace_back("a wrench that is not finite");
       return fail(kErrorInvalid);
     }
+  move_handle(device.device);
   look_at_watchdog(device.device);
   device->commands.push_back(wrench);
   last_command = Clock::now();

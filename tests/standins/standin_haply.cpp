@@ -7,6 +7,7 @@
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
 #include <chrono>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 namespace tactum::standin {
@@ -166,9 +167,21 @@ std::string HaplyService::answer_to(const std::string& message) {
                     force[spelling].value("z", 0.0)});
     }
   }
+  read_grip();
   if (world.silent) return "";
   if (!world.nonsense.empty()) return world.nonsense;
   return state_text(session.contains("force_render_full_state"));
+}
+
+void HaplyService::read_grip() {
+  const double now_s = steady_s();
+  if (now_s - read_s_ < world_.grip_every_s) return;
+  read_s_ = now_s;
+  const double angle = world_.turning_rad_per_s * now_s;
+  read_turn_ = world_.turning_rad_per_s == 0.0
+                   ? world_.turn_wxyz
+                   : std::array<double, 4>{std::cos(0.5 * angle), 0, 0, std::sin(0.5 * angle)};
+  ++world_.grip_readings;
 }
 
 /// The filters, in their order.
@@ -222,7 +235,7 @@ std::string HaplyService::state_text(bool with_config) const {
     constexpr const char* kNames[2][3] = {{"a", "b", "c"}, {"button_0", "button_1", "button_2"}};
     json buttons;
     for (std::size_t i = 0; i < 3; ++i) buttons[kNames[world_.counts_buttons ? 1 : 0][i]] = world_.buttons[i];
-    const auto& [w, x, y, z] = world_.turn_wxyz;
+    const auto& [w, x, y, z] = read_turn_;
     all["wireless_verse_grip"].push_back(
         {{"device_id", kGrip},
          {"state",

@@ -7,6 +7,7 @@
 ///   on its way to the motors: the damper (half, while the force reverses often), the gate (its gain, at the
 ///   same time), the damping, the scale; `current_cursor_force` is what is left
 ///   the settings of a session end with it
+///   the grip tells its orientation fifty times a second, and the same until the next time
 ///
 /// It serves one connection at a time.
 
@@ -39,7 +40,10 @@ class HaplyService {
     bool connected = true, calibrated = true, ready = true, powered = true;
     Triple position{}, velocity{};
     bool has_grip = false;
-    std::array<double, 4> turn_wxyz{1, 0, 0, 0};
+    std::array<double, 4> turn_wxyz{1, 0, 0, 0};  // of the grip, which tells it every grip_every_s
+    double turning_rad_per_s = 0.0;               // it turns by itself, about z
+    double grip_every_s = 0.02;
+    int grip_readings = 0;  // that it has told
     std::array<bool, 3> buttons{};
     bool counts_buttons = false;  // names them button_0 and so on
     std::string nonsense{};       // answers this instead
@@ -84,6 +88,7 @@ class HaplyService {
   std::string state_text(bool with_config) const;
   void take_force(const Triple& F);
   bool wait_to_answer();
+  void read_grip();
 
   World world_;
   std::mutex mutex_;
@@ -91,6 +96,8 @@ class HaplyService {
   Triple motors_{};
   std::vector<Triple> lately_;  // for the damper
   double commanded_s_ = -1.0;
+  std::array<double, 4> read_turn_{1, 0, 0, 0};
+  double read_s_ = -1.0;
   int port_ = 0;
   bool by_hand_ = false, waits_ = false, may_answer_ = false;
   std::atomic<bool> session_{false}, ends_{false};

@@ -74,8 +74,10 @@ struct DeviceInfo {
   double max_stiffness_N_per_m = 0.0;     ///< stiffest wall that its maker or users find stable, 1 kHz [N/m]
   double max_stiffness_Nm_per_rad = 0.0;  ///< the same for rotation [N m/rad]
   double workspace_radius_m = 0.0;        ///< largest sphere about the origin within its workspace [m]
-  double max_still_s = 0.0;  ///< no hand keeps its reading the same to the bit for longer; 0: unknown [s]
-  double rate_Hz = 1000.0;   ///< rate it wants to be served at [Hz]
+  double max_still_s = 0.0;     ///< no hand keeps its reading the same to the bit for longer; 0: unknown [s]
+  double rate_Hz = 1000.0;      ///< rate it wants to be served at [Hz]
+  std::string rotation_fill{};  ///< how orientations between the readings of a slower sensor are made; empty:
+                                ///< each sample has one that was read
   HandleDynamics handle{};
 };
 

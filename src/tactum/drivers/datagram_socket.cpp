@@ -16,25 +16,30 @@ bool same_sender(const sockaddr_in& a, const sockaddr_in& b) noexcept {
 
 }  // namespace
 
-Result<void> DatagramSocket::listen(const std::string& address, int port) {
-  close();
+Result<void> listen_at(int socket, const std::string& address, int port, int backlog,
+                       const std::string& what) {
   const std::string place = address + ":" + std::to_string(port);
+  if (socket < 0) return Error{"cannot make a socket", std::strerror(errno), "", place};
   sockaddr_in ours{};
   ours.sin_family = AF_INET;
   ours.sin_port = htons(static_cast<std::uint16_t>(port));
   if (inet_pton(AF_INET, address.c_str(), &ours.sin_addr) != 1)
     return Error{"this is no address", "'" + address + "'", "four numbers, such as 127.0.0.1", place};
+  if (::bind(socket, reinterpret_cast<const sockaddr*>(&ours), sizeof ours) == 0 &&
+      (backlog == 0 || ::listen(socket, backlog) == 0))
+    return {};
+  return Error{what, std::strerror(errno),
+               errno == EADDRINUSE ? "a port that no other program has: network:PORT"
+                                   : "an address of this machine: network:ADDRESS:PORT",
+               place};
+}
+
+Result<void> DatagramSocket::listen(const std::string& address, int port) {
+  close();
   socket_ = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  if (socket_ < 0) return Error{"cannot make a socket", std::strerror(errno), "", place};
-  if (::bind(socket_, reinterpret_cast<const sockaddr*>(&ours), sizeof ours) != 0) {
-    const int refused = errno;
-    close();
-    return Error{"cannot listen for a device", std::strerror(refused),
-                 refused == EADDRINUSE ? "a port that no other program has: network:PORT"
-                                       : "an address of this machine: network:ADDRESS:PORT",
-                 place};
-  }
-  return {};
+  Result<void> listens = listen_at(socket_, address, port, 0, "cannot listen for a device");
+  if (!listens) close();
+  return listens;
 }
 
 void DatagramSocket::close() noexcept {

@@ -1,5 +1,6 @@
 #pragma once
-/// A UDP socket that listens at one address and answers one peer.
+/// A UDP socket that listens at one address and answers one peer; and how a socket, of UDP or TCP, comes to
+/// listen at an address.
 
 #include <netinet/in.h>
 
@@ -9,6 +10,12 @@
 #include "tactum/base/result.h"
 
 namespace tactum::inline v0_1 {
+
+/// Binds a socket to an IPv4 address of this machine and a port, and, where `backlog` connections may wait,
+/// listens there. The error begins with `what`, and says when another program has the port; a socket that
+/// could not be made, -1, is an error with errno's reason.
+Result<void> listen_at(int socket, const std::string& address, int port, int backlog,
+                       const std::string& what);
 
 class DatagramSocket {
  public:

@@ -17,6 +17,7 @@ constexpr int kHaplyConnect_ms = 1000;  // to reach the service, and for its fir
 constexpr int kHaplyAnswer_ms = 500;    // for the answer to a message; longer, and it counts as gone
 constexpr int kSettingsAsked = 100;     // times that the settings are read back, until they are as wished
 constexpr int kBetweenAsking_ms = 10;
+constexpr const char* kTurnFill = "interpolated between readings of the grip, one reading late";
 
 /// The service's axes in D, and back.
 Vec3 haply_in_D(const Vec3& v) noexcept { return {-v.y(), v.x(), v.z()}; }
@@ -150,6 +151,7 @@ void HaplyDevice::report_abilities() {
   info_.serial = device_.id;
   info_.is_hardware = true;
   info_.senses_rotation = !device_.grip.empty();
+  if (info_.senses_rotation) info_.rotation_fill = kTurnFill;
   info_.actuates_force = true;
   info_.max_force_N = kMostForce_N;
   info_.max_stiffness_N_per_m = kStiffness_N_per_m;
@@ -187,6 +189,7 @@ Result<void> HaplyDevice::start() {
   if (Result<void> configured = configure(); !configured) return configured;
   exchange_.start(CommandGate(info_), options_.stale_after_s);
   turn_rate_.start();
+  turn_fill_.start();
   R_DH_ = Mat3::Identity();
   sent_before_ = Vec3::Zero();
   other_ticks_ = 0;
@@ -262,8 +265,11 @@ void HaplyDevice::put_into(DeviceSample& sample, const HaplyDeviceState& state) 
   grip_reports_ = turned || device_.grip.empty();
   if (turned) R_DH_ = turn.normalized().toRotationMatrix();
   sample.X_DH = {R_DH_, haply_in_D(state.position)};
-  sample.V_DH = {haply_in_D(state.velocity),
-                 device_.grip.empty() ? Vec3(Vec3::Zero()) : turn_rate_.add(R_DH_, haply_clock_s())};
+  sample.V_DH = {haply_in_D(state.velocity), Vec3::Zero()};
+  if (!device_.grip.empty()) {
+    sample.X_DH.R = turn_fill_.show(R_DH_);
+    sample.V_DH.w = turn_rate_.add(sample.X_DH.R, haply_clock_s());
+  }
   sample.has_velocity = true;
   sample.buttons = state.buttons;
   sample.motors_on = state.calibrated && state.ready && state.powered;

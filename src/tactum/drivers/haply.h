@@ -12,7 +12,8 @@
 /// F_D_delivered, and trouble() tells when that was another force than the one commanded.
 ///
 /// Its axes, x right, y forward, z up, become (x, y, z)_D = (-y, x, z). It exerts no torque. Without a grip
-/// the handle does not turn. With one, its speed of turning is estimated here (turn_rate.h).
+/// the handle does not turn. With one, which tells an orientation about fifty times a second, what lies
+/// between its readings and the speed of turning are made here (turn_rate.h).
 
 #include <atomic>
 #include <memory>
@@ -91,6 +92,7 @@ class HaplyDevice final : public Device {
   std::string answer_;
   HaplyDeviceState state_;
   TurnRate turn_rate_;
+  TurnFill turn_fill_;
   Mat3 R_DH_ = Mat3::Identity();  // what the grip told last
   Vec3 sent_before_ = Vec3::Zero();
   int other_ticks_ = 0;

@@ -1,6 +1,5 @@
 #include "tactum/drivers/web_socket_link.h"
 
-#include <arpa/inet.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
@@ -12,6 +11,7 @@
 #include <chrono>
 #include <cstring>
 
+#include "tactum/drivers/datagram_socket.h"
 #include "tactum/drivers/web_socket_protocol.h"
 
 namespace tactum::inline v0_1 {
@@ -40,26 +40,16 @@ bool is_own_origin(const std::string& origin, const std::string& our_address) {
 }
 
 Result<void> WebSocketLink::listen(const std::string& address, int port) {
+  constexpr int kMostWaiting = 4;  // clients
   close();
-  const std::string place = address + ":" + std::to_string(port);
-  sockaddr_in ours{};
-  ours.sin_family = AF_INET;
-  ours.sin_port = htons(static_cast<std::uint16_t>(port));
-  if (inet_pton(AF_INET, address.c_str(), &ours.sin_addr) != 1)
-    return Error{"this is no address", "'" + address + "'", "four numbers, such as 127.0.0.1", place};
   address_ = address;
   listener_ = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
   const int on = 1;
   if (listener_ >= 0) ::setsockopt(listener_, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
-  if (listener_ >= 0 && ::bind(listener_, reinterpret_cast<const sockaddr*>(&ours), sizeof ours) == 0 &&
-      ::listen(listener_, 4) == 0)
-    return {};
-  const int refused = errno;
-  close();
-  return Error{"cannot listen for a device over WebSocket", std::strerror(refused),
-               refused == EADDRINUSE ? "a port that no other program has: network:PORT"
-                                     : "an address of this machine: network:ADDRESS:PORT",
-               place};
+  Result<void> listens =
+      listen_at(listener_, address, port, kMostWaiting, "cannot listen for a device over WebSocket");
+  if (!listens) close();
+  return listens;
 }
 
 void WebSocketLink::stop_listening() noexcept {

@@ -21,6 +21,9 @@ namespace fs = std::filesystem;
 constexpr double kMostDamping_Ns_per_m = 100.0;  // no handle has more: it could hardly be moved
 constexpr double kMostFriction_N = 100.0;
 constexpr double kMostMass_kg = 100.0;
+constexpr double kMostDamping_Nms_per_rad = 10.0;
+constexpr double kMostFriction_Nm = 10.0;
+constexpr double kMostInertia_kg_m2 = 10.0;
 
 fs::path profile_folder() {
   const auto variable = [](const char* name) {
@@ -86,7 +89,8 @@ std::string profile_path(const DeviceInfo& info) {
   return (folder / (as_file_name(info.name + serial) + ".toml")).string();
 }
 
-DeviceProfile profile_of(const DeviceInfo& info, const HandleResponse& response) {
+DeviceProfile profile_of(const DeviceInfo& info, const HandleResponse& response,
+                         const std::optional<TurnResponse>& turning) {
   const std::time_t now = std::time(nullptr);
   std::tm utc{};
   gmtime_r(&now, &utc);
@@ -98,6 +102,13 @@ DeviceProfile profile_of(const DeviceInfo& info, const HandleResponse& response)
   profile.damping_Ns_per_m = std::max(0.0, response.damping_Ns_per_m - response.damping_error_Ns_per_m);
   profile.friction_N = std::max(0.0, response.friction_N);
   profile.mass_kg = response.mass_kg;
+  profile.turning = turning;
+  if (turning) {
+    profile.turning->damping_Nms_per_rad =
+        std::max(0.0, turning->damping_Nms_per_rad - turning->damping_error_Nms_per_rad);
+    profile.turning->friction_Nm = std::max(0.0, turning->friction_Nm);
+    profile.turning->damping_error_Nms_per_rad = 0.0;
+  }
   return profile;
 }
 
@@ -115,6 +126,13 @@ Result<DeviceProfile> read_profile(const std::string& path) {
     profile.damping_Ns_per_m = number_in(table, "damping_Ns_per_m", kMostDamping_Ns_per_m, path, error);
     profile.friction_N = number_in(table, "friction_N", kMostFriction_N, path, error);
     profile.mass_kg = number_in(table, "mass_kg", kMostMass_kg, path, error);
+    if (table.contains("damping_Nms_per_rad")) {
+      TurnResponse& turning = profile.turning.emplace();
+      turning.damping_Nms_per_rad =
+          number_in(table, "damping_Nms_per_rad", kMostDamping_Nms_per_rad, path, error);
+      turning.friction_Nm = number_in(table, "friction_Nm", kMostFriction_Nm, path, error);
+      turning.inertia_kg_m2 = number_in(table, "inertia_kg_m2", kMostInertia_kg_m2, path, error);
+    }
   } catch (const toml::parse_error& parsing) {
     return Error{"the profile is not TOML", std::string(parsing.description()),
                  "what tactum devices --try writes", path};
@@ -133,6 +151,10 @@ Result<void> write_profile(const std::string& path, const DeviceProfile& profile
                       quoted(profile.serial), quoted(profile.measured))
        << fmt::format("delay_s = {:.6f}\ndamping_Ns_per_m = {:.6f}\nfriction_N = {:.6f}\nmass_kg = {:.6f}\n",
                       profile.delay_s, profile.damping_Ns_per_m, profile.friction_N, profile.mass_kg);
+  if (profile.turning)
+    file << fmt::format("damping_Nms_per_rad = {:.9f}\nfriction_Nm = {:.9f}\ninertia_kg_m2 = {:.9f}\n",
+                        profile.turning->damping_Nms_per_rad, profile.turning->friction_Nm,
+                        profile.turning->inertia_kg_m2);
   file.close();
   if (!file) return Error{"the profile cannot be written", "", "a folder that may be written", path};
   return {};
@@ -143,6 +165,10 @@ DeviceInfo with_profile(const DeviceInfo& info, const DeviceProfile& profile) {
   known.handle.delay_s = std::max(info.handle.delay_s, profile.delay_s);
   known.handle.damping_Ns_per_m = profile.damping_Ns_per_m;
   if (profile.mass_kg > 0.0) known.handle.mass_kg = profile.mass_kg;
+  if (profile.turning) {
+    known.handle.damping_Nms_per_rad = profile.turning->damping_Nms_per_rad;
+    if (profile.turning->inertia_kg_m2 > 0.0) known.handle.inertia_kg_m2 = profile.turning->inertia_kg_m2;
+  }
   return known;
 }
 

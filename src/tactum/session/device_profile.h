@@ -13,8 +13,12 @@
 ///   damping_Ns_per_m = 0.45           the measured one less its error: what can be relied on
 ///   friction_N = 0.1                  for people; not used
 ///   mass_kg = 0.31
+///   damping_Nms_per_rad = 0.0004      the same of turning, where the device turns its handle; absent, the
+///   friction_Nm = 0.001               driver's own damping and inertia hold
+///   inertia_kg_m2 = 0.00012
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "tactum/devices/device.h"
@@ -23,20 +27,22 @@
 namespace tactum::inline v0_1 {
 
 struct DeviceProfile {
-  std::string device;             ///< DeviceInfo::name
-  std::string serial;             ///< DeviceInfo::serial
-  std::string measured;           ///< date and time, UTC
-  double delay_s = 0.0;           ///< [s]
-  double damping_Ns_per_m = 0.0;  ///< [N s/m]
-  double friction_N = 0.0;        ///< [N]
-  double mass_kg = 0.0;           ///< [kg]
+  std::string device;                     ///< DeviceInfo::name
+  std::string serial;                     ///< DeviceInfo::serial
+  std::string measured;                   ///< date and time, UTC
+  double delay_s = 0.0;                   ///< [s]
+  double damping_Ns_per_m = 0.0;          ///< [N s/m]
+  double friction_N = 0.0;                ///< [N]
+  double mass_kg = 0.0;                   ///< [kg]
+  std::optional<TurnResponse> turning{};  ///< its damping is the measured one less its error
 };
 
 /// Where the profile of this device is, or would be; empty when there is no home for it.
 std::string profile_path(const DeviceInfo& info);
 
-/// The profile of a measured answer, with the present time.
-DeviceProfile profile_of(const DeviceInfo& info, const HandleResponse& response);
+/// The profile of measured answers, with the present time.
+DeviceProfile profile_of(const DeviceInfo& info, const HandleResponse& response,
+                         const std::optional<TurnResponse>& turning = {});
 
 /// Errors name the file, the key, and what was expected.
 Result<DeviceProfile> read_profile(const std::string& path);

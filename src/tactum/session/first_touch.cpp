@@ -31,6 +31,7 @@ constexpr double kLongestPulse_s = 0.5;
 constexpr double kFarthest_m = 0.035;  // an answer is cut where the handle goes farther than this
 constexpr double kFarthestOfWorkspace = 0.4;
 constexpr double kBeyondFriction_N = 0.5;
+constexpr double kOfMovingTorque = 3.0;
 constexpr double kCoast_s = 0.3;
 constexpr double kAfterFault_s = 0.6;   // more than the server waits for a device that is lost
 constexpr double kShareOfLimit = 0.25;  // small forces are at most this share of the device's
@@ -73,7 +74,8 @@ class Guide {
     for (int axis = 0; info_.actuates_torque && axis < 3; ++axis)
       if (!tried(fmt::format("torque about {}", "xyz"[axis]), [=, this] { return push(axis, true); }))
         return false;
-    return tried("answer", [this] { return answer(); }) &&
+    return tried("answer", [this] { return answer(false); }) &&
+           (!info_.actuates_torque || tried("answer of turning", [this] { return answer(true); })) &&
            tried("stated limits", [this] { return wall(false); });
   }
 
@@ -165,14 +167,22 @@ class Guide {
   Outcome follow(int axis, bool turns);
   Outcome wall(bool soft);
   Outcome push(int axis, bool turns);
-  Outcome answer();
+  Outcome answer(bool turns);
+  Outcome measured(bool turns, const std::vector<ResponseSample>& samples);
   std::string pushed_text(const Vec3& moved, int axis, bool turns) const;
 
-  SafetyLimits small_limits() const {
+  SafetyLimits small_limits() const { return small_limits(small_torque_Nm_); }
+  SafetyLimits small_limits(double max_torque_Nm) const {
     SafetySettings small;
     small.max_force_N = small_force_N_;
-    small.max_torque_Nm = small_torque_Nm_;
+    small.max_torque_Nm = max_torque_Nm;
     return tightened(limits_, small);
+  }
+  /// A wrist with much friction needs more than the small torque, or friction hides its damping.
+  double answer_torque_Nm() const {
+    const double beyond_Nm = std::max(moving_torque_Nm_ + kBeyondFriction_N * kResponseLever_m,
+                                      kOfMovingTorque * moving_torque_Nm_);
+    return std::min(beyond_Nm, kShareOfLimit * info_.max_torque_Nm);
   }
 
   Device& device_;
@@ -186,8 +196,9 @@ class Guide {
   std::string name_;  // of the step
   std::array<ReadAxis, 3> read_as_;
   bool go_on_ = false;
-  double largest_N_ = 0.0;       // of the last step
-  double moving_force_N_ = 0.0;  // that moved the free handle along x
+  double largest_N_ = 0.0;         // of the last step
+  double moving_force_N_ = 0.0;    // that moved the free handle along x
+  double moving_torque_Nm_ = 0.0;  // and turned it about x
 };
 
 /// Where the handle has gone since the first valid sample of a step.
@@ -271,6 +282,9 @@ Outcome Guide::wall(bool soft) {
     measured.handle.damping_Ns_per_m =
         std::max(0.0, report_.response->damping_Ns_per_m - report_.response->damping_error_Ns_per_m);
   }
+  if (report_.turning)
+    measured.handle.damping_Nms_per_rad =
+        std::max(0.0, report_.turning->damping_Nms_per_rad - report_.turning->damping_error_Nms_per_rad);
   const double stiffest = coupling_gains(measured, settings_.rate_Hz).coupling.stiffness_N_per_m;
   const double stiffness = soft ? std::min(kSoftWall_N_per_m, 0.5 * stiffest) : stiffest;
   const SafetyLimits limits = soft ? small_limits() : limits_;
@@ -344,7 +358,7 @@ Outcome Guide::push(int axis, bool turns) {
   const std::optional<ReadAxis> clear = clear_axis(moved);
   const std::string text = pushed_text(moved, axis, turns);
   if (!clear || clear->axis != axis || clear->sign < 0.0) return bad(text);
-  if (axis == 0 && !turns) moving_force_N_ = wanted;
+  if (axis == 0) (turns ? moving_torque_Nm_ : moving_force_N_) = wanted;
   return good(text + fmt::format(", at {:.2g} {}", wanted, turns ? "N m" : "N"));
 }
 
@@ -370,41 +384,62 @@ class Pulses {
   double length_s_ = 0.0;  // of the first
 };
 
-Outcome Guide::answer() {
-  const double force_N = std::min(small_force_N_, moving_force_N_ + kBeyondFriction_N);
-  const double farthest_m = std::min(kFarthest_m, kFarthestOfWorkspace * info_.workspace_radius_m);
-  if (auto over =
-          ask(TouchTask::kRelease, 0,
-              fmt::format("Put the handle in the middle and let go. It is pushed to and fro by {:.2g} N "
-                          "for a second, over a few centimetres at most; its damping and the delay are "
-                          "measured.",
-                          force_N)))
+/// A turn is pushed and measured as the motion of a point at the lever.
+Outcome Guide::answer(bool turns) {
+  const double lever_m = turns ? kResponseLever_m : 1.0;
+  const double force_N =
+      turns ? answer_torque_Nm() / lever_m : std::min(small_force_N_, moving_force_N_ + kBeyondFriction_N);
+  const double farthest_m =
+      turns ? kFarthest_m : std::min(kFarthest_m, kFarthestOfWorkspace * info_.workspace_radius_m);
+  if (auto over = ask(TouchTask::kRelease, 0,
+                      turns ? fmt::format("Put the handle in the middle and let go. It is turned to and fro "
+                                          "by {:.2g} N m for a second, by a quarter of a turn at most; the "
+                                          "damping of turning is measured.",
+                                          force_N * lever_m)
+                            : fmt::format("Put the handle in the middle and let go. It is pushed to and fro "
+                                          "by {:.2g} N for a second, over a few centimetres at most; its "
+                                          "damping and the delay are measured.",
+                                          force_N)))
     return *over;
   Displacement since;
   Pulses pulses;
   std::vector<ResponseSample> samples;
   bool far = false;
   if (auto over = serve(
-          small_limits(), kSettle_s + 9.0 * kLongestPulse_s,
+          small_limits(std::max(small_torque_Nm_, answer_torque_Nm())), kSettle_s + 9.0 * kLongestPulse_s,
           [&](const TouchFrame& now) -> std::optional<Wrench> {
             // The last frame's force is known now that safety has passed it.
-            if (!samples.empty()) samples.back().force_N = now.sent.f.x();
-            const double x_m = since.of(now.sample, false).x();
+            if (!samples.empty()) samples.back().force_N = turns ? now.sent.t.x() / lever_m : now.sent.f.x();
+            const double x_m = lever_m * since.of(now.sample, turns).x();
             far = far || std::abs(x_m) > farthest_m;
             if (far) return std::nullopt;
             if (now.since_s < kSettle_s) return Wrench{};
             samples.push_back({now.now_s, x_m, 0.0});
             const std::optional<double> sign = pulses.sign(now.since_s - kSettle_s, x_m);
             if (!sign) return std::nullopt;
-            return Wrench{Vec3(*sign * force_N, 0.0, 0.0), Vec3::Zero()};
+            const Vec3 push(*sign * force_N * lever_m, 0.0, 0.0);
+            return turns ? Wrench{Vec3::Zero(), push} : Wrench{push, Vec3::Zero()};
           },
           false))
     return *over;
-  if (far)
-    return bad(
-        fmt::format("the handle went farther than {:.0f} mm: something carries it along", 1e3 * farthest_m));
-  Result<HandleResponse> response = fit_handle_response(samples);
+  if (!far) return measured(turns, samples);
+  return bad(turns ? fmt::format("the handle turned by more than {:.1f} rad: something carries it along",
+                                 farthest_m / lever_m)
+                   : fmt::format("the handle went farther than {:.0f} mm: something carries it along",
+                                 1e3 * farthest_m));
+}
+
+Outcome Guide::measured(bool turns, const std::vector<ResponseSample>& samples) {
+  std::optional<double> known_delay_s;
+  if (turns) known_delay_s = report_.response->delay_s;
+  const Result<HandleResponse> response = fit_handle_response(samples, known_delay_s);
   if (!response) return bad(response.error().message());
+  if (turns) {
+    report_.turning = turn_response(*response);
+    return good(fmt::format("damping {:.2g} +- {:.2g} N m s/rad, friction {:.2g} N m, inertia {:.3g} kg m^2",
+                            report_.turning->damping_Nms_per_rad, report_.turning->damping_error_Nms_per_rad,
+                            report_.turning->friction_Nm, report_.turning->inertia_kg_m2));
+  }
   report_.response = *response;
   return good(
       fmt::format("delay {:.1f} ms, damping {:.2f} +- {:.2f} N s/m, friction {:.2f} N, mass {:.3f} kg",

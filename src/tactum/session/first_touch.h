@@ -8,7 +8,8 @@
 ///   turn      the same of the orientation, where it is sensed
 ///   wall      a soft floor under the handle, with little force
 ///   push      let go: a small, slowly growing force along each axis, until the handle has moved by 5 mm
-///   answer    let go: short pushes to and fro; mass, damping, friction and delay (handle_response.h)
+///   answer    let go: short pushes to and fro; mass, damping, friction and delay (handle_response.h); the
+///             same of turning, where the device turns its handle
 ///   limits    the floor with the coupling that was chosen for the device, and the forces that it states
 ///
 /// Steps that the device cannot do are left out: what only leads the hand ends after `turn`.
@@ -77,6 +78,7 @@ struct TouchReport {
   std::string ended_by;                    ///< why not; empty when passed
   std::vector<TouchFinding> findings;      ///< in the order of the steps
   std::optional<HandleResponse> response;  ///< as measured along x
+  std::optional<TurnResponse> turning;     ///< as measured about x
   double largest_N = 0.0;                  ///< of all forces that were sent [N]
   double largest_Nm = 0.0;                 ///< of all torques [N m]
 };

@@ -137,7 +137,8 @@ double best_delay(const ResponseLaw& law) {
 
 }  // namespace
 
-Result<HandleResponse> fit_handle_response(std::span<const ResponseSample> samples) {
+Result<HandleResponse> fit_handle_response(std::span<const ResponseSample> samples,
+                                           std::optional<double> known_delay_s) {
   if (samples.size() < kFewestSamples)
     return Error{"the answer of the handle is too short", std::to_string(samples.size()) + " samples",
                  "at least " + std::to_string(kFewestSamples), ""};
@@ -150,7 +151,7 @@ Result<HandleResponse> fit_handle_response(std::span<const ResponseSample> sampl
                  "a handle that nobody holds, and motors that are on", ""};
   const ResponseLaw law(samples);
   HandleResponse response;
-  response.delay_s = best_delay(law);
+  response.delay_s = known_delay_s ? *known_delay_s : best_delay(law);
   const DelayFit fit = law.at(response.delay_s);
   response.mass_kg = fit.unknowns(0);
   response.damping_Ns_per_m = fit.unknowns(1);
@@ -165,6 +166,12 @@ Result<HandleResponse> fit_handle_response(std::span<const ResponseSample> sampl
                      " mm are not explained",
                  "a handle that nobody holds and that hits nothing", ""};
   return response;
+}
+
+TurnResponse turn_response(const HandleResponse& at_lever) {
+  constexpr double kSquare_m2 = kResponseLever_m * kResponseLever_m;
+  return {at_lever.mass_kg * kSquare_m2, at_lever.damping_Ns_per_m * kSquare_m2,
+          at_lever.damping_error_Ns_per_m * kSquare_m2, at_lever.friction_N * kResponseLever_m};
 }
 
 }  // namespace tactum::inline v0_1

@@ -10,7 +10,12 @@
 /// For a delay d it is linear in m, b, c, p0 and p1: least squares. The delay is the one whose remainder,
 /// as a length, is the smallest. The commands count as held from write to write, so d has no share of a held
 /// sample: it is the delay that the bound on the coupling asks for (coupling_gains.h), there and back.
+///
+/// A turn follows the same law, with an inertia and torques. It is fitted as the motion of a point at a lever
+/// of kResponseLever_m, so that what is enough travel, what is slow, and the error of the damping have one
+/// meaning. Its delay is that of the force, with which the torque is written, and need not be looked for.
 
+#include <optional>
 #include <span>
 
 #include "tactum/base/result.h"
@@ -34,11 +39,26 @@ struct HandleResponse {
   double remainder_m = 0.0;  ///< root mean square of what the law leaves unexplained [m]
 };
 
+/// The same of turning about one axis.
+struct TurnResponse {
+  double inertia_kg_m2 = 0.0;              ///< [kg m^2]
+  double damping_Nms_per_rad = 0.0;        ///< [N m s/rad]
+  double damping_error_Nms_per_rad = 0.0;  ///< 9e-5 N m s/rad and 15 % of it, or more, as above [N m s/rad]
+  double friction_Nm = 0.0;                ///< Coulomb [N m]
+};
+
+/// About as far from its axis as the fingers that hold a handle [m].
+inline constexpr double kResponseLever_m = 0.030;
+
 /// The longest delay that is looked for [s].
 inline constexpr double kLongestResponseDelay_s = 0.060;
 
 /// Times increase. An error when the handle hardly moved, or moved otherwise than the law says, as one in a
-/// hand does. Some milliseconds of work.
-Result<HandleResponse> fit_handle_response(std::span<const ResponseSample> samples);
+/// hand does. The delay is looked for where it is not known. Some milliseconds of work.
+Result<HandleResponse> fit_handle_response(std::span<const ResponseSample> samples,
+                                           std::optional<double> known_delay_s = {});
+
+/// Of what was fitted to x = lever * angle and force = torque / lever.
+TurnResponse turn_response(const HandleResponse& at_lever);
 
 }  // namespace tactum::inline v0_1

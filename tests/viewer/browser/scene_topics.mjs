@@ -25,6 +25,18 @@ async function dragBody(page, name, right) {
   throw new Error(`“${name}” could not be taken`);
 }
 
+/** A scene in a file of its own: a cube in the open in the first hand, and one down in a fixed hole, held by the second or, with
+ *  one hand, by nobody. */
+function sceneWithHole(hands) {
+  const cube = (name, at, joint) => `[[body]]\nname = "${name}"\npart = { box = { size_m = [0.02, 0.02, 0.02] } }\npos_m = [${at}]\ndensity_kg_per_m3 = 1000\n${joint}\n`;
+  const tools = ["open", "deep"].slice(0, hands).map((body, i) => `[[tool]]\nbody = "${body}"\ngrasp = "centre"\n${i > 0 ? 'device = "premium-1.5-6dof"' : ""}\n`);
+  const hole = `[[body]]\nname = "hole"\npart = { hole_block = { peg_width_m = 0.05, peg_depth_m = 0.05, clearance_m = 0.001, wall_m = 0.01, hole_depth_m = 0.08, floor_m = 0.01 } }\njoint = { kind = "fixed" }\n`;
+  const file = join(mkdtempSync(join(tmpdir(), "tactum-scene-")), "hole.toml");
+  writeFileSync(file, ["schema = 1", 'description = "A part in the open and one in a hole"', 'device = "premium-1.5-6dof"', cube("open", "0, -0.15, 0", ""),
+    cube("deep", "0, 0, 0.025", hands > 1 ? "" : 'joint = { kind = "fixed" }'), hole, ...tools, ""].join("\n"));
+  return file;
+}
+
 const arrowsOf = async (page) => Number((await state(page)).fieldArrows);
 
 export const topics = {
@@ -84,6 +96,21 @@ export const topics = {
     await page.mouse.up();
     check(page.complaints.length + other.complaints.length === 0, [...page.complaints, ...other.complaints].join("; "));
     await program.end();
+  },
+
+  async glass(browser, tactum) {
+    for (const hands of [2, 1]) {
+      const deep = await Program.start(tactum, sceneWithHole(hands));
+      const looking = await openPage(browser, deep);
+      if (hands === 2) await until("what hides the second hand's part is glass", async () => (await state(looking)).transparent === "hole");
+      else await pause(1);
+      check((await state(looking)).transparent === (hands === 2 ? "hole" : ""), `with ${hands} hands, of what no hand holds nothing is seen`);
+      await keep(looking, `hole-${hands}`);
+      await looking.keyboard.press("x");
+      await looking.keyboard.press("x");
+      await until("without glass all are solid", async () => (await state(looking)).transparent === "");
+      await deep.end();
+    }
   },
 
   async field(browser, tactum) {

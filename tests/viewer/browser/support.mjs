@@ -45,14 +45,7 @@ export class Program {
   }
   /** Any command that serves a page. */
   static async serve(tactum, words, place = {}) {
-    const program = new Program();
-    program.process = spawn(tactum, [...words, "--view"], {
-      stdio: ["ignore", "pipe", "pipe"], env: { ...process.env, DISPLAY: "", WAYLAND_DISPLAY: "" }, ...place,
-    });
-    started.push(program.process);
-    program.said = "";
-    program.ended = new Promise((resolve) => program.process.on("exit", (code) => resolve(code)));
-    for (const stream of [program.process.stdout, program.process.stderr]) stream.on("data", (data) => (program.said += data));
+    const program = Program.spawned(tactum, [...words, "--view"], place);
     const address = await until("the program tells its address", () => program.said.match(/http:\/\/\S+/)?.[0]);
     program.address = address;
     const url = new URL(address);
@@ -60,12 +53,28 @@ export class Program {
     program.token = url.pathname.split("/")[1];
     return program;
   }
-  /** Ends it as Ctrl-C does; its summary for machines. */
-  async end() {
+  /** Any command. */
+  static spawned(tactum, words, place = {}) {
+    const program = new Program();
+    program.process = spawn(tactum, words, {
+      stdio: ["ignore", "pipe", "pipe"], env: { ...process.env, DISPLAY: "", WAYLAND_DISPLAY: "" }, ...place,
+    });
+    started.push(program.process);
+    program.said = "";
+    program.ended = new Promise((resolve) => program.process.on("exit", (code) => resolve(code)));
+    for (const stream of [program.process.stdout, program.process.stderr]) stream.on("data", (data) => (program.said += data));
+    return program;
+  }
+  /** Ends it as Ctrl-C does. */
+  async interrupt() {
     this.process.kill("SIGINT");
     const code = await this.ended;
     // 2: the goals of the scene were not met, as where a test leads the hand.
     check(code === 0 || code === 2, `the program ended with ${code}:\n${this.said}`);
+  }
+  /** The same; its summary for machines. */
+  async end() {
+    await this.interrupt();
     const summary = JSON.parse(readFileSync(this.json, "utf8"));
     rmSync(this.folder, { recursive: true, force: true });
     return summary;

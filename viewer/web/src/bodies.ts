@@ -12,7 +12,7 @@ interface Drawn {
 }
 
 export type Glass = "auto" | "all" | "none";
-// Of the six middles of the sides of the held part's box: so many hidden ones make a part transparent, and keep it so.
+// Of the six middles of the sides of a held part's box: so many hidden ones make a part transparent, and keep it so.
 const [becomesGlass, staysGlass] = [3, 2];
 const hiddenBy = 0.01; // view units that the hiding surface is nearer
 
@@ -106,7 +106,7 @@ export class Bodies {
     this.setLook(this.look);
   }
 
-  /** Which of the fixed parts are transparent: those that hide the held one, all, or none. */
+  /** Which of the fixed parts are transparent: those that hide a held one, all, or none. */
   showThrough(which: Glass) {
     this.glassFor = which;
     for (const drawn of this.drawn) this.setGlass(drawn, which === "all" && !this.run.bodies[drawn.bodies[0]].moves);
@@ -122,29 +122,39 @@ export class Bodies {
       }
   }
 
-  /** Finds out which fixed parts hide the held one from the camera: rays to the middles of the sides of its box. */
-  showHiding(grasped: number, camera: THREE.Camera, toView: THREE.Matrix4, mostTriangles: number) {
+  /** The names of the bodies that are transparent now. */
+  get transparent(): string[] {
+    return this.drawn.filter((d) => d.glass).flatMap((d) => d.bodies.map((body) => this.run.bodies[body].name));
+  }
+
+  /** Makes the fixed parts transparent that hide one of the held ones from the camera, whichever hand holds it. */
+  showHiding(grasped: number[], camera: THREE.Camera, toView: THREE.Matrix4, mostTriangles: number) {
     if (this.glassFor !== "auto") return;
-    const hiding = new Map<Drawn, number>();
-    const own = this.drawn.find((d) => d.bodies.includes(grasped));
-    const box = own?.near.geometry.boundingBox;
-    const fixed = this.drawn.filter((d) => d !== own && !this.run.bodies[d.bodies[0]].moves && d.shape.piece.length <= mostTriangles);
-    if (box && fixed.length > 0) {
-      const centre = box.getCenter(new THREE.Vector3());
-      const toWorld = new THREE.Matrix4().copy(toView).multiply(this.matrices[grasped]);
-      for (const side of [box.min, box.max])
-        for (let axis = 0; axis < 3; ++axis) {
-          const point = centre.clone().setComponent(axis, side.getComponent(axis)).applyMatrix4(toWorld);
-          const away = point.distanceTo(camera.position);
-          const ray = new THREE.Raycaster(camera.position, point.sub(camera.position).normalize(), 0, away - hiddenBy);
-          for (const drawn of fixed)
-            if (ray.intersectObject(drawn.near, false).length > 0) hiding.set(drawn, (hiding.get(drawn) ?? 0) + 1);
-        }
-    }
+    const fixed = this.drawn.filter((d) => !this.run.bodies[d.bodies[0]].moves && d.shape.piece.length <= mostTriangles);
+    const hidden = grasped.map((body) => this.sidesHidden(body, fixed, camera, toView));
     for (const drawn of this.drawn) {
-      const count = hiding.get(drawn) ?? 0;
+      const count = Math.max(0, ...hidden.map((sides) => sides.get(drawn) ?? 0));
       this.setGlass(drawn, drawn.glass ? count >= staysGlass : count >= becomesGlass);
     }
+  }
+
+  /** How many of the middles of the sides of a held part's box each of `fixed` hides, by rays from the camera to them. */
+  private sidesHidden(grasped: number, fixed: Drawn[], camera: THREE.Camera, toView: THREE.Matrix4): Map<Drawn, number> {
+    const hidden = new Map<Drawn, number>();
+    const own = this.drawn.find((d) => d.bodies.includes(grasped));
+    const box = own?.near.geometry.boundingBox;
+    if (!box) return hidden;
+    const centre = box.getCenter(new THREE.Vector3());
+    const toWorld = new THREE.Matrix4().copy(toView).multiply(this.matrices[grasped]);
+    for (const side of [box.min, box.max])
+      for (let axis = 0; axis < 3; ++axis) {
+        const point = centre.clone().setComponent(axis, side.getComponent(axis)).applyMatrix4(toWorld);
+        const away = point.distanceTo(camera.position);
+        const ray = new THREE.Raycaster(camera.position, point.sub(camera.position).normalize(), 0, away - hiddenBy);
+        for (const drawn of fixed)
+          if (drawn !== own && ray.intersectObject(drawn.near, false).length > 0) hidden.set(drawn, (hidden.get(drawn) ?? 0) + 1);
+      }
+    return hidden;
   }
 
   /** Puts every body where it is; which copy is drawn depends on its size on the screen. */

@@ -11,7 +11,7 @@ const helpRows: [string, string][] = [
   ["SpaceMouse, gamepad", "lead the hand as long as they are deflected; a gamepad rumbles while the part pushes"],
   ["Drag beside it, wheel, right drag", "look around, zoom to the pointer, shift the view; a double click becomes the middle"],
   ["1 2 3 4, the cube", "slanted, front, side, top; a face of the cube"],
-  ["P, E, X, T, F", "pieces, kinds of edges, glass (parts that hide the held one, all, none), trail, force fields"],
+  ["P, E, X, T, F", "pieces, kinds of edges, glass (parts that hide a held one, all, none), trail, force fields"],
   ["+ −", "longer, shorter arrows; without that one newton has the same length in every moment"],
   ["W, N", "the raw wrench beside the shown one, energy charts"],
   ["Space, then Enter", "STOP: force and torque are led to zero at once; feel again"],

@@ -204,6 +204,7 @@ function showSummary(sample: number) {
   body.dataset.torque = String(torque);
   body.dataset.peakForce = String(samples.peakForce);
   body.dataset.otherForces = (view.picture?.others ?? []).map((other) => Math.hypot(...other.wrench.slice(0, 3))).join(",");
+  body.dataset.transparent = (view.bodies?.transparent ?? []).join(",");
   body.dataset.fieldArrows = String(view.field.count);
   body.dataset.grips = view.grips.join(",");
   body.dataset.samples = String(samples.count);

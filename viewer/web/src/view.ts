@@ -348,12 +348,14 @@ export class View {
     this.arrowSize = Math.min(arrowSizes.length - 1, Math.max(0, this.arrowSize + (longer ? -1 : 1)));
   }
 
-  /** Makes the fixed parts that hide the held one transparent, and the others solid again. */
+  /** Makes the fixed parts that hide what the hands hold transparent, and the others solid again. */
   private lookThrough() {
     const time = performance.now();
     if (!this.bodies || !this.run || time - this.lastGlass < glassEvery_ms) return;
     this.lastGlass = time;
-    this.bodies.showHiding(this.run.grasped, this.camera, this.toView, mostTriangles);
+    const { grasped, other_hands } = this.run;
+    const all = [grasped, ...other_hands.map((hand) => hand.grasped)].filter((body) => body >= 0);
+    this.bodies.showHiding(all, this.camera, this.toView, mostTriangles);
   }
 
   /** Puts a label beside a place, below another one that stands there; where it is put. */
