@@ -128,6 +128,35 @@ TEST(ImportedFrames, ReplicasFollowEachOther) {
   });
 }
 
+/// tests/import/files/frames.xml as MuJoCo 3.14 reads it: names, masses and centres of mass.
+TEST(ImportedFrames, AreThoseOfMujocosReading) {
+  const Result<ImportedScene> imported =
+      import_scene(fmt::format("{}/tests/import/files/frames.xml", TACTUM_SOURCE_DIR));
+  ASSERT_TRUE(imported) << imported.error().message();
+  EXPECT_TRUE(imported->notes.empty());
+  const Result<Scene> scene = parse_scene(imported->toml, "test", "test.toml", {});
+  ASSERT_TRUE(scene) << scene.error().message();
+  struct Read {
+    const char* name;
+    double mass_kg;
+    Vec3 center_W;
+  };
+  const std::vector<Read> wanted{
+      {"wheel", 1.117079633, {0, 0, 0.5}},       {"ball0-0", 0.523598776, {0, 0, 1.1}},
+      {"ball1-0", 0.523598776, {0, 0.5, 1.1}},   {"ball0-1", 0.523598776, {0.5, 0, 1.1}},
+      {"ball1-1", 0.523598776, {0.5, 0.5, 1.1}}, {"ball0-2", 0.523598776, {1, 0, 1.1}},
+      {"ball1-2", 0.523598776, {1, 0.5, 1.1}}};
+  const std::vector<Body>& bodies = scene->world.bodies;
+  EXPECT_EQ(bodies.size(), wanted.size() + 1);  // and the bench's top, which does not move
+  for (const Read& theirs : wanted) {
+    const auto ours = std::find_if(bodies.begin(), bodies.end(),
+                                   [&](const Body& body) { return body.name == theirs.name; });
+    ASSERT_NE(ours, bodies.end()) << theirs.name;
+    EXPECT_NEAR(ours->mass_kg, theirs.mass_kg, 1e-9);
+    EXPECT_LT((ours->X_WB.p - theirs.center_W).norm(), 1e-9) << theirs.name;
+  }
+}
+
 /// As in MuJoCo the numbers in names have the digits of the count, and what a replica holds is told once.
 TEST(ImportedFrames, ReplicasAreNamedAndToldAsOne) {
   const Result<ImportedScene> imported = import_scene_text(
