@@ -273,6 +273,24 @@ TEST(ImportedScenes, AJointStartsAtItsNearestLimitWhateverTheLengthOfItsAxis) {
   }
 }
 
+TEST(ImportedScenes, AJointOfUrdfThatNamesNoAxisHasX) {
+  for (const char* kind : {"revolute", "continuous", "prismatic"}) {
+    const char* kLink =
+        "<link name='{}'><collision><geometry><sphere radius='1'/></geometry></collision></link>";
+    const std::string links = fmt::format(fmt::runtime(kLink), "a") + fmt::format(fmt::runtime(kLink), "b");
+    const std::string joint = fmt::format(
+        "<joint name='j' type='{}'><parent link='a'/><child link='b'/><origin rpy='0 0 "
+        "1.5707963267948966'/></joint>",
+        kind);
+    const Result<ImportedScene> imported =
+        import_scene_text("<robot>" + links + joint + "</robot>", "r.urdf");
+    ASSERT_TRUE(imported) << imported.error().message();
+    const Result<Scene> scene = scene_of(*imported);
+    ASSERT_TRUE(scene) << scene.error().message();
+    EXPECT_LT((scene->world.joint_of(1).axis_W - Vec3::UnitY()).norm(), 1e-12) << kind;
+  }
+}
+
 TEST(ImportedScenes, PackagesAreFoundAboveTheFileAndInTheEnvironment) {
   const testing::ScratchFolder folder;
   std::filesystem::create_directories(folder / "robot/urdf");
