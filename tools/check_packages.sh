@@ -64,6 +64,7 @@ echo "$line"
 found="$(inside sh -c "$line")"
 echo "$found"
 [[ -n $printed && $found == "$printed" ]] || stop "docs/packages.md says it prints: $printed"
+install python3-h5py # which examples/python/demonstrations.py writes its data set with
 for script in "$clean"/examples/python/*.py; do
   inside python3 "/examples/python/$(basename "$script")" >"$log" || { cat "$log"; stop "$(basename "$script") has failed"; }
   rm -f "$log"
