@@ -8,7 +8,6 @@
 #include <memory>
 
 #include "app/hdf5/export_hdf5.h"
-#include "app/hdf5/h5_file.h"
 #include "commands.h"
 #include "tactum/recording/export_csv.h"
 
@@ -50,7 +49,6 @@ void export_file(const ExportCommand& command) {
   if (!file) fail(file.error());
   if (!command.csv.empty()) export_table(*file, command);
   if (command.hdf5.empty()) return;
-  leave_hdf5_at_exit();
   const Result<Hdf5Export> exported = export_hdf5(*file, command.file, command.hdf5);
   if (!exported) fail(exported.error());
   report_export(exported->rows, command.hdf5, exported->end);

@@ -357,6 +357,11 @@ void end_recording(std::FILE* out, Viewer& viewer) {
   for (const RecordingFile& file : files) report_recording(out, file.path, file.frames, file.dropped);
 }
 
+void print_bridges(std::FILE* out, const BridgeRun& run) {
+  for (const std::string& sentence : run.bridge().sentences()) fmt::print(out, "{}\n", sentence);
+  std::fflush(out);
+}
+
 void feel_with_pages(const FeelOptions& options, const SceneDescription& description,
                      const std::vector<SceneRemark>& remarks, Scene scene, std::FILE* out) {
   Result<std::unique_ptr<Viewer>> opened =
@@ -367,6 +372,11 @@ void feel_with_pages(const FeelOptions& options, const SceneDescription& descrip
   if (!options.record.empty())
     if (const Result<void> begun = viewer.record(options.record); !begun) fail(begun.error());
   report_what_is_felt(out, viewer.session(), options.hand);
+  std::optional<BridgeRun> bridge;
+  if (!options.bridge.bridges.empty()) {
+    viewer.let_follow(&bridge.emplace(options.bridge));
+    print_bridges(out, *bridge);
+  }
   open_page(out, viewer.server().address());
   const std::uint64_t asked =
       options.updates > 0 ? options.updates
@@ -384,6 +394,7 @@ void feel_with_pages(const FeelOptions& options, const SceneDescription& descrip
                             ? feel_viewed_virtually(viewer, frames_asked_for(options, viewer.session()))
                             : run_viewed(viewer, asked, options.wait_s);
   end_recording(out, viewer);
+  viewer.let_follow(nullptr);
   sum_up(out, options, remarks, viewer.session(), times, viewer.stages(), {});
 }
 
@@ -406,8 +417,7 @@ std::unique_ptr<BridgeRun> begin_bridge(std::FILE* out, const FeelOptions& optio
                                         TraceFile* trace) {
   if (options.bridge.bridges.empty()) return nullptr;
   auto bridge = std::make_unique<BridgeRun>(options.bridge, session, trace);
-  for (const std::string& sentence : bridge->bridge().sentences()) fmt::print(out, "{}\n", sentence);
-  std::fflush(out);
+  print_bridges(out, *bridge);
   return bridge;
 }
 
@@ -473,7 +483,7 @@ void add_feel(CLI::App& app) {
                              ->needs(virtual_clock);
   add_record(command, options.get());
   CLI::Option* trace = add_trace(command, options.get());
-  CLI::Option* bridge = add_bridge(command, options.get())->excludes(virtual_clock);
+  add_bridge(command, options.get())->excludes(virtual_clock);
   CLI::Option* view = command->add_flag(
       "--view", options->view,
       "Serve a page that shows the scene, and on which the mouse is the hand: until interrupted, or, where a "
@@ -481,7 +491,6 @@ void add_feel(CLI::App& app) {
   replays->excludes(view);
   referee->excludes(view);
   trace->excludes(view);
-  bridge->excludes(view);
   add_page(command, options.get(), view)->excludes(virtual_clock);
   command->callback([options] { feel(*options); });
 }

@@ -42,7 +42,7 @@ cp -L /etc/hosts /etc/resolv.conf "$clean/etc/"
 mount -t proc proc "$clean/proc"
 mkdir "$clean/packages" "$clean/examples"
 cp "$packages"/*.deb "$clean/packages/"
-cp -r "$root"/examples/*.cpp "$root"/examples/*.c "$root"/examples/python "$clean/examples/"
+cp -r "$root"/examples/*.{cpp,h,c} "$root"/examples/python "$clean/examples/"
 cp "$root/tests/packages/CMakeLists.txt" "$clean/examples/"
 quietly inside apt-get update
 inside sh -c 'dpkg -l | grep -c ^ii' | sed 's/$/ packages in the clean root/'
@@ -64,6 +64,7 @@ echo "$line"
 found="$(inside sh -c "$line")"
 echo "$found"
 [[ -n $printed && $found == "$printed" ]] || stop "docs/packages.md says it prints: $printed"
+install python3-h5py # which examples/python/demonstrations.py writes its data set with
 for script in "$clean"/examples/python/*.py; do
   inside python3 "/examples/python/$(basename "$script")" >"$log" || { cat "$log"; stop "$(basename "$script") has failed"; }
   rm -f "$log"
@@ -81,7 +82,7 @@ inside gcc -std=c11 -D_POSIX_C_SOURCE=200809L "/examples/network_device.c" -o /t
 echo "compiled network_device"
 
 part "C++, by find_package"
-install g++ cmake make
+install g++ cmake make libmujoco-dev # the last one for the examples with MuJoCo
 quietly inside cmake -S /examples -B /tmp/built -DEXAMPLES=/examples
 quietly inside cmake --build /tmp/built -j "$jobs"
 for source in "$clean"/examples/*.cpp; do

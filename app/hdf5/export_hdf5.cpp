@@ -197,6 +197,7 @@ class Hdf5Writing final : public RecordingVisitor {
     for (std::size_t i = 0; i < row.size(); ++i)
       columns_[i].add(row[i] + 0.0);  // as the table: no negative zero
     ++rows;
+    if (!file_.good()) return Error{"the file is not whole", "", "", ""};  // which its close() says in full
     return {};
   }
   Result<void> contacts(const RecordedContacts& recorded) override {

@@ -1,8 +1,6 @@
 #include "app/hdf5/h5_file.h"
 
-#include <cerrno>
 #include <cstdio>
-#include <cstring>
 
 namespace tactum {
 namespace {
@@ -16,14 +14,15 @@ H5Handle text_type() {
 }
 
 /// Of the format of HDF5 1.8, whose groups take as many attributes as there are.
-hid_t made_file(const std::string& name) {
+hid_t made_file(H5Disk& disk, const std::string& name) {
+  if (!disk.wrong().empty()) return H5I_INVALID_HID;
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // what fails is told by us
   const H5Handle options(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
   const H5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_obj_track_times(options.id(), false);
   H5Pset_attr_phase_change(options.id(), 0, 0);
   H5Pset_libver_bounds(access.id(), H5F_LIBVER_V18, H5F_LIBVER_V18);
-  return H5Fcreate(name.c_str(), H5F_ACC_TRUNC, options.id(), access.id());
+  return disk.make_hdf5(name, options.id(), access.id());
 }
 
 }  // namespace
@@ -31,15 +30,15 @@ hid_t made_file(const std::string& name) {
 H5File::H5File(std::string path, std::string unfinished)
     : path_(std::move(path)),
       unfinished_(std::move(unfinished)),
-      file_(made_file(unfinished_), H5Fclose),
+      disk_(std::make_unique<H5Disk>(unfinished_)),
+      file_(made_file(*disk_, unfinished_), H5Fclose),
       good_(std::make_unique<bool>(true)) {}
 
 Result<H5File> H5File::create(const std::string& path) {
-  errno = 0;
   H5File file(path, path + ".unfinished");
   if (file.file_.good()) return file;
-  return Error{"cannot write the file", errno == 0 ? "" : std::strerror(errno), "a place that can be written",
-               path};
+  if (file.disk_->wrong().empty()) std::remove(file.unfinished_.c_str());
+  return Error{"cannot write the file", file.disk_->wrong(), "a place that can be written", path};
 }
 
 H5File::~H5File() {
@@ -98,14 +97,13 @@ void H5File::text(const std::string& name, const std::string& text) {
   check(data.good() && H5Dwrite(data.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, &characters) >= 0);
 }
 
-void leave_hdf5_at_exit() noexcept { H5dont_atexit(); }
-
 Result<void> H5File::close() {
-  check(H5Fflush(file_.id(), H5F_SCOPE_GLOBAL) >= 0);
   check(file_.reset());
-  if (*good_ && std::rename(unfinished_.c_str(), path_.c_str()) == 0) return {};
+  disk_->close();
+  if (good() && std::rename(unfinished_.c_str(), path_.c_str()) == 0) return {};
   std::remove(unfinished_.c_str());
-  return Error{"cannot write the whole file", "", "room on the disk, and names that HDF5 takes", path_};
+  return Error{"cannot write the whole file", disk_->wrong(), "room on the disk, and names that HDF5 takes",
+               path_};
 }
 
 }  // namespace tactum

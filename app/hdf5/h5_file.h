@@ -9,14 +9,10 @@
 #include <string>
 #include <vector>
 
+#include "app/hdf5/h5_disk.h"
 #include "tactum/base/result.h"
 
 namespace tactum {
-
-/// For a program that uses HDF5 through these classes alone, before it writes its first file. Without this
-/// the library tries once more, when the program ends, to write what a full disk did not take, and crashes
-/// over it. All that is opened here is closed here; what others have opened in the same process would not be.
-void leave_hdf5_at_exit() noexcept;
 
 /// A handle of the library, closed by the function that belongs to it.
 class H5Handle {
@@ -81,11 +77,14 @@ class H5File {
   hid_t id() const noexcept { return file_.id(); }
   /// Remembers that a call failed, unless it succeeded.
   void check(bool good) noexcept { *good_ = *good_ && good; }
+  /// False where a call before failed, so that more need not be written.
+  bool good() const noexcept { return *good_ && disk_->wrong().empty(); }
 
  private:
   H5File(std::string path, std::string unfinished);
   std::string path_, unfinished_;
-  H5Handle file_;
+  std::unique_ptr<H5Disk> disk_;
+  H5Handle file_;  // closed before the disk below it
   std::unique_ptr<bool> good_;
 };
 
@@ -125,8 +124,8 @@ class H5Column {
     return data;
   }
   void flush() {
-    const hsize_t rows = buffer_.size() / width_;
-    if (rows == 0) return;
+    const hsize_t rows = file_->good() ? buffer_.size() / width_ : 0;
+    if (rows == 0) return buffer_.clear();
     const hsize_t size[2] = {rows_ + rows, width_}, from[2] = {rows_, 0}, count[2] = {rows, width_};
     const int rank = width_ == 1 ? 1 : 2;
     bool good = H5Dset_extent(data_.id(), size) >= 0;

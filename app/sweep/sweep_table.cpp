@@ -63,7 +63,6 @@ void write_axes(H5File& file, const SweepPlan& plan) {
 
 Result<void> write_sweep(const SweepPlan& plan, const std::map<std::uint64_t, SweepResult>& results,
                          const std::string& path) {
-  leave_hdf5_at_exit();
   Result<H5File> file = H5File::create(path);
   if (!file) return file.error();
   describe_plan(*file, plan);

@@ -8,6 +8,7 @@ import pathlib
 import re
 import resource
 import subprocess
+import sys
 import tempfile
 import threading
 import time
@@ -314,6 +315,41 @@ class Runs(unittest.TestCase):
                 file.truncate(100)
             with self.assertRaises(tactum.Error):
                 tactum.Recording(path)
+
+    def test_a_disk_that_fills_up_during_the_export_is_an_error_and_python_ends_well(self):
+        """On disks of their own of several sizes, full at the first bytes or in the middle; the next export works."""
+        with tempfile.TemporaryDirectory() as folder:
+            disk, path = os.path.join(folder, "disk"), os.path.join(folder, "run.mcap")
+            os.mkdir(disk)
+            own = ["unshare", "--user", "--map-root-user", "--mount", "sh", "-c"]
+            mount = f"mount -t tmpfs -o size=$0 none {disk} && exec \"$@\""
+            try:
+                subprocess.run([*own, mount, "4k", "true"], check=True, capture_output=True)
+            except (OSError, subprocess.CalledProcessError):
+                self.skipTest("no disk of its own can be made here")
+            tactum.open_session("block-on-plate", record=path).run(1500)
+            script = f"""
+import os, tactum
+recording = tactum.Recording({path!r})
+try:
+    recording.export_hdf5({disk!r} + "/run.h5")
+    print("whole")
+except tactum.Error as error:
+    print(error)
+print(os.listdir({disk!r}), recording.export_hdf5({folder!r} + "/again.h5"))
+"""
+            for size in ("4k", "16k", "64k", "150k", "400k"):
+                if PROGRAM:
+                    run = subprocess.run([*own, mount, size, PROGRAM, "export", path, "--hdf5", disk + "/run.h5"],
+                                         capture_output=True, text=True)
+                    with self.subTest(size=size, of="the program"):
+                        self.assertEqual(run.returncode, 1)
+                        self.assertIn("cannot write the whole file: found No space left on device", run.stderr)
+                run = subprocess.run([*own, mount, size, sys.executable, "-c", script], capture_output=True, text=True)
+                with self.subTest(size=size):
+                    self.assertEqual((run.returncode, run.stderr), (0, ""))
+                    self.assertRegex(run.stdout, "run.h5: cannot write the whole file: found No space left on device, expected ")
+                    self.assertIn("[] 1500", run.stdout)
 
     def test_errors_are_the_sentences_of_the_program(self):
         with self.assertRaisesRegex(tactum.Error, "gearz.*expected"):

@@ -56,7 +56,8 @@ function start(args) {
     child.stdout.on("data", (text) => {
       out += text;
       const found = /rosbridge at ws:\/\/127.0.0.1:(\d+)\nfoxglove at ws:\/\/127.0.0.1:(\d+)\n/.exec(out);
-      if (found) resolve({ child, ros: Number(found[1]), foxglove: Number(found[2]) });
+      const page = /see and feel it at http:\/\/([^ \n]+)\n/.exec(out);
+      if (found && (page || !args.includes("--view"))) resolve({ child, ros: Number(found[1]), foxglove: Number(found[2]), page: page?.[1] });
     });
     child.ended.then(() => demand(out.includes("foxglove at"), `tactum ended early: ${child.err}`));
   });
@@ -278,5 +279,43 @@ const both = await hearFoxglove(two.foxglove, 5);
 demand(both.heard["/tactum/hand2/pose"].length >= 4 && both.heard["/wrench/sent2"].length >= 4, "the second hand");
 two.child.kill("SIGINT");
 await two.child.ended;
+
+// Beside a page: the numbers of the recording; the page starts the run anew, and then another scene.
+const recorded = path.join(folder, "viewed.mcap");
+const viewed = await start(["block-on-plate", "--view", "--device", "touch", "--duration", "120", "--record", recorded, "--bridge-rate", "1000"]);
+const page = new WebSocket(`ws://${viewed.page}ws`, { origin: `http://${viewed.page.split("/")[0]}` });
+await once(page, "open");
+const [seenByRos, seenByFoxglove] = await Promise.all([hearRos(viewed.ros, 300), hearFoxglove(viewed.foxglove, 300)]);
+const listener = new roslib.Ros({ url: `ws://127.0.0.1:${viewed.ros}` });
+const slow = new roslib.Topic({ ros: listener, name: "/wrench/sent", messageType: "geometry_msgs/WrenchStamped", throttle_rate: 100 });
+const closed = once(listener, "close");
+const times = [];
+const anew = new Promise((resolve) =>
+  slow.subscribe(({ header: { stamp } }) => {
+    times.push(stamp.secs + stamp.nsecs * 1e-9);
+    if (times.length === 5) page.send(JSON.stringify({ do: "reset" }));
+    const back = times.findIndex((time, i) => i > 0 && time < times[i - 1]);
+    if (back > 0 && times.length > back + 5) resolve();
+  }),
+);
+await anew;
+page.send(JSON.stringify({ do: "scene", name: "gears" }));
+await closed;
+// Clients connect again, as often as it takes: the port is free for a moment.
+while (await new Promise((resolve) => http.get({ port: viewed.ros, host: "127.0.0.1" }, () => resolve(false)).on("error", () => resolve(true))))
+  await new Promise((resolve) => setTimeout(resolve, 50));
+const other = await hearRos(viewed.ros, 50);
+const framesOf = (heard) => heard["/tf"][0].transforms.map((transform) => transform.child_frame_id).join();
+demand(framesOf(other.heard) !== framesOf(seenByRos.heard), `the bodies of another scene: ${framesOf(other.heard)}`);
+viewed.child.kill("SIGINT");
+await viewed.child.ended;
+const table = path.join(folder, "viewed.csv");
+const exported = spawnSync(tactum, ["export", recorded, "--csv", table], { encoding: "utf8" });
+demand(exported.status === 0, `the recording: ${exported.stderr}`);
+const viewedRows = rowsOf(table);
+for (const topic of Object.keys(expected)) {
+  compare(topic, seenByRos.heard[topic], viewedRows, "roslib beside a page");
+  compare(topic, seenByFoxglove.heard[topic], viewedRows, "foxglove beside a page");
+}
 console.log(`${rows.size} frames in the trace, ${ros.heard["/wrench/sent"].length} wrenches by roslib, the same to the bit`);
 process.exit(0);

@@ -63,6 +63,8 @@ TEST(ImportNotes, EveryTagAndAttributeOfMjcf) {
       <joint type="hinge" damping="2"/>
       <geom size="0.1" friction="1 0.005 0.1" contype="2"/>
       <site name="s"/>
+      <composite type="cable" count="3 1 1"><geom size="0.1"/></composite>
+      <flexcomp name="f" type="grid" count="2 2 2"/>
     </body>
   </worldbody>
   <actuator><motor joint="b"/></actuator>
@@ -81,7 +83,9 @@ TEST(ImportNotes, EveryTagAndAttributeOfMjcf) {
                 "m.xml:10: bits of contype and conaffinity beyond 1 are not honoured: it touches everything",
                 "m.xml:10: torsional and rolling friction are not honoured",
                 "m.xml:11: <site> is not honoured",
-                "m.xml:14: <actuator> is not honoured, nor what it holds",
+                "m.xml:12: <composite> is not honoured, nor what it holds",
+                "m.xml:13: <flexcomp> is not honoured",
+                "m.xml:16: <actuator> is not honoured, nor what it holds",
             }));
 }
 
@@ -216,6 +220,75 @@ TEST(ImportedScenes, FrictionOfTwoBodiesIsTheLarger) {
   const Result<Scene> scene = scene_of(*imported);
   ASSERT_TRUE(scene) << scene.error().message();
   EXPECT_EQ(scene->settings.friction.between(0, 1), 0.7);
+}
+
+/// The only moving body of a model with these settings and this joint.
+Result<Scene> one_body(const std::string& settings, const std::string& joint) {
+  const Result<ImportedScene> imported =
+      import_scene_text("<mujoco>" + settings + "<worldbody><body name='b'>" + joint +
+                            "<geom size='0.1'/></body></worldbody></mujoco>",
+                        "f.xml");
+  if (!imported) return imported.error();
+  return scene_of(*imported);
+}
+
+TEST(ImportedScenes, ARangeLimitsAJointWhereTheCompilerSaysSo) {
+  const auto limited = [](const std::string& compiler, const std::string& joint) {
+    const Result<Scene> scene =
+        one_body("<compiler " + compiler + "/>", "<joint " + joint + " range='-30 60'/>");
+    EXPECT_TRUE(scene) << scene.error().message();
+    return scene && scene->world.joint_of(0).limited();
+  };
+  EXPECT_TRUE(limited("", ""));
+  EXPECT_TRUE(limited("autolimits='true'", ""));
+  EXPECT_FALSE(limited("autolimits='false'", ""));
+  EXPECT_TRUE(limited("autolimits='false'", "limited='true'"));
+  EXPECT_FALSE(limited("autolimits='true'", "limited='false'"));
+  EXPECT_TRUE(limited("autolimits='true'", "limited='auto'"));
+}
+
+TEST(ImportedScenes, GravityIsWhatTheOptionAndItsFlagSay) {
+  const auto gravity = [](const std::string& option) {
+    const Result<Scene> scene = one_body(option, "<freejoint/>");
+    EXPECT_TRUE(scene) << scene.error().message();
+    return scene ? scene->world.gravity_W : Vec3(NAN, NAN, NAN);
+  };
+  EXPECT_EQ(gravity(""), Vec3(0, 0, -9.81));
+  EXPECT_EQ(gravity("<option gravity='1 2 3'/>"), Vec3(1, 2, 3));
+  EXPECT_EQ(gravity("<option gravity='1 2 3'><flag gravity='enable'/></option>"), Vec3(1, 2, 3));
+  EXPECT_EQ(gravity("<option gravity='1 2 3'><flag gravity='disable'/></option>"), Vec3(0, 0, 0));
+  EXPECT_EQ(gravity("<option><flag gravity='disable'/></option>"), Vec3(0, 0, 0));
+}
+
+/// A slider that starts at its nearest limit is that many metres along its axis, of whatever length.
+TEST(ImportedScenes, AJointStartsAtItsNearestLimitWhateverTheLengthOfItsAxis) {
+  for (const char* axis : {"0 0 1", "0 0 5", "0.3 0 0.4", "-1 2 2", "0 0 -0.01"}) {
+    const Result<Scene> scene =
+        one_body("", fmt::format("<joint type='slide' axis='{}' range='0.2 0.7'/>", axis));
+    ASSERT_TRUE(scene) << scene.error().message();
+    const Joint& joint = scene->world.joint_of(0);
+    EXPECT_LT((scene->world.bodies[0].X_WB.p - 0.2 * joint.axis_W).norm(), 1e-12) << axis;
+    EXPECT_NEAR(joint.lower, 0.0, 1e-12);
+    EXPECT_NEAR(joint.upper, 0.5, 1e-12);
+  }
+}
+
+TEST(ImportedScenes, AJointOfUrdfThatNamesNoAxisHasX) {
+  for (const char* kind : {"revolute", "continuous", "prismatic"}) {
+    const char* kLink =
+        "<link name='{}'><collision><geometry><sphere radius='1'/></geometry></collision></link>";
+    const std::string links = fmt::format(fmt::runtime(kLink), "a") + fmt::format(fmt::runtime(kLink), "b");
+    const std::string joint = fmt::format(
+        "<joint name='j' type='{}'><parent link='a'/><child link='b'/><origin rpy='0 0 "
+        "1.5707963267948966'/></joint>",
+        kind);
+    const Result<ImportedScene> imported =
+        import_scene_text("<robot>" + links + joint + "</robot>", "r.urdf");
+    ASSERT_TRUE(imported) << imported.error().message();
+    const Result<Scene> scene = scene_of(*imported);
+    ASSERT_TRUE(scene) << scene.error().message();
+    EXPECT_LT((scene->world.joint_of(1).axis_W - Vec3::UnitY()).norm(), 1e-12) << kind;
+  }
 }
 
 TEST(ImportedScenes, PackagesAreFoundAboveTheFileAndInTheEnvironment) {

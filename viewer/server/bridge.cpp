@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "viewer/server/bridge_connection.h"
+#include "viewer/server/loopback.h"
 
 namespace tactum {
 namespace {
@@ -24,46 +25,6 @@ const char* protocol_name(BridgeProtocol protocol) {
 }
 
 }  // namespace
-
-/// One port that is listened to.
-class BridgeListener {
- public:
-  BridgeListener(BridgeHub& hub, BridgeProtocol protocol) : hub_(hub), protocol_(protocol) {}
-
-  Result<int> listen(int port) {
-    const tcp::endpoint here(asio::ip::address_v4::loopback(), static_cast<unsigned short>(port));
-    error_code error;
-    acceptor_.open(here.protocol(), error);
-    if (!error) acceptor_.set_option(asio::socket_base::reuse_address(true), error);
-    if (!error) acceptor_.bind(here, error);
-    if (!error) acceptor_.listen(asio::socket_base::max_listen_connections, error);
-    if (error)
-      return Error{fmt::format("the bridge of {} cannot listen", protocol_name(protocol_)), error.message(),
-                   fmt::format("a port that is free, as --bridge {}:PORT", protocol_name(protocol_)),
-                   fmt::format("127.0.0.1:{}", port)};
-    port_ = acceptor_.local_endpoint().port();
-    accept();
-    return port_;
-  }
-
- private:
-  void accept() {
-    acceptor_.async_accept([this](error_code error, tcp::socket socket) {
-      if (error == asio::error::operation_aborted) return;
-      if (!error) {
-        error_code ignored;
-        socket.set_option(tcp::no_delay(true), ignored);
-        serve_bridge(hub_, protocol_, port_, std::move(socket));
-      }
-      accept();
-    });
-  }
-
-  BridgeHub& hub_;
-  BridgeProtocol protocol_;
-  int port_ = 0;
-  tcp::acceptor acceptor_{hub_.io};
-};
 
 struct ShownPicture {
   FramePicture picture;
@@ -95,7 +56,7 @@ Result<BridgeChoice> parse_bridge(const std::string& text) {
 struct Bridge::Impl {
   explicit Impl(BridgeTopics topics) : hub(std::move(topics)) {}
   BridgeHub hub;
-  std::deque<BridgeListener> listeners;
+  std::deque<LoopbackListener> listeners;
   std::vector<std::string> sentences;
   std::vector<int> ports;
   Batch batch;
@@ -110,11 +71,17 @@ Result<std::unique_ptr<Bridge>> Bridge::start(const std::vector<BridgeChoice>& c
   auto impl = std::make_unique<Impl>(std::move(topics));
   impl->hub.led = led;
   for (const BridgeChoice& choice : choices) {
-    impl->listeners.emplace_back(impl->hub, choice.protocol);
-    const Result<int> port = impl->listeners.back().listen(choice.port);
-    if (!port) return port.error();
-    impl->ports.push_back(*port);
-    impl->sentences.push_back(fmt::format("{} at ws://127.0.0.1:{}", protocol_name(choice.protocol), *port));
+    LoopbackListener& listener = impl->listeners.emplace_back(impl->hub.io);
+    const auto serve = [hub = &impl->hub, &listener, protocol = choice.protocol](tcp::socket&& socket) {
+      serve_bridge(*hub, protocol, listener.port(), std::move(socket));
+    };
+    const char* const name = protocol_name(choice.protocol);
+    if (const error_code error = listener.listen(choice.port, serve))
+      return Error{fmt::format("the bridge of {} cannot listen", name), error.message(),
+                   fmt::format("a port that is free, as --bridge {}:PORT", name),
+                   fmt::format("127.0.0.1:{}", choice.port)};
+    impl->ports.push_back(listener.port());
+    impl->sentences.push_back(fmt::format("{} at ws://127.0.0.1:{}", name, listener.port()));
   }
   impl->thread = std::thread([hub = &impl->hub] {
     pthread_setname_np(pthread_self(), "tactum-bridge");

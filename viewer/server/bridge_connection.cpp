@@ -9,6 +9,8 @@
 #include <optional>
 #include <vector>
 
+#include "viewer/server/loopback.h"
+
 namespace tactum {
 namespace {
 
@@ -132,13 +134,7 @@ class BridgeConnection final : public BridgeLine, public std::enable_shared_from
 
   void accept(bool rosbridge) {
     stream().expires_never();  // the WebSocket has its own patience
-    websocket::stream_base::timeout timeout{};
-    timeout.handshake_timeout = kClientTimeout;
-    timeout.idle_timeout = kClientTimeout;
-    timeout.keep_alive_pings = true;
-    socket_.set_option(timeout);
-    socket_.read_message_max(kLargestReceived);
-    socket_.auto_fragment(false);
+    set_limits(socket_, kLargestReceived);
     if (!rosbridge)
       socket_.set_option(websocket::stream_base::decorator([](websocket::response_type& response) {
         response.set(http::field::sec_websocket_protocol, kFoxgloveSubprotocol);

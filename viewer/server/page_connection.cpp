@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "viewer/server/loopback.h"
 #include "viewer/server/wire.h"
 
 namespace tactum {
@@ -35,13 +36,7 @@ class PageConnection : public std::enable_shared_from_this<PageConnection> {
 
   void start(http::request<http::empty_body> request) {
     request_ = std::move(request);
-    websocket::stream_base::timeout timeout{};
-    timeout.handshake_timeout = kClientTimeout;
-    timeout.idle_timeout = kClientTimeout;
-    timeout.keep_alive_pings = true;
-    socket_.set_option(timeout);
-    socket_.read_message_max(Server::kLargestMessage);
-    socket_.auto_fragment(false);
+    set_limits(socket_, Server::kLargestMessage);
     socket_.async_accept(request_, [self = shared_from_this()](error_code error) {
       if (!error) self->opened();
     });

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <pthread.h>
 
-#include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
 #include <nlohmann/json.hpp>
 #include <thread>
@@ -11,6 +10,7 @@
 
 #include "viewer/server/connection_hub.h"
 #include "viewer/server/http_connection.h"
+#include "viewer/server/loopback.h"
 
 namespace tactum {
 namespace {
@@ -23,20 +23,9 @@ using boost::system::error_code;
 
 struct Server::Impl {
   ConnectionHub hub;
-  tcp::acceptor acceptor{hub.io};
+  LoopbackListener listener{hub.io};
   std::thread thread;
 
-  void accept() {
-    acceptor.async_accept([this](error_code error, tcp::socket socket) {
-      if (error == asio::error::operation_aborted) return;
-      if (!error) {
-        error_code ignored;
-        socket.set_option(tcp::no_delay(true), ignored);
-        serve_http(hub, std::move(socket));
-      }
-      accept();
-    });
-  }
   template <class Work>
   void post(Work work) {
     asio::post(hub.io, std::move(work));
@@ -47,17 +36,11 @@ Server::Server(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 
 Result<std::unique_ptr<Server>> Server::start(int port) {
   auto impl = std::make_unique<Impl>();
-  const tcp::endpoint here(asio::ip::address_v4::loopback(), static_cast<unsigned short>(port));
-  error_code error;
-  impl->acceptor.open(here.protocol(), error);
-  if (!error) impl->acceptor.set_option(asio::socket_base::reuse_address(true), error);
-  if (!error) impl->acceptor.bind(here, error);
-  if (!error) impl->acceptor.listen(asio::socket_base::max_listen_connections, error);
-  if (error)
+  const auto serve = [hub = &impl->hub](tcp::socket&& socket) { serve_http(*hub, std::move(socket)); };
+  if (const error_code error = impl->listener.listen(port, serve))
     return Error{"the viewer cannot listen", error.message(),
                  "a port that is free; without --port one is found", fmt::format("127.0.0.1:{}", port)};
-  impl->hub.port = impl->acceptor.local_endpoint().port();
-  impl->accept();
+  impl->hub.port = impl->listener.port();
   impl->thread = std::thread([hub = &impl->hub] {
     pthread_setname_np(pthread_self(), "tactum-viewer");
     hub->io.run();

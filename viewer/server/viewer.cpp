@@ -118,7 +118,9 @@ Result<void> Viewer::begin_run() {
   const bool records = recording_.on();
   recording_.end();  // it refers to the old session
   recording_.attach(**session);
+  if (follower_ != nullptr) follower_->end();
   session_ = std::move(*session);  // the old one first: it refers to the old feed
+  if (follower_ != nullptr) follower_->begin(*session_);
   if (records)
     if (Result<void> on = recording_.go_on(*description_, *session_, options_.grip); !on)
       server_->send_notice(on.error().message());
@@ -134,6 +136,12 @@ Result<void> Viewer::begin_run() {
   ++run_;
   server_->begin_run(run_, message_of_run(), geometry_of(scene_.world));
   return {};
+}
+
+void Viewer::let_follow(RunFollower* follower) {
+  if (follower_ != nullptr) follower_->end();
+  follower_ = follower;
+  if (follower_ != nullptr) follower_->begin(*session_);
 }
 
 Result<void> Viewer::start() {
@@ -155,6 +163,7 @@ void Viewer::poll(std::chrono::microseconds longest) {
   server_->wait(longest);
   for (Request request; server_->take(request);) obey(request);
   newest_ = session_->poll(&timings_);
+  if (follower_ != nullptr) follower_->go_on();
   gather();
   watch_recording();
   if (Clock::now() - last_shown_ >= kShowEvery) show();
@@ -230,7 +239,10 @@ void Viewer::show() {
   const ServerStatus pages = server_->status();
   if (pages.pages > 0) last_page_ = now;
   if (!ready_.empty()) frames_ready_ = ready_.back().frame.index + 1;
-  picture_waits_ = picture_waits_ || feed_->look();
+  if (feed_->look()) {
+    picture_waits_ = true;
+    if (follower_ != nullptr) follower_->see(feed_->picture());
+  }
   std::string picture;
   if (picture_waits_ && feed_->picture().index < frames_ready_) {
     write_picture(feed_->picture(), picture);

@@ -16,6 +16,20 @@
 
 namespace tactum {
 
+/// What follows the runs of a viewer beside its pages, as bridges do. It is called on the thread that polls.
+class RunFollower {
+ public:
+  virtual ~RunFollower() = default;
+  /// A session was opened. Its run has not begun.
+  virtual void begin(Session& session) = 0;
+  /// Its run goes on; called at every poll.
+  virtual void go_on() = 0;
+  /// The picture of a frame, before pages see it.
+  virtual void see(const FramePicture& picture) = 0;
+  /// The run is over, and the session is about to be closed.
+  virtual void end() = 0;
+};
+
 class Viewer {
  public:
   /// Opens the session and the server; `port` 0 finds a free one. The scene's simulated device is led by the
@@ -32,6 +46,9 @@ class Viewer {
   /// Why a recording could not go on, as a sentence for the terminal, which pages were told: once, then
   /// empty.
   std::string take_recording_trouble() { return std::exchange(recording_trouble_, ""); }
+
+  /// Begins the follower with the session that is open; before its run. Null: none any more.
+  void let_follow(RunFollower* follower);
 
   /// The loop on its own thread.
   Result<void> start();
@@ -84,6 +101,7 @@ class Viewer {
   std::unique_ptr<StageClock> stages_;
   std::unique_ptr<Session> session_;
   RunRecording recording_;  // ends before its session does
+  RunFollower* follower_ = nullptr;
   std::string recording_trouble_;
   std::uint32_t run_ = 0;
   bool threaded_ = false;

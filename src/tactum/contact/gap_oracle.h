@@ -86,9 +86,9 @@ class GapOracle {
                                    double dt_s) noexcept = 0;
   /// Whether the two pieces of a patch stay apart, by more than `gap_m`, or slide along each other, while
   /// their bodies move for `dt_s` as advanced(X_WB, V_WB, t), from the poses where the patch was found. Of
-  /// surfaces it is asked of all that the two bodies have, which stay apart, and where they turn end with that
-  /// gap; of a ball on a surface, of the triangle at the contact. Not known is it where no test is left. Costs
-  /// the tests of time_of_impact.h, or of surface_path.h once a frame for two bodies.
+  /// surfaces it is asked of all that the two bodies have: they stay apart, and where they turn they end with
+  /// that gap; of a ball on a surface it is asked of the triangle at the contact. Not known where no test is
+  /// left. Costs the tests of time_of_impact.h, or of surface_path.h once a frame for two bodies.
   virtual Passing passes(int patch, std::span<const Pose> X_WB, std::span<const Twist> V_WB, double dt_s,
                          double gap_m) noexcept = 0;
   /// How far bodies may go on their paths from where the frame found them to other poses without touching:

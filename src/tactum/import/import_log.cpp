@@ -15,6 +15,9 @@ std::vector<ImportNote> ImportLog::notes() const {
   std::stable_sort(sorted.begin(), sorted.end(), [](const ImportNote& a, const ImportNote& b) {
     return a.file != b.file ? a.file < b.file : a.line < b.line;
   });
+  // What stands in several replicas is told once.
+  std::set<std::string> sentences;
+  std::erase_if(sorted, [&](const ImportNote& note) { return !sentences.insert(note.sentence()).second; });
   return sorted;
 }
 

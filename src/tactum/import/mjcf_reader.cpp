@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "tactum/import/mjcf_shapes.h"
 
@@ -10,6 +11,7 @@ namespace tactum::inline v0_1 {
 namespace {
 
 constexpr double kMujocoGravity = 9.81;  // where <option> gives none [m/s^2]
+constexpr int kMostReplicas = 10000;     // in one file, so that a few in each other end soon
 
 /// Attributes that are honoured where an element has them, so that a class of defaults may have them as well.
 const std::set<std::string> kHonouredByDefault{
@@ -34,7 +36,7 @@ class MjcfReader {
     std::vector<const XmlElement*> worlds = mujoco_.all("worldbody");
     if (worlds.empty()) log_.fail(mujoco_, "the model has no <worldbody>", "", "one");
     for (const XmlElement* world : worlds)
-      if (!log_.errors()) read_body(*world, -1, "");
+      if (!log_.errors()) read_body(*world, -1, {});
     mark_defaults(mujoco_);
     return std::move(model_);
   }
@@ -66,27 +68,82 @@ class MjcfReader {
     }
   }
 
+  /// Where an element stands in its body: the frames and replicas around it.
+  struct Around {
+    Pose X_BF = {};
+    std::string childclass = {};
+    std::string suffix = {};  // of names, by the replicas
+  };
+
   /// A body, or the world.
-  void read_body(const XmlElement& element, int parent, const std::string& outer_class) {
+  void read_body(const XmlElement& element, int parent, const Around& outer) {
     const Attributes of(log_, element);
     ModelLink link;
     link.at = &element;
     link.parent = parent;
     link.name = of.text("name");
-    const std::string childclass = of.text("childclass", outer_class);
+    if (!link.name.empty()) link.name += outer.suffix;
+    const Around inner{{}, of.text("childclass", outer.childclass), outer.suffix};
     if (element.name == "body") {
-      link.X_PL = {rotation_of(of, compiler_), of.vector("pos", Vec3::Zero())};
+      link.X_PL = outer.X_BF * Pose{rotation_of(of, compiler_), of.vector("pos", Vec3::Zero())};
       if (const XmlElement* inertial = element.child("inertial")) link.inertial = read_inertial(*inertial);
-      read_joints(element, childclass, link);
     }
-    for (const XmlElement* geom : element.all("geom"))
-      if (const auto shape = read_geom(defaults_.of(*geom, childclass, log_), compiler_, meshes_))
-        link.shapes.push_back(*shape);
+    read_parts(element, inner, link);
     const int number = static_cast<int>(model_.links.size());
     model_.links.push_back(std::move(link));
+    read_bodies(element, inner, number);
+  }
+
+  /// The joints and geoms of a body, also those in its frames.
+  void read_parts(const XmlElement& element, const Around& around, ModelLink& link) {
+    if (link.at->name == "body")
+      for (const char* name : {"joint", "freejoint"})
+        for (const XmlElement* joint : element.all(name)) add_joint(*joint, around, link);
+    for (const XmlElement* geom : element.all("geom"))
+      if (auto shape = read_geom(defaults_.of(*geom, around.childclass, log_), compiler_, meshes_)) {
+        shape->X_LS = around.X_BF * shape->X_LS;
+        if (!shape->name.empty()) shape->name += around.suffix;
+        link.shapes.push_back(std::move(*shape));
+      }
+    in_frames(element, around,
+              [&](const XmlElement& frame, const Around& in) { read_parts(frame, in, link); });
+  }
+
+  void read_bodies(const XmlElement& element, const Around& around, int number) {
     for (const XmlElement* body : element.all("body")) {
       if (log_.errors()) return;
-      read_body(*body, number, childclass);
+      read_body(*body, number, around);
+    }
+    in_frames(element, around,
+              [&](const XmlElement& frame, const Around& in) { read_bodies(frame, in, number); });
+  }
+
+  /// Visits the frames that stand in an element, and each replica, whose frame follows on that of the one
+  /// before it.
+  template <class Visit>
+  void in_frames(const XmlElement& element, const Around& around, Visit visit) {
+    for (const XmlElement* frame : element.all("frame")) {
+      const Attributes of(log_, *frame);
+      of.text("name");
+      const Pose X{rotation_of(of, compiler_), of.vector("pos", Vec3::Zero())};
+      visit(*frame, Around{around.X_BF * X, of.text("childclass", around.childclass), around.suffix});
+    }
+    for (const XmlElement* replicate : element.all("replicate")) {
+      const Attributes of(log_, *replicate);
+      const double count = of.number("count", 0.0);
+      const Pose step{rotation_of(of, compiler_), of.vector("offset", Vec3::Zero())};
+      if (!(count >= 1.0 && count <= kMostReplicas && count == std::floor(count)))
+        return of.fail("count", "how many replicas", fmt::format("{}", count),
+                       fmt::format("a whole number from 1 to {}", kMostReplicas));
+      const std::string last = fmt::format("{}", static_cast<int>(count));
+      Pose X = around.X_BF;
+      for (int i = 0; i < static_cast<int>(count) && !log_.errors(); ++i, X = renormalized(X * step)) {
+        if (++replicas_ > 2 * kMostReplicas)  // each is visited for its geoms and for its bodies
+          return log_.fail(*replicate, "too many replicas", fmt::format("more than {}", kMostReplicas),
+                           "fewer, in all of the file");
+        visit(*replicate, Around{X, around.childclass,
+                                 fmt::format("{}{:0{}}{}", of.text("sep"), i, last.size(), around.suffix)});
+      }
     }
   }
 
@@ -113,25 +170,23 @@ class MjcfReader {
     return inertial;
   }
 
-  void read_joints(const XmlElement& body, const std::string& childclass, ModelLink& link) {
-    std::vector<const XmlElement*> joints = body.all("joint");
-    const std::vector<const XmlElement*> free = body.all("freejoint");
-    joints.insert(joints.end(), free.begin(), free.end());
-    for (const XmlElement* joint : joints) {
-      if (joint != joints.front()) {
-        log_.note(*joint, fmt::format("a body has one joint here: \"{}\" is held by the one in line {} alone",
-                                      link.name, joints.front()->line));
-        for (const XmlAttribute& attribute : joint->attributes) attribute.read = true;
-        continue;
-      }
-      if (joint->name == "freejoint") {
-        Attributes(log_, *joint).text("name");
-        link.joint.kind = JointKind::kFree;
-        link.joint.at = joint;
-        continue;
-      }
-      link.joint = read_joint(defaults_.of(*joint, childclass, log_));
+  /// A body has its first joint.
+  void add_joint(const XmlElement& element, const Around& around, ModelLink& link) {
+    if (link.joint.at != nullptr) {
+      log_.note(element, fmt::format("a body has one joint here: \"{}\" is held by the one in line {} alone",
+                                     link.name, link.joint.at->line));
+      for (const XmlAttribute& attribute : element.attributes) attribute.read = true;
+      return;
     }
+    if (element.name == "freejoint") {
+      Attributes(log_, element).text("name");
+      link.joint.kind = JointKind::kFree;
+      link.joint.at = &element;
+      return;
+    }
+    link.joint = read_joint(defaults_.of(element, around.childclass, log_));
+    link.joint.anchor = around.X_BF * link.joint.anchor;
+    link.joint.axis = around.X_BF.R * link.joint.axis;
   }
 
   ModelJoint read_joint(const Attributes& of) {
@@ -182,6 +237,7 @@ class MjcfReader {
   MjcfDefaults defaults_;
   MjcfMeshes meshes_;
   ImportModel model_;
+  int replicas_ = 0;
 };
 
 }  // namespace
