@@ -192,6 +192,7 @@ class ContactFinder final : public GapOracle {
     return bodies_[std::size_t(a)].part->is_surface() || bodies_[std::size_t(b)].part->is_surface();
   }
   void test_surfaces(const SweepAndPrune::Pair& near, std::span<const Pose> X_WB) noexcept;
+  double cone_inflation(int a, int b) const noexcept;
   bool find_minima(int a, int b, const Pose& X_AB, const MinimaQuery& query) noexcept;
   void add_minima(int a, int b, double margin) noexcept;
   std::size_t reduce_minima(int a, int b, double margin) noexcept;
@@ -248,6 +249,7 @@ class ContactFinder final : public GapOracle {
   std::vector<Aabb> fat_box_;       // in the world, grown
   std::vector<double> box_growth_;  // how far boxes and lists are grown [m]
   std::vector<double> travel_;      // accumulated motion of each body [m]
+  std::vector<double> turn_;        // of each body in the last frame, about; a short one [rad]
   std::vector<Pose> last_X_WB_;     // at which travel_ was last added to
   SweepAndPrune sweep_;
   std::vector<BodyPair> lists_;       // by slot of a near pair

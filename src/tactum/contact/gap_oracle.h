@@ -14,9 +14,10 @@ namespace tactum::inline v0_1 {
 enum class GapAnswer : std::uint8_t {
   kNotAsked,
   kAsked,
-  kExact,   ///< the distance has been computed; of surfaces, or that it is no less than what was searched for
-  kProven,  ///< the motion since the last test proves that it is enough
-  kUnknown  ///< the budget was spent
+  kExact,  ///< the distance has been computed; of surfaces, or that it is no less than what was searched for
+  kElsewhere,  ///< it is that of a contact of the two surfaces which the frame had not found
+  kProven,     ///< the motion since the last test proves that it is enough
+  kUnknown     ///< the budget was spent
 };
 
 /// When moving bodies first touch.
@@ -60,8 +61,10 @@ class GapOracle {
   /// patches: the distance that a step has to keep positive. `distance` has an entry per patch [m]. A
   /// distance that could not be certified counts as zero at most. Between surfaces it is that of every local
   /// minimum there is at the other poses, entered for the patches of the same features; where there is none,
-  /// for the nearest patch. Only minima within a fraction of the margin are searched there: a patch that has
-  /// none gets that length, which is then a lower bound of its distance, with the answer kExact.
+  /// for the nearest patch, with the answer kElsewhere if that one is not implied. Only minima within a
+  /// fraction of the margin are searched there: a patch that has none gets that length, which is then a lower
+  /// bound of its distance, with the answer kExact. Patches of met triangles get the distance of all corners
+  /// of these, with the answer kElsewhere.
   ///
   /// `asked` has an entry per patch and is answered in place. No test is made, when the budget is not ample,
   /// where the motion since the last one proves that the distance is at least `enough`, nor when only

@@ -2,6 +2,7 @@
 /// near.
 
 #include <algorithm>
+#include <numbers>
 #include <utility>
 
 #include "tactum/contact/contact_finder.h"
@@ -47,6 +48,7 @@ bool inside(const Aabb& small, const Aabb& large) {
 ContactFinder::ContactFinder(std::vector<CollisionBody> bodies, std::span<const Pose> X_WB,
                              const ContactFinderCapacity& capacity, double dt_s, double scale)
     : bodies_(std::move(bodies)),
+      turn_(bodies_.size(), 0.0),
       last_X_WB_(X_WB.begin(), X_WB.end()),
       sweep_([&] {
         for (Index i = 0; i < bodies_.size(); ++i) {
@@ -113,6 +115,7 @@ void ContactFinder::move_boxes(std::span<const Pose> X_WB) noexcept {
   for (Index i = 0; i < bodies_.size(); ++i) {
     if (!bodies_[i].moves) continue;
     travel_[i] += displacement(last_X_WB_[i], X_WB[i], radius_[i]);
+    turn_[i] = (X_WB[i].R - last_X_WB_[i].R).norm() / std::numbers::sqrt2;
     last_X_WB_[i] = X_WB[i];
     const double needed = std::max(motion_bound_[i], min_tolerance_);
     const Aabb tight = turned(part_box_[i], X_WB[i], needed);

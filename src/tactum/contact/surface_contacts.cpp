@@ -34,6 +34,10 @@ constexpr double kFarther = 8.0;
 /// of a fast step.
 constexpr double kUnprovenMargin = 1e-3;
 
+/// The cones of surfaces are inflated by the turn of free bodies in a frame, up to the most that a query
+/// takes [rad].
+constexpr double kMostInflation = 0.1;
+
 /// Whether two minima are on one face of B, or on one edge or corner of it.
 bool same_on_b(const SurfaceMinimum& one, const SurfaceMinimum& other, const SurfaceTree& b) noexcept {
   if (one.b.kind != other.b.kind) return false;
@@ -134,7 +138,7 @@ void ContactFinder::test_surfaces(const SweepAndPrune::Pair& near, std::span<con
   MinimaQuery query{
       .max_distance = margin,
       .depth = may_cross ? kSurfaceDepth * std::min(part_a.size, part_b.size) : kWatched * margin,
-      .cone_inflation = tolerances::kConeInflation};
+      .cone_inflation = cone_inflation(a, b)};
   const Pose X_AB = relative_pose(X_WB[Index(a)], X_WB[Index(b)]);
   if (!may_cross && test_ball(a, b, X_AB, margin)) {
     list.free_until = accumulated_motion(a, b) + (minima_.empty() ? margin : 0.0);
@@ -170,6 +174,14 @@ void ContactFinder::test_surfaces(const SweepAndPrune::Pair& near, std::span<con
   if (full) list.nearest = 0.0;
   add_minima(a, b, margin);
   if (!may_cross) add_met_triangles(a, b, X_AB, margin);
+}
+
+/// By how much the cones of two surfaces are inflated: corners that the bodies may turn down in this frame
+/// are contacts, too. A hand turns its part slowly, and steps that turn it farther are tested and cut; in the
+/// penalty response there would be more springs where there are more contacts.
+double ContactFinder::cone_inflation(int a, int b) const noexcept {
+  if (of_grasped(a, b) || points_ == PatchPoints::kQuadrature) return tolerances::kConeInflation;
+  return std::clamp(turn_[Index(a)] + turn_[Index(b)], tolerances::kConeInflation, kMostInflation);
 }
 
 /// The minima of two surfaces, into minima_; true where it has no room for them.
@@ -264,8 +276,8 @@ void ContactFinder::surface_distances_at(std::span<const ContactPatch> patches, 
   std::fill(distance.begin(), distance.end(), query.max_distance);
   for (Index i = 0; i < patches.size(); ++i) {
     if (!patches[i].met) continue;
-    distance[i] = distance_of_met(patches[i], X_AB);
-    asked[i] = GapAnswer::kExact;
+    distance[i] = distance_of_met(patches[i], X_AB);  // of all corners of the triangles
+    asked[i] = patches[i].implied ? GapAnswer::kExact : GapAnswer::kElsewhere;
   }
   const auto nearest = std::min_element(patches.begin(), patches.end(),
                                         [](const auto& p, const auto& q) { return p.distance < q.distance; });
@@ -273,10 +285,12 @@ void ContactFinder::surface_distances_at(std::span<const ContactPatch> patches, 
     auto same = std::find_if(patches.begin(), patches.end(), [&](const ContactPatch& patch) {
       return patch.manifold.a == minimum.a && patch.manifold.b == minimum.b;
     });
+    const bool elsewhere = same == patches.end() && !nearest->implied;
     if (same == patches.end()) same = nearest;
     const Index number = Index(same - patches.begin());
-    asked[number] = GapAnswer::kExact;
     double& d = distance[number];
+    if (asked[number] == GapAnswer::kProven || minimum.distance < d)
+      asked[number] = elsewhere ? GapAnswer::kElsewhere : GapAnswer::kExact;
     d = std::min(d, minimum.distance);
   }
   share_step(patches, distance, asked);

@@ -237,8 +237,7 @@ double gap_at_trial(const ContactRow& row, const ConstraintStep& step) noexcept 
 }
 
 double overstated_at_trial(std::span<const ContactRow> rows_of_patch, const ConstraintStep& step) noexcept {
-  if (step.own.constraint.trial.gap_answer[Index(rows_of_patch.front().patch)] != GapAnswer::kExact)
-    return 0.0;
+  if (!known_at_trial(Index(rows_of_patch.front().patch), step)) return 0.0;
   double least = std::numeric_limits<double>::infinity();
   for (const ContactRow& row : rows_of_patch) least = std::min(least, gap_at_trial(row, step));
   return std::max(0.0, least - step.own.constraint.trial.gap[Index(rows_of_patch.front().patch)]);

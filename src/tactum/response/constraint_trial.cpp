@@ -37,17 +37,22 @@ void look_at_trial(int keep_back, ConstraintStep& step) noexcept {
                                         GapAnswer::kUnknown) != c.trial.gap_answer.end();
 }
 
+bool known_at_trial(std::size_t patch, const ConstraintStep& step) noexcept {
+  const GapAnswer answer = step.own.constraint.trial.gap_answer[patch];
+  return answer == GapAnswer::kExact || answer == GapAnswer::kElsewhere;
+}
+
 bool closed_at_trial(std::size_t patch, const ConstraintStep& step) noexcept {
   const TrialPose& trial = step.own.constraint.trial;
   if (!step.own.free.patch_asked[patch]) return false;
-  if (trial.gap_answer[patch] == GapAnswer::kExact) return !(trial.gap[patch] >= trial.gap_least[patch]);
+  if (known_at_trial(patch, step)) return !(trial.gap[patch] >= trial.gap_least[patch]);
   return trial.gap_answer[patch] != GapAnswer::kProven;
 }
 
 bool crossed_at_trial(std::size_t patch, const ConstraintStep& step) noexcept {
   const TrialPose& trial = step.own.constraint.trial;
   if (!step.own.free.patch_asked[patch]) return false;
-  if (trial.gap_answer[patch] == GapAnswer::kExact) return !(trial.gap[patch] > 0.0);
+  if (known_at_trial(patch, step)) return !(trial.gap[patch] > 0.0);
   return trial.gap_answer[patch] != GapAnswer::kProven;
 }
 

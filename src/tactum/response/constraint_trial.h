@@ -12,6 +12,9 @@ inline constexpr double kPassingGap = 0.02;
 /// Asks for the gaps at the trial of the patches that FreeBodies::patch_asked names, as long as more than
 /// `keep_back` tests are left. Fills TrialPose::gap, gap_least and gap_answer.
 void look_at_trial(int keep_back, ConstraintStep& step) noexcept;
+/// Whether the gap of a patch at the trial has been computed, of whatever contact of its surfaces.
+bool known_at_trial(std::size_t patch, const ConstraintStep& step) noexcept;
+
 /// Whether the gap of a patch was asked for and is not open at the trial, at least gap_least. One that the
 /// budget left unknown is not open.
 bool closed_at_trial(std::size_t patch, const ConstraintStep& step) noexcept;

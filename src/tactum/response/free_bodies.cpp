@@ -99,6 +99,19 @@ bool look(bool all, int keep_back, ConstraintStep& step) {
   return all_open;
 }
 
+/// Whether the gap of a patch at the trial is that of a contact which the frame had not found.
+bool is_elsewhere(Index patch, const ConstraintStep& step) {
+  return step.own.constraint.trial.gap_answer[patch] == GapAnswer::kElsewhere;
+}
+
+/// Whether some gap that is not open is such a one.
+bool closed_elsewhere(const ConstraintStep& step) {
+  const std::span<const char> closed = step.own.free.patch_closed;
+  for (Index p = 0; p < closed.size(); ++p)
+    if (closed[p] && is_elsewhere(p, step)) return true;
+  return false;
+}
+
 /// Cuts the steps of the bodies whose gaps are not open: to half, or, without `halve` or where the gap is not
 /// known exactly, to nothing.
 void cut(bool halve, ConstraintStep& step) {
@@ -107,7 +120,7 @@ void cut(bool halve, ConstraintStep& step) {
   std::fill(f.cut.begin(), f.cut.end(), 0);
   for (Index p = 0; p < patches.size(); ++p) {
     if (!f.patch_closed[p]) continue;
-    const bool known = step.own.constraint.trial.gap_answer[p] == GapAnswer::kExact;
+    const bool known = known_at_trial(p, step);
     for (const int body : {patches[p].body_a, patches[p].body_b}) {
       if (!moves_here(step, Index(body))) continue;
       double& share = f.share[Index(body)];
@@ -187,6 +200,9 @@ void correct(ConstraintStep& step) {
     const Index b = Index(rows[first].body_b);
     const int of_contact = f.islands.of_contact(rows[first].body_a, rows[first].body_b);
     if (of_contact < 0 || f.settled[Index(of_contact)]) continue;
+    // A force of these rows would not keep another contact open, but make energy: the step is cut there, and
+    // the next frame has that contact.
+    if (is_elsewhere(Index(rows[first].patch), step)) continue;
     const double too_much = overstated_at_trial(rows.subspan(first, end - first), step);
     const double share = f.share[Index(of_contact)];
     if (!(share > 0.0)) continue;  // it stays, and its rows are not corrected
@@ -347,7 +363,8 @@ void move_free_bodies(ConstraintStep& step) noexcept {
       limit_shares(step);
     } else if (++cuts <= kBacktracks + kMostStops) {
       round = kFeedbacks;
-      cut(cuts <= kBacktracks, step);
+      const bool at_paths = cuts == 1 && closed_elsewhere(step) && !cut_at_paths(step);
+      if (!at_paths) cut(cuts <= kBacktracks, step);
     } else {
       stay(step);
     }
