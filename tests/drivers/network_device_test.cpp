@@ -93,9 +93,10 @@ class Peer {
     else
       ::sendto(socket_, bytes.data(), bytes.size(), 0, reinterpret_cast<sockaddr*>(&theirs_), sizeof theirs_);
   }
-  /// Says hello and answers each command after `delay_s`, in a thread, as long as answers() is asked for.
-  void answer(double delay_s, std::uint16_t version = 1, bool answers = true) {
-    thread_ = std::thread([=, this] { run(delay_s, version, answers); });
+  /// Says hello, and from `silent_s` on answers each command after `delay_s`, in a thread, until
+  /// stop_answering().
+  void answer(double delay_s, std::uint16_t version = 1, double silent_s = 0.0) {
+    thread_ = std::thread([=, this] { run(delay_s, version, silent_s); });
   }
   void stop_answering() {
     ends_ = true;
@@ -114,8 +115,12 @@ class Peer {
     bytes.resize(size < 0 ? 0 : static_cast<std::size_t>(size));
     return bytes;
   }
-  void run(double delay_s, std::uint16_t version, bool answers) {
+  void run(double delay_s, std::uint16_t version, double silent_s) {
     using Clock = std::chrono::steady_clock;
+    const auto seconds = [](double s) {
+      return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(s));
+    };
+    const Clock::time_point answers_from = Clock::now() + seconds(silent_s);
     std::deque<std::pair<Clock::time_point, std::uint32_t>> due;
     Clock::time_point hello_at{};
     while (!ends_) {
@@ -125,10 +130,8 @@ class Peer {
         hello_at = Clock::now();
       }
       const Bytes bytes = take();
-      if (bytes.size() == kCommandBytes && get<std::uint16_t>(bytes, 6) == 4 && answers)
-        due.emplace_back(Clock::now() + std::chrono::duration_cast<Clock::duration>(
-                                            std::chrono::duration<double>(delay_s)),
-                         get<std::uint32_t>(bytes, 12));
+      if (bytes.size() == kCommandBytes && get<std::uint16_t>(bytes, 6) == 4 && Clock::now() >= answers_from)
+        due.emplace_back(Clock::now() + seconds(delay_s), get<std::uint32_t>(bytes, 12));
       while (!due.empty() && due.front().first <= Clock::now()) {
         const std::uint32_t sequence = ++states_;
         send(state(sequence, 1e-3 * sequence, due.front().second, 0.0, 0.0));
@@ -147,8 +150,9 @@ class Peer {
   std::thread thread_;
 };
 
-NetworkDeviceOptions at(const Peer& peer) {
+NetworkDeviceOptions at(const Peer& peer, double wait_for_hello_s = 10.0) {
   NetworkDeviceOptions options;
+  options.wait_for_hello_s = wait_for_hello_s;
   options.port = peer.port();
   options.stale_after_s = 3600.0;
   return options;
@@ -444,6 +448,15 @@ TEST(NetworkDevice, OneDeviceAtATime) {
   }
 }
 
+TEST(NetworkDevice, ThatAnswersLateAtFirstIsAskedAgain) {
+  for (const Over over : {Over::kUdp, Over::kWebSocket}) {
+    Peer peer(over);
+    peer.answer(0.0, 1, 0.5);
+    const Result<std::unique_ptr<Device>> device = NetworkDevice::connect(at(peer));
+    ASSERT_TRUE(device) << device.error().message();
+  }
+}
+
 TEST(NetworkDevice, WhatIsWrongIsToldWithItsCure) {
   const auto expect = [](const NetworkDeviceOptions& options, std::initializer_list<const char*> words) {
     const Result<std::unique_ptr<Device>> device = NetworkDevice::connect(options);
@@ -453,21 +466,17 @@ TEST(NetworkDevice, WhatIsWrongIsToldWithItsCure) {
   };
   {
     Peer peer;
-    NetworkDeviceOptions options = at(peer);
-    options.wait_for_hello_s = 0.01;
-    expect(options, {"no device says hello", "nothing", "docs/devices/network.md"});
+    expect(at(peer, 0.01), {"no device says hello", "nothing", "docs/devices/network.md"});
   }
   {
     Peer peer;
     peer.answer(0.0, 2);
-    NetworkDeviceOptions options = at(peer);
-    options.wait_for_hello_s = 0.3;
-    expect(options, {"no device says hello", "version 2 of the protocol"});
+    expect(at(peer, 0.3), {"no device says hello", "version 2 of the protocol"});
   }
   {
     Peer peer;
-    peer.answer(0.0, 1, false);
-    expect(at(peer), {"does not answer in time", "0 answers"});
+    peer.answer(0.0, 1, 3600.0);
+    expect(at(peer, 0.3), {"does not answer in time", "0 answers"});
   }
   {
     Peer peer;

@@ -1,7 +1,7 @@
 # The page in Debian's Chromium, a test a topic: tests/viewer/browser/run.mjs TOPIC. Without a page or a browser they are
 # skipped, and say so.
 set(topics loads drag hands glass field picking inspect friction raw energy wall stop scenes viewers stall dropped gone refusals why panel settings remarks
-  keyboard spacemouse gamepad narrow layout hover exports record replay pictures)
+  keyboard spacemouse gamepad device narrow layout hover exports record replay pictures)
 find_program(NODE NAMES node nodejs)
 foreach(topic ${topics})
   add_test(NAME viewer.browser.${topic}

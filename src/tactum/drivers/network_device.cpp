@@ -116,19 +116,24 @@ DriverSurvey NetworkDevice::survey() {
 
 Result<void> NetworkDevice::connect_once() {
   if (link_.is_listening()) return {};
-  if (Result<void> listening = link_.listen(options_.address, options_.port); !listening) return listening;
-  Result<void> met = wait_for_hello();
-  if (met) met = measure_delay();
-  if (!met) {
+  const double until_s = steady_s() + options_.wait_for_hello_s;
+  Result<void> tried;  // how the last device answered that said hello
+  for (;;) {
+    if (Result<void> listening = link_.listen(options_.address, options_.port); !listening) return listening;
+    if (const Result<void> met = wait_for_hello(until_s); !met) {
+      link_.close();
+      return tried ? met : tried;
+    }
+    tried = measure_delay();
+    if (tried) return {};
+    // It may say hello again: a page that has just been loaded answers late for a while.
     say(TACTUM_WIRE_BYE);
     link_.close();
   }
-  return met;
 }
 
-Result<void> NetworkDevice::wait_for_hello() {
+Result<void> NetworkDevice::wait_for_hello(double until_s) {
   std::vector<unsigned char> bytes(2048);
-  const double until_s = steady_s() + options_.wait_for_hello_s;
   std::string heard = "nothing";
   for (;;) {
     const double left_s = until_s - steady_s();

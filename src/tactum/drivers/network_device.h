@@ -66,7 +66,7 @@ class NetworkDevice final : public Device {
  private:
   explicit NetworkDevice(NetworkDeviceOptions options) : options_(std::move(options)) {}
   Result<void> connect_once();
-  Result<void> wait_for_hello();
+  Result<void> wait_for_hello(double until_s);
   Result<void> take_hello(const std::vector<unsigned char>& datagram);
   Result<void> measure_delay();
   bool drain(double now_s) noexcept;

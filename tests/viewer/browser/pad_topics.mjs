@@ -1,6 +1,30 @@
 // The hand led by a SpaceMouse and by a gamepad: stand-ins of navigator.hid and navigator.getGamepads. The descriptors are laid out
 // as those of real models are: turns in a report of their own (SpaceNavigator), or all six axes in one (SpaceMouse Wireless).
-import { check, graspedAt, openPage, pause, Program, state, until, whenStill } from "./support.mjs";
+// And a page that is a device itself, which joins over WebSocket (examples/network_device.html).
+import { mkdtempSync, readFileSync } from "node:fs";
+import { createServer } from "node:http";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { check, graspedAt, openPage, pause, Program, readCsv, root, state, until, whenStill } from "./support.mjs";
+
+/** The examples, served from this machine as people serve them. */
+async function serveExamples() {
+  const kinds = { html: "text/html", mjs: "text/javascript" };
+  const server = createServer((request, response) => {
+    const name = new URL(request.url, "http://localhost").pathname.slice(1);
+    if (!/^[a-z_]+\.(html|mjs)$/.test(name)) return response.writeHead(404).end();
+    response.writeHead(200, { "Content-Type": kinds[name.split(".")[1]] }).end(readFileSync(join(root, "examples", name)));
+  });
+  await new Promise((resolve) => server.listen(0, "127.0.0.1", resolve));
+  return server;
+}
+
+/** What the page of the device says of the force on its hand: toward, right, up [N]. */
+async function forceOnDevicePage(page) {
+  const words = await page.textContent("#told");
+  const [, ...numbers] = words.match(/^force: toward you (-?[\d.]+) N, right (-?[\d.]+) N, up (-?[\d.]+) N$/) ?? [];
+  return numbers.length === 3 ? numbers.map(Number) : null;
+}
 
 /** In the page, before its scripts. */
 function withSpaceMice() {
@@ -140,5 +164,44 @@ export const topics = {
     await page.evaluate(() => (window.pad.buttons[0] = { pressed: false, touched: false, value: 0 }));
     check(page.complaints.length === 0, page.complaints.join("; "));
     await program.end();
+  },
+
+  async device(browser, tactum) {
+    const port = 20000 + (process.pid % 20000);
+    const server = await serveExamples();
+    const page = await (await browser.newContext()).newPage();
+    const complaints = [];
+    page.on("pageerror", (error) => complaints.push(String(error)));
+    await page.goto(`http://127.0.0.1:${server.address().port}/network_device.html?port=${port}`); // waits for the program
+    const trace = join(mkdtempSync(join(tmpdir(), "tactum-device-")), "run.csv");
+    const program = Program.spawned(tactum, ["feel", "block-on-plate", "--device", `network:${port}`, "--trace", trace]);
+    await until("the program says whose device it is", () => program.said.includes("network page at 1000 Hz"));
+    const box = await page.locator("#plane").boundingBox();
+    const goTo = (right_mm, up_mm) => page.mouse.move(box.x + box.width / 2 + 3 * right_mm, box.y + box.height / 2 - 3 * up_mm, { steps: 20 });
+    await goTo(0, 0);
+    await page.mouse.down();
+    await goTo(0, -20); // the plate is 5 mm below the block
+    const pressed = await until("the page shows a force that pushes the hand up", async () => {
+      const [, , up] = (await forceOnDevicePage(page)) ?? [0, 0, 0];
+      await pause(0.3);
+      const force = await forceOnDevicePage(page);
+      return up > 0.5 && force && Math.abs(force[2] - up) < 0.02 && force;
+    });
+    await goTo(0, 10);
+    await until("in the air it feels nothing", async () => Math.hypot(...((await forceOnDevicePage(page)) ?? [1])) < 0.02);
+    await goTo(20, 10);
+    await pause(1);
+    await page.mouse.up();
+    await program.interrupt();
+    await until("after the goodbye no force is left on it", async () => ((await forceOnDevicePage(page)) ?? [1]).every((part) => part === 0));
+    const rows = readCsv(readFileSync(trace));
+    const [highest, lowest, rightmost] = [Math.max(...rows.map((row) => row.hand_pz_m)), Math.min(...rows.map((row) => row.hand_pz_m)), Math.max(...rows.map((row) => row.hand_py_m))];
+    const origin = rows[0];
+    check(highest - origin.hand_pz_m > 0.008 && rightmost - origin.hand_py_m > 0.016 && lowest - origin.hand_pz_m < -0.008,
+      `the page has led the hand: up to ${highest}, down to ${lowest}, to the right to ${rightmost} m`);
+    const told = rows.some((row) => ["x", "y", "z"].every((axis, i) => Math.abs(row[`sent_f${axis}_N`] - pressed[i]) < 0.006));
+    check(told, `it has shown what it was sent: ${pressed}`);
+    check(complaints.length === 0, complaints.join("; "));
+    server.close();
   },
 };
