@@ -172,7 +172,6 @@ TEST(SeveralTools, ErrorsNameTheToolAndItsLine) {
   EXPECT_NE(error(first + "body = \"b\"\n[tool.hand]\nstep = [{ offset_m = [9, 0, 0], duration_s = 1 }]\n")
                 .find("leaves the workspace"),
             std::string::npos);
-  EXPECT_NE(error(first + "body = \"b\"\n", "response = \"penalty\"\n").find("one hand"), std::string::npos);
 }
 
 TEST(SeveralTools, ADescriptionHasNoSecondWithoutAFirst) {

@@ -11,10 +11,9 @@ namespace tactum::inline v0_1 {
 namespace {
 
 /// Whether the hand holds, or may pick up, a body that a pair joint joins to another one.
-bool may_hold_joined(const World& world, const FrameSettings& settings) {
-  const int tool = settings.tool.body;
+bool may_hold_joined(const World& world, const Tool& tool) {
   return std::any_of(world.pair_joints.begin(), world.pair_joints.end(), [&](const PairJoint& pair) {
-    return settings.tool.picks || pair.body == tool || pair.parent == tool;
+    return tool.picks || pair.body == tool.body || pair.parent == tool.body;
   });
 }
 
@@ -34,19 +33,18 @@ Result<void> check_world(const World& world, const FrameSettings& settings) {
     if (const int tool = settings.hand(h).tool.body; tool >= bodies)
       return Error{"the tool holds a body that is not there", std::to_string(tool),
                    "less than " + std::to_string(bodies), ""};
-  if (settings.response == ResponseModel::kPenalty && settings.hands() > 1)
-    return Error{"the penalty response knows one hand only", std::to_string(settings.hands()) + " tools",
-                 "response = \"constraint\", or one tool", ""};
   for (const PairCoefficients* table : {&settings.friction, &settings.impacts.restitution})
     if (!table->coefficients.empty() &&
         (table->bodies != bodies || table->coefficients.size() != world.bodies.size() * world.bodies.size()))
       return Error{"a table of friction or restitution is of another world",
                    std::to_string(table->bodies) + " bodies", std::to_string(bodies), ""};
-  if (settings.response == ResponseModel::kPenalty && may_hold_joined(world, settings))
-    return Error{
-        "in the penalty response the hand cannot hold a body that is jointed to another one that moves",
-        settings.tool.picks ? "a tool that picks up any body" : "such a body as the tool",
-        "response = \"constraint\", or a body without such joints as the tool", ""};
+  for (std::size_t h = 0; h < settings.hands(); ++h)
+    if (const Tool& tool = settings.hand(h).tool;
+        settings.response == ResponseModel::kPenalty && may_hold_joined(world, tool))
+      return Error{
+          "in the penalty response the hand cannot hold a body that is jointed to another one that moves",
+          tool.picks ? "a tool that picks up any body" : "such a body as the tool",
+          "response = \"constraint\", or a body without such joints as the tool", ""};
   if (!(settings.dt_s > 0.0))
     return Error{"the frame's step is not positive", std::to_string(settings.dt_s) + " s", "more", ""};
   return {};

@@ -108,7 +108,9 @@ void make_contact_rows(const ContactSource& from, double stiffness_N_per_m, Cont
   out.full = false;
   for (Index i = 0; i < from.patches.size() && i < out.facets.capacity(); ++i) {
     const ContactPatch& patch = from.patches[i];
-    if (from.body >= 0 && patch.body_a != from.body && patch.body_b != from.body) continue;
+    if (!from.of_bodies.empty() && !from.of_bodies[Index(patch.body_a)] &&
+        !from.of_bodies[Index(patch.body_b)])
+      continue;
     out.facets.push_back({patch.body_a, patch.body_b, patch.facets.a, patch.facets.b, static_cast<int>(i)});
   }
   std::sort(out.facets.begin(), out.facets.end(),

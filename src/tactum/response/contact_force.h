@@ -53,7 +53,7 @@ struct ContactRows {
 struct ContactSource {
   std::span<const Pose> X_WB;                  ///< of the bodies [m]
   std::span<const ContactPatch> patches;       ///< found there
-  int body = -1;                               ///< only patches of this body become rows; -1: all
+  std::span<const char> of_bodies;             ///< by body: only patches of these become rows; empty: all
   const std::vector<ShadingNormals>& shading;  ///< one per body; empty: normals without shading
   std::span<const double> depth_scale;  ///< by patch: factor for the depth of points that overlap; empty: 1
 };

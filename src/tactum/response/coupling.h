@@ -47,6 +47,21 @@ GraspedBody grasped_body_of(const BodyLoad& load, const GraspedPart& grasped, co
 /// apart from each other.
 GraspedBody grasped_by_both(const GraspedBody& one, const GraspedBody& other) noexcept;
 
+/// The part that `body` is, with the couplings of all hands that hold it; by_hand(hand, number) is the part
+/// with that of one.
+template <class ByHand>
+GraspedBody grasped_by_all(std::span<const HandInput> hands, int body, const ByHand& by_hand) noexcept {
+  GraspedBody by_all;
+  bool first = true;
+  for (std::size_t h = 0; h < hands.size(); ++h) {
+    if (hands[h].grasped.body != body) continue;
+    const GraspedBody by_this = by_hand(hands[h], h);
+    by_all = first ? by_this : grasped_by_both(by_all, by_this);
+    first = false;
+  }
+  return by_all;
+}
+
 /// The displacement of the handle, (m, rad), at which the coupling's spring and damper are in balance, when
 /// the hand is the displacement `to_hand` away.
 Vec6 balanced_step(const Coupling& coupling, double dt_s, const Twist& to_hand, const Twist& V_WH) noexcept;

@@ -37,15 +37,9 @@ GraspedBody body_of(const ConstraintStep& step, const HandInput& hand, const Vec
 /// of each handle.
 template <class TargetOf>
 void add_part(int body, const ConstraintStep& step, ContactProblem& problem, const TargetOf& target_of) {
-  GraspedBody as_body;
-  bool first = true;
-  for (Index h = 0; h < step.hands.size(); ++h) {
-    const HandInput& hand = step.hands[h];
-    if (hand.grasped.body != body) continue;
-    const GraspedBody by_hand = body_of(step, hand, target_of(hand, h));
-    as_body = first ? by_hand : grasped_by_both(as_body, by_hand);
-    first = false;
-  }
+  const GraspedBody as_body = grasped_by_all(step.hands, body, [&](const HandInput& hand, Index h) {
+    return body_of(step, hand, target_of(hand, h));
+  });
   problem.add_body_and_joint(step.world, placed(step.world, step.bodies, body), as_body.centre_W,
                              as_body.metric, as_body.target, step.dt_s);
 }

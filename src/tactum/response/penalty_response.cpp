@@ -25,24 +25,23 @@ GraspMetric coupling_stiffness(const Coupling& coupling) {
   return {coupling.stiffness_N_per_m, coupling.stiffness_Nm_per_rad};
 }
 
-/// Keeps the grasped part's step below the threshold distance. True where the step was longer.
-bool limit_grasped(const MotionInput& input, WorldState& bodies) {
-  if (input.grasped().body < 0) return false;
-  Twist& V_WB = bodies.V_WB[Index(input.grasped().body)];
-  const double step =
-      (V_WB.v.norm() + V_WB.w.norm() * input.radius_m[Index(input.grasped().body)]) * input.dt_s;
-  if (!(step > input.limits.step_m)) return false;
-  V_WB = V_WB * (input.limits.step_m / step);
+/// Keeps the step of the part that a hand holds below the threshold distance. True where it was longer.
+bool limit_grasped(const MotionInput& input, const HandInput& hand, WorldState& bodies) {
+  if (hand.grasped.body < 0) return false;
+  Twist& V_WB = bodies.V_WB[Index(hand.grasped.body)];
+  const double step = (V_WB.v.norm() + V_WB.w.norm() * input.radius_m[Index(hand.grasped.body)]) * input.dt_s;
+  if (!(step > hand.limits.step_m)) return false;
+  V_WB = V_WB * (hand.limits.step_m / step);
   return true;
 }
 
-/// Cuts the rest of the grasped part's step, `rest_s` seconds with V_rest after `impact_s` with V_first, so
-/// that both together lead no farther than the threshold distance. The way there and back is not counted:
-/// where the part is pushed off again after an impact, the contact force would be that of a pose which is
-/// not taken.
-void limit_rest(const MotionInput& input, const Twist& V_first, double impact_s, double rest_s,
-                Twist& V_rest) {
-  const double radius_m = input.radius_m[Index(input.grasped().body)];
+/// Cuts the rest of the step of the part that a hand holds, `rest_s` seconds with V_rest after `impact_s`
+/// with V_first, so that both together lead no farther than the threshold distance. The way there and back is
+/// not counted: where the part is pushed off again after an impact, the contact force would be that of a pose
+/// which is not taken.
+void limit_rest(const MotionInput& input, const HandInput& hand, const Twist& V_first, double impact_s,
+                double rest_s, Twist& V_rest) {
+  const double radius_m = input.radius_m[Index(hand.grasped.body)];
   const Twist first = V_first * impact_s;
   const Twist rest = V_rest * rest_s;
   const auto step_of = [&](double share) {
@@ -50,22 +49,21 @@ void limit_rest(const MotionInput& input, const Twist& V_first, double impact_s,
     const double both = 0.5 * first.w.norm() * rest.w.norm() * share;
     return (first.v + share * rest.v).norm() + ((first.w + share * rest.w).norm() + both) * radius_m;
   };
-  if (!(step_of(1.0) > input.limits.step_m)) return;
+  if (!(step_of(1.0) > hand.limits.step_m)) return;
   double share = 0.0;
   double more = 0.5;
   for (int i = 0; i < kBisections; ++i, more *= 0.5)
-    if (step_of(share + more) <= input.limits.step_m) share += more;
+    if (step_of(share + more) <= hand.limits.step_m) share += more;
   V_rest = V_rest * share;
 }
 
-/// Whether a body other than the grasped one may meet anything but that, or falls: then all of them move by
-/// impulses.
-bool others_meet(const World& world, int grasped) {
+/// Whether a body that nobody holds may meet another such body, or falls: then all of them move by impulses.
+bool others_meet(const World& world, std::span<const char> grasped) {
   if (!world.pair_joints.empty()) return true;
   int others = 0;
   bool moves = false;
   for (Index i = 0; i < world.bodies.size(); ++i) {
-    if (static_cast<int>(i) == grasped) continue;
+    if (grasped[i]) continue;
     if (world.bodies[i].joint.kind == JointKind::kFree) return true;
     ++others;
     moves |= world.bodies[i].moves();
@@ -122,7 +120,10 @@ double first_impact(const StepInput& input, std::span<const ContactRow> rows, Ga
 PenaltyResponse::PenaltyResponse(const World& world, const FrameSettings& settings, WorldState& bodies)
     : contacts_(settings.budget.capacity.patches, Index(settings.budget.max_contact_points)),
       memory_(world, settings),
+      hands_(settings.hands()),
       pushed_(world.bodies.size(), 0),
+      is_grasped_(world.bodies.size(), 0),
+      V_first_(world.bodies.size()),
       islands_(world),
       bodies_(world.bodies.size(), world.bodies.size()),
       rows_(world.bodies.size(), Index(settings.budget.max_contact_points)),
@@ -136,15 +137,23 @@ PenaltyResponse::PenaltyResponse(const World& world, const FrameSettings& settin
                   ContactProblem::kJointRows * world.bodies.size());
 }
 
-/// The grasped part's target, from where it is: the whole displacement to where its coupling carries its
-/// weight and load, however short the step. It has no inertia, so nothing but its coupling holds it back.
+/// The grasped parts' targets, from where they are: the whole displacement to where their couplings carry
+/// weight and load, however short the step. They have no inertia, so nothing but the couplings holds them
+/// back.
 void PenaltyResponse::aim_grasped(const MotionInput& input, const WorldState& bodies) noexcept {
-  if (input.grasped().body < 0) return;
-  const Body& body = input.world.bodies[Index(input.grasped().body)];
-  Wrench load = body.load.constant;
-  load.f += body.mass_kg * input.world.gravity_W;
-  target_ = to_vector(
-      equilibrium_step(input.coupling(), input.grasped(), load, bodies.X_WB[Index(input.grasped().body)]));
+  for (Index h = 0; h < input.hands.size(); ++h) {
+    const HandInput& hand = input.hands[h];
+    if (hand.grasped.body < 0) continue;
+    const Body& body = input.world.bodies[Index(hand.grasped.body)];
+    const Pose& X_WB = bodies.X_WB[Index(hand.grasped.body)];
+    if (!hand.bears_load) {
+      hands_[h].target = to_vector(handle_at(hand.grasped, X_WB).to_hand);
+      continue;
+    }
+    Wrench load = body.load.constant;
+    load.f += body.mass_kg * input.world.gravity_W;
+    hands_[h].target = to_vector(equilibrium_step(hand.coupling, hand.grasped, load, X_WB));
+  }
 }
 
 /// Adds a body with its target over a step of `h_s` seconds.
@@ -152,9 +161,11 @@ void PenaltyResponse::add_body(const MotionInput& input, int body, double h_s,
                                const WorldState& bodies) noexcept {
   const Body& what = input.world.bodies[Index(body)];
   const Pose& X_WB = bodies.X_WB[Index(body)];
-  if (body == input.grasped().body) {
-    const GraspedBody as_body = grasped_body_of(what.load, input.grasped(), X_WB,
-                                                coupling_stiffness(input.coupling()), target_, input.dt_s);
+  if (is_grasped_[Index(body)]) {
+    const GraspedBody as_body = grasped_by_all(input.hands, body, [&](const HandInput& hand, Index number) {
+      return grasped_body_of(hand.bears_load ? what.load : BodyLoad{}, hand.grasped, X_WB,
+                             coupling_stiffness(hand.coupling), hands_[number].target, input.dt_s);
+    });
     problem_.add_body(placed(input.world, bodies, body), as_body.centre_W, as_body.metric, as_body.target,
                       h_s);
     return;
@@ -166,7 +177,8 @@ void PenaltyResponse::add_body(const MotionInput& input, int body, double h_s,
 
 std::span<const double> PenaltyResponse::bound_motion(const MotionInput& input, WorldState& bodies) noexcept {
   const World& world = input.world;
-  by_impulses_ = others_meet(world, input.grasped().body);
+  for (Index i = 0; i < is_grasped_.size(); ++i) is_grasped_[i] = is_grasped(input.hands, i) ? 1 : 0;
+  by_impulses_ = others_meet(world, is_grasped_);
   aim_grasped(input, bodies);
   memory_.waiting.V_kept = bodies.V_WB;  // same size: nothing is allocated
   if (by_impulses_) {
@@ -177,14 +189,14 @@ std::span<const double> PenaltyResponse::bound_motion(const MotionInput& input, 
   for (Index i = 0; i < world.bodies.size(); ++i) {
     const Body& body = world.bodies[i];
     const int number = static_cast<int>(i);
-    if (!body.moves() || (by_impulses_ && number != input.grasped().body)) continue;
+    if (!body.moves() || (by_impulses_ && !is_grasped_[i])) continue;
     Twist& V_WB = bodies.V_WB[i];
-    if (number != input.grasped().body) {
+    if (!is_grasped_[i]) {
       V_WB = carried_velocity(body.joint, bodies.X_WB[i], V_WB);
       V_WB = driven_velocity(body, world.gravity_W, bodies.X_WB[i], V_WB, input.dt_s);
     }
     V_before_joints_[i] = V_WB;
-    if (number != input.grasped().body && body.joint.kind == JointKind::kFree) continue;
+    if (!is_grasped_[i] && body.joint.kind == JointKind::kFree) continue;
     // First the motion that the joint allows, and where the hand and the joint's forces lead without contact.
     problem_.clear();
     add_body(input, number, input.dt_s, bodies);
@@ -192,19 +204,23 @@ std::span<const double> PenaltyResponse::bound_motion(const MotionInput& input, 
     solve_penalty({}, input.settings.budget.solver_iterations, forces_, problem_);
     V_WB = to_twist(problem_.displacement(number) / input.dt_s);
   }
-  cut_ = limit_grasped(input, bodies);
+  cut_ = false;
+  for (const HandInput& hand : input.hands) cut_ |= limit_grasped(input, hand, bodies);
   for (Index i = 0; i < delta_.size(); ++i) {
     const Twist& V = bodies.V_WB[i];
     delta_[i] = (V.v.norm() + V.w.norm() * input.radius_m[i]) * input.dt_s;
   }
   if (!by_impulses_) return delta_;
-  // Beside its own motion, a body goes as far as the grasped part may push it.
+  // Beside its own motion, a body goes as far as a grasped part may push it.
+  double longest = 0.0;
+  for (Index i = 0; i < delta_.size(); ++i)
+    if (is_grasped_[i]) longest = std::max(longest, delta_[i]);
   bound_constrained_motion(input, bodies, memory_);
   for (Index i = 0; i < delta_.size(); ++i) {
-    if (static_cast<int>(i) == input.grasped().body) {
+    if (is_grasped_[i]) {
       memory_.motion_bound[i] = delta_[i];
-    } else if (pushed_[i] && input.grasped().body >= 0) {
-      memory_.motion_bound[i] += delta_[Index(input.grasped().body)];
+    } else if (pushed_[i]) {
+      memory_.motion_bound[i] += longest;
     }
   }
   return memory_.motion_bound;
@@ -268,10 +284,14 @@ void PenaltyResponse::solve(const StepInput& input, double rest_s, WorldState& b
   for (Index r = 0; r < rows.size(); ++r)  // many rows in turn are of the same two bodies
     if (r == 0 || rows[r].body_a != rows[r - 1].body_a || rows[r].body_b != rows[r - 1].body_b)
       islands_.join(rows[r].body_a, rows[r].body_b);
-  const int of_grasped = by_impulses_ ? islands_.of(input.grasped().body) : -1;
+  const auto is_of_grasped = [&](int island) {
+    return std::any_of(input.hands.begin(), input.hands.end(), [&](const HandInput& hand) {
+      return hand.grasped.body >= 0 && islands_.of(hand.grasped.body) == island;
+    });
+  };
   bodies_.set(world.bodies.size(), world.bodies.size(), [&](Index i) {
     const int island = islands_.moves(static_cast<int>(i)) ? islands_.of(static_cast<int>(i)) : -1;
-    return by_impulses_ && island != of_grasped ? -1 : island;
+    return by_impulses_ && !is_of_grasped(island) ? -1 : island;
   });
   rows_.set(world.bodies.size(), rows.size(),
             [&](Index r) { return islands_.of_contact(rows[r].body_a, rows[r].body_b); });
@@ -282,19 +302,18 @@ void PenaltyResponse::solve(const StepInput& input, double rest_s, WorldState& b
 
 /// Makes the rows of the springs.
 void PenaltyResponse::find_rows(const StepInput& input, GapOracle& gaps, const WorldState& bodies) noexcept {
-  const int grasped = input.grasped().body;
   std::fill(pushed_.begin(), pushed_.end(), 0);
   contacts_.rows.clear();
-  if (by_impulses_ && grasped < 0) return;
-  const double scale = input.settings.workspace.scale;
-  const ContactSource source{bodies.X_WB, input.patches, by_impulses_ ? grasped : -1, input.shading,
-                             scale_depths(input, gaps, bodies.V_WB)};
-  make_contact_rows(source, input.settings.penalty.stiffness_N_per_m / scale, contacts_);
+  if (by_impulses_ && first_grasped(input.hands) < 0) return;
+  const ContactSource source{bodies.X_WB, input.patches,
+                             by_impulses_ ? std::span<const char>(is_grasped_) : std::span<const char>(),
+                             input.shading, scale_depths(input, gaps, bodies.V_WB)};
+  make_contact_rows(source, input.settings.penalty.stiffness_N_per_m / input.scale, contacts_);
   if (!by_impulses_) return;
   // The pair was looked for within more than delta, as its bodies may be pushed.
   for (ContactRow& row : contacts_.rows) {
     pushed_[Index(row.body_a)] = pushed_[Index(row.body_b)] = 1;
-    row.margin = std::max(input.settings.penalty.min_tolerance_m * scale,
+    row.margin = std::max(input.settings.penalty.min_tolerance_m * input.scale,
                           delta_[Index(row.body_a)] + delta_[Index(row.body_b)]);
   }
 }
@@ -303,21 +322,30 @@ void PenaltyResponse::find_rows(const StepInput& input, GapOracle& gaps, const W
 void PenaltyResponse::advance(const StepInput& input, double t_s, WorldState& bodies) const noexcept {
   if (!by_impulses_) {
     advance_bodies(input.world, bodies.V_WB, t_s, bodies.X_WB);
-  } else if (input.grasped().body >= 0) {
-    const Index grasped = Index(input.grasped().body);
-    bodies.X_WB[grasped] = advanced(bodies.X_WB[grasped], bodies.V_WB[grasped], t_s);
+    return;
   }
+  for (Index i = 0; i < is_grasped_.size(); ++i)
+    if (is_grasped_[i]) bodies.X_WB[i] = advanced(bodies.X_WB[i], bodies.V_WB[i], t_s);
 }
 
-/// Moves the grasped part, and all bodies that do not move by impulses; changes the velocities of those that
+/// Reports the contact forces on the part that a hand holds.
+void PenaltyResponse::report_grasped(const StepInput& input, Index hand, double rest_s,
+                                     const WorldState& bodies, HandReport& report) const noexcept {
+  const int grasped = input.hands[hand].grasped.body;
+  if (grasped < 0) return;
+  for (const ContactRow& row : contacts_.rows)
+    report.grasped_contact_points += row.body_a == grasped || row.body_b == grasped ? 1 : 0;
+  report.restoring = contact_wrench(contacts_.rows, grasped, bodies.X_WB[Index(grasped)].p, rest_s);
+}
+
+/// Moves the grasped parts, and all bodies that do not move by impulses; changes the velocities of those that
 /// do.
 void PenaltyResponse::move_by_springs(const StepInput& input, GapOracle& gaps, WorldState& bodies,
-                                      FrameReport& report) noexcept {
+                                      FrameReport& report, std::span<HandReport> others) noexcept {
   std::vector<ContactRow>& rows = contacts_.rows;
   find_rows(input, gaps, bodies);
   const double impact_s = first_impact(input, rows, gaps, bodies.V_WB);
   const double rest_s = input.dt_s - impact_s;
-  const int grasped = input.grasped().body;
   stored_J_ = 0.0;
   if (impact_s > 0.0) {
     advance_distances(rows, bodies.X_WB, bodies.V_WB, impact_s);
@@ -326,56 +354,67 @@ void PenaltyResponse::move_by_springs(const StepInput& input, GapOracle& gaps, W
   }
   if (cut_ && !(rest_s > 0.0)) report.flags |= frame_flag::kStepLimited;  // nothing was in its way
   if (rest_s > 0.0) {
-    const Twist V_first = grasped < 0 ? Twist{} : bodies.V_WB[Index(grasped)];
+    V_first_ = bodies.V_WB;  // same size: nothing is allocated
     solve(input, rest_s, bodies, report);
     report.contact_points = static_cast<int>(rows.size());
     for (const ContactRow& row : rows) {
-      report.grasped_contact_points += row.body_a == grasped || row.body_b == grasped ? 1 : 0;
       const double force_N = row.impulse / rest_s;
       stored_J_ += 0.5 * force_N * force_N / row.stiffness;
     }
-    if (grasped >= 0) report.restoring = contact_wrench(rows, grasped, bodies.X_WB[Index(grasped)].p, rest_s);
-    if (grasped >= 0) limit_rest(input, V_first, impact_s, rest_s, bodies.V_WB[Index(grasped)]);
+    for (Index h = 0; h < input.hands.size(); ++h) {
+      report_grasped(input, h, rest_s, bodies, h == 0 ? report : others[h - 1]);
+      const int grasped = input.hands[h].grasped.body;
+      if (grasped >= 0)
+        limit_rest(input, input.hands[h], V_first_[Index(grasped)], impact_s, rest_s,
+                   bodies.V_WB[Index(grasped)]);
+    }
     advance(input, rest_s, bodies);
   }
   for (Index i = 0; i < input.world.bodies.size(); ++i)
-    if (input.world.bodies[i].moves() && (!by_impulses_ || static_cast<int>(i) == grasped))
+    if (input.world.bodies[i].moves() && (!by_impulses_ || is_grasped_[i]))
       bodies.X_WB[i] = constrained_pose(input.world.bodies[i], bodies.X_WB[i]);
   report.time_of_impact_s = impact_s;
 }
 
 void PenaltyResponse::step(const StepInput& input, GapOracle& gaps, WorldState& bodies, FrameReport& report,
-                           std::span<HandReport> /*others*/) noexcept {
+                           std::span<HandReport> others) noexcept {
   const int tests_before = gaps.tests_left();
   if (!by_impulses_) {
-    move_by_springs(input, gaps, bodies, report);
+    move_by_springs(input, gaps, bodies, report, others);
   } else {
-    ConstraintStep others{input, true, gaps, bodies, memory_, report};
-    begin_step(others);
-    move_by_springs(input, gaps, bodies, report);
+    ConstraintStep by_impulses{input, true, gaps, bodies, memory_, report, others};
+    begin_step(by_impulses);
+    move_by_springs(input, gaps, bodies, report, others);
     for (const ContactRow& row : contacts_.rows)
       memory_.free.momentum.give(row.body_a, row.body_b, row.impulse * row.n_BA_W);
-    move_free_bodies(others);
-    end_step(true, others);
+    move_free_bodies(by_impulses);
+    end_step(true, by_impulses);
     report.contact_points += static_cast<int>(memory_.constraint.rows.count);
     for (const ContactRow& row : memory_.contact_rows.rows)
       if (contacts_.rows.size() < contacts_.rows.capacity()) contacts_.rows.push_back(row);
   }
   report.validation_tests = tests_before - gaps.tests_left();
+  for (Index h = 0; h < input.hands.size(); ++h) {
+    const HandInput& hand = input.hands[h];
+    hands_[h].spring = {};
+    if (hand.grasped.body < 0) continue;
+    const Twist to_hand = handle_at(hand.grasped, bodies.X_WB[Index(hand.grasped.body)]).to_hand;
+    hands_[h].spring = coupling_wrench(hand.coupling, hand.grasped, to_hand, {});
+  }
 }
 
-Wrench PenaltyResponse::felt(const StepInput& input, const PlacedHandle& handle,
-                             std::size_t /*hand*/) noexcept {
-  const GraspedPart& grasped = input.grasped();
-  if (grasped.body != rate_of_) rate_ = {};
-  rate_of_ = grasped.body;
+Wrench PenaltyResponse::felt(const StepInput& input, const PlacedHandle& handle, std::size_t hand) noexcept {
+  const GraspedPart& grasped = input.hands[hand].grasped;
+  Hand& own = hands_[hand];
+  if (grasped.body != own.rate_of) own.rate = {};
+  own.rate_of = grasped.body;
   if (grasped.body < 0) return {};
   // The velocity is that of the whole frame's displacement, not of the last part after an impact.
   const Pose X_WH_before = input.X_WB_start[Index(grasped.body)] * grasped.X_BH;
   const Twist V_WH_proxy = twist_between(X_WH_before, handle.X_WH_proxy, input.dt_s);
   constexpr double kFilter_s = 0.005;  // half of what devices take for a velocity
-  rate_ = rate_ + (V_WH_proxy - grasped.V_WH - rate_) * (input.dt_s / (kFilter_s + input.dt_s));
-  return coupling_wrench(input.coupling(), grasped, handle.to_hand, rate_);
+  own.rate = own.rate + (V_WH_proxy - grasped.V_WH - own.rate) * (input.dt_s / (kFilter_s + input.dt_s));
+  return coupling_wrench(input.hands[hand].coupling, grasped, handle.to_hand, own.rate);
 }
 
 }  // namespace tactum::inline v0_1

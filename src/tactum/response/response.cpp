@@ -54,8 +54,7 @@ Wrench Response::felt(const StepInput& input, const PlacedHandle& handle, std::s
 }
 
 Wrench Response::coupled(std::size_t hand) const noexcept {
-  const ConstraintResponse* const model = constraint();
-  return model != nullptr ? model->coupled(hand) : Wrench{};
+  return std::visit([hand](const auto& model) { return model.coupled(hand); }, model_);
 }
 
 std::span<const ContactRow> Response::rows() const noexcept {

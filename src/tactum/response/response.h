@@ -29,7 +29,7 @@ class Response {
   /// the step has left the grasped part's. Call it once a frame: it moves the pulses on.
   Wrench felt(const StepInput& input, const PlacedHandle& handle, std::size_t hand = 0) noexcept;
   /// What the coupling of a hand exerted on it in the last step, without pulses, at the handle, world axes;
-  /// zero in the penalty response, which knows one hand only [N, N m].
+  /// in the penalty response without the coupling's damper [N, N m].
   Wrench coupled(std::size_t hand) const noexcept;
 
   /// The contacts of the last step, for displays.

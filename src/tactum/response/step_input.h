@@ -99,10 +99,6 @@ struct MotionInput {
   double dt_s;                       ///< time from frame to frame [s]
   StepLimits limits;                 ///< of all grasped parts: the smallest of each
   double scale;                      ///< FrameSettings::smallest_scale() [-]
-
-  /// Of the first hand, the only one that the penalty response knows.
-  const GraspedPart& grasped() const noexcept { return hands.front().grasped; }
-  const Coupling& coupling() const noexcept { return hands.front().coupling; }
 };
 
 MotionInput motion_input(const World& world, const FrameSettings& settings, std::span<const HandInput> hands,

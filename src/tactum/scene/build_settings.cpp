@@ -115,9 +115,6 @@ void build_settings(SceneBuilder& builder, Scene& scene) {
   set_pairs(builder, "restitution", settings.restitution, scene.world, scene.settings.impacts.restitution);
 
   const std::vector<OtherHandDescription>& others = description.other_hands;
-  if (!others.empty() && scene.settings.response == ResponseModel::kPenalty)
-    builder.fail("tool[1]", "the penalty response knows one hand only",
-                 fmt::format("{} tools", 1 + others.size()), "response = \"constraint\", or one [tool]");
   const HandSettings usual = scene.settings;
   FrameSettings scratch;
   set_hand(builder,
