@@ -171,7 +171,7 @@ TEST(Devices, APlateIsFeltOnADeviceInAnotherProcess) {
   ProgramRun device;
   std::thread process(
       [&] { device = testing::run_program("examples/example_network_device", "30 " + port); });
-  const ProgramRun run = run_tactum("feel block-on-plate --duration 2 --device network:" + port);
+  const ProgramRun run = run_tactum("feel block-on-plate --duration 4 --device network:" + port);
   process.join();
   EXPECT_TRUE(ended(run)) << run.err;
   EXPECT_TRUE(holds(run.out, "network example")) << run.out;

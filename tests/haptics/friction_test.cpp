@@ -178,7 +178,7 @@ TEST(Friction, OfADrawnCrateIsThatOfTheWeightWhichTheHandDoesNotCarry) {
 TEST(Friction, OfATwistedBlockLiesBetweenEvenPressureAndLoadsAtTheCorners) {
   const double even = (std::sqrt(2.0) + std::log(1.0 + std::sqrt(2.0))) / 6.0;
   for (const bool surface : {false, true}) {
-    for (const double size : {0.5, 1.0, 3.0}) {
+    for (const double size : testing::sampled(std::vector{0.5, 1.0, 3.0}, 3)) {
       for (const double mu : {0.1, 0.3}) {
         for (const double sense : {1.0, -1.0}) {
           BoxOnBox rig(surface, false, size, mu);

@@ -45,7 +45,7 @@ void cut_cloud(const std::vector<Vec3>& cloud, const Vec3& normal, double offset
 }
 
 /// Random poses in which patches are compared.
-const int kPoses = testing::full_run() ? 20000 : testing::effort(2000, 80);
+const int kPoses = testing::full_run() ? 20000 : testing::effort(2000, 30);
 
 /// Half edge lengths of the plate that is felt [m].
 const Vec3 kPlate(0.05, 0.05, 0.01);

@@ -124,18 +124,19 @@ class Copying final : public McapVisitor {
 
 TEST(Recording, IsTheSameFramesAgainAndChangesNone) {
   const ScratchFolder folder;
+  constexpr unsigned kFrames = testing::effort(700u, 150u);
   for (const char* name : {"block-on-plate", "gears", "moving-objects", "gears-pick", "dipole-field"})
     for (const ResponseModel response : {ResponseModel::kConstraint, ResponseModel::kPenalty}) {
       SCOPED_TRACE(name);
       const SceneDescription scene = scene_called(name);
-      const Ran recorded = run(scene, folder / "run.mcap", 700, false, response);
-      EXPECT_EQ(recorded.hash, run(scene, "", 700, false, response).hash);
-      EXPECT_EQ(recorded.frames, 700u);
+      const Ran recorded = run(scene, folder / "run.mcap", kFrames, false, response);
+      EXPECT_EQ(recorded.hash, run(scene, "", kFrames, false, response).hash);
+      EXPECT_EQ(recorded.frames, kFrames);
       EXPECT_EQ(recorded.dropped, 0u);
       const Result<ReplayResult> replayed = replay_bytes(content(folder / "run.mcap"));
       ASSERT_TRUE(replayed) << replayed.error().message();
       EXPECT_TRUE(replayed->end.complete);
-      EXPECT_EQ(replayed->same, 700u);
+      EXPECT_EQ(replayed->same, kFrames);
       EXPECT_FALSE(replayed->difference) << sentence_of(*replayed->difference);
       EXPECT_FALSE(replayed->gap);
     }
@@ -339,7 +340,7 @@ TEST(Recording, EverySingleFlippedByteIsNoticed) {
   const ScratchFolder folder;
   run(scene_called("block-on-plate"), folder / "run.mcap", 5);
   const std::string whole = content(folder / "run.mcap");
-  for (std::size_t place = 0; place < whole.size(); place += 1 + whole.size() / 300) {
+  for (std::size_t place = 0; place < whole.size(); place += 1 + whole.size() / testing::effort(300, 30)) {
     std::string bytes = whole;
     bytes[place] = static_cast<char>(bytes[place] ^ 0x10);
     const Result<ReplayResult> replayed = replay_bytes(bytes);

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "support/effort.h"
 #include "tactum/devices/hand_model.h"
 #include "tactum/session/rehearsal.h"
 
@@ -126,7 +127,8 @@ TEST(FirstTouch, ADeviceThatIsWiredRightPassesEveryStep) {
 }
 
 TEST(FirstTouch, DelayAndDampingAreThoseOfTheDevice) {
-  for (const char* name : {"premium-1.5-6dof", "touch", "omega.6", "sigma.7", "virtuose-6d"}) {
+  const std::vector<const char*> devices = {"premium-1.5-6dof", "touch", "omega.6", "sigma.7", "virtuose-6d"};
+  for (const char* name : testing::sampled(devices, 4)) {
     for (const double delay_s : {0.0, 0.002, 0.0075}) {
       SimulatedDeviceModel model = preset(name);
       model.command_delay_s = delay_s;
@@ -147,7 +149,8 @@ TEST(FirstTouch, DelayAndDampingAreThoseOfTheDevice) {
 }
 
 TEST(FirstTouch, TheDampingOfTurningIsThatOfTheDevice) {
-  for (const char* name : {"premium-1.5-6dof", "sigma.7", "virtuose-6d"}) {
+  const std::vector<const char*> devices = {"premium-1.5-6dof", "sigma.7", "virtuose-6d"};
+  for (const char* name : testing::sampled(devices, 3)) {
     for (const double delay_s : {0.0, 0.002, 0.0075}) {
       SimulatedDeviceModel model = preset(name);
       model.command_delay_s = delay_s;
