@@ -200,15 +200,15 @@ bool ContactFinder::slides(const ContactPatch& at, std::span<const Pose> X_WB, s
   const Index b = Index(at.body_b);
   --tests_left_;
   const Pair& pair = pairs_[Index(at.pair)];
-  if (path_free(pair, path_for(at.body_a, X_WB[a], V_WB[a], dt_s),
-                path_for(at.body_b, X_WB[b], V_WB[b], dt_s)) < 1.0)
-    return false;
   const Pose X_WA = advanced(X_WB[a], V_WB[a], dt_s);
   PairCache cache = pair.cache;
   const PairDistance end =
       closest_features(bodies_[a].part->pieces[Index(at.piece_a)], bodies_[b].part->pieces[Index(at.piece_b)],
                        relative_pose(X_WA, advanced(X_WB[b], V_WB[b], dt_s)), cache);
-  return end.certified() && stays_beside(at, rotated(X_WA.R, end.normal), end.distance, V_WB, dt_s);
+  // What lands ends inside, which the one pose tells; the proof of a path takes many.
+  return end.certified() && stays_beside(at, rotated(X_WA.R, end.normal), end.distance, V_WB, dt_s) &&
+         path_free(pair, path_for(at.body_a, X_WB[a], V_WB[a], dt_s),
+                   path_for(at.body_b, X_WB[b], V_WB[b], dt_s)) >= 1.0;
 }
 
 /// The same of two surfaces: their whole paths are proven, and what is nearest at the end stays beside. All
