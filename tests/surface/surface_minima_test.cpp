@@ -243,7 +243,7 @@ TEST(SurfaceMinima, OfRealPartsAreThoseOfEveryPairOfFeatures) {
       found += expect_as_referee(a, b, X, {real.max_distance, 0.0, 4e-3});
     }
     for (std::size_t i = 0; i < motion->frame.size();
-         i += testing::full_run() ? 5 : testing::effort(20, 250)) {
+         i += testing::full_run() ? 5 : testing::effort(20, 100)) {
       SCOPED_TRACE(i);
       const Pose X = relative_pose(motion->X_WA[i], motion->X_WB[i]);
       apart += int(expect_clearance(surface_a, surface_b, tree_a, tree_b, X, 8.0 * real.max_distance));
