@@ -362,8 +362,9 @@ TEST(NetworkDevice, AClientThatTakesNothingLosesMessagesAsWholes) {
   double last_N = -1.0;
   int taken = 0;
   while (const std::optional<Bytes> bytes = peer.web().take()) {
-    ASSERT_EQ(bytes->size(), kCommandBytes);
     ASSERT_EQ(get<std::uint32_t>(*bytes, 0), kMagic);
+    if (get<std::uint16_t>(*bytes, 6) == 2) continue;  // the welcome of a second hello
+    ASSERT_EQ(bytes->size(), kCommandBytes);
     const auto force_N = get<double>(*bytes, 24);
     EXPECT_GE(force_N, last_N);
     last_N = force_N;
