@@ -92,12 +92,14 @@ function withGamepad() {
 
 const force = async (page) => Number((await state(page)).force);
 
-/** Pushes what is led down, seen from the front, until the plate pushes back; then lifts it until it is free. */
+/** Pushes what is led down, seen from the front, until the plate pushes back; then lifts it until it is clearly above the plate. */
 async function pressesAndLifts(page, down, up, rest) {
   await down();
   await until("the plate pushes back", async () => (await force(page)) > 0.3);
   await up();
   await until("the part is free again", async () => (await force(page)) < 0.01);
+  const [, y] = await graspedAt(page);
+  await until("it is drawn higher", async () => (await graspedAt(page))[1] < y - 10);
   await rest();
 }
 
