@@ -1,6 +1,9 @@
 #include "tactum/geometry/mass_properties.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
 
 #include "support/sample_meshes.h"
 #include "tactum/math/screw.h"
@@ -88,6 +91,28 @@ TEST(MassProperties, OpenTurnedAndFlatSurfacesAreTold) {
   EXPECT_NE(mass_properties_or_hull(flat, 1.0).approximation.find("box"), std::string::npos);
   EXPECT_GT(mass_properties_or_hull(flat, 1.0).mass, 0.0);
   EXPECT_TRUE(mass_properties_or_hull(box_mesh({1, 1, 1}), 1.0).approximation.empty());
+}
+
+/// Closed surfaces whose parts cancel: their moments are those of no solid, so that the hull's are taken.
+TEST(MassProperties, ASurfaceWhosePartsCancelHasThoseOfItsHull) {
+  for (const double size : {1e-3, 1.0, 100.0}) {
+    for (const double less : {1.0 - 1e-15, 1.0 - 1e-13, 0.999, 0.9}) {
+      SCOPED_TRACE(fmt::format("size {} less {}", size, less));
+      TriangleMesh mesh = box_mesh(Vec3(1, 2, 3) * size);
+      TriangleMesh turned = box_mesh(Vec3(1, 2, 3) * size * less);  // beside it, inside out
+      for (Triangle& t : turned.triangles) std::swap(t[0], t[1]);
+      for (Vec3& vertex : turned.vertices) vertex.x() += 4.0 * size;
+      const int base = static_cast<int>(mesh.vertices.size());
+      mesh.vertices.insert(mesh.vertices.end(), turned.vertices.begin(), turned.vertices.end());
+      for (const Triangle& t : turned.triangles)
+        mesh.triangles.push_back({base + t[0], base + t[1], base + t[2]});
+      EXPECT_FALSE(mass_properties(mesh, 1.0));
+      const MassProperties mass = mass_properties_or_hull(mesh, 1.0);
+      EXPECT_NE(mass.approximation.find("convex hull"), std::string::npos) << mass.approximation;
+      EXPECT_LT(std::abs(mass.center.x() - 2.0 * size), 2.0 * size);
+      EXPECT_GT(mass.inertia.eigenvalues().real().minCoeff(), 0.0);
+    }
+  }
 }
 
 TEST(MassProperties, SheetsBesideASolidHaveNoMass) {

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Cholesky>
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "tactum/base/tolerances.h"
@@ -38,13 +40,27 @@ Moments moments_about(const Vec3& origin, const TriangleMesh& mesh) {
   return sum;
 }
 
+/// The second moment of a volume's points about their centre [m^5].
+Mat3 second_about(const Vec3& center, const Moments& moments) {
+  return moments.second - moments.volume * center * center.transpose();
+}
+
+/// Whether moments about the middle of a box are those of a solid in it: its centre of mass is in the box, and
+/// its second moments are positive. Those of a surface whose parts cancel need not be.
+bool are_of_solid(const Moments& moments, const Aabb& box) {
+  if (!(moments.volume > tolerances::kNoVolume * std::pow(box.diagonal(), 3))) return false;
+  const Vec3 center = moments.first / moments.volume;
+  if (!(center.cwiseAbs().array() <= 0.5 * (box.max - box.min).array()).all()) return false;
+  return Eigen::LLT<Mat3>(second_about(center, moments)).info() == Eigen::Success;
+}
+
 MassProperties from_moments(const Moments& moments, const Vec3& origin, double density) {
   MassProperties out;
   out.volume = moments.volume;
   out.mass = density * moments.volume;
   const Vec3 center = moments.first / moments.volume;
   out.center = origin + center;
-  const Mat3 second = density * (moments.second - moments.volume * center * center.transpose());
+  const Mat3 second = density * second_about(center, moments);
   out.inertia = second.trace() * Mat3::Identity() - second;
   return out;
 }
@@ -155,7 +171,13 @@ Result<MassProperties> mass_properties(const TriangleMesh& mesh, double density_
                  "a positive one: triangles counter-clockwise seen from outside", "mesh"};
   }
   const Vec3 origin = middle(mesh);
-  return from_moments(moments_about(origin, mesh), origin, density_kg_per_m3);
+  const Moments moments = moments_about(origin, mesh);
+  if (!are_of_solid(moments, report.box))
+    return Error{
+        what,
+        fmt::format("a signed volume of {} m^3 whose centre or moments are those of no solid", report.volume),
+        "a surface that encloses each point once", "mesh"};
+  return from_moments(moments, origin, density_kg_per_m3);
 }
 
 MassProperties mass_properties_or_hull(const TriangleMesh& mesh, double density_kg_per_m3) {
