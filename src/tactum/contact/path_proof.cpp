@@ -196,13 +196,22 @@ void ContactFinder::add_met_triangles(int a, int b, const Pose& X_AB, double mar
   met_.resize(kept);
 }
 
-/// The gap of such a contact along its normal, with B elsewhere.
+/// The gap of such a contact with B elsewhere: the distance of the triangles; where they cross, that along
+/// the contact's normal, carried by the one body or by the other, whichever is the less negative. Carried by
+/// one alone, a small turn would take the far corners of the other's triangle a long way beyond the plane.
 double ContactFinder::distance_of_met(const ContactPatch& patch, const Pose& X_AB) const noexcept {
-  const Vec3& n = patch.manifold.normal;
-  const TrianglePoints a = triangle_of(*bodies_[Index(patch.body_a)].part, patch.piece_a, Pose());
-  const TrianglePoints b = triangle_of(*bodies_[Index(patch.body_b)].part, patch.piece_b, X_AB);
-  return std::min({n.dot(a[0]), n.dot(a[1]), n.dot(a[2])}) -
-         std::max({n.dot(b[0]), n.dot(b[1]), n.dot(b[2])});
+  const Index body_a = Index(patch.body_a);
+  const Index body_b = Index(patch.body_b);
+  const TrianglePoints a = triangle_of(*bodies_[body_a].part, patch.piece_a, Pose());
+  const TrianglePoints b = triangle_of(*bodies_[body_b].part, patch.piece_b, X_AB);
+  if (!triangles_cross(a, b)) return std::sqrt(triangle_distance(a, b).distance_sq);
+  const auto gap = [&](const Vec3& n) {
+    return std::min({n.dot(a[0]), n.dot(a[1]), n.dot(a[2])}) -
+           std::max({n.dot(b[0]), n.dot(b[1]), n.dot(b[2])});
+  };
+  const Vec3& by_a = patch.manifold.normal;
+  const Mat3 R_AB_start = relative_pose(last_X_WB_[body_a], last_X_WB_[body_b]).R;
+  return std::max(gap(by_a), gap(rotated(X_AB.R, rotated_back(R_AB_start, by_a))));
 }
 
 PathWork ContactFinder::prove_paths(std::span<const Pose> X_WB, std::span<const BodyTurn> turn,
