@@ -16,6 +16,7 @@
 #include "tactum/haptics/simulation.h"
 #include "tactum/math/screw.h"
 #include "tactum/mesh/make_part.h"
+#include "tactum/parts/generated_parts.h"
 
 namespace tactum::order_test {
 namespace {
@@ -131,6 +132,57 @@ TEST(Order, NoStepIsLeftOutWithFriction) {
     EXPECT_EQ(fall(c, true).left_out, 0);
     EXPECT_EQ(fall(c, false).left_out, 0);
   }
+}
+
+/// A ring of pieces, pressed flat or tilted onto a floor: what is felt in every frame.
+std::vector<Wrench> pressed_ring(int sides, double rate_Hz, double tilt, ResponseModel response,
+                                 bool listed_first) {
+  const Result<std::vector<Polytope>> pieces =
+      hole_block_pieces({.sides = sides, .peg_width_m = 0.01, .wall_m = 0.006, .hole_depth_m = 0.007});
+  EXPECT_TRUE(pieces);
+  std::vector<std::vector<Vec3>> corners;
+  for (const Polytope& piece : *pieces) corners.emplace_back(piece.vertices.begin(), piece.vertices.end());
+  const auto ring =
+      std::make_shared<const Part>(std::move(*part_from_clouds(corners, {.about_center_of_mass = true})));
+  const auto floor_part = part_of(testing::box_mesh({0.1, 0.1, 0.01}), false);
+  World world;
+  const auto add_floor = [&] {
+    add_body(world, {.part = floor_part,
+                     .X_WP = {Mat3::Identity(), {0, 0, -0.01}},
+                     .joint = {.kind = JointKind::kFixed}});
+  };
+  if (!listed_first) add_floor();
+  const int body = add_body(world, {.part = ring, .X_WP = {Mat3::Identity(), {0, 0, 1e-7}}});
+  if (listed_first) add_floor();
+  FrameSettings settings;
+  settings.dt_s = 1.0 / rate_Hz;
+  settings.tool.body = body;
+  settings.response = response;
+  const auto simulation = std::move(*Simulation::make(world, settings));
+  std::vector<Wrench> felt;
+  for (double t = 0.0; t < 0.1; t += settings.dt_s) {
+    simulation->step(Pose{exp_rotation(tilt * t * Vec3(1.0, 0.3, 0.0)), {0, 0, -0.02 * t}});
+    felt.push_back(simulation->report().coupling);
+  }
+  return felt;
+}
+
+/// At a corner of the hole the ring touches with the face under it, whichever of the faces there is listed first.
+TEST(Order, ARingOfPiecesIsFeltAsOneListedAfterTheFloor) {
+  for (const ResponseModel response : {ResponseModel::kConstraint, ResponseModel::kPenalty})
+    for (const int sides : {3, 6, 16, 24})
+      for (const double rate_Hz : testing::frame_rates_Hz())
+        for (const double tilt : {0.0, 0.1}) {
+          SCOPED_TRACE(::testing::Message() << "response " << int(response) << ", " << sides << " sides, "
+                                            << rate_Hz << " Hz, tilt " << tilt);
+          const std::vector<Wrench> before = pressed_ring(sides, rate_Hz, tilt, response, true);
+          const std::vector<Wrench> after = pressed_ring(sides, rate_Hz, tilt, response, false);
+          ASSERT_GT(before.back().f.z(), 0.1);
+          for (std::size_t i = 0; i < before.size(); ++i) {
+            ASSERT_LT((before[i].f - after[i].f).norm(), 1e-9) << i;
+            ASSERT_LT((before[i].t - after[i].t).norm(), 1e-9) << i;
+          }
+        }
 }
 
 }  // namespace

@@ -148,9 +148,9 @@ class TwoBodies {
   void lead(SeamCandidate& nearest) noexcept {
     PairDistance shown = steady_depth(nearest.a.polytope(), nearest.b.polytope(), X_AB_, nearest.found,
                                       steady_, *nearest.shown);
-    shown.a = true_feature(*nearest.a.part, nearest.a.piece, shown.a, shown.p_a);
-    shown.b =
-        true_feature(*nearest.b.part, nearest.b.piece, shown.b, rotated_back(X_AB_.R, shown.p_b - X_AB_.p));
+    shown.a = true_feature(*nearest.a.part, nearest.a.piece, shown.a, shown.p_a, -shown.normal);
+    shown.b = true_feature(*nearest.b.part, nearest.b.piece, shown.b,
+                           rotated_back(X_AB_.R, shown.p_b - X_AB_.p), rotated_back(X_AB_.R, shown.normal));
     ContactPatch* patch = new_patch(nearest);
     if (patch == nullptr) {
       nearest.settled = true;

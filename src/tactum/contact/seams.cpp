@@ -69,13 +69,31 @@ bool is_true_edge(const Part& part, int piece, int edge, const Feature& at, cons
   return false;
 }
 
-/// The exposed face at `edge`; where there is none, `otherwise`.
-Feature exposed_face(const Part& part, int piece, int edge, const Feature& otherwise) noexcept {
-  const Polytope& P = part.pieces[Index(piece)];
-  for (const int face : {P.edges[edge].left, P.edges[edge].right})
-    if (part.true_surface.group_of(piece, 2, face) >= 0) return {FeatureKind::kFace, face};
-  return otherwise;
-}
+/// The exposed face that faces most along `outward`, of those looked at.
+class ExposedFace {
+ public:
+  ExposedFace(const Part& part, int piece, const Vec3& outward) noexcept
+      : part_(part), piece_(piece), outward_(outward) {}
+
+  /// Looks at the two faces of an edge.
+  void look_at(int edge) noexcept {
+    const Polytope& P = part_.pieces[Index(piece_)];
+    for (const int face : {P.edges[edge].left, P.edges[edge].right}) {
+      const double along = P.faces[face].normal.dot(outward_);
+      if (along > along_ && part_.true_surface.group_of(piece_, 2, face) >= 0) face_ = face, along_ = along;
+    }
+  }
+  Feature found_or(const Feature& otherwise) const noexcept {
+    return face_ < 0 ? otherwise : Feature{FeatureKind::kFace, face_};
+  }
+
+ private:
+  const Part& part_;
+  int piece_;
+  const Vec3& outward_;
+  int face_ = -1;
+  double along_ = -2.0;  // below any cosine
+};
 
 /// Pairs of true edges up to which all are tried.
 constexpr std::size_t kMostEdgePairs = 16384;
@@ -175,15 +193,18 @@ bool is_true_contact(const Part& part_a, int piece_a, const Part& part_b, int pi
                                 rotated_back(X_AB.R, found.normal), margin));
 }
 
-Feature true_feature(const Part& part, int piece, const Feature& feature, const Vec3& p) noexcept {
+Feature true_feature(const Part& part, int piece, const Feature& feature, const Vec3& p,
+                     const Vec3& outward) noexcept {
   if (feature.kind == FeatureKind::kFace || part.true_surface.single_piece() ||
       part.true_surface.neighbours(number_of(part, piece, feature)).empty())
     return feature;
   const Polytope& P = part.pieces[Index(piece)];
-  if (feature.kind == FeatureKind::kEdge)
-    return is_true_edge(part, piece, feature.index, feature, p)
-               ? feature
-               : exposed_face(part, piece, feature.index, feature);
+  ExposedFace exposed(part, piece, outward);
+  if (feature.kind == FeatureKind::kEdge) {
+    if (is_true_edge(part, piece, feature.index, feature, p)) return feature;
+    exposed.look_at(feature.index);
+    return exposed.found_or(feature);
+  }
   int edges = 0;
   Feature edge = feature;
   for (const Polytope::Ray& ray : P.rays_at(feature.index))
@@ -193,10 +214,8 @@ Feature true_feature(const Part& part, int piece, const Feature& feature, const 
     }
   if (edges == 1) return edge;
   if (edges > 1) return feature;
-  for (const Polytope::Ray& ray : P.rays_at(feature.index))
-    if (const Feature face = exposed_face(part, piece, ray.edge, feature); face.kind == FeatureKind::kFace)
-      return face;
-  return feature;
+  for (const Polytope::Ray& ray : P.rays_at(feature.index)) exposed.look_at(ray.edge);
+  return exposed.found_or(feature);
 }
 
 Feature same_feature(const Part& part, int of_piece, const Feature& feature, int piece) noexcept {
