@@ -82,6 +82,32 @@ TEST(SteadyContact, ASwitchingNormalTurnsSlowlyAndAlwaysSeparates) {
   }
 }
 
+/// A small box that rolls over the face of a large one, at any speed, and whichever of the two is A: the normal is
+/// that face's, and turns with it.
+TEST(SteadyContact, ANormalTurnsWithTheBodyOfItsFace) {
+  const Polytope floor = make_box({0.1, 0.1, 0.01});
+  const Polytope small = make_box({0.01, 0.01, 0.01});
+  for (const double rate : {5.0, 49.0, 80.0, 200.0, 1000.0}) {
+    for (const bool floor_is_a : {true, false}) {
+      SCOPED_TRACE(::testing::Message() << rate << " rad/s, the floor is A: " << floor_is_a);
+      const Polytope& A = floor_is_a ? floor : small;
+      const Polytope& B = floor_is_a ? small : floor;
+      PairCache cache;
+      SteadyContact last;
+      for (int frame = 0; frame < 100; ++frame) {
+        const double angle = 0.2 + rate * 0.001 * frame;
+        const double height = 0.01 * (std::abs(std::cos(angle)) + std::abs(std::sin(angle)));
+        const Pose X_FS{exp_rotation({0.0, angle, 0.0}), {0.0, 0.0, 0.01 + height - 5e-4}};
+        const Pose X_AB = floor_is_a ? X_FS : X_FS.inverse();
+        const PairDistance found = penetration_depth(A, B, X_AB, cache);
+        const PairDistance shown = steady_depth(A, B, X_AB, found, kLimits, last);
+        EXPECT_NEAR(found.distance, -5e-4, 1e-9);
+        EXPECT_NEAR(shown.distance, -5e-4, 1e-9) << frame;
+      }
+    }
+  }
+}
+
 /// No shape and no motion of 0.03 mm and 1 mrad moves the shown centroid by 0.1 mm; the points keep their
 /// distances.
 TEST(SteadyContact, TheCentroidTakesNoStepOnAnyShape) {

@@ -35,7 +35,7 @@ TEST(Rates, AShownNormalTurnsAsFast) {
   for (const double dt_s : kSteps_s) {
     const SteadyLimits limits(dt_s);
     SteadyContact last;
-    last.normal_A = -Vec3::UnitY();
+    last.normal_A = last.normal_B = -Vec3::UnitY();
     Vec3 before = last.normal_A;
     int frames = 0;
     do {

@@ -22,6 +22,18 @@ PairDistance depth_across(const PairView& pair, const PairDistance& found, const
   return result;
 }
 
+/// The last normal, in A's frame, as the body carries it that takes it nearer to `found`: the normal of a face
+/// turns with that face's body, however fast.
+Vec3 carried_normal(const Vec3& found, const Pose& X_AB, const SteadyContact& last) noexcept {
+  const Vec3 by_B = rotated(X_AB.R, last.normal_B);
+  return last.normal_A.dot(found) >= by_B.dot(found) ? last.normal_A : by_B;
+}
+
+void remember_normal(const Vec3& n, const Pose& X_AB, SteadyContact& last) noexcept {
+  last.normal_A = n;
+  last.normal_B = rotated_back(X_AB.R, n);
+}
+
 /// A centroid that is farther away than it goes in this time approaches that distance with kCatchUp_s: the
 /// force of a long part that comes down on one end, and then lies flat, would otherwise act at that end for
 /// more than a second, and tip the part over.
@@ -39,8 +51,8 @@ double centroid_step(double length, const SteadyLimits& limits) noexcept {
 
 PairDistance steady_depth(const Polytope& A, const Polytope& B, const Pose& X_AB, const PairDistance& found,
                           const SteadyLimits& limits, SteadyContact& last) noexcept {
-  const Vec3 from = last.normal_A;
-  last.normal_A = found.normal;
+  const Vec3 from = carried_normal(found.normal, X_AB, last);
+  remember_normal(found.normal, X_AB, last);
   if (found.distance >= 0.0 || from.isZero() || from.dot(found.normal) >= limits.cosine) return found;
   const Vec3 toward = found.normal - from * from.dot(found.normal);
   const double sine = toward.norm();
@@ -50,7 +62,7 @@ PairDistance steady_depth(const Polytope& A, const Polytope& B, const Pose& X_AB
   const PairDistance between = depth_across(pair, found, n.normalized());
   const PairDistance start = depth_across(pair, found, from);
   if (between.distance < kDeepestDetour * std::min(start.distance, found.distance)) return found;
-  last.normal_A = between.normal;
+  remember_normal(between.normal, X_AB, last);
   return between;
 }
 

@@ -5,9 +5,10 @@
 /// now at one edge and now at the other; both answers are right and the hand would feel the step between
 /// them. Here the answer of the last frame is kept and moves to the new one at a bounded rate:
 ///
-///     normal     turns by at most kNormalTurnRate, on the great circle, so it arrives within
-///                pi / kNormalTurnRate = 63 ms; the depth along it is that of true support planes, so moving
-///                A by it separates the pieces in every frame meanwhile
+///     normal     turns by at most kNormalTurnRate from where A or B carries the last one, whichever is
+///                nearer, on the great circle, so it arrives within pi / kNormalTurnRate = 63 ms; the depth
+///                along it is that of true support planes, so moving A by it separates the pieces in every
+///                frame meanwhile
 ///     centroid   stays where both bodies carry it, and moves from there at kCentroidSpeed at most, times
 ///                the scale of the scene
 ///
@@ -41,7 +42,8 @@ struct SteadyLimits {
 
 /// The contact of the last frame, as its force was computed (`shown` in the finder). Value-initialised: none.
 struct SteadyContact {
-  Vec3 normal_A = Vec3::Zero();    ///< from B to A, A's frame; zero: none
+  Vec3 normal_A = Vec3::Zero();    ///< from B to A, A's frame, as A carries it; zero: none
+  Vec3 normal_B = Vec3::Zero();    ///< the same, B's frame, as B carries it
   Vec3 centroid_A = Vec3::Zero();  ///< of the patch, as A carries it [m]
   Vec3 centroid_B = Vec3::Zero();  ///< as B carries it, B's frame [m]
   bool has_centroid = false;
