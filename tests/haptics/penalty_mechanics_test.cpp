@@ -3,10 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "support/add_body.h"
+#include "support/effort.h"
 #include "support/solid_box.h"
 #include "tactum/haptics/simulation.h"
 #include "tactum/math/screw.h"
@@ -187,6 +190,77 @@ TEST(PenaltyMechanics, ABodyPressedOnTheFloorIsFeltByTheLaw) {
     EXPECT_NEAR(scene.p().z(), 0.5 * s, 1e-4 * s);
     EXPECT_GT(scene.report().coupling.f.z(), 0.3);
   }
+}
+
+/// A small box, and the plate in the hand, tilted against each other, that it meets: it falls onto the plate, or the
+/// hand moves the plate against it.
+struct Meeting {
+  double size_m = 0.02;  ///< of the box's longest side
+  double rate_Hz = 1000.0;
+  Vec3 tilt{0.1, 0.05, 0.0};  ///< of the plate [rad]
+  double speed = 0.0;         ///< of the plate, along z, where nothing weighs [m/s]
+  bool box_first = false;
+};
+
+/// The greatest energy that the box has ever had as the hand sees it, of that at the start.
+double greatest_energy(const Meeting& c) {
+  const double s = c.size_m;
+  World world;
+  const double gravity = c.speed > 0.0 ? 0.0 : kGravity;
+  world.gravity_W = {0, 0, -gravity};
+  int box = -1, plate = -1;
+  const auto add_box = [&] {
+    box = add_body(world, {.part = solid_box(0.5 * s * Vec3(1.0, 0.9, 0.8)),
+                           .density_kg_per_m3 = 1500.0,
+                           .X_WP = {Mat3::Identity(), s * Vec3(0.15, -0.1, 0.7)}});
+  };
+  if (c.box_first) add_box();
+  plate = add_body(world, {.part = solid_box(s * Vec3(3.0, 3.0, 0.1)),
+                           .density_kg_per_m3 = 1500.0,
+                           .X_WP = {exp_rotation(c.tilt), Vec3::Zero()}});
+  if (!c.box_first) add_box();
+  FrameSettings settings;
+  settings.response = ResponseModel::kPenalty;
+  settings.dt_s = 1.0 / c.rate_Hz;
+  settings.tool.body = plate;
+  const auto simulation = std::move(*Simulation::make(world, settings));
+  const Body& body = world.bodies[std::size_t(box)];
+  const WorldState& state = simulation->state().world;
+  const auto energy = [&] {
+    const Pose& X = state.X_WB[std::size_t(box)];
+    const Twist& V = state.V_WB[std::size_t(box)];
+    const Vec3 w_B = X.R.transpose() * V.w;
+    return 0.5 * body.mass_kg * (V.v - Vec3(0, 0, c.speed)).squaredNorm() +
+           0.5 * w_B.dot(body.inertia_B * w_B) + body.mass_kg * gravity * X.p.z();
+  };
+  const double start = energy();
+  // What moving by half a size is worth, or the box's own speed.
+  const double whole = c.speed > 0.0 ? start : 0.5 * body.mass_kg * gravity * s;
+  double greatest = 0.0;
+  const double long_s = c.speed > 0.0 ? 2.0 * s / c.speed : 12.0 * std::sqrt(s / kGravity);
+  for (double t = 0.0; t < long_s; t += settings.dt_s) {
+    simulation->step(Pose{Mat3::Identity(), {0, 0, c.speed * t}});
+    greatest = std::max(greatest, (energy() - start) / whole);
+  }
+  return greatest;
+}
+
+/// A spring that moves evenly, or stands, takes nothing to the box that it does not give back; the force acts where
+/// the two touch, not where they touched a moment ago.
+TEST(PenaltyMechanics, ThePartInTheHandMakesNoEnergyInABoxThatItMeets) {
+  for (const double size_m : {0.01, 0.02, 0.06})
+    for (const double rate_Hz : testing::frame_rates_Hz()) {
+      // A gram on such a spring turns about its corner in less time than two such frames.
+      if (size_m < 0.02 && rate_Hz < 1000.0) continue;
+      for (const Vec3& tilt : {Vec3(0.1, 0.05, 0.0), Vec3(0.0, 0.02, 0.3), Vec3(-0.2, 0.1, 0.0)})
+        for (const double speed : {0.0, 0.06, 0.3})
+          for (const bool box_first : {false, true}) {
+            SCOPED_TRACE(::testing::Message()
+                         << size_m << " m, " << rate_Hz << " Hz, tilt " << tilt.transpose() << ", " << speed
+                         << " m/s, box first " << box_first);
+            EXPECT_LT(greatest_energy({size_m, rate_Hz, tilt, speed, box_first}), 0.1);
+          }
+    }
 }
 
 }  // namespace

@@ -99,7 +99,7 @@ void ContactFinder::settle_candidates(std::span<const Pose> X_WB) noexcept {
   settle_closest_points(internal_, X_WB, patches_);
   candidate_order_.clear();
   for (SeamCandidate& candidate : candidates_) candidate_order_.push_back(&candidate);
-  if (!settle_seams(candidate_order_, X_WB, steady_, patches_))
+  if (!settle_seams(candidate_order_, X_WB, patches_))
     for (const SeamCandidate& candidate : candidates_) drop(candidate.a.body, candidate.b.body);
 }
 
@@ -125,6 +125,14 @@ void ContactFinder::leave_out_implied(std::span<const Pose> X_WB) noexcept {
 
 std::uint8_t ContactFinder::priority_of(int a, int b) const noexcept {
   return priority_.empty() ? priority::kOther : std::min(priority_[Index(a)], priority_[Index(b)]);
+}
+
+/// How far a contact of two bodies may move in a frame.
+const SteadyLimits& ContactFinder::steady_limits(int a, int b) const noexcept {
+  const auto is_pushed = [&](int body) {
+    return bodies_[Index(body)].moves && priority_[Index(body)] != priority::kGrasped;
+  };
+  return !priority_.empty() && (is_pushed(a) || is_pushed(b)) ? not_steady_ : steady_;
 }
 
 /// A lower bound of the pair's distance: an answer less the motion of the smaller body since, relative to the
@@ -239,6 +247,7 @@ SeamCandidate ContactFinder::candidate_of(Pair& pair, const PairDistance& found,
   candidate.b = {pair.body_b, pair.piece_b, bodies_[Index(pair.body_b)].part};
   candidate.pair = static_cast<int>(&pair - pairs_.data());
   candidate.shown = &pair.shown;
+  candidate.limits = &steady_limits(pair.body_a, pair.body_b);
   candidate.margin = tolerance(pair.body_a, pair.body_b);
   candidate.found = found;
   candidate.internal = internal;
@@ -300,10 +309,11 @@ void ContactFinder::emit_patch(Pair& pair, PairDistance found, const Pose& X_AB)
   }
   const Polytope& A = part_a.pieces[Index(pair.piece_a)];
   const Polytope& B = part_b.pieces[Index(pair.piece_b)];
-  const PairDistance shown = steady_depth(A, B, X_AB, found, steady_, pair.shown);
+  const SteadyLimits& steady = steady_limits(pair.body_a, pair.body_b);
+  const PairDistance shown = steady_depth(A, B, X_AB, found, steady, pair.shown);
   patch.distance = shown.distance;
   contact_manifold(A, B, X_AB, shown, margin, patch.manifold);
-  steady_centroid(X_AB, patch.manifold, steady_, pair.shown);
+  steady_centroid(X_AB, patch.manifold, steady, pair.shown);
 }
 
 int ContactFinder::distances_at(std::span<const Pose> X_WB, std::span<double> distance,

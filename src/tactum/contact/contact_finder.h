@@ -25,8 +25,9 @@
 /// of pieces are settled between them before patches are emitted (seam_settler.h), and those with bodies that
 /// lie side by side after that (flush_bodies.h).
 ///
-/// Emitted patches move from frame to frame without a step (steady_contact.h): the normal of an overlap and
-/// the centroid of a patch follow the exact ones at a bounded rate.
+/// Emitted patches of the grasped part and a body that stands move from frame to frame without a step
+/// (steady_contact.h): the normal of an overlap and the centroid of a patch follow the exact ones at a bounded
+/// rate.
 
 #include <cstdint>
 #include <span>
@@ -229,6 +230,7 @@ class ContactFinder final : public GapOracle {
   /// are nearer by their bulges [m].
   double facet_tolerance(int a, int b) const noexcept { return tolerance(a, b) + bulge(a, b); }
   /// By how much curved surfaces are nearer than facets; the grasped part meets by its facets [m].
+  const SteadyLimits& steady_limits(int a, int b) const noexcept;
   double bulge(int a, int b) const noexcept { return of_grasped(a, b) ? 0.0 : greatest_bulge(a, b); }
   /// The same for lists that outlast a grasp [m].
   double greatest_bulge(int a, int b) const noexcept {
@@ -276,6 +278,7 @@ class ContactFinder final : public GapOracle {
   ReservedVector<ReductionScratch> reduction_scratch_;
   std::size_t kept_minima_ = 0;  // most minima of two bodies that become patches
   SteadyLimits steady_;
+  SteadyLimits not_steady_ = SteadyLimits::none();
   int head_start_;                       // kHeadStart_s in frames
   ReservedVector<double> motion_bound_;  // by body [m]
   PatchPoints points_ = PatchPoints::kQuadrature;

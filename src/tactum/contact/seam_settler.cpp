@@ -20,9 +20,9 @@ constexpr double kFarDeeper = 2.0;
 /// The candidates of two bodies.
 class TwoBodies {
  public:
-  TwoBodies(std::span<SeamCandidate*> candidates, const Pose& X_AB, const SteadyLimits& steady,
+  TwoBodies(std::span<SeamCandidate*> candidates, const Pose& X_AB,
             std::vector<ContactPatch>& patches) noexcept
-      : candidates_(candidates), X_AB_(X_AB), steady_(steady), patches_(patches) {}
+      : candidates_(candidates), X_AB_(X_AB), steady_(*candidates.front()->limits), patches_(patches) {}
 
   void settle() noexcept {
     for (SeamCandidate* candidate : candidates_)
@@ -320,7 +320,7 @@ void take_from(const ContactPatch& representative, const SeamCandidate& candidat
 }  // namespace
 
 bool settle_seams(std::span<SeamCandidate*> candidates, std::span<const Pose> X_WB,
-                  const SteadyLimits& steady, std::vector<ContactPatch>& patches) noexcept {
+                  std::vector<ContactPatch>& patches) noexcept {
   std::sort(candidates.begin(), candidates.end(), [](const SeamCandidate* p, const SeamCandidate* q) {
     return std::tie(p->a.body, p->b.body, p->internal, p->found.distance, p->a.piece, p->b.piece) <
            std::tie(q->a.body, q->b.body, q->internal, q->found.distance, q->a.piece, q->b.piece);
@@ -332,7 +332,7 @@ bool settle_seams(std::span<SeamCandidate*> candidates, std::span<const Pose> X_
     const auto last = std::find_if(first, candidates.end(),
                                    [&](const SeamCandidate* c) { return c->a.body != a || c->b.body != b; });
     const Pose X_AB = relative_pose(X_WB[Index(a)], X_WB[Index(b)]);
-    TwoBodies bodies({first, last}, X_AB, steady, patches);
+    TwoBodies bodies({first, last}, X_AB, patches);
     bodies.settle();
     complete = complete && !bodies.full();
     first = last;

@@ -39,9 +39,10 @@ struct SeamCandidate {
     const Polytope& polytope() const noexcept { return part->pieces[static_cast<std::size_t>(piece)]; }
   };
   Side a, b;
-  int pair = -1;                   ///< in the finder's list
-  SteadyContact* shown = nullptr;  ///< the pair's memory
-  double margin = 0.0;             ///< tolerance of the pair [m]
+  int pair = -1;                         ///< in the finder's list
+  SteadyContact* shown = nullptr;        ///< the pair's memory
+  const SteadyLimits* limits = nullptr;  ///< how far it may move; the same for all pairs of two bodies
+  double margin = 0.0;                   ///< tolerance of the pair [m]
   PairDistance found;
   PairDistance on_pieces;  ///< of an internal contact that was found again: the first answer
   bool internal = false;
@@ -53,7 +54,7 @@ struct SeamCandidate {
 /// Appends the patches of `candidates`, which are marked as settled, and their order is changed. False when
 /// `patches` is full.
 bool settle_seams(std::span<SeamCandidate*> candidates, std::span<const Pose> X_WB,
-                  const SteadyLimits& steady, std::vector<ContactPatch>& patches) noexcept;
+                  std::vector<ContactPatch>& patches) noexcept;
 
 /// Settles the internal contacts among `patches` that have one closest point each; `candidates` are those
 /// contacts. The representative of one is the patch of the same two bodies that is nearer and whose normal

@@ -12,10 +12,14 @@
 ///     centroid   stays where both bodies carry it, and moves from there at kCentroidSpeed at most, times
 ///                the scale of the scene
 ///
+/// A contact that pushes a body which no hand leads is not held back (SteadyLimits::none): a force beside the place
+/// where the bodies touch would make energy in it.
+///
 /// For a thin piece pushed right through another there is no such path: every normal between is far deeper
 /// than both. Then the normal switches at once. Cost: 40 ns while nothing is limited.
 
 #include <cmath>
+#include <limits>
 
 #include "tactum/collision/contact.h"
 #include "tactum/geometry/polytope.h"
@@ -34,6 +38,14 @@ struct SteadyLimits {
         cosine(std::cos(turn_rad)),
         sine(std::sin(turn_rad)),
         step_m(kCentroidSpeed * dt_s * scale) {}
+  /// A contact is displayed as it was found.
+  static SteadyLimits none() noexcept {
+    SteadyLimits limits(0.0);
+    limits.turn_rad = kPi;
+    limits.cosine = -2.0;  // below any
+    limits.step_m = std::numeric_limits<double>::infinity();
+    return limits;
+  }
 
   double turn_rad;      ///< of the normal [rad]
   double cosine, sine;  ///< of that angle [-]

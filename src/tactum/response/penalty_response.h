@@ -87,6 +87,8 @@ class PenaltyResponse {
                                        std::span<const Twist> V_WB) noexcept;
   void aim_grasped(const MotionInput& input, const WorldState& bodies) noexcept;
   void add_body(const MotionInput& input, int body, double h_s, const WorldState& bodies) noexcept;
+  double share_of_margin(const StepInput& input, const ContactRow& row, int body, const Vec3& toward_W,
+                         const WorldState& bodies) const noexcept;
   void find_rows(const StepInput& input, GapOracle& gaps, const WorldState& bodies) noexcept;
   void advance(const StepInput& input, double t_s, WorldState& bodies) const noexcept;
   void report_grasped(const StepInput& input, std::size_t hand, double rest_s, const WorldState& bodies,
