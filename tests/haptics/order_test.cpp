@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <utility>
@@ -134,55 +135,80 @@ TEST(Order, NoStepIsLeftOutWithFriction) {
   }
 }
 
-/// A ring of pieces, pressed flat or tilted onto a floor: what is felt in every frame.
-std::vector<Wrench> pressed_ring(int sides, double rate_Hz, double tilt, ResponseModel response,
-                                 bool listed_first) {
-  const Result<std::vector<Polytope>> pieces = hole_block_pieces(
-      {.sides = sides, .peg_width_m = 0.01, .clearance_m = 0.0001, .wall_m = 0.00592, .hole_depth_m = 0.007});
+/// A ring of pieces that is pressed against a plate: flat or tilted onto a floor, or with its rim against a wall.
+struct RingCase {
+  int sides = 24;
+  double rate_Hz = 1000.0;
+  double tilt = 0.0;  // [rad] in a second
+  double yaw = 0.0;   // [rad]
+  bool against_wall = false;
+  ResponseModel response = ResponseModel::kPenalty;
+};
+
+/// What is felt of it in every frame.
+std::vector<Wrench> pressed_ring(const RingCase& c, bool listed_first) {
+  const Result<std::vector<Polytope>> pieces = hole_block_pieces({.sides = c.sides,
+                                                                  .peg_width_m = 0.01,
+                                                                  .clearance_m = 0.0001,
+                                                                  .wall_m = 0.00592,
+                                                                  .hole_depth_m = 0.007});
   EXPECT_TRUE(pieces);
   std::vector<std::vector<Vec3>> corners;
-  for (const Polytope& piece : *pieces) corners.emplace_back(piece.vertices.begin(), piece.vertices.end());
+  const Mat3 yaw = exp_rotation({0, 0, c.yaw});
+  double farthest = 0.0;  // of the rim along x [m]
+  for (const Polytope& piece : *pieces) {
+    corners.emplace_back(piece.vertices.begin(), piece.vertices.end());
+    for (const Vec3& corner : corners.back()) farthest = std::max(farthest, (yaw * corner).x());
+  }
   const auto ring =
       std::make_shared<const Part>(std::move(*part_from_clouds(corners, {.about_center_of_mass = true})));
-  const auto floor_part = part_of(testing::box_mesh({0.1, 0.1, 0.01}), false);
+  const auto plate = part_of(testing::box_mesh({0.1, 0.1, 0.01}), false);
+  const Vec3 p_ring(-0.05, 0.04, 1e-7);
+  const Pose X_plate =
+      c.against_wall ? Pose{exp_rotation({0, 0.5 * kPi, 0}), {p_ring.x() + farthest + 0.01 + 1e-7, 0, 0}}
+                     : Pose{Mat3::Identity(), {0, 0, -0.01}};
   World world;
-  const auto add_floor = [&] {
-    add_body(world, {.part = floor_part,
-                     .X_WP = {Mat3::Identity(), {0, 0, -0.01}},
-                     .joint = {.kind = JointKind::kFixed}});
+  const auto add_plate = [&] {
+    add_body(world, {.part = plate, .X_WP = X_plate, .joint = {.kind = JointKind::kFixed}});
   };
-  if (!listed_first) add_floor();
-  const int body = add_body(world, {.part = ring, .X_WP = {Mat3::Identity(), {-0.05, 0.04, 1e-7}}});
-  if (listed_first) add_floor();
+  if (!listed_first) add_plate();
+  const int body = add_body(world, {.part = ring, .X_WP = {yaw, p_ring}});
+  if (listed_first) add_plate();
   FrameSettings settings;
-  settings.dt_s = 1.0 / rate_Hz;
+  settings.dt_s = 1.0 / c.rate_Hz;
   settings.tool.body = body;
-  settings.response = response;
+  settings.response = c.response;
   const auto simulation = std::move(*Simulation::make(world, settings));
   std::vector<Wrench> felt;
   for (double t = 0.0; t < 0.1; t += settings.dt_s) {
-    simulation->step(Pose{exp_rotation(tilt * t * Vec3(1.0, 0.3, 0.0)), {0, 0, -0.02 * t}});
+    const Vec3 pressed = c.against_wall ? Vec3(0.02 * t, 0, 0) : Vec3(0, 0, -0.02 * t);
+    simulation->step(Pose{exp_rotation(c.tilt * t * Vec3(1.0, 0.3, 0.0)), pressed});
     felt.push_back(simulation->report().coupling);
   }
   return felt;
 }
 
-/// At a corner of the hole the ring touches with the face under it, whichever of the faces there is listed first.
-TEST(Order, ARingOfPiecesIsFeltAsOneListedAfterTheFloor) {
+/// At a corner of the hole the ring touches with the face under it, and at the end of an edge with that edge,
+/// whichever of the features and pieces there is listed first.
+TEST(Order, ARingOfPiecesIsFeltAsOneListedAfterThePlate) {
   for (const ResponseModel response : {ResponseModel::kConstraint, ResponseModel::kPenalty})
     for (const int sides : {3, 6, 16, 23, 24, 32})
       for (const double rate_Hz : testing::frame_rates_Hz())
-        for (const double tilt : {0.0, 0.1}) {
-          SCOPED_TRACE(::testing::Message() << "response " << int(response) << ", " << sides << " sides, "
-                                            << rate_Hz << " Hz, tilt " << tilt);
-          const std::vector<Wrench> before = pressed_ring(sides, rate_Hz, tilt, response, true);
-          const std::vector<Wrench> after = pressed_ring(sides, rate_Hz, tilt, response, false);
-          ASSERT_GT(before.back().f.z(), 0.1);
-          for (std::size_t i = 0; i < before.size(); ++i) {
-            ASSERT_LT((before[i].f - after[i].f).norm(), 1e-9) << i;
-            ASSERT_LT((before[i].t - after[i].t).norm(), 1e-9) << i;
-          }
-        }
+        for (const double tilt : {0.0, 0.1})
+          for (const double yaw : {0.0, kPi / sides, 0.3})
+            for (const bool against_wall : {false, true}) {
+              const RingCase c{sides, rate_Hz, tilt, yaw, against_wall, response};
+              SCOPED_TRACE(::testing::Message()
+                           << "response " << int(response) << ", " << sides << " sides, " << rate_Hz
+                           << " Hz, tilt " << tilt << ", yaw " << yaw << ", wall " << against_wall);
+              const std::vector<Wrench> before = pressed_ring(c, true);
+              const std::vector<Wrench> after = pressed_ring(c, false);
+              ASSERT_GT(before.back().f.norm(), 0.1);
+              for (std::size_t i = 0; i < before.size(); ++i) {
+                ASSERT_LT((before[i].f - after[i].f).norm(), 1e-6) << i;
+                ASSERT_LT((before[i].t - after[i].t).norm(), 1e-7) << i;
+              }
+            }
 }
 
 }  // namespace

@@ -172,7 +172,7 @@ class TwoBodies {
     stretches_.clear();
     for (SeamCandidate* other : candidates_)
       if (!other->settled && !follow(*other, representative, shown, *patch))
-        share(*other, nearest, representative.patch);
+        share(*other, nearest, representative, patch->manifold);
     if (!stretches_.empty())
       contact_manifold_over(representative.a.polytope(), representative.b.polytope(), X_AB_, led,
                             representative.margin, {stretches_.begin(), stretches_.size()}, patch->manifold);
@@ -194,7 +194,7 @@ class TwoBodies {
     *other.shown = through ? SteadyContact{} : *representative.shown;
   }
 
-  /// Where the nearest touches at a true edge that other pieces have too, returns the candidate with the
+  /// Where the nearest touches at a true edge or corner that other pieces have too, returns the candidate with the
   /// largest features square to the normal; puts its patch in place, and in `led` the contact on its
   /// features.
   SeamCandidate& widest(SeamCandidate& nearest, const PairDistance& shown, ContactPatch& patch,
@@ -203,7 +203,7 @@ class TwoBodies {
       return static_cast<int>(manifold.a.kind) + static_cast<int>(manifold.b.kind);
     };
     SeamCandidate* best = &nearest;
-    if (shown.a.kind != FeatureKind::kEdge && shown.b.kind != FeatureKind::kEdge) return *best;
+    if (shown.a.kind == FeatureKind::kFace && shown.b.kind == FeatureKind::kFace) return *best;
     for (SeamCandidate* other : candidates_) {
       FeaturePair same;
       if (other->settled || other == &nearest || !same_features(shown.a, shown.b, nearest, *other, same))
@@ -237,9 +237,26 @@ class TwoBodies {
     return out;
   }
 
-  /// Settles `other` when it touches where the nearest does and has nothing to add: on the same features, or
-  /// at a corner that both have.
-  static void share(SeamCandidate& other, const SeamCandidate& nearest, int patch) noexcept {
+  /// Whether a feature is the other one, or at its rim.
+  static bool is_of(const Polytope& P, const Feature& feature, const Feature& whole) noexcept {
+    if (feature == whole) return true;
+    if (whole.kind == FeatureKind::kEdge) {
+      const Polytope::Edge& edge = P.edges[whole.index];
+      return feature.kind == FeatureKind::kVertex &&
+             (feature.index == edge.tail || feature.index == edge.head);
+    }
+    if (whole.kind != FeatureKind::kFace || feature.kind == FeatureKind::kFace) return false;
+    if (feature.kind == FeatureKind::kEdge)
+      return P.edges[feature.index].left == whole.index || P.edges[feature.index].right == whole.index;
+    const Polytope::Face& loop = P.faces[whole.index];
+    const auto corners = P.face_vertices.begin() + loop.first;
+    return std::find(corners, corners + loop.count, feature.index) != corners + loop.count;
+  }
+
+  /// Settles `other` when it touches where the nearest does and has nothing to add: on the same features, at a
+  /// corner that both have, or at a corner of what the representative touches with.
+  static void share(SeamCandidate& other, const SeamCandidate& nearest, const SeamCandidate& representative,
+                    const Manifold& patch) noexcept {
     const double noise = tolerances::kCoplanarMeshOffset *
                          std::max(nearest.a.polytope().extent.size, nearest.b.polytope().extent.size);
     const bool same_place =
@@ -251,9 +268,15 @@ class TwoBodies {
       return same_features(nearest.found.a, nearest.found.b, nearest, other, same) &&
              same.a == other.found.a && same.b == other.found.b;
     };
-    if (!same_place && !on_same_features()) return;
+    const auto at_a_corner = [&] {
+      FeaturePair same;
+      return same_features(other.found.a, other.found.b, other, representative, same) &&
+             is_of(representative.a.polytope(), same.a, patch.a) &&
+             is_of(representative.b.polytope(), same.b, patch.b);
+    };
+    if (!same_place && !on_same_features() && !at_a_corner()) return;
     other.settled = true;
-    other.led_by = patch;
+    other.led_by = representative.patch;
   }
 
   /// Merges the stretch that `other` has of the representative's contact; false when it has none.
@@ -298,8 +321,10 @@ class TwoBodies {
 /// reference face beside it, and then `beside` becomes true.
 Feature stretch_of(const SeamCandidate::Side& side, int of_piece, const Feature& feature, const Vec3& outward,
                    bool& beside) noexcept {
-  const Feature same = same_feature(*side.part, of_piece, feature, side.piece);
-  if (same.index >= 0 || feature.kind == FeatureKind::kFace) return same;
+  if (feature.kind != FeatureKind::kVertex) {
+    const Feature same = same_feature(*side.part, of_piece, feature, side.piece);
+    if (same.index >= 0 || feature.kind == FeatureKind::kFace) return same;
+  }
   beside = true;
   const int face = reference_face(side.part->pieces[Index(of_piece)], feature, outward);
   return same_feature(*side.part, of_piece, {FeatureKind::kFace, face}, side.piece);

@@ -152,6 +152,18 @@ std::optional<PairDistance> crossing_edges(const Polytope& A, int edge_a, const 
                       .stop = Stop::kFallback};
 }
 
+/// The vertex of `piece` where that of `of_piece` is.
+Feature same_corner(const Part& part, int of_piece, const Feature& vertex, int piece) noexcept {
+  const auto neighbours = part.true_surface.neighbours(number_of(part, of_piece, vertex));
+  if (std::find(neighbours.begin(), neighbours.end(), piece) == neighbours.end()) return {vertex.kind, -1};
+  const Vec3& p = part.pieces[Index(of_piece)].vertices[Index(vertex.index)];
+  const auto& vertices = part.pieces[Index(piece)].vertices;
+  const double noise = noise_of(part);
+  const auto same = std::find_if(vertices.begin(), vertices.end(),
+                                 [&](const Vec3& other) { return (other - p).norm() <= noise; });
+  return {vertex.kind, same == vertices.end() ? -1 : static_cast<int>(same - vertices.begin())};
+}
+
 }  // namespace
 
 bool allowed_by_neighbours(const Part& part, int piece, const Feature& feature, const Vec3& p,
@@ -220,7 +232,8 @@ Feature true_feature(const Part& part, int piece, const Feature& feature, const 
 
 Feature same_feature(const Part& part, int of_piece, const Feature& feature, int piece) noexcept {
   if (piece == of_piece) return feature;
-  if (part.true_surface.single_piece() || feature.kind == FeatureKind::kVertex) return {feature.kind, -1};
+  if (part.true_surface.single_piece()) return {feature.kind, -1};
+  if (feature.kind == FeatureKind::kVertex) return same_corner(part, of_piece, feature, piece);
   const int group = part.true_surface.group[Index(number_of(part, of_piece, feature))];
   if (group < 0) return {feature.kind, -1};
   const auto members = part.true_surface.members_of(group);

@@ -39,8 +39,8 @@ bool is_true_contact(const Part& part_a, int piece_a, const Part& part_b, int pi
 Feature true_feature(const Part& part, int piece, const Feature& feature, const Vec3& p,
                      const Vec3& outward) noexcept;
 
-/// The feature of `piece` that is the same as `feature` of `of_piece`: itself, or the stretch of the same
-/// true face or edge. Index -1: none.
+/// The feature of `piece` that is the same as `feature` of `of_piece`: itself, the stretch of the same true face
+/// or edge, or the corner at the same place of a piece beside it. Index -1: none.
 Feature same_feature(const Part& part, int of_piece, const Feature& feature, int piece) noexcept;
 
 /// The least depth (or distance) on the true surface: along the normal of a true face that has the other
