@@ -113,42 +113,49 @@ void true_edges(const Part& part, int piece, EdgeList& edges) noexcept {
   }
 }
 
-/// Whether `outward` (square to the edge) is a normal of `P` at `edge`, by the sign: +1, or -1 for its
-/// opposite; 0 when neither is.
-double cone_sign(const Polytope& P, int edge, const Vec3& outward) noexcept {
-  const double left = side_at(P, P.edges[edge].left, edge).dot(outward);
-  const double right = side_at(P, P.edges[edge].right, edge).dot(outward);
-  return left >= 0.0 && right >= 0.0 ? 1.0 : left <= 0.0 && right <= 0.0 ? -1.0 : 0.0;
+/// An edge of a piece, in A's frame: the reference is valid as long as what it was made of.
+struct PlacedEdge {
+  int edge;
+  const Vec3 &tail, &direction;
+  const Vec3 &left, &right;  // sides of the faces there: unit, in their planes, outward
+  double length;
+
+  /// Whether `outward` (square to the edge) is a normal there, by the sign: +1, or -1 for its opposite; 0 when
+  /// neither is.
+  double sign_of(const Vec3& outward) const noexcept {
+    const double on_left = left.dot(outward);
+    const double on_right = right.dot(outward);
+    return on_left >= 0.0 && on_right >= 0.0 ? 1.0 : on_left <= 0.0 && on_right <= 0.0 ? -1.0 : 0.0;
+  }
+};
+
+PlacedEdge placed_edge(const Polytope& P, int edge) noexcept {
+  const Polytope::Edge& e = P.edges[edge];
+  return {edge,    P.vertices[e.tail], e.direction, side_at(P, e.left, edge), side_at(P, e.right, edge),
+          e.length};
 }
 
 /// Two edges whose common normal both pieces have, where they cross.
-std::optional<PairDistance> crossing_edges(const Polytope& A, int edge_a, const Polytope& B, int edge_b,
-                                           const Pose& X_AB) noexcept {
-  const Polytope::Edge& a = A.edges[edge_a];
-  const Polytope::Edge& b = B.edges[edge_b];
-  const Vec3 along_b = X_AB.R * b.direction;
-  Vec3 n = a.direction.cross(along_b);
+std::optional<PairDistance> crossing_edges(const PlacedEdge& a, const PlacedEdge& b) noexcept {
+  Vec3 n = a.direction.cross(b.direction);
+  const double sign = a.sign_of(-n);
+  if (sign == 0.0 || b.sign_of(sign * n) != 1.0) return std::nullopt;
   const double sine = n.norm();
   if (!(sine > tolerances::kSamePlane)) return std::nullopt;  // parallel: the faces have covered them
-  n /= sine;
-  const double sign = cone_sign(A, edge_a, -n);
-  if (sign == 0.0 || cone_sign(B, edge_b, sign * rotated_back(X_AB.R, n)) != 1.0) return std::nullopt;
-  n *= sign;
-  const Vec3& a0 = A.vertices[a.tail];
-  const Vec3 b0 = X_AB * B.vertices[b.tail];
+  n *= sign / sine;
   // Where the lines cross, seen along n: in metres from their tails.
-  const Vec3 between = b0 - a0;
-  const double on_a = sign / sine * between.cross(along_b).dot(n);
+  const Vec3 between = b.tail - a.tail;
+  const double on_a = sign / sine * between.cross(b.direction).dot(n);
   const double on_b = sign / sine * between.cross(a.direction).dot(n);
   if (on_a < 0.0 || on_a > a.length || on_b < 0.0 || on_b > b.length) return std::nullopt;
-  const Vec3 p_a = a0 + on_a * a.direction;
-  const Vec3 p_b = b0 + on_b * along_b;
+  const Vec3 p_a = a.tail + on_a * a.direction;
+  const Vec3 p_b = b.tail + on_b * b.direction;
   return PairDistance{.distance = n.dot(p_a - p_b),
                       .p_a = p_a,
                       .p_b = p_b,
                       .normal = n,
-                      .a = {FeatureKind::kEdge, edge_a},
-                      .b = {FeatureKind::kEdge, edge_b},
+                      .a = {FeatureKind::kEdge, a.edge},
+                      .b = {FeatureKind::kEdge, b.edge},
                       .stop = Stop::kFallback};
 }
 
@@ -283,11 +290,18 @@ std::optional<PairDistance> depth_on_true_surface(const Part& part_a, int piece_
   true_edges(part_a, piece_a, edges_a);
   true_edges(part_b, piece_b, edges_b);
   if (edges_a.size() * edges_b.size() > kMostEdgePairs) return best;
-  for (const int a : edges_a)
-    for (const int b : edges_b)
-      if (const std::optional<PairDistance> crossing = crossing_edges(A, a, B, b, X_AB);
+  for (const int b : edges_b) {
+    const PlacedEdge in_B = placed_edge(B, b);
+    const Vec3 tail = X_AB * in_B.tail;
+    const Vec3 direction = X_AB.R * in_B.direction;
+    const Vec3 left = X_AB.R * in_B.left;
+    const Vec3 right = X_AB.R * in_B.right;
+    const PlacedEdge in_A{b, tail, direction, left, right, in_B.length};
+    for (const int a : edges_a)
+      if (const std::optional<PairDistance> crossing = crossing_edges(placed_edge(A, a), in_A);
           crossing && nearer(crossing->distance))
         take(*crossing);
+  }
   return best;
 }
 
