@@ -82,8 +82,8 @@ TEST(SteadyContact, ASwitchingNormalTurnsSlowlyAndAlwaysSeparates) {
   }
 }
 
-/// A small box that rolls over the face of a large one, at any speed, and whichever of the two is A: the normal is
-/// that face's, and turns with it.
+/// A small box that rolls over the face of a large one, at any speed, and whichever of the two is A: the
+/// normal is that face's, and turns with it.
 TEST(SteadyContact, ANormalTurnsWithTheBodyOfItsFace) {
   const Polytope floor = make_box({0.1, 0.1, 0.01});
   const Polytope small = make_box({0.01, 0.01, 0.01});

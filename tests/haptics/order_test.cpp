@@ -126,7 +126,8 @@ TEST(Order, ASolidListedBeforeTheFloorFallsAsOneListedAfterIt) {
   }
 }
 
-/// With friction the answers of the solver differ in the digits that it leaves open, which tumbling makes larger.
+/// With friction the answers of the solver differ in the digits that it leaves open, which tumbling makes
+/// larger.
 TEST(Order, NoStepIsLeftOutWithFriction) {
   for (const Case& c : cases(0.3)) {
     SCOPED_TRACE(words_of(c));
@@ -135,7 +136,8 @@ TEST(Order, NoStepIsLeftOutWithFriction) {
   }
 }
 
-/// A ring of pieces that is pressed against a plate: flat or tilted onto a floor, or with its rim against a wall.
+/// A ring of pieces that is pressed against a plate: flat or tilted onto a floor, or with its rim against a
+/// wall.
 struct RingCase {
   int sides = 24;
   double rate_Hz = 1000.0;

@@ -192,8 +192,8 @@ TEST(PenaltyMechanics, ABodyPressedOnTheFloorIsFeltByTheLaw) {
   }
 }
 
-/// A small box, and the plate in the hand, tilted against each other, that it meets: it falls onto the plate, or the
-/// hand moves the plate against it.
+/// A small box, and the plate in the hand, tilted against each other, that it meets: it falls onto the
+/// plate, or the hand moves the plate against it.
 struct Meeting {
   double size_m = 0.02;  ///< of the box's longest side
   double rate_Hz = 1000.0;
@@ -245,8 +245,8 @@ double greatest_energy(const Meeting& c) {
   return greatest;
 }
 
-/// A spring that moves evenly, or stands, takes nothing to the box that it does not give back; the force acts where
-/// the two touch, not where they touched a moment ago.
+/// A spring that moves evenly, or stands, takes nothing to the box that it does not give back; the force
+/// acts where the two touch, not where they touched a moment ago.
 TEST(PenaltyMechanics, ThePartInTheHandMakesNoEnergyInABoxThatItMeets) {
   for (const double size_m : {0.01, 0.02, 0.06})
     for (const double rate_Hz : testing::frame_rates_Hz()) {

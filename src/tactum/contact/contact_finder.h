@@ -26,8 +26,8 @@
 /// lie side by side after that (flush_bodies.h).
 ///
 /// Emitted patches of the grasped part and a body that stands move from frame to frame without a step
-/// (steady_contact.h): the normal of an overlap and the centroid of a patch follow the exact ones at a bounded
-/// rate.
+/// (steady_contact.h): the normal of an overlap and the centroid of a patch follow the exact ones at a
+/// bounded rate.
 
 #include <cstdint>
 #include <span>

@@ -194,9 +194,9 @@ class TwoBodies {
     *other.shown = through ? SteadyContact{} : *representative.shown;
   }
 
-  /// Where the nearest touches at a true edge or corner that other pieces have too, returns the candidate with the
-  /// largest features square to the normal; puts its patch in place, and in `led` the contact on its
-  /// features.
+  /// Where the nearest touches at a true edge or corner that other pieces have too, returns the candidate
+  /// with the largest features square to the normal; puts its patch in place, and in `led` the contact on
+  /// its features.
   SeamCandidate& widest(SeamCandidate& nearest, const PairDistance& shown, ContactPatch& patch,
                         PairDistance& led) noexcept {
     const auto size_of = [](const Manifold& manifold) {
@@ -253,8 +253,8 @@ class TwoBodies {
     return std::find(corners, corners + loop.count, feature.index) != corners + loop.count;
   }
 
-  /// Settles `other` when it touches where the nearest does and has nothing to add: on the same features, at a
-  /// corner that both have, or at a corner of what the representative touches with.
+  /// Settles `other` when it touches where the nearest does and has nothing to add: on the same features,
+  /// at a corner that both have, or at a corner of what the representative touches with.
   static void share(SeamCandidate& other, const SeamCandidate& nearest, const SeamCandidate& representative,
                     const Manifold& patch) noexcept {
     const double noise = tolerances::kCoplanarMeshOffset *

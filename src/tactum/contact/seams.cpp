@@ -120,8 +120,8 @@ struct PlacedEdge {
   const Vec3 &left, &right;  // sides of the faces there: unit, in their planes, outward
   double length;
 
-  /// Whether `outward` (square to the edge) is a normal there, by the sign: +1, or -1 for its opposite; 0 when
-  /// neither is.
+  /// Whether `outward` (square to the edge) is a normal there, by the sign: +1, or -1 for its opposite; 0
+  /// when neither is.
   double sign_of(const Vec3& outward) const noexcept {
     const double on_left = left.dot(outward);
     const double on_right = right.dot(outward);

@@ -33,14 +33,14 @@ bool is_true_contact(const Part& part_a, int piece_a, const Part& part_b, int pi
                      const PairDistance& found, double margin = 0.0) noexcept;
 
 /// The feature of the whole part in whose middle `p` (part's frame) on `feature` of `piece` lies, by its
-/// number on the piece: a corner that cuts made is in the middle of an edge or of a face. Of several faces, as at
-/// a corner of a hole, it is the one that faces most along `outward`, the contact's normal (unit, part's frame).
-/// Cost: as above, for each edge at it.
+/// number on the piece: a corner that cuts made is in the middle of an edge or of a face. Of several faces,
+/// as at a corner of a hole, it is the one that faces most along `outward`, the contact's normal (unit,
+/// part's frame). Cost: as above, for each edge at it.
 Feature true_feature(const Part& part, int piece, const Feature& feature, const Vec3& p,
                      const Vec3& outward) noexcept;
 
-/// The feature of `piece` that is the same as `feature` of `of_piece`: itself, the stretch of the same true face
-/// or edge, or the corner at the same place of a piece beside it. Index -1: none.
+/// The feature of `piece` that is the same as `feature` of `of_piece`: itself, the stretch of the same true
+/// face or edge, or the corner at the same place of a piece beside it. Index -1: none.
 Feature same_feature(const Part& part, int of_piece, const Feature& feature, int piece) noexcept;
 
 /// The least depth (or distance) on the true surface: along the normal of a true face that has the other

@@ -22,8 +22,8 @@ PairDistance depth_across(const PairView& pair, const PairDistance& found, const
   return result;
 }
 
-/// The last normal, in A's frame, as the body carries it that takes it nearer to `found`: the normal of a face
-/// turns with that face's body, however fast.
+/// The last normal, in A's frame, as the body carries it that takes it nearer to `found`: the normal of a
+/// face turns with that face's body, however fast.
 Vec3 carried_normal(const Vec3& found, const Pose& X_AB, const SteadyContact& last) noexcept {
   const Vec3 by_B = rotated(X_AB.R, last.normal_B);
   return last.normal_A.dot(found) >= by_B.dot(found) ? last.normal_A : by_B;

@@ -12,8 +12,8 @@
 ///     centroid   stays where both bodies carry it, and moves from there at kCentroidSpeed at most, times
 ///                the scale of the scene
 ///
-/// A contact that pushes a body which no hand leads is not held back (SteadyLimits::none): a force beside the place
-/// where the bodies touch would make energy in it.
+/// A contact that pushes a body which no hand leads is not held back (SteadyLimits::none): a force beside
+/// the place where the bodies touch would make energy in it.
 ///
 /// For a thin piece pushed right through another there is no such path: every normal between is far deeper
 /// than both. Then the normal switches at once. Cost: 40 ns while nothing is limited.

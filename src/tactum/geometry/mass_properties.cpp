@@ -45,8 +45,8 @@ Mat3 second_about(const Vec3& center, const Moments& moments) {
   return moments.second - moments.volume * center * center.transpose();
 }
 
-/// Whether moments about the middle of a box are those of a solid in it: its centre of mass is in the box, and
-/// its second moments are positive. Those of a surface whose parts cancel need not be.
+/// Whether moments about the middle of a box are those of a solid in it: its centre of mass is in the box,
+/// and its second moments are positive. Those of a surface whose parts cancel need not be.
 bool are_of_solid(const Moments& moments, const Aabb& box) {
   if (!(moments.volume > tolerances::kNoVolume * std::pow(box.diagonal(), 3))) return false;
   const Vec3 center = moments.first / moments.volume;

@@ -20,14 +20,14 @@ struct MassProperties {
 };
 
 /// Of a surface with normals outward that runs along every edge as often one way as the other: closed and
-/// oriented, or solids that touch in edges or faces. Anything else is an error that states what is open, or that
-/// the surface crosses itself so that its parts cancel and the moments are those of no solid.
+/// oriented, or solids that touch in edges or faces. Anything else is an error that states what is open, or
+/// that the surface crosses itself so that its parts cancel and the moments are those of no solid.
 Result<MassProperties> mass_properties(const TriangleMesh& mesh, double density_kg_per_m3);
 
 /// Of any welded mesh: exact when the surface is closed (reversed when its normals point inward); of its
-/// solids when sheets beside them have the smaller area; otherwise of the convex hull, or of the bounding box
-/// when the points lie in a plane. `approximation` states which. The centre is always within the mesh's box, and
-/// the moments of inertia are those of a solid.
+/// solids when sheets beside them have the smaller area; otherwise of the convex hull, or of the bounding
+/// box when the points lie in a plane. `approximation` states which. The centre is always within the mesh's
+/// box, and the moments of inertia are those of a solid.
 MassProperties mass_properties_or_hull(const TriangleMesh& mesh, double density_kg_per_m3);
 
 }  // namespace tactum::inline v0_1

@@ -300,9 +300,9 @@ void PenaltyResponse::solve(const StepInput& input, double rest_s, WorldState& b
     if (!bodies_[island].empty()) solve_island(input, island, rest_s, bodies, report);
 }
 
-/// What a body adds to the margin of a row: of a grasped part the published delta, of a body that is pushed how
-/// far its point comes nearer in a frame. Its speed and spin in all would be pushed off at a distance, and the
-/// faster it is the harder.
+/// What a body adds to the margin of a row: of a grasped part the published delta, of a body that is pushed
+/// how far its point comes nearer in a frame. With its whole speed and spin in the margin it would be pushed
+/// off at a distance, the harder the faster it is.
 double PenaltyResponse::share_of_margin(const StepInput& input, const ContactRow& row, int body,
                                         const Vec3& toward_W, const WorldState& bodies) const noexcept {
   if (is_grasped_[Index(body)]) return delta_[Index(body)];
