@@ -105,7 +105,7 @@ std::vector<Case> cases(double friction) {
              {std::pair(true, true), std::pair(true, false), std::pair(false, true), std::pair(false, false)})
           for (const double restitution : {0.0, 0.5})
             made.push_back({solid, size_m, rate_Hz, friction, restitution, body, floor, ++seed});
-  return testing::sampled(made, 3);
+  return testing::sampled(made, 7);
 }
 
 ::testing::Message words_of(const Case& c) {
