@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
+#include <utility>
 
 #include "support/sample_meshes.h"
+#include "support/surface_shapes.h"
 #include "tactum/math/screw.h"
 
 namespace tactum::mass_properties_test {
@@ -102,10 +104,7 @@ TEST(MassProperties, ASurfaceWhosePartsCancelHasThoseOfItsHull) {
       TriangleMesh turned = box_mesh(Vec3(1, 2, 3) * size * less);  // beside it, inside out
       for (Triangle& t : turned.triangles) std::swap(t[0], t[1]);
       for (Vec3& vertex : turned.vertices) vertex.x() += 4.0 * size;
-      const int base = static_cast<int>(mesh.vertices.size());
-      mesh.vertices.insert(mesh.vertices.end(), turned.vertices.begin(), turned.vertices.end());
-      for (const Triangle& t : turned.triangles)
-        mesh.triangles.push_back({base + t[0], base + t[1], base + t[2]});
+      mesh = testing::joined(std::move(mesh), turned);
       EXPECT_FALSE(mass_properties(mesh, 1.0));
       const MassProperties mass = mass_properties_or_hull(mesh, 1.0);
       EXPECT_NE(mass.approximation.find("convex hull"), std::string::npos) << mass.approximation;

@@ -189,7 +189,7 @@ TEST(ImportAgrees, ModelsThatOthersHaveMade) {
     expect_agreement(kSamples / file.name, file.near);
 }
 
-/// The volume inside the triangles of an OBJ file whose faces are "f v//n v//n v//n".
+/// The volume inside the triangles of an OBJ file whose faces are triangles, "f v/t/n v/t/n v/t/n".
 double volume_of_obj(const std::filesystem::path& path) {
   std::vector<Vec3> corners;
   double volume = 0.0;

@@ -113,7 +113,7 @@ void true_edges(const Part& part, int piece, EdgeList& edges) noexcept {
   }
 }
 
-/// An edge of a piece, in A's frame: the reference is valid as long as what it was made of.
+/// An edge of a piece in some frame; its references are valid as long as what they refer to.
 struct PlacedEdge {
   int edge;
   const Vec3 &tail, &direction;
