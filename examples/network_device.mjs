@@ -111,10 +111,12 @@ async function main(duration_s, port) {
     flags: kSensesRotation | kActuatesForce, max_force_N: 8, stiffest_N_per_m: 1500, workspace_radius_m: 0.08,
     rate_Hz: 1000, mass_kg: 0.1, damping_Ns_per_m: 2, name: "example in JavaScript", serial: "1",
   };
-  const position = [0, 0, 0], velocity = [0, 0, 0, 0, 0, 0], begin_s = performance.now() / 1e3;
-  let last_s = begin_s, largest_N = 0, wrench = [0, 0, 0, 0, 0, 0];
+  const position = [0, 0, 0], velocity = [0, 0, 0, 0, 0, 0];
+  let begin_s, last_s, largest_N = 0, wrench = [0, 0, 0, 0, 0, 0];
   const measure = () => {
-    const now_s = performance.now() / 1e3, dt_s = Math.min(now_s - last_s, 0.002);
+    const now_s = performance.now() / 1e3;
+    begin_s ??= last_s = now_s; // the hand begins to move when Tactum first asks where it is
+    const dt_s = Math.min(now_s - last_s, 0.002);
     last_s = now_s;
     for (let i = 0; i < 3; ++i) {
       const hand_m = i === 2 ? -0.02 * Math.sin(3 * (now_s - begin_s)) : 0; // the hand's place goes down and up

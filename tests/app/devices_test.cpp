@@ -165,20 +165,42 @@ TEST(Devices, GearsAreFeltOnADevice) {
   EXPECT_EQ(end, "forces off at the end, 0 rules broken");
 }
 
+/// A run on a device in another process, and the largest force that the device told when the run had ended.
+struct RunOnADevice {
+  ProgramRun run;
+  std::string said;
+  int device_status = -1;
+  double largest_N = 0.0;
+};
+RunOnADevice felt_plate(const std::string& device, int port) {
+  RunOnADevice felt;
+  std::thread process([&] {
+    FILE* output = popen((device + " 30 " + std::to_string(port) + " 2>&1").c_str(), "r");
+    char line[256];
+    while (std::fgets(line, sizeof line, output) != nullptr) felt.said += line;
+    felt.device_status = pclose(output);
+  });
+  felt.run = run_tactum("feel block-on-plate --duration 4 --device network:" + std::to_string(port));
+  process.join();
+  std::sscanf(felt.said.c_str(), "largest force %lf N", &felt.largest_N);
+  return felt;
+}
+
+/// A machine that is busy with something else may refuse a device, or let it hold for want of packets, as it
+/// has to: one of five runs is enough.
+void expect_a_felt_plate(const std::string& device, const std::string& name) {
+  RunOnADevice felt;
+  for (int i = 0; i < 5 && !(ended(felt.run) && felt.largest_N > 0.1); ++i)
+    felt = felt_plate(device, 20000 + getpid() % 20000 + i);
+  EXPECT_TRUE(ended(felt.run)) << felt.run.err;
+  EXPECT_TRUE(holds(felt.run.out, name)) << felt.run.out;
+  EXPECT_EQ(felt.device_status, 0) << felt.said;
+  EXPECT_GT(felt.largest_N, 0.1) << felt.said;
+}
+
 /// The example in C, as a process of its own.
 TEST(Devices, APlateIsFeltOnADeviceInAnotherProcess) {
-  const std::string port = std::to_string(40000 + getpid() % 20000);
-  ProgramRun device;
-  std::thread process(
-      [&] { device = testing::run_program("examples/example_network_device", "30 " + port); });
-  const ProgramRun run = run_tactum("feel block-on-plate --duration 4 --device network:" + port);
-  process.join();
-  EXPECT_TRUE(ended(run)) << run.err;
-  EXPECT_TRUE(holds(run.out, "network example")) << run.out;
-  EXPECT_EQ(device.exit_code, 0) << device.err;
-  double largest_N = 0.0;  // told when the run has ended
-  ASSERT_EQ(std::sscanf(device.out.c_str(), "largest force %lf N", &largest_N), 1) << device.out;
-  EXPECT_GT(largest_N, 0.1);
+  expect_a_felt_plate(testing::built_program("examples/example_network_device"), "network example");
 }
 
 /// The example in JavaScript, over WebSocket, where this machine's node has WebSockets.
@@ -186,21 +208,7 @@ TEST(Devices, APlateIsFeltOnADeviceInJavaScript) {
   const std::string node = "node --no-warnings --experimental-websocket ";
   if (std::system((node + "-e 'process.exit(globalThis.WebSocket ? 0 : 1)' 2>/dev/null").c_str()) != 0)
     GTEST_SKIP() << "no node with WebSockets";
-  const std::string port = std::to_string(20000 + getpid() % 20000);
-  std::string said;
-  std::thread process([&] {
-    FILE* device = popen((node + "examples/network_device.mjs 30 " + port + " 2>&1").c_str(), "r");
-    char line[256];
-    while (std::fgets(line, sizeof line, device) != nullptr) said += line;
-    pclose(device);
-  });
-  const ProgramRun run = run_tactum("feel block-on-plate --duration 2 --device network:" + port);
-  process.join();
-  EXPECT_TRUE(ended(run)) << run.err;
-  EXPECT_TRUE(holds(run.out, "network example in JavaScript")) << run.out;
-  double largest_N = 0.0;
-  ASSERT_EQ(std::sscanf(said.c_str(), "largest force %lf N", &largest_N), 1) << said;
-  EXPECT_GT(largest_N, 0.1);
+  expect_a_felt_plate(node + "examples/network_device.mjs", "network example in JavaScript");
 }
 
 TEST(Devices, ARealOneHasNoVirtualClock) {

@@ -49,15 +49,18 @@ inline void write(const std::string& path, const std::string& text) {
   std::ofstream(path, std::ios::binary) << text;
 }
 
-/// `NAME ARGUMENTS` through the shell; the program lies beside the tests' folder.
+/// The path of a program that was built: it lies beside the tests' folder.
+inline std::string built_program(const std::string& name) {
+  return (std::filesystem::read_symlink("/proc/self/exe").parent_path().parent_path() / name).string();
+}
+
+/// `NAME ARGUMENTS` through the shell.
 inline ProgramRun run_program(const std::string& name, const std::string& arguments) {
-  const std::filesystem::path program =
-      std::filesystem::read_symlink("/proc/self/exe").parent_path().parent_path() / name;
   const ScratchFolder folder;
   const std::string out = folder / "out";
   const std::string err = folder / "err";
   const int status =
-      std::system(("'" + program.string() + "' " + arguments + " >" + out + " 2>" + err).c_str());
+      std::system(("'" + built_program(name) + "' " + arguments + " >" + out + " 2>" + err).c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content(out), content(err)};
 }
 
