@@ -147,9 +147,7 @@ Twist joint_alone(const Body& body, const Pose& X_WB, const Twist& V) {
   problem.add_body({0, body, X_WB, {joint_position(body, X_WB), joint_position(body, X_WB)}}, X_WB.p,
                    inertial_metric(body, X_WB, kStep_s), to_vector(V * kStep_s), kStep_s);
   problem.add_joint_rows(false);
-  ReservedVector<double> forces;
-  forces.reserve(8);
-  EXPECT_TRUE(solve_penalty({}, 100, forces, problem).converged);
+  EXPECT_TRUE(PenaltySolver(8).solve({}, 100, problem).converged);
   return to_twist(problem.displacement(0) / kStep_s);
 }
 

@@ -1,9 +1,7 @@
 #include "tactum/dynamics/solve_penalty.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdint>
 
 #include "tactum/base/tolerances.h"
 
@@ -15,20 +13,37 @@ using Index = std::size_t;
 /// How much stiffer than its bodies a row is that should not yield.
 constexpr double kRigid = 1e9;
 
-/// The law of a row's force:  stiffness (offset - g z), between two bounds.
-struct ForceLaw {
-  double stiffness = 0.0;                 // [N/m]
-  double least = 0.0, most = kUnbounded;  // [N]
-};
-
 double rigid_stiffness(const QpRow& row) noexcept {
   const double mobile = mobility(row);
   return mobile > 0.0 ? kRigid / mobile : 0.0;
 }
 
+}  // namespace
+
+PenaltySolver::PenaltySolver(std::size_t most_rows) {
+  forces_.reserve(most_rows);
+  rows_.reserve(most_rows);
+}
+
+void PenaltySolver::Row::place(const QpRow::Run& run, std::size_t at) noexcept {
+  std::copy_n(run.g.begin(), QpRow::kLongestRun, g.begin() + at);
+  for (Index i = 0; i < run.count; ++i) column[at + i] = static_cast<std::uint8_t>(run.first + i);
+}
+
+double PenaltySolver::Row::force() const noexcept {
+  if (state == kYields) return std::clamp(missing * stiffness, least, most);
+  return state == kIdle ? least : most;
+}
+
+PenaltySolver::State PenaltySolver::Row::wanted_state() const noexcept {
+  const double wanted_force = missing * stiffness;
+  return wanted_force < least ? kIdle : wanted_force > most ? kSaturated : kYields;
+}
+
 /// Calls visit(number, row, law) with the rows of joints' limits, of contacts, and of joints' dry friction.
 template <class Visit>
-void for_each_row(std::span<const double> stiffness, const ContactProblem& problem, Visit&& visit) {
+void PenaltySolver::for_each_row(std::span<const double> stiffness, const ContactProblem& problem,
+                                 Visit&& visit) {
   const std::span<const QpRow> rows = problem.row_list();
   const Index first = rows.size() - stiffness.size();  // of the contacts
   for (Index i = 0; i < first; ++i) visit(i, rows[i], ForceLaw{.stiffness = rigid_stiffness(rows[i])});
@@ -41,239 +56,182 @@ void for_each_row(std::span<const double> stiffness, const ContactProblem& probl
   }
 }
 
-/// Newton's method on the convex function. A step is a Cholesky factor of I + sum k g g^T over the rows that
-/// yield, whose size is the freedom of the bodies, however many rows there are.
-class Newton {
- public:
-  static constexpr Index kMostRows = 128;
+void PenaltySolver::add(const QpRow& next, const ForceLaw& law) noexcept {
+  Row& row = rows_.emplace_back();
+  // In the order of the unknowns, for H is kept below its diagonal. The numbers of a run are copied whole,
+  // which takes less than a loop over as many as there are; those of the second run overwrite the rest.
+  const bool swapped = next.runs[1].first < next.runs[0].first;
+  const QpRow::Run& first = next.runs[swapped ? 1 : 0];
+  const QpRow::Run& second = next.runs[swapped ? 0 : 1];
+  row.place(first, 0);
+  row.place(second, first.count);
+  row.size = first.count + second.count;
+  row.stiffness = law.stiffness;
+  row.wanted = next.offset;
+  row.least = law.least;
+  row.most = law.most;
+  row.state = law.least < 0.0 || row.wanted > 0.0 ? kYields : kIdle;
+  add_state(row, row.state, 1.0);
+  most_wanted_ = std::max(most_wanted_, std::abs(row.wanted));
+}
 
-  // Not filled: add() and solve() write what is read.
-  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init,modernize-use-equals-default)
-  explicit Newton(Index unknowns) noexcept : unknowns_(unknowns) {
-    for (Index i = 0; i < unknowns_; ++i) {
-      right_[i] = 0.0;
-      for (Index j = 0; j <= i; ++j) H_[i][j] = i == j ? 1.0 : 0.0;
+/// Adds the terms of a row in this state to H and to the right side, or removes them.
+void PenaltySolver::add_state(const Row& row, State state, double sign) noexcept {
+  if (state == kYields) {
+    const double weight = sign * row.stiffness;
+    for (Index i = 0; i < row.size; ++i) {
+      const double scaled = weight * row.g[i];
+      right_[row.column[i]] += scaled * row.wanted;
+      Column& H = H_[row.column[i]];
+      for (Index j = 0; j <= i; ++j) H[row.column[j]] += scaled * row.g[j];
     }
+    return;
   }
+  const double force = sign * (state == kIdle ? row.least : row.most);
+  if (force == 0.0) return;
+  for (Index i = 0; i < row.size; ++i) right_[row.column[i]] += force * row.g[i];
+}
 
-  void add(const QpRow& next, const ForceLaw& law) {
-    Row& row = rows_[n_++];
-    // In the order of the unknowns, for H is kept below its diagonal. The numbers of a run are copied whole,
-    // which takes less than a loop over as many as there are; those of the second run overwrite the rest.
-    const bool swapped = next.runs[1].first < next.runs[0].first;
-    const QpRow::Run& first = next.runs[swapped ? 1 : 0];
-    const QpRow::Run& second = next.runs[swapped ? 0 : 1];
-    row.place(first, 0);
-    row.place(second, first.count);
-    row.size = first.count + second.count;
-    row.stiffness = law.stiffness;
-    row.wanted = next.offset;
-    row.least = law.least;
-    row.most = law.most;
-    row.state = law.least < 0.0 || row.wanted > 0.0 ? kYields : kIdle;
-    add_state(row, row.state, 1.0);
-    most_wanted_ = std::max(most_wanted_, std::abs(row.wanted));
-  }
+void PenaltySolver::change(Row& row, State state) noexcept {
+  if (state == row.state) return;
+  add_state(row, row.state, -1.0);
+  row.state = state;
+  set_right_range(row);
+  add_state(row, state, 1.0);
+}
 
-  /// Begins with the rows that approach too fast, and changes all rows that are in a wrong state after a
-  /// step; where that makes no fewer wrong, goes on with steps that are no longer than the function falls
-  /// along them, which always ends. Returns the rounds, 0 when they ran out.
-  int solve() {
-    allowed_ = tolerances::kContactVelocity * most_wanted_;
-    for (Index i = 0; i < n_; ++i) set_right_range(rows_[i]);
-    Index fewest = n_ + 1;
-    bool guarded = false;
-    for (int round = 1; round <= kMostRounds; ++round) {
-      if (guarded) keep_point();
-      newton_step();
-      Index wrong = 0;
-      for (Index i = 0; i < n_; ++i) {
-        Row& row = rows_[i];
-        row.missing = missing(row);
-        const double force = row.missing * row.stiffness;
-        row.wrong = !(force >= row.right.from && force <= row.right.to);  // a NaN is wrong
-        wrong += row.wrong ? 1 : 0;
+void PenaltySolver::set_right_range(Row& row) const noexcept {
+  // For a force with bounds a fraction of these; else the force of the length that may be missing.
+  const double tolerance =
+      row.most < kUnbounded ? tolerances::kContactVelocity * row.most : allowed_ * row.stiffness;
+  row.right.from =
+      row.state == kIdle ? -kUnbounded : (row.state == kYields ? row.least : row.most) - tolerance;
+  row.right.to =
+      row.state == kSaturated ? kUnbounded : (row.state == kYields ? row.most : row.least) + tolerance;
+}
+
+/// z = H^-1 right.
+void PenaltySolver::newton_step() noexcept {
+  for (Index i = 0; i < unknowns_; ++i) {
+    double y = right_[i];
+    for (Index j = 0; j <= i; ++j) {
+      double sum = H_[i][j];
+      for (Index k = 0; k < j; ++k) sum -= L_[i][k] * L_[j][k];
+      if (j < i) {
+        L_[i][j] = sum * inverse_[j];
+        y -= L_[i][j] * z_[j];
+      } else {
+        inverse_[i] = 1.0 / std::sqrt(sum);
       }
-      if (wrong == 0) return round;
-      if (guarded) shorten_step();
-      guarded |= wrong >= fewest;
-      fewest = wrong;
-      for (Index i = 0; i < n_; ++i)
-        if (guarded || rows_[i].wrong) change(rows_[i], wanted_state(rows_[i]));
     }
-    return 0;
+    z_[i] = y * inverse_[i];
   }
-
-  double force(Index i) const {
-    const Row& row = rows_[i];
-    if (row.state == kYields) return std::clamp(row.missing * row.stiffness, row.least, row.most);
-    return row.state == kIdle ? row.least : row.most;
+  for (Index i = unknowns_; i-- > 0;) {
+    double sum = z_[i];
+    for (Index k = i + 1; k < unknowns_; ++k) sum -= L_[k][i] * z_[k];
+    z_[i] = sum * inverse_[i];
   }
-  double value(Index unknown) const { return z_[unknown]; }
+}
 
- private:
-  static constexpr int kMostRounds = 24;  // two are usual
-  static constexpr int kMostSlopes = 30;
-  static constexpr double kFlat = 0.1;  // of the slope at the start
-
-  /// The row's force is the least, follows the law, or is the most.
-  enum State : std::uint8_t { kIdle, kYields, kSaturated };
-
-  struct Range {
-    double from, to;
-  };
-
-  struct Row {
-    Index size;  // of g, where it is not zero: the unknowns of both bodies, in order
-    std::array<std::uint8_t, 12> column;
-    static_assert(kMostUnknowns <= 256);
-    std::array<double, 12> g;
-    double stiffness, wanted, least, most;
-    double missing;         // offset - g z, since the last step
-    double missing_before;  // before it, where the step is guarded
-    Range right;            // of forces for which the state is right
-    State state;
-    bool wrong;  // the state, after the last step
-
-    void place(const QpRow::Run& run, Index at) {
-      std::copy_n(run.g.begin(), QpRow::kLongestRun, g.begin() + at);
-      for (Index i = 0; i < run.count; ++i) column[at + i] = static_cast<std::uint8_t>(run.first + i);
-    }
-  };
-
-  /// Adds the terms of a row in this state to H and to the right side, or removes them.
-  void add_state(const Row& row, State state, double sign) {
-    if (state == kYields) {
-      const double weight = sign * row.stiffness;
-      for (Index i = 0; i < row.size; ++i) {
-        const double scaled = weight * row.g[i];
-        right_[row.column[i]] += scaled * row.wanted;
-        double* const H = H_[row.column[i]];
-        for (Index j = 0; j <= i; ++j) H[row.column[j]] += scaled * row.g[j];
-      }
-      return;
-    }
-    const double force = sign * (state == kIdle ? row.least : row.most);
-    if (force == 0.0) return;
-    for (Index i = 0; i < row.size; ++i) right_[row.column[i]] += force * row.g[i];
-  }
-  void change(Row& row, State state) {
-    if (state == row.state) return;
-    add_state(row, row.state, -1.0);
-    row.state = state;
-    set_right_range(row);
-    add_state(row, state, 1.0);
-  }
-
-  void set_right_range(Row& row) const {
-    // For a force with bounds a fraction of these; else the force of the length that may be missing.
-    const double tolerance =
-        row.most < kUnbounded ? tolerances::kContactVelocity * row.most : allowed_ * row.stiffness;
-    row.right.from =
-        row.state == kIdle ? -kUnbounded : (row.state == kYields ? row.least : row.most) - tolerance;
-    row.right.to =
-        row.state == kSaturated ? kUnbounded : (row.state == kYields ? row.most : row.least) + tolerance;
-  }
-
-  /// z = H^-1 right.
-  void newton_step() {
-    for (Index i = 0; i < unknowns_; ++i) {
-      double y = right_[i];
-      for (Index j = 0; j <= i; ++j) {
-        double sum = H_[i][j];
-        for (Index k = 0; k < j; ++k) sum -= L_[i][k] * L_[j][k];
-        if (j < i) {
-          L_[i][j] = sum * inverse_[j];
-          y -= L_[i][j] * z_[j];
-        } else {
-          inverse_[i] = 1.0 / std::sqrt(sum);
-        }
-      }
-      z_[i] = y * inverse_[i];
-    }
-    for (Index i = unknowns_; i-- > 0;) {
-      double sum = z_[i];
-      for (Index k = i + 1; k < unknowns_; ++k) sum -= L_[k][i] * z_[k];
-      z_[i] = sum * inverse_[i];
-    }
-  }
-
-  /// Keeps the point from which the next step goes.
-  void keep_point() {
-    std::copy_n(z_, unknowns_, z_before_);
-    for (Index i = 0; i < n_; ++i) rows_[i].missing_before = rows_[i].missing;
-  }
-
-  /// Ends the step where the function no longer falls along it, by the zero of its slope at a share t of the
-  /// step, which rises with t on a chain of lines.
-  void shorten_step() {
-    double at_start = 0.0;
-    double along = 0.0;
-    for (Index i = 0; i < unknowns_; ++i) {
-      const double d = z_[i] - z_before_[i];
-      at_start += z_before_[i] * d;
-      along += d * d;
-    }
-    double rate = 0.0;  // of the slope
-    const auto slope = [&](double t) {
-      double sum = at_start + t * along;
-      rate = along;
-      for (Index i = 0; i < n_; ++i) {
-        const Row& row = rows_[i];
-        const double closes = row.missing_before - row.missing;
-        const double force = row.stiffness * (row.missing_before - t * closes);
-        if (force <= row.least) {
-          sum -= row.least * closes;
-        } else if (force >= row.most) {
-          sum -= row.most * closes;
-        } else {
-          sum -= force * closes;
-          rate += row.stiffness * closes * closes;
-        }
-      }
-      return sum;
-    };
-    if (slope(1.0) <= 0.0) return;
-    double falls = 0.0;
-    double rises = 1.0;
-    double t = 0.0;
-    double now = slope(t);
-    const double flat = kFlat * std::abs(now);
-    for (int i = 0; i < kMostSlopes && std::abs(now) > flat; ++i) {
-      (now < 0.0 ? falls : rises) = t;
-      t -= now / rate;
-      if (!(t > falls && t < rises)) t = 0.5 * (falls + rises);
-      now = slope(t);
-    }
-    for (Index i = 0; i < unknowns_; ++i) z_[i] = z_before_[i] + t * (z_[i] - z_before_[i]);
-    for (Index i = 0; i < n_; ++i) {
-      Row& row = rows_[i];
-      row.missing = row.missing_before + t * (row.missing - row.missing_before);
-    }
-  }
-
-  /// By how much the row still closes too far.
-  double missing(const Row& row) const {
-    double sum = row.wanted;
-    for (Index i = 0; i < row.size; ++i) sum -= row.g[i] * z_[row.column[i]];
-    return sum;
-  }
-  static State wanted_state(const Row& row) {
+/// Measures by how much each row still closes too far. Returns how many are in a wrong state.
+std::size_t PenaltySolver::measure() noexcept {
+  Index wrong = 0;
+  for (Row& row : rows_) {
+    row.missing = row.wanted;
+    for (Index i = 0; i < row.size; ++i) row.missing -= row.g[i] * z_[row.column[i]];
     const double force = row.missing * row.stiffness;
-    return force < row.least ? kIdle : force > row.most ? kSaturated : kYields;
+    row.wrong = !(force >= row.right.from && force <= row.right.to);  // a NaN is wrong
+    wrong += row.wrong ? 1 : 0;
   }
+  return wrong;
+}
 
-  Index n_ = 0, unknowns_;
-  double most_wanted_ = 0.0;
-  double allowed_ = 0.0;  // so much may be missing [m]
-  Row rows_[kMostRows];
-  double H_[kMostUnknowns][kMostUnknowns], L_[kMostUnknowns][kMostUnknowns];
-  double right_[kMostUnknowns], z_[kMostUnknowns], z_before_[kMostUnknowns], inverse_[kMostUnknowns];
-};
+/// Keeps the point from which the next step goes.
+void PenaltySolver::keep_point() noexcept {
+  std::copy_n(z_.begin(), unknowns_, z_before_.begin());
+  for (Row& row : rows_) row.missing_before = row.missing;
+}
+
+/// Ends the step where the function no longer falls along it, by the zero of its slope at a share t of the
+/// step, which rises with t on a chain of lines.
+void PenaltySolver::shorten_step() noexcept {
+  double at_start = 0.0;
+  double along = 0.0;
+  for (Index i = 0; i < unknowns_; ++i) {
+    const double d = z_[i] - z_before_[i];
+    at_start += z_before_[i] * d;
+    along += d * d;
+  }
+  double rate = 0.0;  // of the slope
+  const auto slope = [&](double t) {
+    double sum = at_start + t * along;
+    rate = along;
+    for (const Row& row : rows_) {
+      const double closes = row.missing_before - row.missing;
+      const double force = row.stiffness * (row.missing_before - t * closes);
+      if (force <= row.least) {
+        sum -= row.least * closes;
+      } else if (force >= row.most) {
+        sum -= row.most * closes;
+      } else {
+        sum -= force * closes;
+        rate += row.stiffness * closes * closes;
+      }
+    }
+    return sum;
+  };
+  if (slope(1.0) <= 0.0) return;
+  double falls = 0.0;
+  double rises = 1.0;
+  double t = 0.0;
+  double now = slope(t);
+  const double flat = kFlat * std::abs(now);
+  for (int i = 0; i < kMostSlopes && std::abs(now) > flat; ++i) {
+    (now < 0.0 ? falls : rises) = t;
+    t -= now / rate;
+    if (!(t > falls && t < rises)) t = 0.5 * (falls + rises);
+    now = slope(t);
+  }
+  for (Index i = 0; i < unknowns_; ++i) z_[i] = z_before_[i] + t * (z_[i] - z_before_[i]);
+  for (Row& row : rows_) row.missing = row.missing_before + t * (row.missing - row.missing_before);
+}
+
+/// Newton's method on the convex function. A step is a Cholesky factor of I + sum k g g^T over the rows that
+/// yield, whose size is the freedom of the bodies, however many rows there are. Begins with the rows that
+/// approach too fast, and changes all rows that are in a wrong state after a step; where that makes no fewer
+/// wrong, goes on with steps that are no longer than the function falls along them, which always ends.
+/// Returns the rounds, 0 when they ran out.
+int PenaltySolver::solve_by_newton(std::span<const double> stiffness,
+                                   const ContactProblem& problem) noexcept {
+  unknowns_ = problem.unknowns();
+  for (Index i = 0; i < unknowns_; ++i) {
+    right_[i] = 0.0;
+    for (Index j = 0; j <= i; ++j) H_[i][j] = i == j ? 1.0 : 0.0;
+  }
+  rows_.clear();
+  most_wanted_ = 0.0;
+  for_each_row(stiffness, problem, [&](Index, const QpRow& row, const ForceLaw& law) { add(row, law); });
+  allowed_ = tolerances::kContactVelocity * most_wanted_;
+  for (Row& row : rows_) set_right_range(row);
+  Index fewest = rows_.size() + 1;
+  bool guarded = false;
+  for (int round = 1; round <= kMostRounds; ++round) {
+    if (guarded) keep_point();
+    newton_step();
+    const Index wrong = measure();
+    if (wrong == 0) return round;
+    if (guarded) shorten_step();
+    guarded |= wrong >= fewest;
+    fewest = wrong;
+    for (Row& row : rows_)
+      if (guarded || row.wrong) change(row, row.wanted_state());
+  }
+  return 0;
+}
 
 /// Projected Gauss-Seidel from first row to last, until a sweep changes almost nothing.
-SolverResult sweep(std::span<const double> stiffness, int max_sweeps, ReservedVector<double>& forces,
-                   ContactProblem& problem) {
+SolverResult PenaltySolver::sweep(std::span<const double> stiffness, int max_sweeps,
+                                  ContactProblem& problem) noexcept {
   SolverResult result;
   double* const z = problem.values();
   for (; result.iterations < max_sweeps; ++result.iterations) {
@@ -283,11 +241,11 @@ SolverResult sweep(std::span<const double> stiffness, int max_sweeps, ReservedVe
       if (!(law.stiffness > 0.0)) return;
       const double compliance = 1.0 / law.stiffness;
       const double give = mobility(row) + compliance;
-      const double missing = row.offset - dot(row, z) - compliance * forces[r];
-      const double force = std::clamp(forces[r] + missing / give, law.least, law.most);
-      const double change = force - forces[r];
+      const double missing = row.offset - dot(row, z) - compliance * forces_[r];
+      const double force = std::clamp(forces_[r] + missing / give, law.least, law.most);
+      const double change = force - forces_[r];
       if (change == 0.0) return;
-      forces[r] = force;
+      forces_[r] = force;
       push(row, change, z);
       largest_change = std::max(largest_change, std::abs(change) * give);
       largest_wanted = std::max(largest_wanted, std::abs(row.offset));
@@ -298,27 +256,22 @@ SolverResult sweep(std::span<const double> stiffness, int max_sweeps, ReservedVe
   return result;
 }
 
-}  // namespace
-
-SolverResult solve_penalty(std::span<const double> stiffness, int max_sweeps, ReservedVector<double>& forces,
-                           ContactProblem& problem) noexcept {
+SolverResult PenaltySolver::solve(std::span<const double> stiffness, int max_sweeps,
+                                  ContactProblem& problem) noexcept {
   problem.begin_values();
   const Index number = problem.rows() + problem.joint_frictions().size();
-  forces.resize(number);
+  forces_.resize(number);
   if (number == 0) return {.iterations = 0, .converged = true};
-  if (number <= Newton::kMostRows && problem.unknowns() <= kMostUnknowns) {
-    Newton newton(problem.unknowns());
-    for_each_row(stiffness, problem,
-                 [&](Index, const QpRow& row, const ForceLaw& law) { newton.add(row, law); });
-    const int rounds = newton.solve();
+  if (problem.unknowns() <= kMostUnknowns) {
+    const int rounds = solve_by_newton(stiffness, problem);
     if (rounds > 0) {
-      for (Index i = 0; i < number; ++i) forces[i] = newton.force(i);
-      for (Index i = 0; i < problem.unknowns(); ++i) problem.values()[i] = newton.value(i);
+      for (Index i = 0; i < number; ++i) forces_[i] = rows_[i].force();
+      std::copy_n(z_.begin(), unknowns_, problem.values());
       return {.iterations = rounds, .converged = true};
     }
   }
-  forces.assign(number, 0.0);
-  return sweep(stiffness, max_sweeps, forces, problem);
+  forces_.assign(number, 0.0);
+  return sweep(stiffness, max_sweeps, problem);
 }
 
 }  // namespace tactum::inline v0_1

@@ -128,13 +128,12 @@ PenaltyResponse::PenaltyResponse(const World& world, const FrameSettings& settin
       bodies_(world.bodies.size(), world.bodies.size()),
       rows_(world.bodies.size(), Index(settings.budget.max_contact_points)),
       problem_(Index(settings.budget.max_contact_points), world.bodies.size()),
+      solver_(Index(settings.budget.max_contact_points) + ContactProblem::kJointRows * world.bodies.size()),
       V_before_joints_(world.bodies.size()),
       delta_(world.bodies.size(), 0.0) {
   begin_midway(world, settings.dt_s, bodies);
   stiffness_.reserve(Index(settings.budget.max_contact_points));
   depth_scale_.reserve(settings.budget.capacity.patches);
-  forces_.reserve(Index(settings.budget.max_contact_points) +
-                  ContactProblem::kJointRows * world.bodies.size());
 }
 
 /// The grasped parts' targets, from where they are: the whole displacement to where their couplings carry
@@ -201,7 +200,7 @@ std::span<const double> PenaltyResponse::bound_motion(const MotionInput& input, 
     problem_.clear();
     add_body(input, number, input.dt_s, bodies);
     problem_.add_joint_rows(false);
-    solve_penalty({}, input.settings.budget.solver_iterations, forces_, problem_);
+    solver_.solve({}, input.settings.budget.solver_iterations, problem_);
     V_WB = to_twist(problem_.displacement(number) / input.dt_s);
   }
   cut_ = false;
@@ -260,10 +259,9 @@ void PenaltyResponse::solve_island(const StepInput& input, Index island, double 
     stiffness_.push_back(row.stiffness);
     problem_.add_row(row.body_a, row.body_b, push_of(row), row.margin - row.distance);
   }
-  const SolverResult solved =
-      solve_penalty(stiffness_, input.settings.budget.solver_iterations, forces_, problem_);
+  const SolverResult solved = solver_.solve(stiffness_, input.settings.budget.solver_iterations, problem_);
   for (Index i = 0; i < stiffness_.size(); ++i)
-    rows[Index(rows_[island][i])].impulse = forces_[first + i] * rest_s;
+    rows[Index(rows_[island][i])].impulse = solver_.forces()[first + i] * rest_s;
   for (const ProblemBody& body : problem_.bodies())
     bodies.V_WB[Index(body.body)] = to_twist(problem_.displacement(body.body) / rest_s);
   report.solver_iterations += solved.iterations;

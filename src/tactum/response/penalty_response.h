@@ -111,8 +111,8 @@ class PenaltyResponse {
   Islands islands_;
   GroupedIndices bodies_, rows_;      // by island
   ReservedVector<double> stiffness_;  // of the contact rows of the island in work [N/m]
-  ReservedVector<double> forces_;     // of all rows of its problem, and of its joints' dry friction [N]
   ContactProblem problem_;
+  PenaltySolver solver_;
   std::vector<Twist> V_before_joints_;  // by body: before joints and the hand change it [m/s, rad/s]
   std::vector<double> delta_;           // by body: its part of the tolerance, v_c dt [m]
   bool cut_ = false;                    // a motion to the hand is cut to the threshold distance
