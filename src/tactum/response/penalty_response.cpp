@@ -128,7 +128,8 @@ PenaltyResponse::PenaltyResponse(const World& world, const FrameSettings& settin
       bodies_(world.bodies.size(), world.bodies.size()),
       rows_(world.bodies.size(), Index(settings.budget.max_contact_points)),
       problem_(Index(settings.budget.max_contact_points), world.bodies.size()),
-      solver_(Index(settings.budget.max_contact_points) + ContactProblem::kJointRows * world.bodies.size()),
+      solver_(Index(settings.budget.max_contact_points) +
+              (ContactProblem::kJointRows + 1) * world.bodies.size()),
       V_before_joints_(world.bodies.size()),
       delta_(world.bodies.size(), 0.0) {
   begin_midway(world, settings.dt_s, bodies);
