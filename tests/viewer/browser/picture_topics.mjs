@@ -45,7 +45,7 @@ export const topics = {
     mkdirSync(folder, { recursive: true });
     const take = async (scene, options, prepare, words = ["feel", scene]) => {
       const program = await Program.command(tactum, words);
-      const page = await openPage(browser, program, { viewport: { width: 1280, height: 720 }, ...options }, "#fine");
+      const page = await openPage(browser, program, { deviceScaleFactor: 1, ...options }, "#fine");
       await prepare(page);
       const png = await page.screenshot();
       check(png.length > 60000, `the picture of ${scene} shows something: ${png.length} bytes`);

@@ -94,7 +94,8 @@ export async function until(sentence, ask, seconds = 40) {
 /** A page that remembers what it complained of, and its sockets so that a test can cut them. `before` runs in the page before
  *  its own scripts. */
 export async function openPage(browser, program, options = {}, look = "", before = null) {
-  const context = await browser.newContext({ viewport: { width: 1280, height: 720 }, colorScheme: "dark", acceptDownloads: true, ...options });
+  // Half as many pixels each way as the page has places: no graphics card draws here, and every pixel costs the other processes time.
+  const context = await browser.newContext({ viewport: { width: 1280, height: 720 }, deviceScaleFactor: 0.5, colorScheme: "dark", acceptDownloads: true, ...options });
   const page = await context.newPage();
   page.complaints = [];
   page.on("console", (message) => {

@@ -228,11 +228,14 @@ function momentShown(): number | null {
   return charts.moment ?? (newest ? samples.find(newest.index) : samples.count - 1);
 }
 
-let lastTick = 0;
+let lastDrawn = 0;
+let lastSummary = 0;
 function tick(time: number) {
   requestAnimationFrame(tick);
   if (!run || !samples || samples.count === 0) return;
-  if (cutOff && time - lastTick < 250) return; // nothing moves any more but the view
+  // Once cut off nothing moves any more but the view; without a graphics card the loop needs the processors more.
+  if (time - lastDrawn < (cutOff ? 250 : view.plain ? 30 : 0)) return;
+  lastDrawn = time;
   const past = charts.moment !== null;
   const picture = charts.moment !== null ? samples.picture(samples.frameOf(charts.moment)) : newest;
   const sample = momentShown() ?? 0;
@@ -247,8 +250,8 @@ function tick(time: number) {
   view.draw();
   charts.draw();
   why.update(samples, sample, picture);
-  if (time - lastTick > 100) {
-    lastTick = time;
+  if (time - lastSummary > 100) {
+    lastSummary = time;
     showSummary(sample);
   }
 }

@@ -95,6 +95,8 @@ export class View {
   private readonly torqueLabel = document.createElement("span");
   private floorZ = 0;
   onDraw: (() => void) | null = null;
+  /** Whether it is drawn with less care, since without a graphics card every pixel costs. */
+  readonly plain = drawnBySoftware() && location.hash !== "#fine";
 
   constructor(private readonly canvas: HTMLCanvasElement, labels: HTMLElement, private readonly scaleNote: HTMLElement, cube: HTMLElement) {
     this.cube = new ViewCube(cube);
@@ -106,9 +108,9 @@ export class View {
       const hit = this.bodies?.pick(this.rayAt(event.clientX, event.clientY));
       if (hit) this.controls.target.copy(hit.point);
     });
-    const plain = drawnBySoftware() && location.hash !== "#fine"; // without a graphics card every pixel costs
+    const plain = this.plain;
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: !plain, alpha: true });
-    this.renderer.setPixelRatio(plain ? 1 : Math.min(2, devicePixelRatio));
+    this.renderer.setPixelRatio(Math.min(plain ? 1 : 2, devicePixelRatio));
     this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.type = plain ? THREE.BasicShadowMap : THREE.PCFSoftShadowMap;
     this.renderer.toneMapping = THREE.NeutralToneMapping;
