@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """clang-tidy (settings: .clang-tidy) over the program's own sources:  tools/tidy.py BUILD_FOLDER [FILE...]
 
-Without files it checks the last stages before the motors, where a slip moves one, and every header at once
-through one generated file; with TACTUM_FULL=1 every source of src/, app/ and viewer/server/.
+Without files it checks the last stages before the motors, where a slip moves one, the files of a layer as one, and every
+header at once through one generated file; with TACTUM_FULL=1 every source of src/, app/ and viewer/server/, each alone.
 """
 import json
 import os
@@ -37,6 +37,22 @@ def chosen_sources(database, full):
     return [path for path in own if path.startswith(OWN if full else LAST_STAGES)]
 
 
+def join_layers(database, paths, folder):
+    """Writes a file for each layer into `folder` that includes those of `paths` in it, adds it to the compilation database
+    and returns the new paths: the headers of others, which take most of the time, are then read once a layer."""
+    entries = {pathlib.Path(entry["file"]).resolve().relative_to(ROOT).as_posix(): entry for entry in database
+               if pathlib.Path(entry["file"]).resolve().is_relative_to(ROOT)}
+    joined = []
+    for layer in sorted({str(pathlib.Path(path).parent) for path in paths}):
+        sources = [path for path in paths if str(pathlib.Path(path).parent) == layer]
+        together = folder / f"{pathlib.Path(layer).name}.cpp"
+        together.write_text("".join(f'#include "{ROOT / source}"  // NOLINT(bugprone-suspicious-include)\n' for source in sources))
+        entry = entries[sources[0]]
+        database.append(entry | {"file": str(together), "command": entry["command"].replace(entry["file"], str(together))})
+        joined.append(str(together))
+    return joined
+
+
 def check(build, path):
     """Exit code, the path and what clang-tidy said of one file."""
     command = ["clang-tidy", "-p", str(build), "--quiet", "--extra-arg=-Wno-unknown-warning-option", str(ROOT / path)]
@@ -52,11 +68,14 @@ def main(arguments):
     database = each_source(json.loads((build / "compile_commands.json").read_text()))
     separate = build / "tidy"
     separate.mkdir(exist_ok=True)
-    (separate / "compile_commands.json").write_text(json.dumps(database))
-    paths = arguments[1:] or chosen_sources(database, os.environ.get("TACTUM_FULL") == "1")
+    full = os.environ.get("TACTUM_FULL") == "1"
+    paths = arguments[1:] or chosen_sources(database, full)
+    if not arguments[1:] and not full:
+        paths = join_layers(database, paths, separate)
     every_header = build / "tests/headers/every_header.cpp"
     if not arguments[1:] and every_header.exists():
         paths = [str(every_header)] + paths
+    (separate / "compile_commands.json").write_text(json.dumps(database))
     workers = len(os.sched_getaffinity(0))
     with ThreadPoolExecutor(workers) as pool:
         results = list(pool.map(lambda path: check(separate, path), paths))
