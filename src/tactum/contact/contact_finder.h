@@ -102,8 +102,8 @@ class ContactFinder final : public GapOracle {
   /// What is carried from frame to frame (carried_state.h).
   template <class Self, class Visit>
   static void carried(Self& self, Visit& visit) noexcept {
-    visit(self.fat_box_, self.travel_, self.last_X_WB_, self.sweep_, self.lists_, self.met_, self.pairs_,
-          self.blocked_, self.priority_, self.budget_limited_, self.tests_left_, self.patches_,
+    visit(self.fat_box_, self.travel_, self.last_X_WB_, self.sweep_, self.lists_, self.met_, self.overlaps_,
+          self.pairs_, self.blocked_, self.priority_, self.budget_limited_, self.tests_left_, self.patches_,
           self.motion_bound_, self.points_, self.min_tolerance_, self.frame_, self.renewal_);
   }
 
@@ -135,9 +135,17 @@ class ContactFinder final : public GapOracle {
     std::int64_t renewal = -1;   ///< number of the renewal it was last part of: an older one is not in pairs_
     double free_until = -1e300;  ///< of two surfaces: as in Pair
     bool apart = false;          ///< ... and nothing was within the tolerance at the last query
+    bool looked_at = false;      ///< ... and whether they overlap was looked at
     double nearest = 0.0;  ///< ... a lower bound of their distance in this frame, where both are trusted [m]
     std::int64_t unproven_until =
         0;  ///< frame up to which no path is proven: the last one took too many tests
+  };
+
+  /// Two surfaces that were in each other when they were first near. What is found to that depth pushes them
+  /// apart; until it has, their paths are not proven, since no motion of them is free.
+  struct Overlap {
+    std::int32_t body_a = -1, body_b = -1;
+    double depth = 0.0;  ///< twice the deepest that was found [m]
   };
 
   /// Two triangles of surfaces that have ended a path (prove_paths): no minimum of the distance stood for
@@ -194,6 +202,10 @@ class ContactFinder final : public GapOracle {
   }
   void test_surfaces(const SweepAndPrune::Pair& near, std::span<const Pose> X_WB) noexcept;
   double cone_inflation(int a, int b) const noexcept;
+  void look_for_overlap(int a, int b, const Pose& X_AB, double watched) noexcept;
+  bool follow_overlap(int a, int b, double watched) noexcept;
+  double deepest_minimum() const noexcept;
+  double overlap(int a, int b) const noexcept;
   bool find_minima(int a, int b, const Pose& X_AB, const MinimaQuery& query) noexcept;
   void add_minima(int a, int b, double margin) noexcept;
   std::size_t reduce_minima(int a, int b, double margin) noexcept;
@@ -258,7 +270,8 @@ class ContactFinder final : public GapOracle {
   int unproven_frames_ = 0;           // kUnproven_s in frames
   std::vector<BodyPath> paths_;       // by body: see prove_paths()
   ReservedVector<MetTriangles> met_;  // those that may be contacts
-  SurfacesPassed surfaces_passed_;    // the last answer
+  ReservedVector<Overlap> overlaps_;
+  SurfacesPassed surfaces_passed_;  // the last answer
   ReservedVector<Pair> pairs_, renewed_;
   ReservedVector<std::pair<std::int32_t, std::int32_t>> near_pieces_;  // of the two bodies being tested
   ReservedVector<DuePair> due_;

@@ -20,6 +20,8 @@ constexpr double kBoxGrowth = 0.05;
 
 /// Pairs of triangles that are remembered as contacts: where a part lies on a face wound the wrong way, some.
 constexpr Index kMostMet = 256;
+/// Pairs of surfaces that were in each other when they became near.
+constexpr Index kMostOverlaps = 64;
 
 /// For so long no proof is tried after one that took too many tests.
 constexpr double kUnproven_s = 1.0;
@@ -78,6 +80,7 @@ ContactFinder::ContactFinder(std::vector<CollisionBody> bodies, std::span<const 
   travel_.assign(bodies_.size(), 0.0);
   paths_.resize(bodies_.size());
   met_.reserve(kMostMet);
+  overlaps_.reserve(kMostOverlaps);
   lists_.resize(sweep_.room());
   pairs_.reserve(capacity.pairs);
   renewed_.reserve(capacity.pairs);

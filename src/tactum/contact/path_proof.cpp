@@ -113,6 +113,7 @@ double ContactFinder::path_free(const SweepAndPrune::Pair& near, int most_tests,
   const BodyPath& a = paths_[Index(near.a)];
   const BodyPath& b = paths_[Index(near.b)];
   const double travel = a.travel + b.travel;
+  if (overlap(near.a, near.b) > 0.0) return 1.0;
   BodyPair& list = list_of(near);
   if (trusted_[Index(near.a)] && trusted_[Index(near.b)] &&
       std::max(list.free_until - accumulated_motion(near.a, near.b), list.nearest) > travel)

@@ -5,6 +5,7 @@
 
 #include "tactum/base/tolerances.h"
 #include "tactum/contact/contact_finder.h"
+#include "tactum/surface/surface_path.h"
 
 namespace tactum::inline v0_1 {
 namespace {
@@ -14,6 +15,12 @@ using Index = std::size_t;
 /// How deep surfaces may cross in the penalty response and still be told apart, as a fraction of the smaller
 /// part's size. Walls thinner than that may be pushed through; the constraint response lets nothing cross.
 constexpr double kSurfaceDepth = 0.02;
+
+/// Surfaces that are in each other when they become near are pushed apart up to this depth, in the same way.
+constexpr double kOverlapDepth = 0.1;
+
+/// In so many tests of a path it is found whether two surfaces that become near have crossed.
+constexpr int kMostOverlapTests = 1 << 14;
 
 /// At the end of a step only gaps below this fraction of the tolerance are searched: the others are open. It
 /// must not be below half the skin, which a gap may have to keep (constraint_trial.cpp): a tolerance is four
@@ -133,13 +140,16 @@ void ContactFinder::test_surfaces(const SweepAndPrune::Pair& near, std::span<con
   ++work_.exact_tests;
   const Part& part_a = *bodies_[Index(a)].part;
   const Part& part_b = *bodies_[Index(b)].part;
-  // Where nothing may cross, a distance below zero is rounding.
+  // Where nothing may cross, a distance below zero is rounding, or was there when the two were first near.
   const bool may_cross = over_areas(a, b);
-  MinimaQuery query{
-      .max_distance = margin,
-      .depth = may_cross ? kSurfaceDepth * std::min(part_a.size, part_b.size) : kWatched * margin,
-      .cone_inflation = cone_inflation(a, b)};
+  const double watched = kWatched * margin;
   const Pose X_AB = relative_pose(X_WB[Index(a)], X_WB[Index(b)]);
+  if (!may_cross && !list.looked_at) look_for_overlap(a, b, X_AB, watched);
+  list.looked_at = !may_cross;
+  MinimaQuery query{.max_distance = margin,
+                    .depth = may_cross ? kSurfaceDepth * std::min(part_a.size, part_b.size)
+                                       : std::max(watched, overlap(a, b)),
+                    .cone_inflation = cone_inflation(a, b)};
   if (!may_cross && test_ball(a, b, X_AB, margin)) {
     list.free_until = accumulated_motion(a, b) + (minima_.empty() ? margin : 0.0);
     return;
@@ -172,8 +182,56 @@ void ContactFinder::test_surfaces(const SweepAndPrune::Pair& near, std::span<con
   list.nearest = margin;
   for (const SurfaceMinimum& minimum : minima_) list.nearest = std::min(list.nearest, minimum.distance);
   if (full) list.nearest = 0.0;
+  list.looked_at &= follow_overlap(a, b, watched);
   add_minima(a, b, margin);
   if (!may_cross) add_met_triangles(a, b, X_AB, margin);
+}
+
+/// How deep two surfaces may be found in each other that were so when they became near; else 0 [m].
+double ContactFinder::overlap(int a, int b) const noexcept {
+  for (const Overlap& known : overlaps_)
+    if (known.body_a == a && known.body_b == b) return known.depth;
+  return 0.0;
+}
+
+/// Looks whether surfaces that have become near are in each other, by more than is watched anyway, and how
+/// deep: the search goes twice as deep each time, until the deepest minimum lies well within.
+void ContactFinder::look_for_overlap(int a, int b, const Pose& X_AB, double watched) noexcept {
+  const Part& part_a = *bodies_[Index(a)].part;
+  const Part& part_b = *bodies_[Index(b)].part;
+  const RelativeMotion none{X_AB, {Vec3::Zero(), Vec3::Zero()}};
+  if (overlap(a, b) > 0.0 || !surface_path(part_a.tree, part_b.tree, none, kMostOverlapTests).crossed) return;
+  const double most = kOverlapDepth * std::min(part_a.size, part_b.size);
+  double depth = watched;
+  double deepest = 0.0;
+  while (depth < most && (deepest == 0.0 || deepest < -0.5 * depth)) {
+    depth = std::min(2.0 * depth, most);
+    find_minima(a, b, X_AB, {.max_distance = 0.0, .depth = depth, .cone_inflation = 0.0});
+    deepest = deepest_minimum();
+  }
+  if (deepest < -watched && overlaps_.size() < overlaps_.capacity()) overlaps_.push_back({a, b, depth});
+}
+
+/// Searches less deep where two surfaces have come out of each other, by the minima that were found. False
+/// where these are apart: whether there are others is to be looked at.
+bool ContactFinder::follow_overlap(int a, int b, double watched) noexcept {
+  const auto known = std::find_if(overlaps_.begin(), overlaps_.end(),
+                                  [&](const Overlap& o) { return o.body_a == a && o.body_b == b; });
+  if (known == overlaps_.end()) return true;
+  const double deepest = deepest_minimum();
+  if (deepest < -watched) {
+    known->depth = std::min(known->depth, -2.0 * deepest);
+    return true;
+  }
+  overlaps_.erase(known, known + 1);
+  return false;
+}
+
+/// The distance of the minimum that is farthest below zero; 0 where there is none [m].
+double ContactFinder::deepest_minimum() const noexcept {
+  double deepest = 0.0;
+  for (const SurfaceMinimum& minimum : minima_) deepest = std::min(deepest, minimum.distance);
+  return deepest;
 }
 
 /// By how much the cones of two surfaces are inflated: corners that the bodies may turn down in this frame
@@ -265,7 +323,8 @@ void ContactFinder::surface_distances_at(std::span<const ContactPatch> patches, 
   const Part& part_a = *bodies_[Index(first.body_a)].part;
   const Part& part_b = *bodies_[Index(first.body_b)].part;
   const MinimaQuery query{.max_distance = kWatched * first.tolerance,
-                          .depth = std::max(first.tolerance, tolerance(first.body_a, first.body_b)),
+                          .depth = std::max({first.tolerance, tolerance(first.body_a, first.body_b),
+                                             overlap(first.body_a, first.body_b)}),
                           .cone_inflation = 0.0};
   const Pose X_AB = relative_pose(X_WB[Index(first.body_a)], X_WB[Index(first.body_b)]);
   if (surface_minima(part_a.tree, part_b.tree, X_AB, query, minima_).full) {

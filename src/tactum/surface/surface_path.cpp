@@ -303,7 +303,9 @@ class PathWalk {
     if (QuickPath(a, b, motion_).parted()) return;
     TrianglePairPath pair(a.from, b.own, motion_, touching_);
     if (pair.direction(0.0).isZero(0.0)) {
-      if (!pair.touching_stays()) stop(0.0, a, b);
+      const StartContact start = pair.start_contact();
+      path_.crossed |= start == StartContact::kCrossed;
+      if (start == StartContact::kNearer) stop(0.0, a, b);
       return;
     }
     const double free = path_free_until(pair, path_.free, kIntervalTests);

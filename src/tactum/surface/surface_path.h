@@ -26,6 +26,7 @@ struct SurfacePath {
   int triangle_a = -1, triangle_b = -1;  ///< those which may touch first; -1: none do
   int tests = 0;                         ///< nodes and pairs of leaves looked at
   bool complete = true;                  ///< false: the tests ran out, and `free` proves nothing
+  bool crossed = false;                  ///< triangles that were looked at cross at the start
 };
 
 /// Steps between surfaces that lie along one plane, as boards of a floor do, over which one of the two rides:

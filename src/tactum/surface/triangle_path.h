@@ -11,6 +11,13 @@
 
 namespace tactum::inline v0_1 {
 
+/// What becomes of triangles that touch or cross at the start of a motion.
+enum class StartContact {
+  kStays,   ///< they touch, and come no nearer
+  kNearer,  ///< they touch, and may come nearer
+  kCrossed  ///< they have crossed already
+};
+
 /// Two triangles, of which that of B moves (path_search.h).
 class TrianglePairPath {
  public:
@@ -42,9 +49,9 @@ class TrianglePairPath {
     return std::max(
         {motion_.curving(n, b[0], 0.0), motion_.curving(n, b[1], 0.0), motion_.curving(n, b[2], 0.0)});
   }
-  /// Of triangles that touch at the start: whether they do not come nearer along some direction that parts
-  /// them, or have crossed already.
-  bool touching_stays() const noexcept {
+  /// Of triangles that touch or cross at the start. They come no nearer where they do not along a direction
+  /// that parts them and stays with either of the two.
+  StartContact start_contact() const noexcept {
     const TrianglePoints from = b_at(0.0);
     const TrianglePoints to = b_at(1.0);
     bool touch = false;
@@ -56,15 +63,15 @@ class TrianglePairPath {
         const double start = gap(sign * n, from);
         if (start < -touching_) continue;
         touch = true;
-        if (gap(sign * n, to) >= start) return true;
+        if (gap(sign * n, to) >= start || gap(turned(sign * n, 0.0, 1.0), to) >= start) return true;
       }
       return false;
     };
-    if (parts(normal_of(a_)) || parts(normal_of(from))) return true;
+    if (parts(normal_of(a_)) || parts(normal_of(from))) return StartContact::kStays;
     for (std::size_t i = 0; i < 3; ++i)
       for (std::size_t k = 0; k < 3; ++k)
-        if (parts((a_[(i + 1) % 3] - a_[i]).cross(from[(k + 1) % 3] - from[k]))) return true;
-    return !touch;
+        if (parts((a_[(i + 1) % 3] - a_[i]).cross(from[(k + 1) % 3] - from[k]))) return StartContact::kStays;
+    return touch ? StartContact::kNearer : StartContact::kCrossed;
   }
   static Vec3 normal_of(const TrianglePoints& t) noexcept { return (t[1] - t[0]).cross(t[2] - t[0]); }
 

@@ -120,7 +120,8 @@ export const topics = {
     const folder = mkdtempSync(join(tmpdir(), "tactum-remarks-"));
     const scene = join(folder, "odd.toml");
     writeFileSync(scene, readFileSync(join(root, "scenes/block-on-plate.toml"), "utf8")
-      .replace(/^schema = 1/m, "schema = 1\ngravity_m_per_s2 = [0, 0, -1]").replace("density_kg_per_m3 = 1000", "density_kg_per_m3 = 40000"));
+      .replace(/^schema = 1/m, "schema = 1\ngravity_m_per_s2 = [0, 0, -1]").replace("density_kg_per_m3 = 1000", "density_kg_per_m3 = 40000")
+      .replace("[[hand.step]]", "[[hand.step]]\nhold_s = 60\n\n[[hand.step]]")); // above the plate, until the page is there
     const program = await Program.start(tactum, scene);
     const page = await openPage(browser, program);
     const warnings = await page.locator(".remarks li.warning").allTextContents();

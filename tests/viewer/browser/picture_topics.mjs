@@ -11,7 +11,7 @@ export const topics = {
   /** What is saved can be used: the table has poses and says what it is, pictures are large and have their numbers. */
   async exports(browser, tactum) {
     const program = await Program.start(tactum, "gears");
-    const page = await openPage(browser, program);
+    const page = await openPage(browser, program, { deviceScaleFactor: 1 }); // pictures have as many pixels as the screen
     await until("the gears touch", async () => (await page.textContent(".sentence")).includes("touches"));
     const csv = (await downloaded(page, "#csv")).toString();
     const head = csv.split("\n").filter((line) => line.startsWith("#"));
