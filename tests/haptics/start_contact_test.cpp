@@ -1,6 +1,6 @@
-// Parts that are felt by their surface and begin a scene in touch with another one, to the last bit, or in each
-// other by less than a tenth of their size, move as those of convex pieces do: they are not held fast, and
-// what is in each other is pushed apart.
+// Parts that are felt by their surface and begin a scene in touch with another one, to the last bit, or in
+// each other by less than a tenth of their size, move as those of convex pieces do: they are not held fast,
+// and what is in each other is pushed apart.
 
 #include <gtest/gtest.h>
 
@@ -45,7 +45,7 @@ struct Standing {
   int block = -1;
   std::unique_ptr<Simulation> simulation;
 
-  Standing(const Case& c, bool held) {
+  Standing(const Case& c, bool grasped) {
     const Vec3 half = c.size_m * Vec3(0.15, 0.2, 0.5);
     const auto add_block = [&] {
       const Mat3 R = exp_rotation(Vec3(0, c.tilt_rad, 0));
@@ -61,7 +61,7 @@ struct Standing {
     if (!c.block_first) add_block();
     settings.dt_s = 1.0 / c.rate_Hz;
     settings.friction = {std::vector<double>(4, c.friction), 2};
-    if (held) settings.tool.body = block;
+    if (grasped) settings.tool.body = block;
     simulation = std::move(*Simulation::make(world, settings));
   }
   const Pose& X_WB() const { return simulation->state().world.X_WB[std::size_t(block)]; }
@@ -148,13 +148,13 @@ TEST(StartContact, AHandMovesIt) {
   std::vector<Case> cases = touching();
   cases.insert(cases.end(), overlapping().begin(), overlapping().end());
   for (const Case& c : testing::sampled(by_surfaces(cases), 9))
-    for (const Vec3& way : {Vec3(0, 0, 0.2), Vec3(0.2, 0, 0), Vec3(0, 0.2, 0), Vec3(0, 0, -0.01)}) {
-      SCOPED_TRACE(words_of(c) << ", along " << way.transpose());
+    for (const Vec3& by : {Vec3(0, 0, 0.2), Vec3(0.2, 0, 0), Vec3(0, 0.2, 0), Vec3(0, 0, -0.01)}) {
+      SCOPED_TRACE(words_of(c) << ", along " << by.transpose());
       Standing surface(c, true);
       Standing pieces(of_pieces(c), true);
       const double last_s = 0.5;
       for (double t = 0.0; t < last_s; t += surface.settings.dt_s) {
-        const Pose hand{Mat3::Identity(), std::min(1.0, 2.0 * t / last_s) * c.size_m * way};
+        const Pose hand{Mat3::Identity(), std::min(1.0, 2.0 * t / last_s) * c.size_m * by};
         surface.simulation->step(hand);
         pieces.simulation->step(hand);
       }
