@@ -32,7 +32,8 @@ void ContactFinder::list_due_pairs() noexcept {
   for (Index i = 0; i < pairs_.size(); ++i) {
     Pair& pair = pairs_[i];
     if (pair.free_until - accumulated_motion(pair.body_a, pair.body_b) >
-        facet_tolerance(pair.body_a, pair.body_b)) {
+            facet_tolerance(pair.body_a, pair.body_b) ||
+        rolls_by_circles(pair.body_a, pair.body_b)) {
       pair.in_contact = false;
     } else {
       due_.push_back({static_cast<std::int32_t>(i), priority_of(pair.body_a, pair.body_b), pair.in_contact,

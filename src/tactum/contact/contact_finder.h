@@ -197,8 +197,14 @@ class ContactFinder final : public GapOracle {
   void emit_patch(Pair& pair, PairDistance found, const Pose& X_AB) noexcept;
   GapAnswer distance_at(const ContactPatch& patch, std::span<const Pose> X_WB, double enough, int keep_back,
                         double& distance) noexcept;
-  bool meet_by_surfaces(int a, int b) const noexcept {
+  bool has_surface(int a, int b) const noexcept {
     return bodies_[std::size_t(a)].part->is_surface() || bodies_[std::size_t(b)].part->is_surface();
+  }
+  /// Where either is a surface, and where a turned part that is made of pieces moves by itself: its circles
+  /// are those of its surface.
+  bool meet_by_surfaces(int a, int b) const noexcept { return has_surface(a, b) || rolls_by_circles(a, b); }
+  bool rolls_by_circles(int a, int b) const noexcept {
+    return (turned_[std::size_t(a)] || turned_[std::size_t(b)]) && !of_grasped(a, b) && !over_areas(a, b);
   }
   void test_surfaces(const SweepAndPrune::Pair& near, std::span<const Pose> X_WB) noexcept;
   double cone_inflation(int a, int b) const noexcept;
@@ -210,6 +216,8 @@ class ContactFinder final : public GapOracle {
   void add_minima(int a, int b, double margin) noexcept;
   std::size_t reduce_minima(int a, int b, double margin) noexcept;
   bool test_ball(int a, int b, const Pose& X_AB, double margin) noexcept;
+  void test_balls(int a, int b, const Pose& X_AB, double margin) noexcept;
+  void take_revolved(int a, int b, const Pose& X_AB, double margin) noexcept;
   ContactPatch* add_surface_patch(int a, int b, const SurfaceMinimum& minimum, bool second_end,
                                   double margin) noexcept;
   /// Of a body that is a ball its centre, as a surface; else nothing.
@@ -259,7 +267,8 @@ class ContactFinder final : public GapOracle {
   std::vector<double> radius_;
   std::vector<SurfaceTree> cores_;  // see core_of()
   std::vector<char> trusted_;       // its surface is closed and outward: cones see all of it
-  std::vector<double> bulge_;       // greatest of its pieces (round_piece.h) [m]
+  std::vector<char> turned_;        // it moves, is made of pieces that are not round, has circles and is trusted
+  std::vector<double> bulge_;       // greatest of its curved surfaces, beyond their facets [m]
   std::vector<Aabb> fat_box_;       // in the world, grown
   std::vector<double> box_growth_;  // how far boxes and lists are grown [m]
   std::vector<double> travel_;      // accumulated motion of each body [m]

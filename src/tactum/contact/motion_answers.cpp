@@ -272,7 +272,10 @@ Passing ContactFinder::passes(int patch, std::span<const Pose> X_WB, std::span<c
   const Index b = Index(at.body_b);
   if (at.of_surfaces) {
     --tests_left_;
-    return at.round ? ball_passes(at, X_WB, V_WB, dt_s, gap_m) : surfaces_pass(at, X_WB, V_WB, dt_s, gap_m);
+    if (!at.round) return surfaces_pass(at, X_WB, V_WB, dt_s, gap_m);
+    const bool of_ball = cores_[a].empty() != cores_[b].empty();
+    return of_ball ? ball_passes(at, X_WB, V_WB, dt_s, gap_m)
+                   : surfaces_pass(at, X_WB, V_WB, dt_s, gap_m + bulge(at.body_a, at.body_b));
   }
   const bool turns = !V_WB[a].w.isZero(0.0) || !V_WB[b].w.isZero(0.0);
   const RoundPiece* const round_a = bodies_[a].round(at.piece_a);

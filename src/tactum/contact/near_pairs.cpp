@@ -61,12 +61,14 @@ ContactFinder::ContactFinder(std::vector<CollisionBody> bodies, std::span<const 
             radius = std::max(radius, vertex.norm());
             box.extend(vertex);
           }
-          double bulge = 0.0;
+          double bulge = bodies_[i].revolution.bulge_m;
           for (const RoundPiece& round : bodies_[i].rounds) bulge = std::max(bulge, round.bulge_m);
           radius_.push_back(radius);
           bulge_.push_back(bulge);
           cores_.push_back(core_of(bodies_[i]));
           trusted_.push_back(closed_outward(part) ? 1 : 0);
+          turned_.push_back(bodies_[i].moves && trusted_.back() != 0 && !part.is_surface() &&
+                            bodies_[i].rounds.empty() && !bodies_[i].revolution.circles.empty());
           part_box_.push_back({box.min - Vec3::Constant(bulge), box.max + Vec3::Constant(bulge)});
           box_growth_.push_back(kBoxGrowth * radius);
           fat_box_.push_back(turned(part_box_.back(), X_WB[i], box_growth_.back()));
@@ -178,7 +180,7 @@ void ContactFinder::renew_lists(std::span<const Pose> X_WB) noexcept {
 /// The near pieces of two bodies, sorted. False when the room did not suffice.
 bool ContactFinder::collect(int a, int b, const Pose& X_AB, double range) noexcept {
   near_pieces_.clear();
-  if (meet_by_surfaces(a, b)) return true;
+  if (has_surface(a, b)) return true;
   const Index room = renewed_.capacity() - renewed_.size();
   const bool complete =
       for_each_pair_within(bodies_[Index(a)].part->hierarchy, bodies_[Index(b)].part->hierarchy, X_AB, range,

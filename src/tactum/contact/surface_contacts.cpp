@@ -5,6 +5,7 @@
 
 #include "tactum/base/tolerances.h"
 #include "tactum/contact/contact_finder.h"
+#include "tactum/contact/revolved_contact.h"
 #include "tactum/surface/surface_path.h"
 
 namespace tactum::inline v0_1 {
@@ -66,7 +67,12 @@ SurfaceTree ContactFinder::core_of(const CollisionBody& body) {
 /// The contacts of a ball with a surface, each with its exact gap. False where neither body is a ball.
 bool ContactFinder::test_ball(int a, int b, const Pose& X_AB, double margin) noexcept {
   const bool ball_is_a = !cores_[Index(a)].empty();
-  if (!ball_is_a && cores_[Index(b)].empty()) return false;
+  const bool ball_is_b = !cores_[Index(b)].empty();
+  if (!ball_is_a && !ball_is_b) return false;
+  if (ball_is_a && ball_is_b) {
+    test_balls(a, b, X_AB, margin);
+    return true;
+  }
   const int ball = ball_is_a ? a : b;
   const SurfaceTree& surface = bodies_[Index(ball_is_a ? b : a)].part->tree;
   const RoundPiece& round = bodies_[Index(ball)].rounds[0];
@@ -101,12 +107,56 @@ bool ContactFinder::test_ball(int a, int b, const Pose& X_AB, double margin) noe
            .triangle_a = m.triangle_b,
            .triangle_b = m.triangle_a};
     }
-    ContactPatch* const patch = add_surface_patch(a, b, m, false, margin);
-    if (patch == nullptr) break;
-    patch->round = true;
-    patch->distance = std::max(m.distance, 0.0);  // the facets may still be open
+    m.round = true;
+    if (add_surface_patch(a, b, m, false, margin) == nullptr) break;
   }
   return true;
+}
+
+/// The contact of two balls, on the line of their centres.
+void ContactFinder::test_balls(int a, int b, const Pose& X_AB, double margin) noexcept {
+  const RoundPiece& ball_a = bodies_[Index(a)].rounds[0];
+  const RoundPiece& ball_b = bodies_[Index(b)].rounds[0];
+  const Vec3 center_b = X_AB * ball_b.center;
+  const Vec3 apart = ball_a.center - center_b;
+  const double between = apart.norm();
+  minima_.clear();
+  if (!(between > 0.0) || between - ball_a.radius_m - ball_b.radius_m >= margin) return;
+  SurfaceMinimum& m = minima_.emplace_back();
+  m.normal = apart / between;
+  m.distance = between - ball_a.radius_m - ball_b.radius_m;
+  m.p_a = ball_a.center - ball_a.radius_m * m.normal;
+  m.p_b = center_b + ball_b.radius_m * m.normal;
+  m.a = m.b = {FeatureKind::kVertex, 0};
+  m.triangle_a = m.triangle_b = 0;
+  m.round = true;
+  ++work_.minima;
+  add_surface_patch(a, b, m, false, margin);
+}
+
+/// Makes the minima of turned parts those of their circles, each once, and leaves out what is not nearer than
+/// the margin.
+void ContactFinder::take_revolved(int a, int b, const Pose& X_AB, double margin) noexcept {
+  const auto side = [&](int body) {
+    const CollisionBody& of = bodies_[Index(body)];
+    return RevolvedSide{of.part->tree, of.revolution.circles.empty() ? nullptr : &of.revolution};
+  };
+  const RevolvedSide side_a = side(a);
+  const RevolvedSide side_b = side(b);
+  if (side_a.revolution == nullptr && side_b.revolution == nullptr) return;
+  const double same = tolerances::kCoplanarMeshOffset * std::max(side_a.tree.size(), side_b.tree.size());
+  Index kept = 0;
+  for (const SurfaceMinimum& found : minima_) {
+    SurfaceMinimum m = found;
+    const bool round = meet_revolved(side_a, side_b, X_AB, margin, m);
+    const auto known = [&](const SurfaceMinimum& other) {
+      return other.round && (other.p_a - m.p_a).norm() < same && (other.p_b - m.p_b).norm() < same;
+    };
+    const auto end = minima_.begin() + static_cast<std::ptrdiff_t>(kept);
+    if (!(m.distance < margin) || (round && std::any_of(minima_.begin(), end, known))) continue;
+    minima_[kept++] = m;
+  }
+  minima_.resize(kept);
 }
 
 /// Leaves the minima that carry a contact as all of them do, at the front; returns how many.
@@ -132,9 +182,10 @@ void ContactFinder::test_surfaces(const SweepAndPrune::Pair& near, std::span<con
   const int b = near.b;
   if (!bodies_[Index(a)].moves && !bodies_[Index(b)].moves) return;
   double margin = tolerance(a, b);
+  const double of_facets = facet_tolerance(a, b);
   BodyPair& list = list_of(near);
   list.nearest = 0.0;  // until this frame has found it
-  if (list.free_until - accumulated_motion(a, b) > margin) return;
+  if (list.free_until - accumulated_motion(a, b) > of_facets) return;
   if (tests_left_ <= 0) return skip(a, b, list.free_until - accumulated_motion(a, b), frame_);
   --tests_left_;
   ++work_.exact_tests;
@@ -146,7 +197,7 @@ void ContactFinder::test_surfaces(const SweepAndPrune::Pair& near, std::span<con
   const Pose X_AB = relative_pose(X_WB[Index(a)], X_WB[Index(b)]);
   if (!may_cross && !list.looked_at) look_for_overlap(a, b, X_AB, watched);
   list.looked_at = !may_cross;
-  MinimaQuery query{.max_distance = margin,
+  MinimaQuery query{.max_distance = of_facets,
                     .depth = may_cross ? kSurfaceDepth * std::min(part_a.size, part_b.size)
                                        : std::max(watched, overlap(a, b)),
                     .cone_inflation = cone_inflation(a, b)};
@@ -162,7 +213,7 @@ void ContactFinder::test_surfaces(const SweepAndPrune::Pair& near, std::span<con
     ++work_.surface_queries;
     work_.feature_steps += work.feature_pairs;
     list.free_until = accumulated_motion(a, b) + clearance;
-    if (clearance > margin) return add_met_triangles(a, b, X_AB, margin);
+    if (clearance > of_facets) return add_met_triangles(a, b, X_AB, margin);
   }
   bool full = false;
   if (!may_cross && of_grasped(a, b) && frame_ < list.unproven_until) {
@@ -178,11 +229,12 @@ void ContactFinder::test_surfaces(const SweepAndPrune::Pair& near, std::span<con
   }
   if (full) drop(a, b);
   list.apart = minima_.empty();
-  list.free_until = accumulated_motion(a, b) + (list.apart ? margin : 0.0);
-  list.nearest = margin;
+  list.free_until = accumulated_motion(a, b) + (list.apart ? query.max_distance : 0.0);
+  list.nearest = query.max_distance;
   for (const SurfaceMinimum& minimum : minima_) list.nearest = std::min(list.nearest, minimum.distance);
   if (full) list.nearest = 0.0;
   list.looked_at &= follow_overlap(a, b, watched);
+  if (!may_cross && !of_grasped(a, b)) take_revolved(a, b, X_AB, margin);
   add_minima(a, b, margin);
   if (!may_cross) add_met_triangles(a, b, X_AB, margin);
 }
@@ -285,7 +337,9 @@ ContactPatch* ContactFinder::add_surface_patch(int a, int b, const SurfaceMinimu
   };
   patch.facets.a = facet(bodies_[Index(a)].part->tree, minimum.a);
   patch.facets.b = facet(bodies_[Index(b)].part->tree, minimum.b);
-  patch.distance = minimum.distance;
+  patch.round = minimum.round;
+  // Where a curved surface has been put into another one, the facets may still be open.
+  patch.distance = minimum.round ? std::max(minimum.distance, 0.0) : minimum.distance;
   patch.tolerance = margin;
   patch.manifold.normal = minimum.normal;
   patch.manifold.a = minimum.a;

@@ -8,6 +8,7 @@
 ///     /           \.
 
 #include "tactum/geometry/polytope.h"
+#include "tactum/geometry/triangle_mesh.h"
 
 namespace tactum::inline v0_1 {
 
@@ -31,5 +32,8 @@ struct RoundPiece {
 /// `crease_rad` are parts of one curved surface: kNone where two facets, of a cylinder two sides, meet at
 /// more.
 RoundPiece find_round_piece(const Polytope& piece, double crease_rad);
+
+/// The ball whose facets the triangles of a welded mesh are, all of them; kNone where they are not.
+RoundPiece find_ball(const TriangleMesh& mesh, double crease_rad);
 
 }  // namespace tactum::inline v0_1

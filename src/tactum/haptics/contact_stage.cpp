@@ -9,10 +9,16 @@ namespace {
 
 using Index = std::size_t;
 
-/// The curved surfaces of a part's pieces: those it was made with, else those that shading sees in facets.
+/// The curved surfaces of a part's pieces: those it was made with, else those that shading sees in facets. Of
+/// a part that is felt by its surface: the ball that it is.
 std::vector<RoundPiece> rounds_of(const Part& part, const Shading& shading) {
   if (!part.groups.rounds.empty() || !shading.on) return part.groups.rounds;
   std::vector<RoundPiece> rounds;
+  if (part.is_surface()) {
+    const RoundPiece ball = find_ball(part.surface, shading.crease_rad);
+    if (ball.kind == RoundKind::kSphere) rounds.push_back(ball);
+    return rounds;
+  }
   bool any = false;
   for (const Polytope& piece : part.pieces)
     any |= rounds.emplace_back(find_round_piece(piece, shading.crease_rad)).kind != RoundKind::kNone;
@@ -20,9 +26,15 @@ std::vector<RoundPiece> rounds_of(const Part& part, const Shading& shading) {
 }
 
 std::vector<CollisionBody> collision_bodies(const World& world, const Shading& shading) {
+  const bool surfaces = std::any_of(world.bodies.begin(), world.bodies.end(),
+                                    [](const Body& body) { return body.part->is_surface(); });
   std::vector<CollisionBody> bodies;
-  for (const Body& body : world.bodies)
-    bodies.push_back({body.part.get(), body.moves(), body.no_contact_with, rounds_of(*body.part, shading)});
+  for (const Body& body : world.bodies) {
+    CollisionBody& made = bodies.emplace_back();
+    made = {body.part.get(), body.moves(), body.no_contact_with, rounds_of(*body.part, shading), {}};
+    if (shading.on && (surfaces || (made.moves && made.rounds.empty())))
+      made.revolution = find_revolution(body.part->surface, shading.crease_rad);
+  }
   return bodies;
 }
 

@@ -260,7 +260,8 @@ void FeatureComparison::take(const Touch& touch, int triangle_a, int triangle_b)
   }
   const SurfaceMinimum minimum = {touch.distance, touch.p_a,  touch.p_b,
                                   touch.normal,   touch.a,    touch.b,
-                                  triangle_a,     triangle_b, touch.cone == InCone::kStrict};
+                                  triangle_a,     triangle_b, touch.cone == InCone::kStrict,
+                                  false};
   if (minima_.size() < minima_.capacity()) {
     minima_.push_back(minimum);
     return;

@@ -16,6 +16,7 @@ struct SurfaceMinimum {
   int triangle_a = -1;         ///< the triangle that owns the feature of A, for pictures and group_of()
   int triangle_b = -1;         ///< ... and of B
   bool strict = false;         ///< the normal lies in both true cones, not only in the inflated ones
+  bool round = false;          ///< of the curved surface that facets stand for
 };
 
 struct MinimaQuery {
