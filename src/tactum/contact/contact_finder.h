@@ -267,9 +267,9 @@ class ContactFinder final : public GapOracle {
   std::vector<double> radius_;
   std::vector<SurfaceTree> cores_;  // see core_of()
   std::vector<char> trusted_;       // its surface is closed and outward: cones see all of it
-  std::vector<char> turned_;        // it moves, is made of pieces that are not round, has circles and is trusted
-  std::vector<double> bulge_;       // greatest of its curved surfaces, beyond their facets [m]
-  std::vector<Aabb> fat_box_;       // in the world, grown
+  std::vector<char> turned_;   // it moves, is made of pieces that are not round, has circles and is trusted
+  std::vector<double> bulge_;  // greatest of its curved surfaces, beyond their facets [m]
+  std::vector<Aabb> fat_box_;  // in the world, grown
   std::vector<double> box_growth_;  // how far boxes and lists are grown [m]
   std::vector<double> travel_;      // accumulated motion of each body [m]
   std::vector<double> turn_;        // of each body in the last frame, about; a short one [rad]

@@ -230,9 +230,8 @@ void ContactFinder::test_surfaces(const SweepAndPrune::Pair& near, std::span<con
   if (full) drop(a, b);
   list.apart = minima_.empty();
   list.free_until = accumulated_motion(a, b) + (list.apart ? query.max_distance : 0.0);
-  list.nearest = query.max_distance;
+  list.nearest = full ? 0.0 : query.max_distance;
   for (const SurfaceMinimum& minimum : minima_) list.nearest = std::min(list.nearest, minimum.distance);
-  if (full) list.nearest = 0.0;
   list.looked_at &= follow_overlap(a, b, watched);
   if (!may_cross && !of_grasped(a, b)) take_revolved(a, b, X_AB, margin);
   add_minima(a, b, margin);
