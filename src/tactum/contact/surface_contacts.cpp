@@ -195,16 +195,16 @@ void ContactFinder::test_surfaces(const SweepAndPrune::Pair& near, std::span<con
   const bool may_cross = over_areas(a, b);
   const double watched = kWatched * margin;
   const Pose X_AB = relative_pose(X_WB[Index(a)], X_WB[Index(b)]);
+  if (!may_cross && test_ball(a, b, X_AB, margin)) {
+    list.free_until = accumulated_motion(a, b) + (minima_.empty() ? margin : 0.0);
+    return;
+  }
   if (!may_cross && !list.looked_at) look_for_overlap(a, b, X_AB, watched);
   list.looked_at = !may_cross;
   MinimaQuery query{.max_distance = of_facets,
                     .depth = may_cross ? kSurfaceDepth * std::min(part_a.size, part_b.size)
                                        : std::max(watched, overlap(a, b)),
                     .cone_inflation = cone_inflation(a, b)};
-  if (!may_cross && test_ball(a, b, X_AB, margin)) {
-    list.free_until = accumulated_motion(a, b) + (minima_.empty() ? margin : 0.0);
-    return;
-  }
   if (list.apart) {
     MinimaQuery farther = query;
     farther.max_distance *= kFarther;
